@@ -119,8 +119,8 @@ def test_gives_a_header_and_unsigned_ports() -> None:
     assert "limit  : in  unsigned(3 downto 0);" in text
 
 
-class Unless(wiring.Component):
-    """A register that is written in an `else` alone."""
+class AssignedInElse(wiring.Component):
+    """A register that is assigned in an `else` branch only."""
 
     def __init__(self) -> None:
         super().__init__({"hold": In(1), "a": In(2), "o": Out(2)})
@@ -134,13 +134,13 @@ class Unless(wiring.Component):
         return m
 
 
-def test_an_if_without_anything_is_turned_round() -> None:
-    text = convert(Unless(), name="unless").files["unless.vhd"]
+def test_an_empty_if_with_an_else_is_inverted() -> None:
+    text = convert(AssignedInElse(), name="unless").files["unless.vhd"]
     assert "if hold = '0' then\n          o_q <= unsigned(a);\n        end if;" in text
     assert "null" not in text
 
 
-def test_a_condition_with_two_arms_is_written_in_place() -> None:
+def test_a_switch_on_a_comparison_is_a_conditional_assignment() -> None:
     m = Module()
     a, b, o = (Signal(4, name=name) for name in "abo")
     with m.Switch(a == b):
@@ -153,7 +153,7 @@ def test_a_condition_with_two_arms_is_written_in_place() -> None:
     assert "signal" not in text
 
 
-def test_of_a_choice_that_comes_twice_the_first_one_counts() -> None:
+def test_the_first_of_two_equal_choices_counts() -> None:
     m = Module()
     a, o = Signal(2, name="a"), Signal(4, name="o")
     with m.Switch(a):
@@ -161,7 +161,7 @@ def test_of_a_choice_that_comes_twice_the_first_one_counts() -> None:
             with m.Case(*choices):
                 m.d.comb += o.eq(5 + value)
     text = convert(m, name="twice", ports=[a, o]).files["twice.vhd"]
-    # In VHDL, a choice that comes twice is an error.
+    # In VHDL, a repeated choice is an error.
     assert re.findall(r'when (.*) =>\n *o <= "(.*)";', text) == [
         ('"00" | "01"', "0101"),
         ('"10"', "0110"),
@@ -169,7 +169,7 @@ def test_of_a_choice_that_comes_twice_the_first_one_counts() -> None:
     ]
 
 
-def test_what_a_port_alone_reads_is_written_in_place() -> None:
+def test_an_expression_read_only_by_a_port_is_written_in_place() -> None:
     m = Module()
     a, b = (Signal(4, name=name) for name in "ab")
     o = Signal(8)
@@ -180,7 +180,7 @@ def test_what_a_port_alone_reads_is_written_in_place() -> None:
 
 
 def test_assigns_to_several_wires_at_once() -> None:
-    # Amaranth 0.5 prints no such connection; RTLIL has them.
+    # Amaranth 0.5 writes no such connection, but RTLIL allows it.
     rtlil = r"""
 attribute \top 1
 module \top
@@ -197,8 +197,8 @@ end
     assert "c <= std_logic_vector(unsigned(i(7 downto 4)));" in text
 
 
-def test_what_only_another_connection_reads_is_a_signal() -> None:
-    # What nobody reads is one more name, for whoever looks at a simulation.
+def test_a_wire_read_only_by_a_connection_is_a_signal() -> None:
+    # A wire without readers stays visible in a simulation.
     rtlil = r"""
 attribute \top 1
 module \top
@@ -258,7 +258,7 @@ def test_words_of_vhdl_ams_are_names_of_outermost_ports_only(tmp_path: Path) -> 
         ("AnySeq", r"^module 'top' has AnySeq \(\$anyseq\), whose value only a formal"),
     ],
 )
-def test_refuses_what_only_formal_tools_know(make: str, message: str) -> None:
+def test_cells_of_formal_tools_are_refused(make: str, message: str) -> None:
     from amaranth import asserts
 
     module, out = Module(), Signal(4)
@@ -267,7 +267,7 @@ def test_refuses_what_only_formal_tools_know(make: str, message: str) -> None:
         convert(module, ports=[out])
 
 
-def test_what_is_written_is_read_at_once_if_the_addresses_are_the_same() -> None:
+def test_a_transparent_read_port_forwards_written_data() -> None:
     m = Module()
     m.submodules.memory = memory = Memory(shape=4, depth=4, init=[])
     write = memory.write_port()

@@ -130,9 +130,9 @@ begin
 end architecture;
 """)
     run(tmp_path, "-a", "--std=08", "bench.vhd")
-    said = run(tmp_path, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable-at-0")
-    assert "(report note): value 254 FE AB {}" in said
-    assert "(assertion error): too far" in said
+    output = run(tmp_path, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable-at-0")
+    assert "(report note): value 254 FE AB {}" in output
+    assert "(assertion error): too far" in output
 
 
 def _ports(component: Any) -> tuple[dict[str, Value], dict[str, Value]]:
@@ -149,7 +149,7 @@ def _ports(component: Any) -> tuple[dict[str, Value], dict[str, Value]]:
 @pytest.mark.parametrize(
     "name", ["geometry_msgs/msg/Twist", "sensor_msgs/msg/PointCloud2", "std_msgs/msg/Empty"]
 )
-def test_converters_do_in_ghdl_what_they_do_in_python(
+def test_converters_behave_in_ghdl_as_in_amaranth(
     name: str, converter: Any, bus_bytes: int, tmp_path: Path
 ) -> None:
     message = load_message(name, distro="humble")

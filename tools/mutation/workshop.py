@@ -30,7 +30,7 @@ SECONDS = 1800
 LOADING_SECONDS = 60
 FAILED = re.compile(r"^(?:FAILED|ERROR) (\S.*?)(?: - .*)?$", re.MULTILINE)
 WRONG_COPY = 98
-# Exit status of pytest if no test was collected: no present test judges the mutant.
+# Exit status of pytest if no test was collected, so that no test judges the mutant.
 NOTHING = 5
 
 
@@ -111,7 +111,7 @@ class Workshop:
             yield
         finally:
             self._write(path, before)
-            # Its database would give a later mutant the examples on which an earlier one failed.
+            # The database of Hypothesis would give a later mutant the examples of an earlier failure.
             storage = self.root.parent / f"{self.root.name}.hypothesis"
             shutil.rmtree(storage, ignore_errors=True)
 

@@ -26,7 +26,7 @@ from typing import Any
 import coverage
 import pytest
 
-from tools.mutation.chosen import take_time
+from tools.mutation.chosen import remove_time_limits
 
 __all__ = ["EACH", "FOLDER", "SETTINGS"]
 
@@ -96,7 +96,7 @@ class _Trace:
             if self._depth == 0 and self._test:
                 self._coverage.switch_context(self._test)
 
-    def lose(self) -> None:
+    def mark_opaque(self) -> None:
         """Note that lines of the test may be missing."""
         if self._test:
             self.tests[-1]["lost"] = True
@@ -140,7 +140,7 @@ def pytest_load_initial_conftests() -> None:
 
 def pytest_configure() -> None:
     """Remove time limits, because tracing makes tests slower."""
-    take_time()
+    remove_time_limits()
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -229,7 +229,7 @@ def _watch_processes() -> None:
         elif event == "os.fork" and not _starting:
             trace.count_process()
         elif event == "sys.settrace" and not sys._getframe(1).f_code.co_filename.startswith(OURS):
-            trace.lose()
+            trace.mark_opaque()
 
     _starting: list[bool] = []
     start = multiprocessing.process.BaseProcess.start

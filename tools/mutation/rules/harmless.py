@@ -34,7 +34,7 @@ def are_independent(source: Source, one: ast.Call, two: ast.Call) -> bool:
     It also holds for declarations of command line arguments, unless both are positional.
     """
     if _declares(source, one) and _declares(source, two):
-        return not (_takes_place(source, one) and _takes_place(source, two))
+        return not (_may_be_positional(source, one) and _may_be_positional(source, two))
     receivers = [_collection(each) for each in (one, two)]
     if None in receivers or receivers[0] == receivers[1]:
         return False
@@ -83,7 +83,7 @@ def _names(source: Source, call: ast.Call) -> set[str]:
     return {ast.unparse(a.annotation) for a in arguments if a.annotation and a.arg in given}
 
 
-def _takes_place(source: Source, call: ast.Call, seen: frozenset[str] = frozenset()) -> bool:
+def _may_be_positional(source: Source, call: ast.Call, seen: frozenset[str] = frozenset()) -> bool:
     """Return whether a call declares, or may declare, a positional argument."""
     name = ast.unparse(call.func).rpartition(".")[2]
     if name == "set_defaults":
@@ -96,7 +96,7 @@ def _takes_place(source: Source, call: ast.Call, seen: frozenset[str] = frozense
         return True
     calls = [each for each in ast.walk(own[0]) if isinstance(each, ast.Call)]
     return any(
-        _takes_place(source, each, seen | {name})
+        _may_be_positional(source, each, seen | {name})
         for each in calls
         if DECLARES.fullmatch(ast.unparse(each.func).rpartition(".")[2])
     )

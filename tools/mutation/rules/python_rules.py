@@ -153,14 +153,14 @@ class _Finder(ast.NodeVisitor):
             self.generic_visit(node)
 
     def visit_Assert(self, node: ast.Assert) -> None:
-        """Leave it out: in a correct program, an `assert` has no effect."""
+        """Skip the statement: in a correct program, an `assert` has no effect."""
 
     def visit_Raise(self, node: ast.Raise) -> None:
-        """Leave it out: its content is the text of an error."""
+        """Skip the statement: its content is the text of an error."""
 
     def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
         # Before Python 3.12, nodes inside an f-string have wrong places.
-        """Leave it out."""
+        """Skip the f-string."""
 
     def visit_If(self, node: ast.If) -> None:
         if ast.unparse(node.test) in ("TYPE_CHECKING", "__name__ == '__main__'"):
