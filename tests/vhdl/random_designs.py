@@ -1,7 +1,7 @@
 """Random Amaranth designs with every operator, statement, memory and clock domain of the language.
 
-A design depends on its seed only. Its signals form layers: a combinational signal reads signals before
-it only, so that there are no combinational loops. Registers are read anywhere.
+A design depends on its seed only. Its signals form layers: a combinational signal reads signals of
+earlier layers, so that there are no combinational loops. Registers are read anywhere.
 """
 
 from __future__ import annotations

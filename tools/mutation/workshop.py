@@ -111,7 +111,7 @@ class Workshop:
             yield
         finally:
             self._write(path, before)
-            # The database of Hypothesis would give a later mutant the examples of an earlier failure.
+            # The database would give a later mutant the examples of an earlier failure.
             storage = self.root.parent / f"{self.root.name}.hypothesis"
             shutil.rmtree(storage, ignore_errors=True)
 
