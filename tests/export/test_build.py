@@ -1,4 +1,4 @@
-"""Folders of files: whole or not at all, and the same everywhere."""
+"""Built folders: complete or absent, and identical on every machine."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def tree(folder: Path) -> dict[str, bytes]:
 
 
 def build_one(out: Path, type_: str = "std_msgs/msg/Bool", **options: object) -> Built:
-    """Build a type; what is not an argument of `build` is one of `Library` or `Options`."""
+    """Build a type; other arguments go to `Library` or `Options`."""
     library = Library("lyrical", options.pop("paths", ()))
     rest = {name: options.pop(name) for name in ("force", "stimuli") if name in options}
     [built] = build([type_], out, library=library, options=Options(**options), **rest)
@@ -124,7 +124,7 @@ def test_folder_is_complete(tmp_path):
     assert [one.folder for one in built] == [
         tmp_path / "out" / "lyrical" / "geometry_msgs_msg_Twist_cdr_8"
     ]
-    # The committed sample is the list of them; it also has what there is with packets only.
+    # The committed sample lists them; it also has the files that need packets.
     with_packets = {
         "vhdl/stimuli.txt",
         "vhdl/tb_geometry_msgs_msg_twist_cdr_8_vunit.vhd",
@@ -133,7 +133,7 @@ def test_folder_is_complete(tmp_path):
     found = {*tree(built[0].folder)}
     assert {*files(SAMPLE)} - found == with_packets
     assert found <= {*files(SAMPLE)}
-    # Whoever takes one of these away has to say so here, and not only in the sample.
+    # A removed file must be removed here as well as in the sample.
     assert set(FILES_OF_TWIST.split()) - found == set()
 
 
@@ -178,7 +178,7 @@ def test_manifest_tells_all(tmp_path):
     assert manifest["inputs"]["generator"]["firm-hdl"] == firm_hdl.__version__
     assert {"name": "ULTRASOUND", "type": "uint8", "value": 0} in manifest["constants"]
     leaves = {leaf["path"]: leaf for leaf in manifest["leaves"]}
-    # The one field of the type that is a keyword.
+    # The only field of the type whose name is a keyword.
     assert leaves["range"] == {
         "path": "range",
         "name": "range_field",
@@ -260,7 +260,7 @@ def test_folder_of_somebody_else_is_refused(tmp_path):
 @pytest.mark.parametrize("is_there", [False, True])
 @pytest.mark.usefixtures("quick")
 def test_crash_leaves_the_old_or_the_new(tmp_path, monkeypatch, fails_at, error, is_there):
-    # Every call of each kind fails once; what is there then is whole, and nothing else is.
+    # Every call of each kind fails once; the folder is then the whole old or new one.
     if fails_at == "rename":
         monkeypatch.setattr("firm_hdl.export.folder.exchange", lambda one, other: False)
     if is_there:
@@ -272,7 +272,7 @@ def test_crash_leaves_the_old_or_the_new(tmp_path, monkeypatch, fails_at, error,
 
         def fail(self: Path, *args: object, _turn: int = turn, **options: object) -> object:
             nonlocal calls
-            # The build's own folders only: putting things back must work.
+            # Only calls for the build's own folders fail: restoring the old folder must work.
             if self.name.endswith((".json", ".yaml", ".svg", ".v", ".new")) or calls == 0:
                 calls += 1
                 if calls == _turn + 1:
@@ -351,7 +351,7 @@ def test_output_is_the_same_everywhere(tmp_path):
         trees.append(tree(home / "out"))
     folders = ("sensor_msgs_msg_JointState_cdr_8", "std_msgs_msg_Empty_cdr_8")
     assert {name.split("/")[1] for name in trees[0]} == {*folders}
-    # Another output language adds files, and none takes any away.
+    # Another back end adds files, and removes none.
     assert len(trees[0]) >= 90
     assert trees[0] == trees[1]
     for text in trees[0].values():

@@ -1,6 +1,6 @@
-"""A bench as users of cocotb write it: packets through both converters, with random pauses.
+"""A cocotb bench: packets pass through both converters, with random pauses.
 
-It is run by the Python of a simulator; :mod:`tests.export.verilog.test_cocotb` starts that.
+The Python of a simulator runs this module; :mod:`tests.export.verilog.test_cocotb` starts it.
 """
 
 from __future__ import annotations

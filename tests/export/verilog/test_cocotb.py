@@ -1,4 +1,4 @@
-"""The Verilog as users of cocotb run it: in Icarus as cocotb starts it, by cocotbext-axi."""
+"""The Verilog in a cocotb bench, with Icarus Verilog and cocotbext-axi."""
 
 from __future__ import annotations
 
@@ -64,8 +64,8 @@ def folder(tmp_path_factory) -> Path:
     return built.folder
 
 
-def said(folder: Path, work: Path, text: str) -> str:
-    """Run the bench on converters, `text` being that of the deserializer."""
+def run_bench(folder: Path, work: Path, text: str) -> str:
+    """Run the bench with `text` as the deserializer; return the output."""
     manifest = json.loads((folder / "manifest.json").read_text())
     rx, tx = (manifest["converters"][way] for way in ("deserializer", "serializer"))
     ports = [port for port in rx["ports"] if port.get("leaf") is not None]
@@ -93,7 +93,7 @@ def said(folder: Path, work: Path, text: str) -> str:
 def test_packets_come_back_through_cocotb(folder, tmp_path):
     manifest = json.loads((folder / "manifest.json").read_text())
     text = (folder / manifest["converters"]["deserializer"]["verilog"]).read_text()
-    output = said(folder, tmp_path, text)
+    output = run_bench(folder, tmp_path, text)
     assert "1 tests, 0 failed" in output, output
     assert "packets came back" in output
 
@@ -102,10 +102,10 @@ def test_packets_come_back_through_cocotb(folder, tmp_path):
 def test_process_that_waits_for_its_first_change_fails(folder, tmp_path):
     manifest = json.loads((folder / "manifest.json").read_text())
     text = (folder / manifest["converters"]["deserializer"]["verilog"]).read_text()
-    # As Yosys writes processes: right in Verilog, and unknown in SystemVerilog.
+    # Yosys writes such processes. Their initial output is defined in Verilog only.
     waiting = r"reg [7:0] waits; always @* waits = \2; assign \1 = waits;"
     changed, count = re.subn(r"assign (m_axis_status_tdata) = (.*);", waiting, text)
     assert count == 1
-    output = said(folder, tmp_path, changed)
+    output = run_bench(folder, tmp_path, changed)
     assert "0 failed" not in output, output
     assert "Failed 1 of 1 tests" in output

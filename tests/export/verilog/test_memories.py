@@ -29,9 +29,9 @@ def _run(folder: Path, *command: str) -> None:
 
 
 def _replay(name: str, text: str, standard: str, folder: Path) -> str | None:
-    """Simulate Verilog; return the first difference to Amaranth's simulator.
+    """Simulate Verilog; return the first difference from Amaranth's simulator.
 
-    Beyond the last word, Verilog reads unknown bits; all others must be known.
+    Beyond the last word, Verilog reads unknown bits; all other bits must be known.
     """
     inputs, outputs, steps, wanted = simulated(DESIGNS[name], steps=STEPS, seed=len(name))
     inputs = {port: width for port, width in inputs.items() if width}
@@ -77,7 +77,7 @@ endmodule
 @pytest.mark.usefixtures("iverilog")
 @pytest.mark.parametrize("standard", STANDARDS)
 @pytest.mark.parametrize("name", DESIGNS)
-def test_memories_do_what_amaranth_does(name: str, standard: str, tmp_path: Path) -> None:
+def test_memories_behave_as_in_amaranth(name: str, standard: str, tmp_path: Path) -> None:
     assert _replay(name, _verilog(name), standard, tmp_path) is None
 
 
@@ -133,7 +133,7 @@ def test_yosys_infers_distributed_ram(name: str, tmp_path: Path) -> None:
     assert "TRELLIS_FF" not in cells
 
 
-def test_yosys_makes_registers_of_what_is_no_memory(tmp_path: Path) -> None:
+def test_yosys_makes_registers_of_unsuitable_memories(tmp_path: Path) -> None:
     text = _verilog("asynchronous").replace(
         "always @(posedge clk)", "always @(posedge clk, posedge rst) if (rst) mem[0] <= 0; else"
     )

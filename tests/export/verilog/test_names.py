@@ -1,4 +1,4 @@
-"""Nets and ports of the Verilog: whole vectors, and names that mean something."""
+"""Nets and ports of the Verilog: whole vectors with meaningful names."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def test_parts_are_put_together_in_the_order_of_their_bits() -> None:
     a, b = Signal(4, name="a"), Signal(3, name="b")
     both = Signal(8, name="both", init=0b1000)
     turned = Signal(7, name="turned")
-    # Bit 3 has no driver, and is 1.
+    # Bit 3 has no driver, and keeps its initial value 1.
     m.d.comb += [both[4:].eq(a), both[:3].eq(b), turned.eq(Cat(a, b))]
     before = rtlil.convert(m, ports=[a, b, both, turned], emit_src=False)
     after = whole_vectors(before)

@@ -1,4 +1,4 @@
-"""Templates of instances: whole modules of Verilog once they are copied, with every port named."""
+"""Instance templates: legal Verilog modules after copying, with every port named."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_icarus_takes_templates_in_both_languages(iverilog, tmp_path, direction,
         connected = dict(CONNECTION.findall(text))
         ports = ports_of(plan_of(message, bus_bytes), direction)
         assert [*connected] == [port.name for port in ports]
-        # A name that no port has, and a net that is declared nowhere.
+        # A name of no port, and an undeclared net.
         port = ports[-2].name
         for wrong in (text.replace(f".{port}(", ".nobody("), re.sub(r"wire .*;\n", "", text)):
             assert compiled(iverilog, tmp_path, wrong, "2005") != (0, "")
@@ -81,12 +81,12 @@ def test_fields_are_tied_off(tmp_path):
     assert {name: value for name, value in valid.items() if "axis" not in name} == {
         "x_valid": "1'b1",
         "s_length_valid": "1'b1",
-        # No items follow.
+        # The sequence has no items.
         "s_items_last": "1'b0",
         "s_items_valid": "1'b0",
         "one_items_last": "1'b1",
         "one_items_valid": "1'b1",
-        # Two transfers: nothing constant says which is the last one.
+        # The array has two transfers, so `last` is not constant.
         "two_items_last": "1'b0",
         "two_items_valid": "1'b0",
         "list_length_valid": "1'b1",
@@ -130,9 +130,9 @@ def test_changing_one_line_sends_one_field(tmp_path):
     (tmp_path / "bench.v").write_text(BENCH.format(template=text))
     files = ["bench.v", str(built.folder / f"{module}.v")]
     assert run(["iverilog", "-g2005", "-s", "bench", "-o", "bench", *files], tmp_path) == (0, "")
-    status, said = run(["vvp", "-n", "bench"], tmp_path)
-    beats = [line for line in said.splitlines() if re.match("[0-9a-f]{16} ", line)]
-    # Encapsulation, seconds; nanoseconds, a length of 1; its NUL.
+    status, output = run(["vvp", "-n", "bench"], tmp_path)
+    beats = [line for line in output.splitlines() if re.match("[0-9a-f]{16} ", line)]
+    # Encapsulation and seconds; nanoseconds and a length of 1; the NUL.
     assert status == 0 and beats[:3] == [
         "0102030400000100 11111111 0 0",
         "0000000100000000 11111111 0 0",

@@ -1,4 +1,4 @@
-"""The Verilog text: complete, clean, and right in simulators that are not ours."""
+"""The Verilog text: complete, without lint warnings, and correct in other simulators."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from firm_hdl.plan import Plan, build_plan, encode
 from firm_hdl.sim import to_transfers
 from firm_hdl.wire import lay_out
 
-# Amaranth's Verilog relies on the language's own extension of operands, names every bit of a
-# structure, has a module per component in one file, and writes one-hot choices as `casez`.
+# Amaranth's Verilog relies on implicit extension of operands, names every bit of a structure, has a
+# module per component in one file, and writes one-hot choices as `casez`.
 WAIVED = ["WIDTH", "UNUSEDSIGNAL", "CASEOVERLAP", "DECLFILENAME"]
 
 
@@ -47,7 +47,7 @@ def test_every_port_is_there_with_its_width(type_, distro, direction):
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-def test_text_says_nothing_of_the_machine(direction):
+def test_text_does_not_depend_on_the_machine(direction):
     # A plan of one step has signals without bits.
     text = verilog_of("std_msgs/msg/Empty", direction)
     assert text.startswith("// One line.\n//\n// Another.\n\nmodule ")
@@ -68,7 +68,7 @@ def test_verilator_finds_nothing(type_, direction, tmp_path):
 
 
 def bench_of(plan: Plan, packets: list[bytes]) -> str:
-    """Write a bench in which packets go through both converters and come out as text."""
+    """Return a bench that sends packets through both converters and prints the output packets."""
     bus = plan.bus_bytes
     leaves = [port for port in ports_of(plan, "deserializer") if port.leaf is not None]
     wires = "".join(f"  wire [{port.width - 1}:0] {port.name};\n" for port in leaves)
@@ -156,20 +156,20 @@ def test_packets_come_back_in_iverilog(bus_bytes, tmp_path):
 
 
 class BrokenYosys:
-    """Yosys where what runs it fails, as wasmtime does."""
+    """Yosys whose runtime fails, as wasmtime may."""
 
-    def __init__(self, said):
-        self.said = said
+    def __init__(self, message):
+        self.message = message
 
     def run(self, *arguments, **options):
-        raise RuntimeError(self.said)
+        raise RuntimeError(self.message)
 
 
-def test_errors_of_the_system_are_told_in_its_words(monkeypatch):
+def test_errors_of_the_system_are_passed_on(monkeypatch):
     top = Top(Deserializer(load_message("std_msgs/msg/Bool")))
-    said = "failed to write the module\n\nCaused by:\n    File too large (os error 27)"
+    message = "failed to write the module\n\nCaused by:\n    File too large (os error 27)"
     finds = "firm_hdl.export.verilog.yosys.find_yosys"
-    monkeypatch.setattr(finds, lambda _: BrokenYosys(said))
+    monkeypatch.setattr(finds, lambda _: BrokenYosys(message))
     with pytest.raises(UserError, match=r"^m: Yosys cannot be run: File too large$"):
         to_verilog(top, module="m", header="")
     monkeypatch.setattr(finds, lambda _: BrokenYosys("a fault"))
