@@ -1,8 +1,8 @@
 """Crash injection for `firm_hdl.export.folder`: end a build before each system call in turn.
 
 This is a program, so that it may fork. Each crash ends a process of its own as SIGKILL would,
-without any ``finally``. The folder is checked after the crash, and again after another build. The program
-prints the number of crashes and the problems.
+without any ``finally``. The folder is checked after the crash, and again after another build. The
+program prints the number of crashes and the problems.
 
 The program can also poll: before each system call, it reads the manifest as another program would.
 """

@@ -1,4 +1,4 @@
-"""What tests say of verdicts: only what somebody judged and found right is a pass."""
+"""Assertions about verdicts: a pass needs a judge that found the result correct."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ TIME_KEY = "rosbags-time-signs"
 
 
 def assert_passed(result, known=()):
-    """Assert that a verdict, or that of a result, is a pass; return how many cases were judged.
+    """Assert that a verdict, or that of a result, is a pass; return the number of judged cases.
 
-    `known` are keys of differences between libraries, all of which there must be, and no others.
+    `known` has the keys of the expected differences between libraries; there must be no others.
     """
     verdict = getattr(result, "verdict", result)
     assert isinstance(verdict, KnownDifference if known else Passed), verdict
@@ -28,7 +28,7 @@ def assert_passed(result, known=()):
 
 
 def assert_known(result, *keys):
-    """Assert that a verdict, or that of a result, is a known difference of these keys alone."""
+    """Assert that a verdict, or that of a result, is a known difference with these keys only."""
     verdict = getattr(result, "verdict", result)
     assert isinstance(verdict, KnownDifference), verdict
     assert verdict.keys == keys

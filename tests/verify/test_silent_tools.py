@@ -1,4 +1,4 @@
-"""Tools that are called, end, and have said and done nothing: nothing is a pass because of them."""
+"""Tools that end without output and without doing anything never cause a pass."""
 
 from __future__ import annotations
 
@@ -52,10 +52,10 @@ def test_bench_does_not_pass_with_a_ghdl_that_says_nothing(fake, capsys, status)
     fake(SILENT[status], "ghdl")
     call = ["verify", "--systems", "bench", "--distro", "lyrical", "--jobs", "1", BOOL]
     assert main(call) == 1
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     why = "ended without a word: it has not passed" if status == 0 else "exit status 1"
-    assert f"FAIL {BOOL} (lyrical)\n" in said and why in said
-    (row,) = [line.split() for line in said.splitlines() if line.startswith("lyrical")]
+    assert f"FAIL {BOOL} (lyrical)\n" in output and why in output
+    (row,) = [line.split() for line in output.splitlines() if line.startswith("lyrical")]
     assert row[:6] == ["lyrical", "1", "0", "1", "0", "0"]
 
 
@@ -108,7 +108,7 @@ def test_nothing_is_proved_with_tools_that_say_nothing(fake, status, name):
         tools = Tools(ghdl=tool, yosys=yosys)
         match = "GHDL's netlist is empty" if status == 0 else "GHDL failed: 1"
     else:
-        # It is asked before anybody looks at what GHDL said.
+        # Yosys is called before the output of GHDL is read.
         tools = Tools(ghdl=(fake(SILENT[0], "ghdl"),), yosys=tool)
         match = "Yosys ended without an error" if status == 0 else "Yosys failed: 1"
     rtlil, vhdl = converter_vhdl(Library("lyrical").message(BOOL), "serializer")
@@ -134,7 +134,7 @@ chmod +x "$2"
         (HEADERS + MAKES_A_PROGRAM, "does not say what it is"),
     ],
 )
-def test_fast_cdr_is_not_here_where_its_compiler_does_nothing(
+def test_fast_cdr_is_missing_if_its_compiler_does_nothing(
     fake, tmp_path, monkeypatch, compiler, why
 ):
     fake(compiler, "g++")
@@ -143,7 +143,7 @@ def test_fast_cdr_is_not_here_where_its_compiler_does_nothing(
 
 
 @ANY
-def test_genpy_is_not_here_where_its_python_says_nothing(fake, monkeypatch, status):
+def test_genpy_is_missing_if_its_python_prints_nothing(fake, monkeypatch, status):
     monkeypatch.setattr(worker, "ROS_PYTHON", fake(SILENT[status], "python-of-ros"))
     assert "its Python does not start" in CLIENTS["genpy"]().missing()
 
@@ -165,8 +165,8 @@ def test_reference_that_answers_nothing_confirms_nothing(monkeypatch, library_he
     assert found.failures[0].startswith("genpy broke down: genpy")
 
 
-class Few:
-    """A library that forgets the last answer."""
+class OmitsLastAnswer:
+    """A library that omits the last answer."""
 
     name, wires, byte_orders = "few", frozenset({"cdr"}), ("little",)
 
@@ -183,7 +183,9 @@ class Few:
 @pytest.mark.parametrize("is_reference", [False, True])
 def test_library_that_does_not_answer_everything_fails(library_here, is_reference):
     rosbags = library_here("rosbags")
-    both = (rosbags, Few(rosbags)) if is_reference else (Few(rosbags), rosbags)
+    both = (
+        (rosbags, OmitsLastAnswer(rosbags)) if is_reference else (OmitsLastAnswer(rosbags), rosbags)
+    )
     message = Library("lyrical").message(BOOL)
     trial = Contest(*both, "cdr").judge(message, [{"data": True}, {"data": False}])
     (failure,) = trial.verdict.failures

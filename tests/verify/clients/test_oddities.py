@@ -1,4 +1,4 @@
-"""The table of odd packets: where each is made, how many, and up to what size."""
+"""The table of irregular packets: their places, their number, and their largest size."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ANYWHERE = (
 ).split()
 
 
-def test_each_is_where_it_can_be():
+def test_each_irregularity_has_its_places():
     wires = {**dict.fromkeys(CDR_ALONE, "cdr"), **dict.fromkeys(ANYWHERE, "ros1 cdr")}
     assert {**wires, "trailing-1": "ros1"} == ODDITIES
 
@@ -64,7 +64,7 @@ def test_two_packets_of_a_kind_are_made_odd_and_two_values(make_message):
     ]
 
 
-def test_who_has_no_place_for_it_is_passed_over(make_message):
+def test_packets_without_a_place_are_skipped(make_message):
     message = make_message("string s")
     values = [{"s": b"a"}, {"s": b""}, {"s": b"b"}, {"s": b""}]
     bare = [v for each, v, _ in odd_packets(message, "cdr", values) if each == "bare-string"]
@@ -113,7 +113,7 @@ def test_everything_of_a_packet_may_be_big_endian(make_message):
         ("B[2] a", {"a": [{"b": 0}, {"b": 0}]}),
     ],
 )
-def test_zero_is_what_a_library_makes_of_nothing(make_message, fields, value):
+def test_zero_has_the_fields_of_the_type(make_message, fields, value):
     assert zero(make_message(fields, B="uint8 b")) == value
 
 

@@ -1,4 +1,4 @@
-"""Every type of every distribution, a few cases each."""
+"""Every type of every distribution, with a few cases each."""
 
 from __future__ import annotations
 
@@ -43,16 +43,16 @@ def test_a_sample_passes_on_other_buses(index):
 
 
 @pytest.mark.parametrize("test", [test_every_type_passes, test_a_sample_passes_on_other_buses])
-def test_these_tests_fail_where_nobody_judges(test, monkeypatch):
-    def nobody(message, *arguments, **options):
+def test_these_tests_fail_without_a_judge(test, monkeypatch):
+    def no_judge(message, *arguments, **options):
         raise NotJudgedError(f"{message.name} is not judged")
 
-    monkeypatch.setattr(acceptance, "judge_of", nobody)
+    monkeypatch.setattr(acceptance, "judge_of", no_judge)
     with pytest.raises(AssertionError, match="is not judged"):
         test(SAMPLE[0])
 
 
-def test_these_tests_fail_where_there_is_no_case(monkeypatch):
+def test_these_tests_fail_without_a_case(monkeypatch):
     monkeypatch.setattr(acceptance, "all_cases", lambda *given: [])
     with pytest.raises(AssertionError):
         test_every_type_passes(8)

@@ -19,7 +19,7 @@ MOST_WORK = 5_000
 
 
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
-# Shrinking would simulate for many minutes; the message of a failure says how to repeat it.
+# Shrinking would simulate for many minutes; the failure message has the command to repeat it.
 @settings(
     max_examples=by_depth(8, 40),
     deadline=None,

@@ -1,4 +1,4 @@
-"""What entries of the table of known differences do to what is said of a definition."""
+"""Corrections of facts by entries of the table of known differences."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 import pytest
 
 from firm_hdl.model import Array, Field, Message, Sequence, String
-from tests.verify.ts1.known.rewriting import BY_KEY, case_of, numbered, private
+from tests.verify.ts1.known.rewriting import BY_KEY, case_of, hidden, numbered
 
 
 def field_of(name, kind):
@@ -29,15 +29,15 @@ def facts_of(fields=(), constants=(), **more):
     }
 
 
-def mended(key, facts, text="", **more):
+def corrected(key, facts, text="", **more):
     theirs = BY_KEY[key].theirs
     assert theirs is not None
     return theirs(facts, case_of(text, **more))
 
 
 BACK = [
-    # key, what a constant or a default is to the oracle, what it is to us; each with its type
-    ("rosbags-texts", "string", f"a{private('=')}", "a="),
+    # key, type, the value of a constant or default for the oracle, the value for firm-hdl
+    ("rosbags-texts", "string", f"a{hidden('=')}", "a="),
     ("rosbags-constant-bool", "bool", 0, False),
     ("rosbags-constant-bool", "bool", 2, True),
     ("rosbags-constant-bool", "bool", True, True),
@@ -48,7 +48,7 @@ BACK = [
     ("rosbags-floats", "float64", "x", "x"),
     ("rosbags-floats", "float64", 1.5, 1.5),
     ("rosbags-floats", "string", "inf", "inf"),
-    ("ros2-backslashes", "string", private("\\"), "\\"),
+    ("ros2-backslashes", "string", hidden("\\"), "\\"),
     ("ros2-infinite-numbers", "float32", 1.25e300, math.inf),
     ("ros2-infinite-numbers", "float32", -1.25e300, -math.inf),
     ("ros2-infinite-numbers", "float64", -1.5, -1.5),
@@ -76,43 +76,43 @@ def test_values_are_put_back(key, kind, theirs, ours):
     other = {"name": "b", "type": kind, "value": "other"}
     given = facts_of(constants=[member(type=kind, value=theirs), other])
     given["structure"]["p/msg/B"] = {"fields": [], "constants": [member(type=kind, value=theirs)]}
-    found = mended(key, given)
+    found = corrected(key, given)
     expected = facts_of(constants=[member(type=kind, value=ours), other])
     expected["structure"]["p/msg/B"] = {"fields": [], "constants": [member(type=kind, value=ours)]}
     assert same(found, expected)
 
 
 DEFAULTS = [
-    ("ros2-backslashes", "string", private("\\"), "\\"),
-    ("ros2-backslashes", "string[]", ["x", private("\\")], ["x", "\\"]),
+    ("ros2-backslashes", "string", hidden("\\"), "\\"),
+    ("ros2-backslashes", "string[]", ["x", hidden("\\")], ["x", "\\"]),
     ("ros2-infinite-numbers", "float32", -1.25e300, -math.inf),
     ("ros2-infinite-numbers", "float32[]", [1.0, 1.25e300], [1.0, math.inf]),
     ("ros2-infinite-numbers", "float32", None, None),
     ("idl-whole-numbers", "float32[]", [3, 1.5], [3.0, 1.5]),
     ("idl-whole-numbers", "float64[<=2]", [3], [3.0]),
     ("idl-whole-numbers", "int32[2]", [3], [3]),
-    # Only around what was hidden, both of the same sort; else quotes are part of the text.
-    ("ros2-escaped-quotes", "string[]", [f"'x{private(chr(39))}y'"], ["x'y"]),
-    ("ros2-escaped-quotes", "string[]", ["'x'", f"{private(chr(34))}"], ["'x'", ""]),
-    ("ros2-escaped-quotes", "string[]", [f"a{private(chr(34))}"], ['a"']),
-    ("ros2-escaped-quotes", "string[]", [f"'a{private(chr(34))}"], ["'a\""]),
-    ("ros2-escaped-quotes", "string[]", [f"x{private(chr(34))}x"], ['x"x']),
+    # Only two equal quotes around a hidden text are removed; other quotes are part of the text.
+    ("ros2-escaped-quotes", "string[]", [f"'x{hidden(chr(39))}y'"], ["x'y"]),
+    ("ros2-escaped-quotes", "string[]", ["'x'", f"{hidden(chr(34))}"], ["'x'", ""]),
+    ("ros2-escaped-quotes", "string[]", [f"a{hidden(chr(34))}"], ['a"']),
+    ("ros2-escaped-quotes", "string[]", [f"'a{hidden(chr(34))}"], ["'a\""]),
+    ("ros2-escaped-quotes", "string[]", [f"x{hidden(chr(34))}x"], ['x"x']),
     ("ros2-escaped-quotes", "int8[]", [1], [1]),
-    ("ros2-escaped-quotes", "string", private(chr(34)), private(chr(34))),
+    ("ros2-escaped-quotes", "string", hidden(chr(34)), hidden(chr(34))),
 ]
 
 
 @pytest.mark.parametrize(("key", "kind", "theirs", "ours"), numbered(DEFAULTS))
 def test_defaults_are_put_back(key, kind, theirs, ours):
     first = {"name": "b", "type": "int8", "default": None}
-    found = mended(key, facts_of([first, member(type=kind, default=theirs)]))
+    found = corrected(key, facts_of([first, member(type=kind, default=theirs)]))
     assert same(found, facts_of([first, member(type=kind, default=ours)]))
 
 
 @pytest.mark.parametrize("key", ["rosbags-constant-names", "idl-service-constants"])
 def test_names_of_constants_are_put_back(key):
     constants = [{"name": "RENAMED6C6F77"}, {"name": "RENAMED"}, {"name": "B"}]
-    found = mended(key, facts_of(constants=constants))
+    found = corrected(key, facts_of(constants=constants))
     assert [each["name"] for each in found["structure"]["p/msg/A"]["constants"]] == [
         "low",
         "RENAMED",
@@ -125,16 +125,18 @@ def test_placeholders_are_put_back_and_their_hash_is_none(is_changed):
     text = "uint8 structure_needs_at_least_one_member"
     more = {"text": "uint8 x", "before": text} if is_changed else {"text": text}
     given = facts_of([{"name": "structure_has_one_more_member"}, {"name": "b"}], hash="x", md5="y")
-    found = mended("rosbags-placeholders", given, **more)
+    found = corrected("rosbags-placeholders", given, **more)
     names = [{"name": "structure_needs_at_least_one_member"}, {"name": "b"}]
     assert found == facts_of(names, md5="y")
 
 
 @pytest.mark.parametrize("before", [None, "uint8 y"])
 def test_hash_stays_where_no_placeholder_is(before):
-    # What was there before a change counts alone.
+    # Only the text before a change counts.
     text = "uint8 structure_needs_at_least_one_member" if before else "uint8 y"
-    found = mended("rosbags-placeholders", facts_of([{"name": "b"}], hash="x"), text, before=before)
+    found = corrected(
+        "rosbags-placeholders", facts_of([{"name": "b"}], hash="x"), text, before=before
+    )
     assert found == facts_of([{"name": "b"}], hash="x")
 
 
@@ -150,7 +152,7 @@ def test_hash_stays_where_no_placeholder_is(before):
 )
 def test_blanks_of_comments_do_not_count(comment, left):
     given = {"structure": {"p/msg/A": {"comment": comment, "fields": []}, "p/msg/B": {}}, "x": 1}
-    assert mended("ros2-comment-blanks", given) == {
+    assert corrected("ros2-comment-blanks", given) == {
         "structure": {"p/msg/A": {"comment": left, "fields": []}, "p/msg/B": {"comment": ""}},
         "x": 1,
     }
@@ -159,24 +161,24 @@ def test_blanks_of_comments_do_not_count(comment, left):
 def test_a_long_double_has_no_hash_to_compare():
     key = "idl-long-double-hash"
     given = {"hash": "raises KeyError: 'long double'", "names": ["a"]}
-    assert mended(key, given) == {"names": ["a"]}
+    assert corrected(key, given) == {"names": ["a"]}
     for other in ({"hash": "RIHS01_0"}, {"hash": "raises KeyError: 'long'"}, {"names": []}):
-        assert mended(key, other) == other
+        assert corrected(key, other) == other
 
 
-def named(facts, text, kind="msg"):
-    return mended("idl-names", facts, text, language="idl", kind=kind)
+def with_file_name(facts, text, kind="msg"):
+    return corrected("idl-names", facts, text, language="idl", kind=kind)
 
 
 def test_a_message_is_called_by_its_file():
     text = "module q { module x { struct A {}; }; };"
-    assert named({"names": ["q/x/A"], "y": 1}, text) == {"names": ["p/msg/A"], "y": 1}
-    assert named({"names": ["q/x/B"]}, text) == {"names": ["p/msg/B"]}
-    assert named({"names": ["q/x/A"]}, text, "srv") == {"names": ["p/srv/A"]}
-    # Only what the text says is excused, and what it says in a comment is not.
-    assert named({"names": ["q/z/A"]}, text) == {"names": ["q/z/A"]}
+    assert with_file_name({"names": ["q/x/A"], "y": 1}, text) == {"names": ["p/msg/A"], "y": 1}
+    assert with_file_name({"names": ["q/x/B"]}, text) == {"names": ["p/msg/B"]}
+    assert with_file_name({"names": ["q/x/A"]}, text, "srv") == {"names": ["p/srv/A"]}
+    # Only names in the text are excused, except in comments.
+    assert with_file_name({"names": ["q/z/A"]}, text) == {"names": ["q/z/A"]}
     commented = "// module x\nmodule q {"
-    assert named({"names": ["q/x/A"]}, commented) == {"names": ["q/x/A"]}
+    assert with_file_name({"names": ["q/x/A"]}, commented) == {"names": ["q/x/A"]}
 
 
 def test_parts_of_a_service_are_called_by_its_file():
@@ -193,14 +195,14 @@ def test_parts_of_a_service_are_called_by_its_file():
             "y": 1,
         }
 
-    assert named(parts("q/x"), text, "srv") == parts("p/srv")
-    assert named(parts("p/srv"), "module p { module srv {", "srv") == parts("p/srv")
-    # Scopes that the text does not have, or different ones, are no difference of this sort.
-    assert named(parts("q/z"), text, "srv") == parts("q/z")
+    assert with_file_name(parts("q/x"), text, "srv") == parts("p/srv")
+    assert with_file_name(parts("p/srv"), "module p { module srv {", "srv") == parts("p/srv")
+    # Scopes that the text does not have, or different scopes, are other differences.
+    assert with_file_name(parts("q/z"), text, "srv") == parts("q/z")
     mixed = {"structure": {"q/x/A_Request": {}, "q/A_Response": {}}}
-    assert named(mixed, text, "srv") == mixed
+    assert with_file_name(mixed, text, "srv") == mixed
     alone = {"structure": {"q/x/A": {}}}
-    assert named(alone, text) == alone
+    assert with_file_name(alone, text) == alone
 
 
 def test_wide_texts_are_narrow_to_rosbags_wherever_they_are():
@@ -222,7 +224,7 @@ def test_wide_texts_are_narrow_to_rosbags_wherever_they_are():
     assert types["array"] == Array(element=String(), count=2)
     assert types["list"] == Sequence(element=String(), bound=4)
     assert types["inner"].fields[0].type == String()
-    # A message that is used twice stays one.
+    # A message that is used twice stays a single message.
     assert types["again"] == Array(element=types["inner"], count=3)
     assert types["again"].element is types["inner"]
 
@@ -289,7 +291,7 @@ def test_the_bound_of_texts_is_not_the_list_s(text, language):
         {"name": "a", "type": "wstring<=3[<=4]"},
         {"name": "a", "type": "string<=3[<=3]"},
     ]
-    found = mended(
+    found = corrected(
         "ros2-wstring-sequences",
         facts_of([SHARED, *others], hash="x", names=["y"]),
         text,
@@ -310,4 +312,4 @@ def test_the_bound_of_texts_is_not_the_list_s(text, language):
 )
 def test_a_list_of_texts_has_its_own_bound_where_it_has_one(text, language):
     given = facts_of([SHARED], hash="x")
-    assert mended("ros2-wstring-sequences", given, text, language=language) == given
+    assert corrected("ros2-wstring-sequences", given, text, language=language) == given
