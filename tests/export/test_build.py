@@ -157,7 +157,7 @@ def test_vhdl_compiles_in_the_order_of_the_manifest_and_stimuli_are_the_callers(
 
 
 @pytest.mark.usefixtures("quick")
-def test_manifest_tells_all(tmp_path):
+def test_manifest_is_complete(tmp_path):
     built = build_one(tmp_path, "sensor_msgs/msg/Range", bus_bytes=4, max_message_bytes=999)
     manifest = json.loads((built.folder / "manifest.json").read_text())
     library = Library()
@@ -229,7 +229,7 @@ def test_comments_and_units_are_in_the_manifest(tmp_path):
 
 
 @pytest.mark.usefixtures("quick")
-def test_what_users_added_stays(tmp_path):
+def test_files_that_users_added_stay(tmp_path):
     built = build_one(tmp_path)
     (built.folder / "notes.txt").write_text("mine")
     (built.folder / "sim").mkdir()
@@ -246,7 +246,7 @@ def test_what_users_added_stays(tmp_path):
 
 
 @pytest.mark.usefixtures("quick")
-def test_folder_of_somebody_else_is_refused(tmp_path):
+def test_folder_of_another_program_is_refused(tmp_path):
     folder = tmp_path / "lyrical" / "std_msgs_msg_Bool_cdr_8"
     folder.mkdir(parents=True)
     (folder / "thesis.tex").write_text("ten years")
@@ -298,7 +298,7 @@ def test_crash_leaves_the_old_or_the_new(tmp_path, monkeypatch, fails_at, error,
     assert tree(tmp_path) != before
 
 
-def test_wrong_types_touch_nothing_and_are_all_told(tmp_path):
+def test_wrong_types_change_no_file_and_are_all_reported(tmp_path):
     with pytest.raises(DefinitionError) as caught:
         build(["std_msgs/msg/Bool", "std_msgs/msg/Boo", "nothing/msg/Here"], tmp_path / "out")
     assert [diagnostic.message for diagnostic in caught.value.diagnostics] == [
@@ -369,7 +369,7 @@ def test_several_processes_write_the_same_files(tmp_path):
     assert tree(tmp_path / "1") == tree(tmp_path / "2")
 
 
-def test_an_error_in_a_process_is_told(tmp_path):
+def test_an_error_in_a_process_is_reported(tmp_path):
     (tmp_path / "lyrical").write_text("not a folder")
     with pytest.raises(BuildError, match=r"^'.*lyrical.*' cannot be written: "):
         build(["std_msgs/msg/Empty", "std_msgs/msg/Bool"], tmp_path, jobs=2)

@@ -200,7 +200,7 @@ def declared(folder: Path) -> set[str]:
     return {name.lower() for name in found}
 
 
-def test_nothing_is_called_like_a_keyword_of_either_language(folders):
+def test_no_name_is_a_keyword_of_either_language(folders):
     # Number of keywords in the standards: IEEE Std 1076-2008, 15.10, and 1800-2017, annex B.
     assert len(VERILOG) == 248 and len(VHDL) >= 115
     for folder in folders:

@@ -48,7 +48,7 @@ def fake(tmp_path, monkeypatch):
 
 
 @ANY
-def test_bench_does_not_pass_with_a_ghdl_that_says_nothing(fake, capsys, status):
+def test_bench_does_not_pass_with_a_silent_ghdl(fake, capsys, status):
     fake(SILENT[status], "ghdl")
     call = ["verify", "--systems", "bench", "--distro", "lyrical", "--jobs", "1", BOOL]
     assert main(call) == 1
@@ -64,9 +64,7 @@ def test_bench_does_not_pass_with_a_ghdl_that_says_nothing(fake, capsys, status)
     ("simulator", "names"),
     [("ghdl", ["ghdl"]), ("iverilog", ["vvp", "iverilog"]), ("verilator", ["verilator"])],
 )
-def test_cross_check_does_not_pass_with_a_simulator_that_says_nothing(
-    fake, status, simulator, names
-):
+def test_cross_check_does_not_pass_with_a_silent_simulator(fake, status, simulator, names):
     fake(SILENT[status], *names)
     few = {"most_cases": 1, "stalled": False, "broken": False, "references": ()}
     result = accept("lyrical", BOOL, Options(simulator=simulator, **few))
@@ -75,7 +73,7 @@ def test_cross_check_does_not_pass_with_a_simulator_that_says_nothing(
     assert isinstance(accept("lyrical", BOOL, Options(**few)).verdict, Passed)
 
 
-def test_cross_check_does_not_pass_with_a_compiler_that_says_nothing(fake):
+def test_cross_check_does_not_pass_with_a_silent_compiler(fake):
     try:
         Verilator()
     except ProgramMissingError as error:
@@ -98,7 +96,7 @@ def test_error_of_a_tool_has_a_text():
 
 @ANY
 @pytest.mark.parametrize("name", ["ghdl", "yosys"])
-def test_nothing_is_proved_with_tools_that_say_nothing(fake, status, name):
+def test_silent_tools_prove_nothing(fake, status, name):
     try:
         yosys = find_tools().yosys
     except MissingToolError as error:
@@ -155,7 +153,7 @@ def given_cases(distro, name):
 
 
 @pytest.mark.parametrize("answer", [{}, {"failed": worker.DIED}, {"facts": []}])
-def test_reference_that_answers_nothing_confirms_nothing(monkeypatch, library_here, answer):
+def test_reference_without_answers_confirms_nothing(monkeypatch, library_here, answer):
     genpy = library_here("genpy")
     message, wire, cases = given_cases("noetic", BOOL)
     assert confirm(message, wire, cases, ["genpy"]).by == ("genpy",)

@@ -90,7 +90,7 @@ def test_known_differences_are_no_failures_and_name_their_key(tmp_path):
     assert '<td class="t">rosbags-char-hash</td>' in page.read_text()
 
 
-def test_definition_that_nobody_reads_is_not_judged_for_a_reason(tmp_path, capsys):
+def test_definition_that_no_oracle_reads_is_not_judged_for_a_reason(tmp_path, capsys):
     text = "module p { module msg { struct A { long a; }; }; };"
     make_files(tmp_path, {"src/p/msg/A.idl": text})
     path, page = tmp_path / "r.jsonl", tmp_path / "r.html"

@@ -178,7 +178,7 @@ class Workshop:
         return Run(status=status, by=by, cpu_seconds=answer["cpu"])
 
     def loads(self, path: str) -> bool:
-        """Tell whether Python loads a module of the copy."""
+        """Return whether Python loads a module of the copy."""
         module = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
         limits = {"cpu_seconds": LOADING_SECONDS, "seconds": 10 * LOADING_SECONDS}
         return bool(self._ask({"module": module, "environment": {}, **limits})["code"] == 0)

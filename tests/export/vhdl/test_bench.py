@@ -103,7 +103,7 @@ def test_packet_that_is_not_of_the_type_fails(ghdl, tmp_path):
     assert "FAIL packet 0" in output
 
 
-def test_missing_stimuli_and_missing_ghdl_are_told(tmp_path):
+def test_missing_stimuli_and_missing_ghdl_are_reported(tmp_path):
     write_folder(tmp_path, "std_msgs/msg/Empty", "lyrical", 8)
     empty = tmp_path / "empty"
     empty.mkdir()

@@ -218,7 +218,7 @@ def test_bench_without_packets_fails(ghdl, tmp_path):
     assert status != 0 and "FAIL there are no packets" in found
 
 
-def test_bench_says_what_is_left_over(ghdl, tmp_path):
+def test_bench_reports_leftover_transfers(ghdl, tmp_path):
     write_folder(tmp_path, "builtin_interfaces/msg/Time", "lyrical", 8)
     (tmp_path / "stimuli.txt").write_text(packets_text([b"\0\1\0\0" + bytes(8)] * 3))
     (file,) = tmp_path.glob("*_8_deserializer_flat.vhd")

@@ -132,7 +132,7 @@ def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
     assert "FAIL packet 0" in failure
 
 
-def test_table_and_status_say_what_failed_and_how_to_repeat(ghdl, monkeypatch, capsys):
+def test_table_and_status_have_failures_and_the_command_to_repeat(ghdl, monkeypatch, capsys):
     tasks = collect_tasks(["lyrical"], ["std_msgs/msg/Bool"])
     (found,) = Benches(tasks, Request(jobs=1)).run(Recorder())
     assert_passed(found)

@@ -232,7 +232,7 @@ DURATION = Message(name="duration", dialect="ros1", fields=())
         ("genpy-not-utf8", "same", String(), "é".encode(), "é".encode()),
     ],
 )  # fmt: skip
-def test_a_change_takes_out_what_its_entry_is_about(key, how, kind, value, want):
+def test_a_change_removes_the_difference_of_its_entry(key, how, kind, value, want):
     assert getattr(entry_of(key), how)(kind, value) == want
 
 
@@ -245,7 +245,7 @@ def test_a_change_takes_out_what_its_entry_is_about(key, how, kind, value, want)
         (0xFFF8000000000000, 8, True), (0x7FEFFFFFFFFFFFFF, 8, False),
     ],
 )  # fmt: skip
-def test_not_a_number_is_what_ieee_says(bits, size, nan):
+def test_nan_is_that_of_ieee_754(bits, size, nan):
     assert is_nan(bits, size) is nan
     number = as_float(bits, size)
     assert (number != number) is nan

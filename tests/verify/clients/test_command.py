@@ -96,7 +96,7 @@ def test_without_ros_s_own_rosbags_judges(capsys, monkeypatch):
     assert missing == {"fastcdr": "no Fast CDR"} and list(versions) == ["rosbags"]
 
 
-def test_library_is_not_asked_about_wires_that_nobody_named(library_here, capsys):
+def test_library_is_not_asked_about_unnamed_wires(library_here, capsys):
     for name in ("cyclonedds", "fastcdr"):
         library_here(name)
     call = ["verify", "--sut", "cyclonedds", "--cases", "2", "--jobs", "1"]

@@ -45,7 +45,7 @@ ROS1_ODD = {
 }
 
 
-def test_packets_of_ros1_are_odd_at_their_first_place(make_message):
+def test_packets_of_ros1_are_irregular_at_their_first_place(make_message):
     message = make_message("uint8 a\nuint32 n\nstring<=2 s\nstring e\nbool t\nuint8[<=1] l\n")
     value = {"a": 1, "n": 2, "s": b"xy", "e": b"", "t": True, "l": [5]}
     assert plain_packet(message, "ros1", value) == bytes.fromhex(ROS1)
@@ -53,7 +53,7 @@ def test_packets_of_ros1_are_odd_at_their_first_place(make_message):
     assert found == {name: bytes.fromhex(text) for name, text in ROS1_ODD.items()}
 
 
-def test_two_packets_of_a_kind_are_made_odd_and_two_values(make_message):
+def test_two_packets_and_two_values_of_a_kind_are_made_irregular(make_message):
     message = make_message("string<=2 s\nuint8 a")
     values = [{"s": bytes([each]), "a": each} for each in (65, 66, 67)]
     packets = [(each, value["a"]) for each, value, _ in odd_packets(message, "ros1", values)]
@@ -72,7 +72,7 @@ def test_packets_without_a_place_are_skipped(make_message):
 
 
 @pytest.mark.parametrize(("size", "is_made"), [(4096, True), (4097, False)])
-def test_packets_are_made_odd_up_to_a_size(make_message, size, is_made):
+def test_packets_are_made_irregular_up_to_a_size(make_message, size, is_made):
     message = make_message(f"uint8[{size}] a")
     packet = odd_packet(message, "ros1", {"a": [0] * size}, "cut-1")
     assert (packet is not None) == is_made
@@ -117,5 +117,5 @@ def test_zero_has_the_fields_of_the_type(make_message, fields, value):
     assert zero(make_message(fields, B="uint8 b")) == value
 
 
-def test_lengths_that_lie_are_within_what_a_library_may_allocate():
+def test_wrong_lengths_are_within_the_allocation_limit():
     assert odd.TOO_LONG > odd.MOST_PACKET_BYTES and odd.TOO_LONG < 1 << 20

@@ -94,7 +94,7 @@ def test_who_has_no_wide_text_says_so(library_here, make_message, name):
 
 
 @pytest.mark.parametrize("release", ["fastcdr", "fastcdr-2.2", "fastcdr-2.3"])
-def test_fast_cdr_writes_and_reads_what_ros_2_wrote(library_here, release):
+def test_fast_cdr_writes_and_reads_packets_of_ros_2(library_here, release):
     corpus = os.environ.get("FIRM_HDL_CORPUS")
     if not corpus:
         assert not os.environ.get("CI")

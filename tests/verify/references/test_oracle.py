@@ -101,7 +101,7 @@ def test_empty_messages_transfer_once(distro, wire, path, payload):
     assert oracle.transfers(value, name, wire, 8) == {path: [payload]}
 
 
-def test_structures_tell_types_apart():
+def test_structures_differ_for_different_types():
     humble, jazzy = distro_oracle("humble"), distro_oracle("jazzy")
     same, other = "sensor_msgs/msg/Imu", "sensor_msgs/msg/Range"
     assert humble.structure(same) == jazzy.structure(same)

@@ -80,7 +80,7 @@ def test_the_axis_of_stages_has_the_least_and_the_most_of_all():
     assert at(dot) == (x(0.3), 12 + 32 + 8) and dot[2] == seconds(0.3)
 
 
-def test_a_box_has_its_quartiles_where_the_axis_says():
+def test_a_box_has_its_quartiles_at_their_places_on_the_axis():
     text = stages(a_curve())
     x = Scale.logarithmic([0.01, 10.0], 96, 740)
     box = box_of(TIMES)
@@ -143,7 +143,7 @@ def test_points_of_a_trend_are_where_the_axes_say():
     assert not of_kind(text, "path", "fit-line") and not of_kind(text, "path", "fit-law")
 
 
-def test_what_was_fitted_is_drawn_inside_of_the_axes():
+def test_fits_are_drawn_inside_the_axes():
     law, line = Fit(a=0.1, b=1.0, r2=0.5), Fit(a=1.0, b=0.01, r2=0.25)
     text = scatter(a_trend(power=law, linear=line))
     x, y = Scale(1, 100, 62, 346, True), Scale(0.1, 10, 236, 14, True)

@@ -63,7 +63,7 @@ def rows(table):
     return [[cell.text for cell in row] for row in table.rows]
 
 
-def test_every_verdict_is_counted_as_what_it_is():
+def test_every_verdict_is_counted():
     counts = count(outcomes_of([mixed(**ALL)]))
     assert counts == Counts(**ALL) and counts.total == 28
     found = json.loads(FORMATS["json"](summarise({"r": mixed(**ALL)})))
@@ -117,7 +117,7 @@ def test_columns_have_the_counts_of_their_headings():
     }  # fmt: skip
 
 
-def test_groups_are_by_all_that_tells_them_apart():
+def test_groups_differ_in_each_of_their_keys():
     tests = [
         a_test("a_msgs/msg/A", bus_bytes=8, distro="iron", same=("humble", "iron")),
         a_test("a_msgs/msg/A", bus_bytes=4, distro="iron", same=("iron",)),
@@ -177,7 +177,7 @@ def test_failures_of_a_cut_list_are_the_next_ones(monkeypatch):
     assert "3 more tests failed" in text and all(f"reason {n};" in text for n in range(5))
 
 
-def test_long_lists_keep_what_did_not_pass():
+def test_long_lists_keep_tests_that_did_not_pass():
     run = mixed(passed=6, known=2, failed=2, not_judged=2, not_run=2)
     shown, rest = shown_tests(summarise({"r": run}), 5)
     names = [outcome.verdict.name for outcome in shown]
@@ -318,7 +318,7 @@ def definition(name, verdict, is_refused=False, oracle="genmsg"):
     return a_record(test, verdicts=(said,), coverage=None, shape="", metrics={})
 
 
-def test_what_oracles_said_is_in_its_columns():
+def test_verdicts_of_oracles_are_in_their_columns():
     records = [
         definition(f"m/msg/{name}{n}", VERDICTS[name])
         for name, number in (("passed", 2), ("known", 3), ("failed", 5), ("not_judged", 7))

@@ -47,7 +47,7 @@ def test_a_table_has_numbers_on_the_right_and_no_marks():
         ("1. - + (x)!", "1. - + (x)!"),
     ],
 )
-def test_nothing_in_a_text_is_a_mark(text, written):
+def test_special_characters_are_escaped(text, written):
     assert _text(text) == written
 
 

@@ -198,7 +198,7 @@ def test_names_of_users_are_plain_text_in_every_format():
     assert not re.search(r"(?<!\\)<", outside)
 
 
-def test_page_needs_nothing_else_and_is_well_formed():
+def test_page_is_self_contained_and_well_formed():
     text = rendered("html", a_run())
     page = Page(text)
     assert not set(page.tags) & {"link", "img", "iframe", "object", "base", "image", "use"}
@@ -368,7 +368,7 @@ def test_the_file_name_selects_the_format(tmp_path, form, capsys):
     assert [each.name for each in out.parent.iterdir()] == [out.name]
 
 
-def test_command_refuses_what_is_no_results(tmp_path, capsys):
+def test_command_refuses_other_files(tmp_path, capsys):
     (tmp_path / "x").write_text("hello\n")
     assert main(["report", str(tmp_path / "x")]) == 1
     assert capsys.readouterr().err == (f"error: '{tmp_path}/x' has no results of firm-hdl verify\n")

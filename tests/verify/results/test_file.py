@@ -151,7 +151,7 @@ def test_file_has_one_writer_at_a_time(tmp_path):
         ResultsWriter(path, options=OPTIONS, planned=[HEADER])
 
 
-def test_times_are_no_part_of_what_is_compared():
+def test_times_are_not_compared():
     one = a_record()
     assert without_times(one) == without_times(replace(one, cpu_seconds=9.0))
     assert without_times(one) != without_times(replace(one, cycles=9))

@@ -179,7 +179,7 @@ def test_a_changed_line_is_found(ghdl, monkeypatch, file, pattern, text, output)
 
 
 def undefined_at_first(vhdl: str) -> tuple[str, int]:
-    """Give undefined initial values to registers without a reset and to memories."""
+    """Make the initial values of memories, and of registers without a reset, undefined."""
     count = 0
     for process in re.findall(r"process \(aclk\)\n.*?end process;", vhdl, re.DOTALL):
         if "rst = '1'" in process:
@@ -270,7 +270,7 @@ def test_the_cycles_of_a_hanging_circuit_are_compared(ghdl, monkeypatch):
     assert result.comparison is not None and result.comparison.cycles > 60
 
 
-def test_missing_ghdl_says_how_to_get_it(monkeypatch, tmp_path):
+def test_error_for_missing_ghdl_explains_the_installation(monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("GHDL", raising=False)
     with pytest.raises(

@@ -310,7 +310,9 @@ def test_row_that_the_bench_cannot_read_is_a_failure(of_verilog, monkeypatch):
         ),
     ],
 )
-def test_missing_simulator_says_how_to_get_it(monkeypatch, tmp_path, kind, variable, output):
+def test_error_for_a_missing_simulator_explains_the_installation(
+    monkeypatch, tmp_path, kind, variable, output
+):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv(variable, raising=False)
     with pytest.raises(ProgramMissingError, match=f"^{output}$"):

@@ -52,7 +52,7 @@ def test_pins_are_numbered_over_both_devices_and_the_reset_is_the_first_input(re
     assert names[-1] == (1, "m_axis_status_tready")
 
 
-def test_rows_have_what_changed_and_resets_stand_between_runs(recorded):
+def test_rows_have_changes_and_resets_separate_runs(recorded):
     trace, _ = recorded
     first = dict(read_row(trace.stimuli[0].removeprefix("1 ")))
     # The reset is released, and every port is written once.
@@ -112,7 +112,7 @@ def test_exactly_the_changed_bits_are_written():
     assert len(told) == sum(pin.port.width for pin in [*trace.inputs, *trace.outputs])
 
 
-def test_traffic_is_what_the_simulation_showed(recorded):
+def test_traffic_equals_that_of_the_simulation(recorded):
     trace, seen = recorded
     runs = traffic(trace, trace.expected)
     assert [run.name for run in runs] == ["plain", "stalled"]
@@ -201,7 +201,7 @@ FLIP = str.maketrans("01", "10")
         ("deserializer", "data_valid", lambda bits: "0", "transfers of data differ: number 0 of"),
     ],
 )
-def test_traffic_is_what_the_ports_showed(recorded, direction, name, change, output):
+def test_traffic_equals_that_of_the_ports(recorded, direction, name, change, output):
     trace, seen = recorded
     rows = with_changed_values(trace, direction, name, change)
     each = output if isinstance(output, tuple) else (output,) * len(seen)

@@ -45,12 +45,12 @@ def found(*verdicts):
         ([], False, False),
     ],
 )
-def test_success_needs_a_judgement_and_of_what_is_named_each(verdicts, of_all, named):
+def test_success_needs_a_judgement_of_each_named_type(verdicts, of_all, named):
     assert is_well(found(*verdicts), is_named=False) is of_all
     assert is_well(found(*verdicts), is_named=True) is named
 
 
-def test_end_lists_what_was_not_judged_by_name_and_reason():
+def test_end_lists_unjudged_types_by_name_and_reason():
     lines = ["not judged: p/msg/T1 (lyrical), ts3: nobody knows"]
     some = found(PASSED, SILENT)
     assert concluded(some, is_named=False) == [*lines, "1 of 2 tests was not judged"]
@@ -157,7 +157,7 @@ def test_a_dependent_record_has_the_verdict_of_the_other(other, verdict):
 
 
 @pytest.mark.parametrize("system", ["ts1", "ts2"])
-def test_named_definition_that_nobody_reads_is_no_success(tmp_path, capsys, system):
+def test_named_definition_that_no_oracle_reads_is_no_success(tmp_path, capsys, system):
     text = "module p { module msg { struct A { long double a; }; }; };"
     path = str(make_files(tmp_path, {"p/msg/A.idl": text, "p/msg/B.msg": "int8 x\n"}))
     call = ["verify", *FEW, "--systems", system, "--oracle", "rosbags", "--path", path]

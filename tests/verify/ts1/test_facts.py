@@ -49,7 +49,7 @@ def test_facts_have_the_whole_definition(tmp_path):
     ]
 
 
-def test_primitives_that_an_oracle_cannot_tell_apart_are_one(tmp_path):
+def test_primitives_that_an_oracle_does_not_distinguish_are_equal(tmp_path):
     fields = structure(model(tmp_path), {"char": "uint8"})["p/msg/A"]["fields"]
     assert fields[2]["type"] == "uint8"
 

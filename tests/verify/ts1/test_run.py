@@ -59,7 +59,7 @@ def judged(request, oracles=(), jobs=1):
 
 
 @pytest.mark.parametrize("distro", DISTROS)
-def test_embedded_types_are_what_fast_oracles_say(distro):
+def test_embedded_types_agree_with_fast_oracles(distro):
     oracles = ["genmsg", "rosbags"] if distro == "noetic" else ["rosidl_adapter", "rosbags"]
     tally, run = judged(Request(distros=(distro,)), oracles)
     assert tally.differences == 0
@@ -74,7 +74,7 @@ def test_embedded_types_are_what_fast_oracles_say(distro):
     )
 
 
-def test_a_sample_of_embedded_types_is_what_rosidl_parser_says():
+def test_a_sample_of_embedded_types_agrees_with_rosidl_parser():
     names = ["Imu", "PointCloud2", "NavSatStatus", "JointState", "CameraInfo", "Range"]
     types = tuple(f"sensor_msgs/msg/{name}" for name in names)
     types += ("diagnostic_msgs/msg/DiagnosticArray", "std_msgs/msg/Empty", "std_msgs/msg/Char")
@@ -89,7 +89,7 @@ def test_all_of_a_folder_is_judged_and_no_more(source):
     assert tally.refused == {"genmsg": 1}
 
 
-def test_processes_give_what_one_gives(source):
+def test_several_processes_give_the_results_of_one(source):
     request = Request(distros=("noetic",), paths=(source,))
     one, two = (judged(request, ["rosbags"], jobs)[0] for jobs in (1, 2))
     assert one.verdicts == two.verdicts and one.details == two.details
@@ -237,7 +237,7 @@ def test_a_crash_of_the_front_end_ends_no_run(source, monkeypatch):
     assert tally.verdicts == {("rosbags", "failed"): 1, ("rosbags", "passed"): 1}
 
 
-def test_mutations_are_repeatable_and_told_by_number(source, capsys, monkeypatch):
+def test_mutations_are_repeatable_and_numbered(source, capsys, monkeypatch):
     monkeypatch.setattr(
         ORACLES["genmsg"], "judge", lambda self, cases: [Refused("no")] * len(cases)
     )

@@ -36,7 +36,7 @@ def test_todays_plans_are_the_golden_ones():
 
 
 @pytest.mark.snapshot
-def test_the_golden_plans_cover_what_both_wires_have():
+def test_the_golden_plans_cover_both_wires():
     have, want = set(), set()
     for golden in read_golden(FOLDER):
         message = Library(golden.distro).message(golden.plan.message)

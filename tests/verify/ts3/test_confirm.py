@@ -43,7 +43,7 @@ def cases_of(distro, name):
         ("lyrical", "rcl_interfaces/msg/ParameterValue", CDR),
     ],
 )
-def test_others_write_what_rosbags_writes(distro, name, by):
+def test_other_libraries_write_the_packets_of_rosbags(distro, name, by):
     message = Library(distro).message(name)
     found = confirm(message, message.wire, cases_of(distro, name))
     assert (found.by, found.failures) == (by, ())
@@ -67,7 +67,7 @@ def test_result_names_the_references():
     assert none.command.endswith(" --reference none std_msgs/msg/Bool")
 
 
-def test_known_divergence_of_a_reference_is_told_by_its_key():
+def test_known_divergence_of_a_reference_is_reported_by_its_key():
     """Cases of `Joy` have NaN values that Cyclone's Python changes."""
     options = Options(simulated=False, references=("cyclonedds",))
     result = accept("lyrical", "sensor_msgs/msg/Joy", options)

@@ -124,7 +124,7 @@ def test_oracle_that_reads_another_byte_disagrees(monkeypatch, tmp_path):
     assert any(each.startswith("hardware: packet 0 of 1 differs") for each in result.failures)
 
 
-def test_what_rosbags_cannot_read_is_judged_by_what_it_can(monkeypatch, tmp_path):
+def test_a_partly_unreadable_message_is_judged_by_its_readable_parts(monkeypatch, tmp_path):
     latin = TEXT[:9] + b"\xff" + TEXT[10:]
     bag = strings(tmp_path, latin)
     assert replayed(bag).failures == []

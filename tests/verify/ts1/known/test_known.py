@@ -116,7 +116,7 @@ def test_a_known_difference_hides_no_other(court, distro, oracle, text):
     assert isinstance(found.verdict, Failed)
 
 
-def test_we_read_only_what_is_a_mistake_in_another_text(court, monkeypatch):
+def test_a_text_that_only_the_oracle_refuses_must_be_accepted(court, monkeypatch):
     # rosbags refuses CR LF, which is no mistake. Our reader must not refuse it.
     read = judging.read
 
@@ -138,7 +138,7 @@ def test_several_known_differences_are_all_named_and_no_others(court):
     assert_known(found, "rosbags-crlf", "rosbags-constant-bool", "rosbags-integers")
 
 
-def test_what_is_known_of_a_needed_definition_is_known_of_the_whole(court):
+def test_a_known_difference_of_a_dependency_is_one_of_the_definition(court):
     files = {"p/msg/A.msg": "B b\nint8 last\n", "p/msg/B.msg": "wstring x\r\n"}
     found = court("lyrical", files).outcome("rosbags", "p/A")
     assert_known(found, "rosbags-crlf", "rosbags-wstring")
@@ -190,7 +190,7 @@ def test_ordinary_files_raise_no_alarm(court, text):
     assert not isinstance(here.outcome("rosidl_parser", "p/A").verdict, Failed)
 
 
-def test_rosbags_does_not_judge_what_needs_a_type_in_idl(court, monkeypatch):
+def test_rosbags_does_not_judge_types_that_need_idl(court, monkeypatch):
     idl = "module p { module msg { struct I { long x; }; }; };"
     files = {"p/msg/A.msg": "B b\n", "p/msg/B.msg": "I[] i\n", "p/msg/I.idl": idl}
     found = court("lyrical", files).outcome("rosbags", "p/A")
@@ -204,7 +204,7 @@ def test_rosbags_does_not_judge_times_that_it_takes_for_those_of_ros1(court):
     assert isinstance(found.verdict, NotJudged) and "builtin_interfaces" in found.verdict.reason
 
 
-def test_rosbags_refuses_what_contains_itself(court):
+def test_rosbags_refuses_recursive_types(court):
     files = {"p/msg/A.msg": "B b\n", "p/msg/B.msg": "C[] c\n", "p/msg/C.msg": "B[] b\n"}
     for type_ in ("p/A", "p/B"):
         assert court("lyrical", files).outcome("rosbags", type_).is_refused

@@ -53,7 +53,7 @@ def test_newer_rosidl_and_we_agree(court, oracle):
 
 
 @pytest.mark.parametrize("release", RELEASES, ids=lambda release: release.name)
-def test_a_report_says_which_release_it_was(court, release):
+def test_a_report_names_the_release(court, release):
     oracle = court("lyrical", FILES).oracle(f"rosidl_parser-{release.rosidl}")
     assert oracle.version().startswith(f"{release.rosidl}.")
 
