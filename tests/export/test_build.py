@@ -112,7 +112,7 @@ vhdl/run_ghdl.sh
 vhdl/vivado.tcl
 waivers.vlt
 """
-"""All files of Twist, for users who do not choose."""
+"""All files of Twist with default options."""
 
 
 def test_folder_is_complete(tmp_path):

@@ -48,7 +48,7 @@ def synthesized(ghdl: str, folder: Path, work: Path, entity: str) -> str:
 
 def flaws(text: str) -> list[str]:
     """List the flaws in GHDL's netlist."""
-    # GHDL 2.0 stops at a latch that drives a port, and makes a latch of a signal unknown.
+    # GHDL 2.0 stops at a latch that drives a port, and makes X of one that drives a signal.
     latch = "latch" in text.lower() or re.search(r"<= ['\"]X+['\"]; -- \(signal\)", text)
     found = ["latch"] if latch else []
     edges = {edge.strip() for edge in re.findall(r"(?:rising|falling)_edge *\([^)]*\)", text)}

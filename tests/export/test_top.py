@@ -52,7 +52,7 @@ def noisy_beats(
         data = int.from_bytes(part + noise.randbytes(bus_bytes - len(part)), "little")
         keep = noise.getrandbits(bus_bytes)
         if last:
-            # The first zero of `tkeep` ends the beat; later ones do not count.
+            # The first 0 of `tkeep` ends the beat; any 1 after it does not count.
             ones = (1 << len(part)) - 1
             keep = ones | keep & ~(2 * ones + 1)
         yield data, keep, last

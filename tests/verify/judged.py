@@ -11,9 +11,9 @@ __all__ = ["NAN_KEY", "TIME_KEY", "assert_known", "assert_passed", "without_time
 
 
 NAN_KEY = "python-signalling-nan"
-"""Of what Python floats make of some NaN, in libraries that confirm packets."""
+"""Key for NaN values that Python floats change, in libraries that confirm packets."""
 TIME_KEY = "rosbags-time-signs"
-"""Of seconds of ROS 1 that rosbags takes for signed, and genpy does not."""
+"""Key for ROS 1 seconds, which rosbags reads as signed, and genpy as unsigned."""
 
 
 def assert_passed(result, known=()):

@@ -30,7 +30,7 @@ from amaranth.lib.memory import Memory
 __all__ = ["DOMAINS", "RandomDesign"]
 
 DOMAINS = ("sync", "neg", "areset", "free", "drop")
-"""Rising edge and synchronous reset; falling edge; asynchronous reset; the edges without reset."""
+"""Rising edge; falling edge; asynchronous reset; each edge without reset."""
 
 _NAMES = (
     "type range signal a A x__y _z q_ resize clk_2 value unsigned rtl top work p_sync count next "

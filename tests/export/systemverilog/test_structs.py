@@ -220,7 +220,7 @@ def test_header_of_one_type_goes_to_another_and_a_field_is_a_line(design, verila
     )
     design.instances.append("  users users ();\n")
     assert slang(sources(design), design.folder) == ""
-    # slang warns of signals that this design does not use.
+    # Verilator warns of signals that this design does not use.
     assert not re.search("%Error(?!: Exiting due to .* warning)", design.lint(verilator))
     design.texts["users.sv"] = text.replace("= scan.header;", "= scan.ranges;")
     output = slang(sources(design), design.folder)

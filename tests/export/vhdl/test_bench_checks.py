@@ -202,7 +202,7 @@ def test_bench(ghdl, tmp_path, side, changes, output):
     for pattern, to in changes.items():
         text, count = re.subn(pattern, to, text, count=1)
         assert count == 1
-    # The port of the instance is driven here instead, and its own output is open.
+    # The changed text drives these outputs, so the wrapper's own assignments are removed.
     text = re.sub(
         r"^  status_valid <= .*|^  message_data_valid <= .*", "", text, flags=re.MULTILINE
     )

@@ -196,7 +196,7 @@ def test_package_of_a_type_is_the_same_wherever_the_type_is():
 PACKAGES = ("geometry_msgs/", "sensor_msgs/", "nav_msgs/", "std_msgs/")
 
 
-# Each message of the second column needs a package with the name of one of the first column.
+# `A` and `B` need packages with the same name, and so do `C` and `D`.
 SIMILAR = {
     "p/Inner.msg": "uint8 x\n",
     "p/INNER.msg": "uint16 x\n",

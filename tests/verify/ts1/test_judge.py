@@ -151,13 +151,13 @@ def test_every_mistake_is_caught(court, oracle, monkeypatch):
         return compare(here.oracle(oracle), case, ours, answer, here.universe)
 
     assert_passed(outcome(model))
-    verdicts = {name: outcome(spoil(model)).verdict for name, spoil in MISTAKES.items()}
+    verdicts = {name: outcome(change(model)).verdict for name, change in MISTAKES.items()}
     missed = {name for name, found in verdicts.items() if not isinstance(found, Failed)}
     if is_ros1:  # This dialect has neither bounds nor defaults.
         assert "a field is dropped" not in missed and "a constant has another value" not in missed
         missed -= {name for name in missed if "bound" in name or "default" in name}
     if oracle == "rosbags":
-        missed -= {"a default is invented"}  # This oracle keeps no comments.
+        missed -= {"a default is invented"}  # rosbags keeps no defaults.
     assert missed == set()
 
 

@@ -14,10 +14,10 @@ TASKS = list(collect_tasks((), ()))
 WIDTHS = (8, 4)
 OTHER_WIDTHS = (1, 2, 16, 32, 64)
 LARGEST = 12
-"""The first ones have so many leaves that they would take as long as a hundred others."""
+"""Number of largest types; each has so many leaves that its test takes as long as many others."""
 SAMPLE = range(by_depth(LARGEST, 0), len(TASKS), by_depth(18, 9))
 SIMULATED = by_depth(5, 1)
-"""One in so many of the others is simulated. Of the rest, the plan alone is judged."""
+"""One in this many of the other types is simulated. For the rest, only the plan is judged."""
 
 
 @pytest.mark.parametrize("index", range(len(TASKS)), ids=[task.name for task in TASKS])

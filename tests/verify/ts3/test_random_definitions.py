@@ -15,7 +15,7 @@ from tests.strategies import BUS_WIDTHS, definitions
 from tests.verify.judged import NAN_KEY, TIME_KEY, assert_passed
 
 MOST_WORK = 5_000
-"""Beats times leaves of the smallest packet: one example in a hundred takes minutes otherwise."""
+"""Limit on beats times leaves of the smallest packet; larger examples may take minutes."""
 
 
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
