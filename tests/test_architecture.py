@@ -1,4 +1,4 @@
-"""The structure of the package: allowed imports, and properties of every module."""
+"""The architecture: the imports that each part may have, and the sizes of modules and folders."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 import firm_hdl
 
 PACKAGE = Path(firm_hdl.__file__).parent
+ROOT = PACKAGE.parent
 MOST_LINES = 400
 # Lines of a function, with its docstring.
 MOST_FUNCTION_LINES = 60
@@ -125,20 +126,28 @@ def problems(package: Path) -> Iterator[str]:
             yield f"{where}: no docstring"
         if path.name != "__main__.py" and not _has_all(tree):
             yield f"{where}: no literal __all__"
+        yield from _wrong_imports(where, tree, "firm_hdl", MAY_IMPORT)
+        if where.parts[0] == "verify":
+            yield from _wrong_imports(where, tree, "verify", VERIFY_MAY_IMPORT)
+
+
+def wrong_sizes(base: Path) -> Iterator[str]:
+    """Yield the modules, functions and folders below `base` that are too large."""
+    paths = sorted(base.rglob("*.py"))
+    for path in paths:
+        where = path.relative_to(base)
+        text = path.read_text(encoding="utf-8")
         if len(text.splitlines()) > MOST_LINES:
             yield f"{where}: more than {MOST_LINES} lines"
-        for node in ast.walk(tree):
+        for node in ast.walk(ast.parse(text)):
             if (
                 isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
                 and _size(node) > MOST_FUNCTION_LINES
             ):
                 yield f"{where}: {node.name} has more than {MOST_FUNCTION_LINES} lines"
-        yield from _wrong_imports(where, tree, "firm_hdl", MAY_IMPORT)
-        if where.parts[0] == "verify":
-            yield from _wrong_imports(where, tree, "verify", VERIFY_MAY_IMPORT)
-    for folder, count in sorted(Counter(p.parent for p in package.rglob("*.py")).items()):
+    for folder, count in sorted(Counter(path.parent for path in paths).items()):
         if count > MOST_MODULES:
-            yield f"{folder.relative_to(package)}: more than {MOST_MODULES} modules"
+            yield f"{folder.relative_to(base)}: more than {MOST_MODULES} modules"
 
 
 def _wrong_imports(
@@ -195,6 +204,11 @@ def test_package_keeps_to_its_architecture() -> None:
     assert list(problems(PACKAGE)) == []
 
 
+def test_modules_functions_and_folders_keep_to_their_sizes() -> None:
+    for base in (PACKAGE, ROOT / "tools", ROOT / "tests"):
+        assert list(wrong_sizes(base)) == [], base
+
+
 def test_every_permission_is_used() -> None:
     assert list(unused(PACKAGE, "firm_hdl", MAY_IMPORT)) == []
     assert list(unused(PACKAGE / "verify", "verify", VERIFY_MAY_IMPORT)) == []
@@ -241,12 +255,10 @@ def test_violations_are_found(tmp_path: Path) -> None:
         "__init__.py: firm_hdl imports export",
         "gateware/__main__.py: gateware imports firm_hdl",
         "model.py: model imports wire",
-        "plan/a.py: long has more than 60 lines",
         "sim/a.py: no literal __all__",
         "sim/a.py: sim imports export",
         "sim/b.py: no docstring",
         "sim/b.py: no literal __all__",
-        "terminal.py: more than 400 lines",
         "terminal.py: terminal imports verify",
         "utils.py: a part of the package that the architecture does not know",
         "verify/more.py: a part of the package that the architecture does not know",
@@ -255,5 +267,9 @@ def test_violations_are_found(tmp_path: Path) -> None:
         "verify/ts1/known/a.py: ts1 imports command",
         "verify/ts1/known/a.py: ts1 imports ts2",
         "wire/cdr.py: wire imports frontend",
+    ]
+    assert list(wrong_sizes(tmp_path)) == [
+        "plan/a.py: long has more than 60 lines",
+        "terminal.py: more than 400 lines",
         "rtlil: more than 20 modules",
     ]

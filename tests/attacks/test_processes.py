@@ -15,7 +15,7 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 
 import firm_hdl
 from tests.attacks.test_attacks import INTERNAL_ERROR
-from tests.frontend.bombs import BOMBS
+from tests.frontend.hostile.bombs import BOMBS
 from tests.frontend.workspace import make_files
 
 ROOT = Path(firm_hdl.__file__).parent.parent

@@ -1,4 +1,4 @@
-"""Fixtures of the tests of output."""
+"""Fixtures for tests of the exported files."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def quick_vhdl(self: Vhdl, converters: Converters) -> Output:
 
 @pytest.fixture
 def quick(monkeypatch):
-    """Leave out Yosys, which takes nearly all of a build's time."""
+    """Replace Yosys by a stub, because Yosys takes nearly all of a build's time."""
     monkeypatch.setattr(Converters, "make_circuits", lambda self: dict.fromkeys(DIRECTIONS, ""))
     monkeypatch.setattr(
         "firm_hdl.export.verilog.backend.to_verilog",

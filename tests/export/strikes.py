@@ -1,10 +1,10 @@
-"""A killer for `firm_hdl.export.folder`: it ends a build before each call to the system in turn.
+"""Crash injection for `firm_hdl.export.folder`: end a build before each system call in turn.
 
-Run as a program, so that it may fork: each strike is a process of its own, which ends as SIGKILL
-would end it, without any ``finally``. What is left is looked at, then another build is made. It
-prints how many strikes there were, and what was wrong.
+This is a program, so that it may fork. Each crash ends a process of its own as SIGKILL would,
+without any ``finally``. The folder is checked after the crash, and again after another build. The
+program prints the number of crashes and the problems.
 
-It can also look on: before each call to the system, it reads the manifest as another program would.
+The program can also poll: before each system call, it reads the manifest as another program would.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from firm_hdl.export import folder as module
 
 OLD = {name: f"old {name}\n" for name in ("a.v", "vhdl/b.vhd", "gone.txt")}
 NEW = {name: f"new {name}\n" for name in ("a.v", "vhdl/b.vhd", "vhdl/c.sh", "mine.txt")}
-# One is named as a file that the new version has and the old one had not.
+# One file has the name of a file that is new in the new version.
 USERS = {
     "notes": "ten years",
     "mine.txt": "a file of mine",
@@ -38,14 +38,14 @@ def with_manifest(files: dict[str, str]) -> dict[str, str]:
 
 
 def is_change(event: str, arguments: tuple[Any, ...]) -> bool:
-    """Whether a call to the system is one that changes something."""
+    """Return whether a system call changes a file or folder."""
     if event == "open":
         return bool(arguments[2] & (os.O_WRONLY | os.O_RDWR))
     return event.startswith(EVENTS) and event not in ("os.listdir", "os.scandir", "os.fork")
 
 
 def strike_before(number: int) -> None:
-    """End this process before a call; half of what is then being written is there."""
+    """End this process before a system call, or in the middle of writing a file."""
     left = number
 
     def look(event: str, arguments: tuple[Any, ...]) -> None:
@@ -75,7 +75,7 @@ def set_up(root: Path) -> Path:
     for name, text in USERS.items():
         (target / name).parent.mkdir(parents=True, exist_ok=True)
         (target / name).write_text(text)
-    # What another program left under the name of a process that is no more.
+    # A folder that another program left under the name of an ended process.
     other = root / "lyrical" / f".type.{os.getpid() + 1}.old"
     other.mkdir()
     (other / "thesis.tex").write_text("mine")
@@ -91,7 +91,7 @@ def texts(root: Path) -> dict[str, str]:
 
 
 def problems(target: Path, *, has_exchange: bool) -> Iterator[str]:
-    """Say what is wrong right after a strike."""
+    """Yield what is wrong right after a crash."""
     everything = set(texts(target.parent).values())
     for name, text in {**USERS, "another program's": "mine"}.items():
         if text not in everything:
@@ -113,7 +113,7 @@ def problems(target: Path, *, has_exchange: bool) -> Iterator[str]:
 
 
 def problems_after(target: Path) -> Iterator[str]:
-    """Say what is wrong after the build that follows."""
+    """Yield what is wrong after the next build."""
     found = texts(target)
     want = {**with_manifest(NEW), **USERS, "mine.txt": NEW["mine.txt"]}
     want["mine.txt.kept"] = USERS["mine.txt"]
@@ -125,7 +125,7 @@ def problems_after(target: Path) -> Iterator[str]:
 
 
 def look_on() -> None:
-    """Count how often there is no whole manifest while folders are replaced."""
+    """Count the system calls before which the manifest is incomplete; print the count."""
     manifests = {with_manifest(files)["manifest.json"] for files in (OLD, NEW)}
     looks, misses, looking = 0, 0, False
 
@@ -136,7 +136,7 @@ def look_on() -> None:
             nonlocal looks, misses, looking
             if looking or not is_change(event, arguments):
                 return
-            looking = True  # Reading is a call, too.
+            looking = True  # Reading is a system call, too.
             looks += 1
             try:
                 misses += (target / "manifest.json").read_text() not in manifests
@@ -152,7 +152,7 @@ def look_on() -> None:
 
 
 def strike(has_exchange: bool) -> None:
-    """End builds before each call to the system; print what was wrong."""
+    """End builds before each system call in turn; print the problems."""
     wrong: list[str] = []
     for number in range(MOST_STRIKES):
         with tempfile.TemporaryDirectory() as root:

@@ -1,4 +1,4 @@
-"""Folders of files: whole or not at all, and the same everywhere."""
+"""Built folders: complete or absent, and identical on every machine."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def tree(folder: Path) -> dict[str, bytes]:
 
 
 def build_one(out: Path, type_: str = "std_msgs/msg/Bool", **options: object) -> Built:
-    """Build a type; what is not an argument of `build` is one of `Library` or `Options`."""
+    """Build a type; other arguments go to `Library` or `Options`."""
     library = Library("lyrical", options.pop("paths", ()))
     rest = {name: options.pop(name) for name in ("force", "stimuli") if name in options}
     [built] = build([type_], out, library=library, options=Options(**options), **rest)
@@ -112,7 +112,7 @@ vhdl/run_ghdl.sh
 vhdl/vivado.tcl
 waivers.vlt
 """
-"""All files of Twist, for users who do not choose."""
+"""All files of Twist with default options."""
 
 
 def test_folder_is_complete(tmp_path):
@@ -124,7 +124,7 @@ def test_folder_is_complete(tmp_path):
     assert [one.folder for one in built] == [
         tmp_path / "out" / "lyrical" / "geometry_msgs_msg_Twist_cdr_8"
     ]
-    # The committed sample is the list of them; it also has what there is with packets only.
+    # The committed sample lists them; it also has the files that need packets.
     with_packets = {
         "vhdl/stimuli.txt",
         "vhdl/tb_geometry_msgs_msg_twist_cdr_8_vunit.vhd",
@@ -133,7 +133,7 @@ def test_folder_is_complete(tmp_path):
     found = {*tree(built[0].folder)}
     assert {*files(SAMPLE)} - found == with_packets
     assert found <= {*files(SAMPLE)}
-    # Whoever takes one of these away has to say so here, and not only in the sample.
+    # A removed file must be removed here as well as in the sample.
     assert set(FILES_OF_TWIST.split()) - found == set()
 
 
@@ -157,7 +157,7 @@ def test_vhdl_compiles_in_the_order_of_the_manifest_and_stimuli_are_the_callers(
 
 
 @pytest.mark.usefixtures("quick")
-def test_manifest_tells_all(tmp_path):
+def test_manifest_is_complete(tmp_path):
     built = build_one(tmp_path, "sensor_msgs/msg/Range", bus_bytes=4, max_message_bytes=999)
     manifest = json.loads((built.folder / "manifest.json").read_text())
     library = Library()
@@ -178,7 +178,7 @@ def test_manifest_tells_all(tmp_path):
     assert manifest["inputs"]["generator"]["firm-hdl"] == firm_hdl.__version__
     assert {"name": "ULTRASOUND", "type": "uint8", "value": 0} in manifest["constants"]
     leaves = {leaf["path"]: leaf for leaf in manifest["leaves"]}
-    # The one field of the type that is a keyword.
+    # The only field of the type whose name is a keyword.
     assert leaves["range"] == {
         "path": "range",
         "name": "range_field",
@@ -229,7 +229,7 @@ def test_comments_and_units_are_in_the_manifest(tmp_path):
 
 
 @pytest.mark.usefixtures("quick")
-def test_what_users_added_stays(tmp_path):
+def test_files_that_users_added_stay(tmp_path):
     built = build_one(tmp_path)
     (built.folder / "notes.txt").write_text("mine")
     (built.folder / "sim").mkdir()
@@ -246,7 +246,7 @@ def test_what_users_added_stays(tmp_path):
 
 
 @pytest.mark.usefixtures("quick")
-def test_folder_of_somebody_else_is_refused(tmp_path):
+def test_folder_of_another_program_is_refused(tmp_path):
     folder = tmp_path / "lyrical" / "std_msgs_msg_Bool_cdr_8"
     folder.mkdir(parents=True)
     (folder / "thesis.tex").write_text("ten years")
@@ -260,7 +260,7 @@ def test_folder_of_somebody_else_is_refused(tmp_path):
 @pytest.mark.parametrize("is_there", [False, True])
 @pytest.mark.usefixtures("quick")
 def test_crash_leaves_the_old_or_the_new(tmp_path, monkeypatch, fails_at, error, is_there):
-    # Every call of each kind fails once; what is there then is whole, and nothing else is.
+    # Every call of each kind fails once; the folder is then the whole old or new one.
     if fails_at == "rename":
         monkeypatch.setattr("firm_hdl.export.folder.exchange", lambda one, other: False)
     if is_there:
@@ -272,7 +272,7 @@ def test_crash_leaves_the_old_or_the_new(tmp_path, monkeypatch, fails_at, error,
 
         def fail(self: Path, *args: object, _turn: int = turn, **options: object) -> object:
             nonlocal calls
-            # The build's own folders only: putting things back must work.
+            # Only calls for the build's own folders fail: restoring the old folder must work.
             if self.name.endswith((".json", ".yaml", ".svg", ".v", ".new")) or calls == 0:
                 calls += 1
                 if calls == _turn + 1:
@@ -298,7 +298,7 @@ def test_crash_leaves_the_old_or_the_new(tmp_path, monkeypatch, fails_at, error,
     assert tree(tmp_path) != before
 
 
-def test_wrong_types_touch_nothing_and_are_all_told(tmp_path):
+def test_wrong_types_change_no_file_and_are_all_reported(tmp_path):
     with pytest.raises(DefinitionError) as caught:
         build(["std_msgs/msg/Bool", "std_msgs/msg/Boo", "nothing/msg/Here"], tmp_path / "out")
     assert [diagnostic.message for diagnostic in caught.value.diagnostics] == [
@@ -351,7 +351,7 @@ def test_output_is_the_same_everywhere(tmp_path):
         trees.append(tree(home / "out"))
     folders = ("sensor_msgs_msg_JointState_cdr_8", "std_msgs_msg_Empty_cdr_8")
     assert {name.split("/")[1] for name in trees[0]} == {*folders}
-    # Another output language adds files, and none takes any away.
+    # Another back end adds files, and removes none.
     assert len(trees[0]) >= 90
     assert trees[0] == trees[1]
     for text in trees[0].values():
@@ -369,7 +369,7 @@ def test_several_processes_write_the_same_files(tmp_path):
     assert tree(tmp_path / "1") == tree(tmp_path / "2")
 
 
-def test_an_error_in_a_process_is_told(tmp_path):
+def test_an_error_in_a_process_is_reported(tmp_path):
     (tmp_path / "lyrical").write_text("not a folder")
     with pytest.raises(BuildError, match=r"^'.*lyrical.*' cannot be written: "):
         build(["std_msgs/msg/Empty", "std_msgs/msg/Bool"], tmp_path, jobs=2)

@@ -1,4 +1,4 @@
-"""Comments of a definition are comments wherever they end up, and orders to no tool."""
+"""Comments of a definition stay comments in all output, and are pragmas for no tool."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ UNIT = "# [m\n#   end record;]\n"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Path:
-    """What is built of a definition whose comments mean something to tools."""
+    """The output for a definition whose comments look like pragmas of tools."""
     here = tmp_path_factory.mktemp("orders")
     messages = here / "my_msgs" / "msg"
     messages.mkdir(parents=True)
@@ -51,44 +51,44 @@ def folder(tmp_path_factory) -> Path:
     return built.folder
 
 
-def said(ghdl: str, files: list[str], folder: Path, work: Path) -> tuple[str, str]:
-    """Give what GHDL says of files, and what it makes of their entity with plain values."""
+def ghdl_output(ghdl: str, files: list[str], folder: Path, work: Path) -> tuple[str, str]:
+    """Return the messages of GHDL, and the synthesized deserializer."""
     options = ["--std=08", "-fpsl", f"--workdir={work}"]
     analysed = subprocess.run(
         [ghdl, "-a", *options, "--warn-error", *files], cwd=folder, capture_output=True, text=True
     )
     entity = "my_msgs_msg_orders_cdr_8_deserializer"
-    made = subprocess.run(
+    netlist = subprocess.run(
         [ghdl, "--synth", *options, "--out=raw-vhdl", *files, "-e", entity],
         cwd=folder,
         capture_output=True,
         text=True,
     )
-    # Memories are reported, too.
-    notes = re.sub(r"^\S+:note: found RAM .*\n.*\n +\^\n", "", made.stderr, flags=re.MULTILINE)
-    return analysed.stdout + analysed.stderr + notes, made.stdout
+    # GHDL also reports memories; these notes are removed.
+    notes = re.sub(r"^\S+:note: found RAM .*\n.*\n +\^\n", "", netlist.stderr, flags=re.MULTILINE)
+    return analysed.stdout + analysed.stderr + notes, netlist.stdout
 
 
-def test_ghdl_sees_all_that_is_declared(ghdl, folder, tmp_path):
+def test_ghdl_sees_all_declarations(ghdl, folder, tmp_path):
     files = (folder / "vhdl" / "files.txt").read_text().split()
-    complaints, made = said(ghdl, files, folder / "vhdl", tmp_path)
+    complaints, netlist = ghdl_output(ghdl, files, folder / "vhdl", tmp_path)
     assert complaints == ""
     for number in range(len(ORDERS)):
-        assert f"f{number}" in made
+        assert f"f{number}" in netlist
 
 
-def test_comments_as_they_were_act(ghdl, folder, tmp_path):
+def test_unescaped_pragmas_in_vhdl_take_effect(ghdl, folder, tmp_path):
     files = (folder / "vhdl" / "files.txt").read_text().split()
     (tmp_path / "work").mkdir()
     for name in files:
         text = (folder / "vhdl" / name).read_text()
         (tmp_path / name).write_text(re.sub(r"-- # (?=synthesis)", "-- ", text))
-    complaints, _ = said(ghdl, files, tmp_path, tmp_path / "work")
+    complaints, _ = ghdl_output(ghdl, files, tmp_path, tmp_path / "work")
     assert "translate_off" in complaints
 
 
-def linted(verilator: str, folder: Path) -> str:
-    """Give what Verilator and slang say of the structs."""
+def lint_output(verilator: str, folder: Path) -> str:
+    """Return what Verilator and slang print about the structs."""
     list_ = (folder / "systemverilog" / "files.f").read_text().split()
     top = [name for name in list_ if name.endswith("_deserializer_sv.sv")]
     waived = ["../waivers.vlt", "waivers.vlt", "--top-module", top[0].removesuffix(".sv")]
@@ -100,19 +100,19 @@ def linted(verilator: str, folder: Path) -> str:
         check=False,
     )
     orders = ["--translate-off-format", "synthesis,translate_off,translate_on"]
-    said = slang(list_, folder / "systemverilog", "-Wno-case-overlap", *orders)
-    return done.stdout + done.stderr + said
+    ghdl_output = slang(list_, folder / "systemverilog", "-Wno-case-overlap", *orders)
+    return done.stdout + done.stderr + ghdl_output
 
 
-def test_linters_see_all_that_structs_declare(verilator, folder):
-    assert linted(verilator, folder) == ""
+def test_linters_see_all_declarations_of_structs(verilator, folder):
+    assert lint_output(verilator, folder) == ""
 
 
-def test_comments_of_structs_as_they_were_act(verilator, folder, tmp_path):
+def test_unescaped_pragmas_in_structs_take_effect(verilator, folder, tmp_path):
     shutil.copytree(folder, tmp_path / "copy")
     for path in (tmp_path / "copy" / "systemverilog").glob("*_sv_pkg.sv"):
         path.write_text(re.sub(r"// # (?=synthesis)", "// ", path.read_text()))
-    assert "error: " in linted(verilator, tmp_path / "copy")
+    assert "error: " in lint_output(verilator, tmp_path / "copy")
 
 
 WORDS = "synthesis|pragma|synopsys|rtl_synthesis|psl|verilator|vhdl_comp_off|coverage|protect"
@@ -120,14 +120,14 @@ STARTS = re.compile(rf"(?:--|//|/\*|^\s*#)\s*(?:{WORDS})\b", re.MULTILINE)
 QUOTED = re.compile(r"(?:--|//) # .*")
 
 
-def test_no_comment_of_any_file_begins_with_an_order(folder):
+def test_no_comment_of_any_file_begins_with_a_pragma(folder):
     tried = 0
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
         text = path.read_bytes().decode()
         assert not {*text} & {chr(code) for code in range(32)} - {"\n", "\t"}, path
         assert text.isascii() or path.suffix == ".json", path
         if path.suffix == ".json":
-            continue  # It has no comments.
+            continue  # JSON has no comments.
         tried += len(re.findall(WORDS, text))
         assert not STARTS.search(QUOTED.sub("", text)), path
     assert tried > 100

@@ -1,4 +1,4 @@
-"""A folder is current, and stays as it is, if neither its inputs nor its files have changed."""
+"""A folder is current, and is not written, if neither its inputs nor its files have changed."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_other_options_and_definitions_are_built_anew(tmp_path, monkeypatch):
 
 
 class Notes(BackEnd):
-    """A back end that is new."""
+    """A new back end."""
 
     name = "notes"
 

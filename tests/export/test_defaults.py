@@ -1,4 +1,4 @@
-"""What `build` does where nothing is said: into `vhdl_out`, for a bus of 8 bytes."""
+"""Defaults of `build`: the folder `vhdl_out`, and a bus of 8 bytes."""
 
 from __future__ import annotations
 

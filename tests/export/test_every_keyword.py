@@ -1,4 +1,4 @@
-"""Each word that VHDL or SystemVerilog keeps, as a field, a message and a package, in each tool."""
+"""Each keyword of VHDL and SystemVerilog as a field, a message and a package, in each tool."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from tests.depth import THOROUGH
 from tests.export.test_packaging import run
 from tests.frontend.workspace import make_files
 
-# Circuits of that many fields take 20 s.
+# Building circuits with fields for all keywords takes 20 s.
 ALL = THOROUGH
 LANGUAGES = ("2001", "2005", "2005-sv", "2009", "2012")
 SPOT = sorted({*sorted(VHDL)[::60], *sorted(VERILOG)[::60], "buffer", "final"})
 
 
 def definitions(words: Iterable[str]) -> dict[str, str]:
-    """Give messages of ROS 1, which has names in any case and takes more words than ROS 2.
+    """Return ROS 1 definitions, because ROS 1 allows more names than ROS 2, in any case.
 
-    ``all_words/Fields`` has them as fields; ``all_words/Types`` uses messages and packages that are
-    called so. Some are there in several cases.
+    ``all_words/Fields`` has the words as fields; ``all_words/Types`` uses messages and packages of
+    these names. Some words occur in several cases.
     """
     files, types = {}, ""
     for number, word in enumerate(words):
@@ -47,7 +47,7 @@ def definitions(words: Iterable[str]) -> dict[str, str]:
     return {**files, "all_words/Fields.msg": fields, "all_words/Types.msg": types}
 
 
-def made(folder: Path, words: Iterable[str]) -> Path:
+def write_packages(folder: Path, words: Iterable[str]) -> Path:
     files = definitions(words)
     for name in {path.split("/")[0] for path in files}:
         files[f"{name}/package.xml"] = (
@@ -61,7 +61,7 @@ def made(folder: Path, words: Iterable[str]) -> Path:
 
 
 def records(folder: Path, name: str, work: Path) -> list[str]:
-    """Write the packages of a message, without its circuits; give their names."""
+    """Write the packages of a message, without its circuits; return their names."""
     message = Library("noetic", [folder]).message(name)
     plan = build_plan(lay_out(message), bus_bytes=8)
     cores = {way: Core(entity=way, names={}) for way in ("deserializer", "serializer")}
@@ -74,24 +74,24 @@ def records(folder: Path, name: str, work: Path) -> list[str]:
 
 @pytest.mark.parametrize("name", ["all_words/Fields", "all_words/Types"])
 def test_records_take_every_word(ghdl, tmp_path, name):
-    folder = made(tmp_path / "ws", sorted(KEYWORDS))
+    folder = write_packages(tmp_path / "ws", sorted(KEYWORDS))
     files = records(folder, name, tmp_path)
     assert len(files) > (600 if "Types" in name else 2)
     assert run([ghdl, "-a", "--std=08", "--warn-error", *files], tmp_path) == (0, "")
 
 
-def test_word_that_stays_is_refused(ghdl, tmp_path, monkeypatch):
-    folder = made(tmp_path / "ws", ["buffer"])
+def test_keyword_as_a_name_is_refused(ghdl, tmp_path, monkeypatch):
+    folder = write_packages(tmp_path / "ws", ["buffer"])
     monkeypatch.setattr(names, "KEYWORDS", frozenset())
     files = records(folder, "all_words/Fields", tmp_path)
-    status, said = run([ghdl, "-a", "--std=08", *files], tmp_path)
-    assert status != 0 and "buffer" in said
+    status, output = run([ghdl, "-a", "--std=08", *files], tmp_path)
+    assert status != 0 and "buffer" in output
 
 
 def test_every_tool_takes_every_word(ghdl, iverilog, verilator, tmp_path):
     words = sorted(KEYWORDS) if ALL else SPOT
     types = ["all_words/Fields", "all_words/Types"]
-    folder = made(tmp_path / "ws", words)
+    folder = write_packages(tmp_path / "ws", words)
     for built in build(types, tmp_path / "out", library=Library("noetic", [folder])):
         vhdl = built.folder / "vhdl"
         files = [*(vhdl / "files.txt").read_text().split()]

@@ -1,4 +1,4 @@
-"""Folders that are replaced while others look, write there, or kill the build."""
+"""Replacing a folder while others read it or write to it, or while the build is killed."""
 
 from __future__ import annotations
 
@@ -64,8 +64,8 @@ def test_without_an_exchange_the_next_build_puts_everything_back():
     assert found["strikes"] > 30
 
 
-def test_the_killer_finds_what_is_lost(target):
-    # Its twin: a folder as a careless build would leave it.
+def test_the_crash_check_finds_lost_files(target):
+    # Must-fail twin: a folder as a careless build would leave it.
     for name in ("notes", "a.v"):
         (target / name).unlink(missing_ok=True)
     found = [*strikes.problems(target, has_exchange=True)]
@@ -110,13 +110,13 @@ def test_before_each_call_to_the_system_a_reader_sees_a_whole_manifest():
 
 
 def test_a_reader_finds_the_gap_between_two_renames():
-    # Its twin: where folders cannot be exchanged, there is none for a moment.
+    # Must-fail twin: if folders cannot be exchanged, there is no folder for a moment.
     found = strike("fallback", "look")
     assert found["misses"] > 0
 
 
 def test_folders_of_others_are_not_taken_for_leftovers(target):
-    # As another program calls them, or an older build whose process had the number of this one.
+    # Names of another program, or of an older build with the same process id.
     for name in (f".type.{os.getpid()}.new", f".type.{os.getpid()}.old", ".type.old", "type.new"):
         (target.parent / name).mkdir()
         (target.parent / name / "thesis.tex").write_text("ten years")
@@ -136,7 +136,7 @@ def test_users_files_are_the_same_files_after_a_build(target):
     assert kept.read_text() == "1\n2\n"
 
 
-def test_what_is_written_to_the_old_folder_meanwhile_is_moved(target, monkeypatch):
+def test_files_written_to_the_old_folder_meanwhile_are_moved(target, monkeypatch):
     original = module._swap
 
     def swap(folder: Path, *rest: object) -> None:
@@ -154,7 +154,7 @@ def test_what_is_written_to_the_old_folder_meanwhile_is_moved(target, monkeypatc
     assert sorted(path.name for path in target.parent.iterdir()) == ["type"]
 
 
-def test_what_gets_another_name_is_told(target):
+def test_renamed_files_are_reported(target):
     new = "mine.txt"
     (target / "notes").write_text("mine")
     for number in ("1", "2", "3"):
@@ -163,7 +163,7 @@ def test_what_gets_another_name_is_told(target):
         assert list(renamed) == [new]
         assert (target / renamed[new]).read_text() == number
         assert (target / new).read_text() == NEW[new]
-        # As if another version had not written it.
+        # As if another version had not written the file.
         module.replace(target, with_manifest(OLD))
         assert not (target / new).exists()
     kept = {each.name: each.read_text() for each in target.glob(f"{new}.kept*")}
@@ -172,7 +172,7 @@ def test_what_gets_another_name_is_told(target):
     assert module.replace(target, with_manifest(OLD)) == {}
 
 
-def test_the_command_says_what_got_another_name(monkeypatch, capsys):
+def test_the_command_prints_renamed_files(monkeypatch, capsys):
     def build(
         *arguments: object, report: Callable[[Built], None], **options: object
     ) -> list[Built]:
@@ -192,23 +192,23 @@ def test_the_command_says_what_got_another_name(monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("kind", ["fifo", "link", "dangling", "socket_name", "read_only"])
-def test_odd_things_of_users_stay(target, kind):
-    odd = target / "odd"
+def test_special_files_of_users_stay(target, kind):
+    special = target / "odd"
     if kind == "fifo":
-        os.mkfifo(odd)
+        os.mkfifo(special)
     elif kind == "link":
-        odd.symlink_to(target.parent)
+        special.symlink_to(target.parent)
     elif kind == "dangling":
-        odd.symlink_to("nowhere")
+        special.symlink_to("nowhere")
     elif kind == "read_only":
-        odd.mkdir()
-        (odd / "file").write_text("mine")
-        odd.chmod(0o555)
+        special.mkdir()
+        (special / "file").write_text("mine")
+        special.chmod(0o555)
     else:
-        odd.mkdir()
-    before = odd.lstat().st_mode
+        special.mkdir()
+    before = special.lstat().st_mode
     module.replace(target, with_manifest(NEW))
-    assert odd.lstat().st_mode == before
+    assert special.lstat().st_mode == before
     assert sorted(path.name for path in target.parent.iterdir()) == ["type"]
 
 
@@ -242,7 +242,7 @@ def test_a_manifest_deletes_nothing_outside_of_its_folder(target):
         None,
     ],
 )
-def test_damaged_manifests_are_none(target, text):
+def test_damaged_manifests_are_ignored(target, text):
     (target / "manifest.json").unlink()
     if text is None:
         os.mkfifo(target / "manifest.json")

@@ -1,4 +1,4 @@
-"""What synthesis makes of the text: no latches, no gated clocks, one clock, one kind of reset."""
+"""Synthesis of the output: no latches, no gated clocks, one clock, one kind of reset."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from firm_hdl.export.build import build
 from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
 from tests.tools import need
 
-# Strings and nested sequences; a fixed size and so a record view; arrays in a record view.
+# Strings and nested sequences; a fixed size, so a record view; arrays in a record view.
 TYPES = (
     "sensor_msgs/msg/JointState",
     "geometry_msgs/msg/Twist",
@@ -29,7 +29,7 @@ TYPES = (
 def folders(tmp_path_factory) -> list[Path]:
     out = tmp_path_factory.mktemp("built")
     made = build(TYPES, out)
-    # On a narrow bus, a text is without alignment, and a sequence is not.
+    # On a narrow bus, a string needs no alignment, but a sequence does.
     for bus_bytes in (1, 4):
         options = Options(bus_bytes=bus_bytes)
         made += build(("std_msgs/msg/String", "sensor_msgs/msg/Joy"), out, options=options)
@@ -37,7 +37,7 @@ def folders(tmp_path_factory) -> list[Path]:
 
 
 def synthesized(ghdl: str, folder: Path, work: Path, entity: str) -> str:
-    """Give what GHDL makes of an entity, as VHDL."""
+    """Return the netlist that GHDL synthesizes from an entity, as VHDL."""
     files = (folder / "files.txt").read_text().splitlines()
     options = ["--std=08", f"--workdir={work}"]
     subprocess.run([ghdl, "-a", *options, *files], cwd=folder, check=True)
@@ -47,8 +47,8 @@ def synthesized(ghdl: str, folder: Path, work: Path, entity: str) -> str:
 
 
 def flaws(text: str) -> list[str]:
-    """List what GHDL's result should not have."""
-    # GHDL 2.0 stops at a latch that drives a port; of one that drives a signal, it makes unknowns.
+    """List the flaws in GHDL's netlist."""
+    # GHDL 2.0 stops at a latch that drives a port, and makes X of one that drives a signal.
     latch = "latch" in text.lower() or re.search(r"<= ['\"]X+['\"]; -- \(signal\)", text)
     found = ["latch"] if latch else []
     edges = {edge.strip() for edge in re.findall(r"(?:rising|falling)_edge *\([^)]*\)", text)}
@@ -144,13 +144,13 @@ def test_verilog_linters_find_nothing(folders):
 
 @pytest.mark.usefixtures("verilator")
 def test_each_waiver_is_needed_and_has_its_reason(folders, tmp_path):
-    # Where several lengths are in one bus word, there are one-hot choices among them.
+    # Several lengths in one bus word need one-hot choices.
     wide = build(["sensor_msgs/msg/JointState"], tmp_path, options=Options(bus_bytes=16))
     folders = [*folders, *(each.folder for each in wide)]
     rules = re.findall(r"-rule (\w+)", (folders[0] / "waivers.vlt").read_text())
     assert len(set(rules)) == 4
     for rule in dict.fromkeys(rules):
-        said = ""
+        output = ""
         for folder in folders:
             text = (folder / "waivers.vlt").read_text()
             [block] = [block for block in text.split("\n\n") if f"-rule {rule} " in block]
@@ -162,12 +162,12 @@ def test_each_waiver_is_needed_and_has_its_reason(folders, tmp_path):
                 done = subprocess.run(
                     command, cwd=folder, capture_output=True, text=True, check=False
                 )
-                said += done.stderr
-        assert f"%Warning-{rule}" in said, rule
+                output += done.stderr
+        assert f"%Warning-{rule}" in output, rule
 
 
 def units(folder: Path) -> tuple[set[str], set[str]]:
-    """Give the names of the Verilog modules of a folder, and of the units of its VHDL."""
+    """Return the names of the Verilog modules of a folder, and of its VHDL units."""
     verilog = "".join(path.read_text() for path in sorted(folder.glob("*.v")))
     vhdl = "".join(path.read_text() for path in sorted((folder / "vhdl").glob("*.vhd")))
     return (
@@ -187,7 +187,7 @@ _OF_VERILOG = r"^ *(?:input|output|wire|reg|function)\b(?: signed)?(?: \[\d+:\d+
 
 
 def declared(folder: Path) -> set[str]:
-    """Give what is declared in a folder's texts without an escape."""
+    """Return the names that a folder's texts declare without an escape."""
     found: set[str] = set()
     for path in sorted(folder.rglob("*.v")):
         found.update(re.findall(_OF_VERILOG, path.read_text(), re.M))
@@ -200,8 +200,8 @@ def declared(folder: Path) -> set[str]:
     return {name.lower() for name in found}
 
 
-def test_nothing_is_called_like_a_keyword_of_either_language(folders):
-    # As many as the standards list: IEEE Std 1076-2008, 15.10, and 1800-2017, annex B.
+def test_no_name_is_a_keyword_of_either_language(folders):
+    # Number of keywords in the standards: IEEE Std 1076-2008, 15.10, and 1800-2017, annex B.
     assert len(VERILOG) == 248 and len(VHDL) >= 115
     for folder in folders:
         names = declared(folder)

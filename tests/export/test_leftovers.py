@@ -1,4 +1,4 @@
-"""What a build that was killed has left: what of it goes, what is kept, and under which name."""
+"""Folders left by a killed build: removed files, kept files, and the names of kept files."""
 
 from __future__ import annotations
 
@@ -35,21 +35,21 @@ def names_beside(target):
 
 
 @pytest.mark.parametrize("what", ["old", "new"])
-def test_what_is_a_users_moves_and_what_is_ours_goes(target, what):
+def test_files_of_users_are_moved_and_generated_files_removed(target, what):
     left = leftover(target, {**with_manifest(NEW), "notes": "mine", "deep/er/x": "y"}, what)
     module.clear_up(target)
     assert not left.exists() and names_beside(target) == ["type"]
     assert texts(target) == {**with_manifest(OLD), "notes": "mine", "deep/er/x": "y"}
 
 
-def test_nothing_that_is_there_is_replaced_or_written_twice(target):
+def test_no_existing_file_is_replaced_or_written_twice(target):
     (target / "same").write_text("same")
     (target / "other").write_text("here")
     (target / "renamed.kept").write_text("copied")
     (target / "renamed").write_text("ours")
     (target / "linked").write_text("linked")
     left = leftover(target, {**with_manifest(OLD), "same": "same", "other": "there"})
-    # Under the user's new name it is there already, or under its own.
+    # The file exists already, under its new name or under its own.
     (left / "renamed.kept").write_text("copied")
     os.link(target / "linked", left / "elsewhere")
     module.clear_up(target)
@@ -65,8 +65,8 @@ def test_nothing_that_is_there_is_replaced_or_written_twice(target):
     }
 
 
-def test_what_was_written_while_a_folder_was_replaced_is_told(target, monkeypatch):
-    """An editor writes a file anew and gives it the old one's name, when that is already kept."""
+def test_files_written_while_a_folder_was_replaced_are_reported(target, monkeypatch):
+    """An editor replaces a file of which a copy is already kept."""
     (target / "notes").write_text("first")
     swap = module._swap
 
@@ -85,7 +85,7 @@ def test_what_was_written_while_a_folder_was_replaced_is_told(target, monkeypatc
 
 
 def test_a_copy_without_a_link_is_kept_once(target):
-    # Where there are no hard links, a copy stands under its name, or with an ending.
+    # Without hard links, a copy has the name of the file, or the name with a suffix.
     (target / "a").write_text("text")
     left = leftover(target, {**with_manifest(OLD), "a.kept": "text", "b.kept": "text"})
     (target / "b").write_text("another")
@@ -123,7 +123,7 @@ def test_links_are_the_same_where_they_lead_to_the_same(target):
     assert found["kind"].is_symlink() and found["kind.kept"].read_text() == "x"
 
 
-def test_a_folder_without_a_manifest_is_all_a_users(target):
+def test_a_folder_without_a_manifest_belongs_to_the_user(target):
     left = leftover(target, {"a.v": "mine", "gone.txt": "old gone.txt\n"})
     module.clear_up(target)
     assert not left.exists()
@@ -153,7 +153,7 @@ def test_no_other_leftover_is_put_in_its_place(tmp_path, files, what):
     left = leftover(target, files, what)
     module.clear_up(target)
     assert not target.exists()
-    # What is a user's stays where it is, for there is no place to move it to.
+    # Files of users stay in place, because there is no folder to move them to.
     assert left.exists() == ("notes" in files)
 
 
@@ -166,7 +166,7 @@ def test_leftovers_of_other_folders_are_let_alone(target):
     assert left.is_dir() and odd.is_dir() and (target.parent / "thing.old").is_dir()
 
 
-def test_what_is_read_only_goes_as_well(target):
+def test_read_only_files_are_removed(target):
     left = leftover(target, {**with_manifest(NEW), "deep/mine": "x"})
     (left / "vhdl").chmod(0o500)
     (left / "deep").chmod(0o500)
@@ -192,7 +192,7 @@ def test_folders_of_users_keep_their_rights_and_times(target):
     assert (target / "a.v").stat().st_mode & 0o111 == 0
 
 
-def test_what_is_a_users_makes_room_for_new_files_and_folders(target):
+def test_files_of_users_make_room_for_new_files_and_folders(target):
     (target / "vhdl" / "c.sh").mkdir()
     (target / "vhdl" / "c.sh" / "x").write_text("in a folder")
     (target / "mine.txt").write_text("a file")

@@ -1,4 +1,4 @@
-"""What a manifest says, where two things have one name or one of them is easily forgotten."""
+"""Entries of the manifest: all of them, also for definitions with equal names."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from firm_hdl.wire import lay_out
 from tests.frontend.workspace import library
 
 TEXTS = {
-    # Every level has a field `x` and a field `item`, and each says something else.
+    # Every level has a field `x` and a field `item`, each with its own comment.
     "p/T": "\n# of T.x\nint8 x  # [m]\n\n# of T.a\nPart a\n# of T.b\nq/Part[] b\n# of T.item\n"
     "string[] item  # [s]\nfloat32[2] list  # [kg]\nint8 plain\n",
     "p/Part": "\n# of p.x\nint16 x  # [mm]\nfloat32 item  # [A]\nInner[2] inner\n",
@@ -90,7 +90,7 @@ def test_leaves_and_ports_are_those_of_the_plan(tmp_path, bus_bytes):
         assert converter["verilog"] == f"{converter['module']}.v"
         ports = converter["ports"]
         assert [p["name"] for p in ports] == [p.name for p in ports_of(plan, direction)]
-        # As an AXI stream, or as what the leaf's name begins with.
+        # The port is an AXI stream, or its name begins with the name of the leaf.
         for port in ports:
             if "leaf" not in port:
                 assert port["name"].startswith(("aclk", "aresetn", "s_axis_", "m_axis_"))
@@ -145,7 +145,7 @@ def test_digests_are_those_of_the_texts(tmp_path):
     assert made["status"] == {status.name: status.value for status in Status}
 
 
-def test_inputs_tell_what_was_asked_for(tmp_path):
+def test_inputs_list_the_requested_options(tmp_path):
     message = library(tmp_path, TEXTS).message("p/T")
     plan = build_plan(lay_out(message), bus_bytes=8)
 
@@ -185,7 +185,7 @@ def test_costs_are_those_of_packets(name, bus_bytes):
     assert cost["cycles"] == max(cost["beats"], steps)
     assert encode(plan, {k: iter(v) for k, v in decode(plan, packet).streams.items()})[0] == packet
     for rate, bits in LINE_RATES.items():
-        # So many packets a second, and so many cycles for each.
+        # Packets per second, and cycles per packet.
         assert cost["clock_mhz"][rate] == pytest.approx(
             bits / (8 * size) * cost["cycles"] / 1e6, abs=1e-3
         )
@@ -205,6 +205,6 @@ def test_shortest_and_hardest_packets_are_those_of_the_plan():
     # Header, stamp, frame_id without letters, no status: 4 + 8 + 4 + 1, padding, 4.
     shortest, hardest = figures["shortest_packet"], figures["hardest_packet_tried"]
     assert (shortest["bytes"], shortest["beats"]) == (24, 3)
-    # Short strings of many elements: more bytes, and more cycles for each of them.
+    # Many short strings: more bytes, and more cycles per byte.
     assert hardest["bytes"] > shortest["bytes"]
     assert hardest["cycles"] * shortest["bytes"] > shortest["cycles"] * hardest["bytes"]

@@ -1,4 +1,4 @@
-"""What tools are told of a folder's VHDL: that they accept it, and run the benches with it."""
+"""Scripts and core files for a folder's VHDL: tools accept them, and run the benches."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def manifest_of(folder: Path) -> dict[str, Any]:
     return found
 
 
-def copied(folder: Path, to: Path) -> Path:
+def copy_folder(folder: Path, to: Path) -> Path:
     shutil.copytree(folder.parent, to / folder.parent.name)
     return to / folder.parent.name / "vhdl"
 
@@ -46,8 +46,8 @@ def run(command: list[str], folder: Path) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
-def spoil(folder: Path) -> None:
-    """Let the bench expect another byte than that which it sends."""
+def make_bench_fail(folder: Path) -> None:
+    """Change the bench, so that it expects another byte than it sends."""
     script = folder / "firm_hdl_axis_sink.vhd"
     text = script.read_text()
     assert "assert got = byte_at" in text
@@ -77,12 +77,12 @@ def test_lists_compile_in_their_order(ghdl, folders, tmp_path):
         assert run(command, folder)[0] != 0
 
 
-def test_what_types_share_is_one_text(folders):
+def test_shared_files_have_one_text(folders):
     for name in ("firm_hdl_common.core", "firm_hdl_bench.core", "firm_hdl_pkg.vhd"):
         assert len({(folder / name).read_text() for folder in folders}) == 1
 
 
-# What the scripts use of Vivado; a project knows the files that it has.
+# The Vivado commands that the scripts use; a project knows its files.
 STUBS = """\
 set project {}
 proc read_vhdl {args} { puts "read_vhdl $args"; lappend ::project [lindex $args end] }
@@ -97,9 +97,9 @@ def test_vivado_reads_everything_once_and_in_order(folders, tmp_path):
     tclsh = need("tclsh", shutil.which("tclsh"))
     (tmp_path / "stubs.tcl").write_text(STUBS)
     scripts = [str(folder / "vivado.tcl") for folder in folders]
-    # A second project of the session has everything once more.
-    status, said = run([tclsh, "stubs.tcl", *scripts, "new_project", *scripts], tmp_path)
-    assert status == 0, said
+    # A second project of the session gets all files again.
+    status, output = run([tclsh, "stubs.tcl", *scripts, "new_project", *scripts], tmp_path)
+    assert status == 0, output
     want = []
     for folder in folders:
         manifest = manifest_of(folder)["vhdl"]
@@ -108,7 +108,7 @@ def test_vivado_reads_everything_once_and_in_order(folders, tmp_path):
             for name in manifest["files"]
             if not any(line.endswith(f"/{name}") for line in want)
         ]
-    assert said.splitlines() == want * 2
+    assert output.splitlines() == want * 2
     assert not [line for line in want if "_tb" in line or "axis_s" in line]
 
 
@@ -118,34 +118,34 @@ NASTY = "a \"b\" $c `d` 'e' \\f #g ;h %i [j] (k) & {l} *"
 def test_scripts_run_in_a_folder_of_any_name(ghdl, folders, tmp_path):
     make = need("make", shutil.which("make"))
     (tmp_path / NASTY).mkdir()
-    folder = copied(folders[0], tmp_path / NASTY)
-    status, said = run([make, f"GHDL={ghdl}"], folder)
-    assert status == 0, said
-    assert said.count("PASS geometry_msgs/msg/Vector3") == 2
-    status, said = run([make, "lint"], folder)
-    assert (status, said.count("warning")) == (0, 0), said
-    # From elsewhere, with a folder of the user's own for what GHDL writes.
+    folder = copy_folder(folders[0], tmp_path / NASTY)
+    status, output = run([make, f"GHDL={ghdl}"], folder)
+    assert status == 0, output
+    assert output.count("PASS geometry_msgs/msg/Vector3") == 2
+    status, output = run([make, "lint"], folder)
+    assert (status, output.count("warning")) == (0, 0), output
+    # Run from another folder, with a work folder of the user's own.
     script = [str(folder / "run_ghdl.sh"), "-gstalls=0"]
     work = str(tmp_path / NASTY / "work")
-    status, said = run(["env", f"WORK={work}", f"GHDL={ghdl}", *script], tmp_path)
-    assert status == 0, said
-    assert said.count("PASS geometry_msgs/msg/Vector3") == 1
-    # Once more, as the link is there already.
+    status, output = run(["env", f"WORK={work}", f"GHDL={ghdl}", *script], tmp_path)
+    assert status == 0, output
+    assert output.count("PASS geometry_msgs/msg/Vector3") == 1
+    # Run again, now that the link exists.
     assert run(["env", f"WORK={work}", f"GHDL={ghdl}", *script], tmp_path)[0] == 0
 
 
 def test_make_runs_all_benches(ghdl, folders, tmp_path):
     make = need("make", shutil.which("make"))
-    folder = copied(folders[0], tmp_path)
-    status, said = run([make, "SEED=3", "STALLS=0", f"GHDL={ghdl}"], folder)
-    assert status == 0, said
-    assert said.count("PASS geometry_msgs/msg/Vector3") == 2
-    status, said = run([make, "lint", f"GHDL={ghdl}"], folder)
-    assert (status, said.count("warning")) == (0, 0), said
-    spoil(folder)
-    status, said = run([make, f"GHDL={ghdl}"], folder)
+    folder = copy_folder(folders[0], tmp_path)
+    status, output = run([make, "SEED=3", "STALLS=0", f"GHDL={ghdl}"], folder)
+    assert status == 0, output
+    assert output.count("PASS geometry_msgs/msg/Vector3") == 2
+    status, output = run([make, "lint", f"GHDL={ghdl}"], folder)
+    assert (status, output.count("warning")) == (0, 0), output
+    make_bench_fail(folder)
+    status, output = run([make, f"GHDL={ghdl}"], folder)
     assert status != 0
-    assert "FAIL packet 0" in said and "PASS" not in said
+    assert "FAIL packet 0" in output and "PASS" not in output
     assert run([make, "clean"], folder)[0] == 0
     assert not (folder / "work").exists()
 
@@ -158,24 +158,24 @@ def fusesoc() -> list[str]:
 @pytest.mark.usefixtures("ghdl")
 def test_fusesoc_runs_the_benches(folders, tmp_path):
     command = fusesoc()
-    folder = copied(folders[0], tmp_path)
-    status, said = run([*command, "core", "list"], tmp_path)
-    assert status == 0, said
+    folder = copy_folder(folders[0], tmp_path)
+    status, output = run([*command, "core", "list"], tmp_path)
+    assert status == 0, output
     cores = ["lyrical:" + VECTOR, "vhdl:common", "vhdl:bench"]
-    assert [said.count(f"firm-hdl:{name}:") for name in cores] == [1, 1, 1]
+    assert [output.count(f"firm-hdl:{name}:") for name in cores] == [1, 1, 1]
     core = f"firm-hdl:lyrical:{VECTOR}"
     for target, options, what in (
         ("sim", [], "geometry_msgs/msg/Vector3, cdr"),
         ("sim_record", ["--seed=4", "--stalls=0"], "geometry_msgs/msg/Vector3 record, cdr"),
     ):
-        status, said = run([*command, "run", f"--target={target}", core, *options], tmp_path)
-        assert status == 0, said
-        assert said.count(f"PASS {what}") == 1
-    assert "-gseed=4 -gstalls=0" in said
-    spoil(folder)
-    status, said = run([*command, "run", "--target=sim", core], tmp_path)
+        status, output = run([*command, "run", f"--target={target}", core, *options], tmp_path)
+        assert status == 0, output
+        assert output.count(f"PASS {what}") == 1
+    assert "-gseed=4 -gstalls=0" in output
+    make_bench_fail(folder)
+    status, output = run([*command, "run", "--target=sim", core], tmp_path)
     assert status != 0
-    assert "FAIL packet 0" in said and "PASS" not in said
+    assert "FAIL packet 0" in output and "PASS" not in output
 
 
 USERS_CORE = f"""\
@@ -222,29 +222,29 @@ end architecture;
 def test_fusesoc_takes_several_types_in_one_design(folders, tmp_path):
     command = fusesoc()
     for folder in folders:
-        copied(folder, tmp_path)
+        copy_folder(folder, tmp_path)
     (tmp_path / "design.core").write_text(USERS_CORE)
     (tmp_path / "design.vhd").write_text(USERS_DESIGN)
-    status, said = run([*command, "run", "--target=sim", "me:my:design"], tmp_path)
-    assert status == 0, said
-    assert "BOTH 00" in said
-    # What they share is there once.
-    imported = next(line for line in said.splitlines() if "ghdl -i" in line)
+    status, output = run([*command, "run", "--target=sim", "me:my:design"], tmp_path)
+    assert status == 0, output
+    assert "BOTH 00" in output
+    # Shared files are listed once.
+    imported = next(line for line in output.splitlines() if "ghdl -i" in line)
     assert imported.count("firm_hdl_pkg.vhd") == imported.count("firm_hdl_types_pkg.vhd") == 1
 
 
 @pytest.mark.usefixtures("ghdl")
 def test_vunit_runs_the_benches(folders, tmp_path):
     need("VUnit", "here" if find_spec("vunit") else None)
-    folder = copied(folders[0], tmp_path)
+    folder = copy_folder(folders[0], tmp_path)
     command = [sys.executable, "vunit_run.py", "--no-color", "-o", str(tmp_path / "vunit_out")]
-    status, said = run(command, folder)
-    assert status == 0, said
-    assert "pass 4 of 4" in said
-    spoil(folder)
-    status, said = run(command, folder)
+    status, output = run(command, folder)
+    assert status == 0, output
+    assert "pass 4 of 4" in output
+    make_bench_fail(folder)
+    status, output = run(command, folder)
     assert status != 0
-    assert "fail 4 of 4" in said
+    assert "fail 4 of 4" in output
 
 
 def test_without_packets_nothing_runs_them(tmp_path):

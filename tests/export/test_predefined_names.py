@@ -1,7 +1,7 @@
 # amaranth: UnusedElaboratable=no
-"""Constants may be called as VHDL's own packages call something; nobody is confused by them.
+"""Constants may have names that VHDL's own packages declare, without a conflict.
 
-What these packages declare is read from GHDL's sources of them.
+The names are read from GHDL's sources of these packages.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from tests.frontend.workspace import library
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL
 
-# Packages of the benches; the first three are those that nearly every design uses.
+# Packages that benches use; nearly every design uses the first three.
 PACKAGES = {
     "std.standard": "std/v08/standard.vhdl",
     "ieee.std_logic_1164": "ieee2008/std_logic_1164.vhdl",
@@ -34,18 +34,18 @@ PACKAGES = {
     "ieee.math_real": "ieee2008/math_real.vhdl",
 }
 COMMON = list(PACKAGES)[:3]
-# What comes with a type without being written down (IEEE Std 1076-2008, 5.2.6, 5.4.2 and 5.5.2).
+# Subprograms that a type declares implicitly (IEEE Std 1076-2008, 5.2.6, 5.4.2 and 5.5.2).
 IMPLICIT = {"minimum", "maximum", "to_string"}
-# GHDL writes down two types that no text can name (5.2.3.1).
+# GHDL declares two types that no text can name (5.2.3.1).
 ANONYMOUS = {"universal_integer", "universal_real"}
 OF_FILES = {"file_open", "file_close", "endfile", "flush", "deallocate"}
 
 
 def declared(text: str) -> set[str]:
     """List what a package declares, in lower case."""
-    # Character literals are no names, and have brackets and semicolons.
+    # Character literals are not names, and contain brackets and semicolons.
     text = re.sub(r"'.'", "0", re.sub(r"--.*", "", text))
-    # Nor are parameters of subprograms.
+    # Parameters of subprograms are not names of the package.
     text = re.sub(r"\b(function|procedure)\s+(\w+)\s*\([^)]*\)", r"\1 \2", text, flags=re.I)
     kinds = "function|procedure|type|subtype|constant|file|alias|attribute"
     found = set(re.findall(rf"^\s*(?:{kinds})\s+([a-z]\w*)", text, re.I | re.M))
@@ -58,10 +58,10 @@ def declared(text: str) -> set[str]:
 
 @pytest.fixture(scope="module")
 def names() -> dict[str, set[str]]:
-    """What each package declares."""
+    """The names that each package declares."""
     ghdl = need("GHDL", GHDL)
-    said = subprocess.run([ghdl, "--disp-config"], capture_output=True, text=True, check=True)
-    (prefix,) = re.findall(r"^library prefix: (.*)$", said.stdout, re.MULTILINE)
+    output = subprocess.run([ghdl, "--disp-config"], capture_output=True, text=True, check=True)
+    (prefix,) = re.findall(r"^library prefix: (.*)$", output.stdout, re.MULTILINE)
     sources = Path(prefix).parent / "src"
     need("GHDL's source of its packages", "here" if sources.is_dir() else None)
     found = {
@@ -125,48 +125,48 @@ def with_bench(message, ports: str):
 
 
 @pytest.fixture(scope="module")
-def made(message):
-    """Its converters with records, and their benches."""
+def vhdl(message):
+    """The message's converters with records, and their benches."""
     return with_bench(message, "records")
 
 
-def test_constants_of_every_name_are_read_in_a_users_design(ghdl, names, message, made, tmp_path):
+def test_constants_of_every_name_are_read_in_a_users_design(ghdl, names, message, vhdl, tmp_path):
     found = named_constants(message, ())
     common = set().union(*(names[package] for package in COMMON)) | USED
     for each in found:
         name = each.constant.name
-        # A keyword of one of the languages, such as `input`, is another matter.
+        # Keywords of one of the languages, such as `input`, have a suffix of their own.
         end = "_CONSTANT" if name.lower() in common else "_field" * (name.lower() in KEYWORDS)
         assert each.name == name + end
     tests = "".join(
         f"    assert {each.name} = {each.constant.value} severity failure;\n" for each in found
     )
-    write(tmp_path, {**made.files, "design.vhd": DESIGN.format(tests=tests, count=len(found))})
-    analyse(ghdl, tmp_path, [*made.manifest["files"], "design.vhd"])
-    said = subprocess.run(
+    write(tmp_path, {**vhdl.files, "design.vhd": DESIGN.format(tests=tests, count=len(found))})
+    analyse(ghdl, tmp_path, [*vhdl.manifest["files"], "design.vhd"])
+    output = subprocess.run(
         [ghdl, "--elab-run", "--std=08", "design", "--ieee-asserts=disable-at-0"],
         cwd=tmp_path, capture_output=True, text=True, timeout=300, check=True,
     )  # fmt: skip
-    assert f"all {len(found)} are right" in said.stdout + said.stderr
+    assert f"all {len(found)} are right" in output.stdout + output.stderr
 
 
 @pytest.mark.parametrize("ports", ["records", "flat"])
-def test_benches_run_with_constants_of_every_name(ghdl, message, made, tmp_path, ports):
+def test_benches_run_with_constants_of_every_name(ghdl, message, vhdl, tmp_path, ports):
     if ports == "flat":
-        made = with_bench(message, "flat")
-    write(tmp_path / "vhdl", made.files)
-    benches = [name for name in made.manifest["bench"]["files"] if name.endswith("_tb.vhd")]
+        vhdl = with_bench(message, "flat")
+    write(tmp_path / "vhdl", vhdl.files)
+    benches = [name for name in vhdl.manifest["bench"]["files"] if name.endswith("_tb.vhd")]
     assert len(benches) == (2 if ports == "records" else 1)
     for bench in benches:
-        status, said = run(tmp_path / "vhdl", GHDL=ghdl, BENCH=bench.removesuffix(".vhd"))
-        assert status == 0 and said.startswith("PASS p/msg/T"), said
+        status, output = run(tmp_path / "vhdl", GHDL=ghdl, BENCH=bench.removesuffix(".vhd"))
+        assert status == 0 and output.startswith("PASS p/msg/T"), output
 
 
-def test_bench_that_uses_everything_does_not_compile(ghdl, made, tmp_path):
-    write(tmp_path, made.files)
-    (bench,) = [name for name in made.files if name.endswith("t_cdr_8_tb.vhd")]
-    text, count = re.subn(r"(?<=_t_cdr_8_pkg);", ".all;", made.files[bench])
+def test_bench_that_uses_everything_does_not_compile(ghdl, vhdl, tmp_path):
+    write(tmp_path, vhdl.files)
+    (bench,) = [name for name in vhdl.files if name.endswith("t_cdr_8_tb.vhd")]
+    text, count = re.subn(r"(?<=_t_cdr_8_pkg);", ".all;", vhdl.files[bench])
     assert count == 1
     (tmp_path / bench).write_text(text)
     with pytest.raises(AssertionError, match="p_msg_t_"):
-        analyse(ghdl, tmp_path, [*made.manifest["files"], *made.manifest["bench"]["files"]])
+        analyse(ghdl, tmp_path, [*vhdl.manifest["files"], *vhdl.manifest["bench"]["files"]])

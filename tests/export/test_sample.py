@@ -1,4 +1,4 @@
-"""The committed sample of output is what is built now."""
+"""The committed sample equals the output of a build now."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ AGAIN = "firm-hdl build --force geometry_msgs/msg/Twist"
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    """Return the files of a folder, without what running the bench leaves there."""
+    """Return the files of a folder, without those that running the bench leaves."""
     found = {path.relative_to(folder): path for path in folder.rglob("*") if path.is_file()}
     return {
         name.as_posix(): path.read_bytes()
@@ -26,13 +26,13 @@ def files(folder: Path) -> dict[str, bytes]:
 
 
 def generator(manifest: bytes) -> dict[str, str]:
-    """Return what a folder was made with."""
+    """Return the versions with which a folder was built."""
     found: dict[str, str] = json.loads(manifest)["inputs"]["generator"]
     return found
 
 
 def need_same(here: dict[str, str], kept: dict[str, str]) -> None:
-    """Skip the test if the sample was made by another version of something; in CI, fail it."""
+    """Skip the test if the sample was built with other versions of the tools; in CI, fail it."""
     if here != kept:
         message = f"made with {kept}, and here is {here}; run: {AGAIN}"
         if os.environ.get("CI"):

@@ -1,4 +1,4 @@
-"""The packages of primitives are files; they declare what Python calls statuses and primitives."""
+"""The packages of primitives are files, and declare the same statuses and primitives as Python."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ STATUSES = {f"STATUS_{status.name}": status.value for status in Status}
 
 
 def wrong_in_vhdl(text: str) -> Iterator[str]:
-    """Yield what the VHDL package declares in another way than Python."""
+    """Yield the declarations of the VHDL package that differ from Python."""
     constants = re.findall(r'constant (STATUS_\w+) +: .* := x"(..)";', text)
     if {name: int(digits, 16) for name, digits in constants} != STATUSES:
         yield "statuses"
@@ -33,7 +33,7 @@ def wrong_in_vhdl(text: str) -> Iterator[str]:
 
 
 def wrong_in_systemverilog(text: str) -> Iterator[str]:
-    """Yield what the SystemVerilog package declares in another way than Python."""
+    """Yield the declarations of the SystemVerilog package that differ from Python."""
     constants = re.findall(r"(STATUS_\w+) += 8'h(..)", text)
     if {name: int(digits, 16) for name, digits in constants} != STATUSES:
         yield "statuses"

@@ -19,7 +19,7 @@ from firm_hdl.wire import lay_out
 
 
 class Loopback(Elaboratable):
-    """A deserializer's top wired to a serializer's, port by port, as a VHDL user would do it."""
+    """A deserializer and a serializer whose top levels are connected port by port, as in VHDL."""
 
     def __init__(self, rx: Top, tx: Top):
         self.rx, self.tx = rx, tx
@@ -45,21 +45,21 @@ class Loopback(Elaboratable):
 def noisy_beats(
     packet: bytes, bus_bytes: int, noise: random.Random
 ) -> Iterator[tuple[int, int, bool]]:
-    """Yield data, keep and last of beats, with noise in all that does not count."""
+    """Yield data, keep and last of beats, with noise in all bits that do not count."""
     for at in range(0, max(1, len(packet)), bus_bytes):
         part = packet[at : at + bus_bytes]
         last = at + bus_bytes >= len(packet)
         data = int.from_bytes(part + noise.randbytes(bus_bytes - len(part)), "little")
         keep = noise.getrandbits(bus_bytes)
         if last:
-            # The first zero ends it; after that, ones are no bytes.
+            # The first 0 of `tkeep` ends the beat; any 1 after it does not count.
             ones = (1 << len(part)) - 1
             keep = ones | keep & ~(2 * ones + 1)
         yield data, keep, last
 
 
 def axi_loopback(type_: str, packets: list[bytes], *, distro: str, bus_bytes: int) -> list[Any]:
-    """Send packets over AXI; return those that come out, checking tkeep on the way."""
+    """Send packets over AXI, check `tkeep`, and return the output packets."""
     message = load_message(type_, distro=distro)
     rx = Top(Deserializer(message, bus_bytes=bus_bytes))
     tx = Top(Serializer(message, bus_bytes=bus_bytes))
@@ -136,7 +136,7 @@ def test_tuser_marks_the_last_beat_of_a_packet_that_is_to_be_dropped(bus_bytes):
     async def run(ctx: Any) -> None:
         ctx.set(top.m_axis_tready, 1)
         ctx.set(top.m_axis_status_tready, 1)
-        # The end of the second message's text does not come.
+        # The second message's string is not complete.
         for last in (1, 0, 1):
             for port, payload in (("length", {"data": 1}), ("items", {"data": 0x61, "last": last})):
                 for name, value in payload.items():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tools.mutation.grammar_rules import changes, is_fault
+from tools.mutation.rules.grammar_rules import changes, is_fault
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tools.mutation.python_rules import changes, is_fault, same_code
+from tools.mutation.rules.python_rules import changes, is_fault, same_code
 
 
 def faults(text):

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from tools.mutation.coverage_map import SHARED, CoverageMap, Part, Test
-from tools.mutation.grammar_rules import changes as grammar_changes
+from tools.mutation.map.coverage_map import SHARED, CoverageMap, Part, Test
+from tools.mutation.map.selection import BATCH_SECONDS, batches, changed_lines, judges
 from tools.mutation.mutants import Change, identify
-from tools.mutation.selection import BATCH_SECONDS, batches, changed_lines, judges
+from tools.mutation.rules.grammar_rules import changes as grammar_changes
 from tools.mutation.systems import REST, SYSTEMS, mirrors, system_of, test_files
 
 ROOT = Path(__file__).parents[2]
@@ -145,7 +145,8 @@ def test_every_test_file_is_of_one_system_or_of_the_rest():
     assert not any(name.startswith("tests/mutation") for name in names)
     assert system_of("tests/frontend/idl/test_read.py::test_it[1]") == "ts1"
     assert system_of("tests/export/vhdl/test_bench.py") == "ghdl"
-    assert system_of("tests/test_cli.py") == "rest"
+    assert system_of("tests/cli/test_cli.py") == "rest"
     assert test_files(ROOT, ["tests/wire"]) == [name for name in names if "tests/wire/" in name]
     assert mirrors("tests/frontend/idl/test_parse.py", "firm_hdl/frontend/idl/idl.lark")
     assert not mirrors("tests/frontend/test_parse.py", "firm_hdl/frontend/idl/idl.lark")
+    assert mirrors("tests/frontend/hostile/test_expansion.py", "firm_hdl/frontend/expansion.py")

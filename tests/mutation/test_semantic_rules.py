@@ -6,9 +6,9 @@ import textwrap
 
 import pytest
 
-from tools.mutation.index import index_of
-from tools.mutation.python_rules import is_fault
-from tools.mutation.semantic_rules import changes
+from tools.mutation.rules.index import index_of
+from tools.mutation.rules.python_rules import is_fault
+from tools.mutation.rules.semantic_rules import changes
 
 
 def faults(text, rule, index=None):

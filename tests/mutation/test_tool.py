@@ -10,11 +10,11 @@ import pytest
 
 from tools.mutation.__main__ import main
 from tools.mutation.explained import Explanation, explain, read_explanations
-from tools.mutation.map_store import moved
+from tools.mutation.map.store import moved
 from tools.mutation.mutants import identify
-from tools.mutation.python_rules import changes
 from tools.mutation.report import markdown
 from tools.mutation.results import Record, append, read
+from tools.mutation.rules.python_rules import changes
 from tools.mutation.targets import TARGETS, all_mutants, files, sample
 from tools.mutation.workshop import Run
 

@@ -1,4 +1,4 @@
-"""What tests of verification need from outside."""
+"""Fixtures for tests of verification: external programs, libraries and message types."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.tools import need
 
 @pytest.fixture
 def ghdl() -> str:
-    """GHDL's path."""
+    """The path of GHDL."""
     try:
         return find_ghdl()
     except ProgramMissingError:
@@ -24,7 +24,7 @@ def ghdl() -> str:
 
 @pytest.fixture
 def of_verilog(request: pytest.FixtureRequest) -> TextSimulator:
-    """A simulator of Verilog, by the name that is the parameter."""
+    """A Verilog simulator, named by the parameter."""
     found = None
     try:
         found = simulator(request.param)
@@ -36,7 +36,7 @@ def of_verilog(request: pytest.FixtureRequest) -> TextSimulator:
 
 @pytest.fixture
 def library_here():
-    """Give a client library. Where it is not installed, skip the test; in CI, fail it."""
+    """A function that returns a client library; skip the test if it is missing, or fail in CI."""
 
     def get(name):
         found = client(name)
@@ -49,7 +49,7 @@ def library_here():
 
 @pytest.fixture
 def make_message(tmp_path):
-    """Make a message type of a text; texts of others may follow, by name."""
+    """A function that makes a message type from its text, and texts of other types by name."""
     numbers = count()
 
     def make(text, distro="lyrical", **others):

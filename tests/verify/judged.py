@@ -1,4 +1,4 @@
-"""What tests say of verdicts: only what somebody judged and found right is a pass."""
+"""Assertions about verdicts: a pass needs a judge that found the result correct."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ __all__ = ["NAN_KEY", "TIME_KEY", "assert_known", "assert_passed", "without_time
 
 
 NAN_KEY = "python-signalling-nan"
-"""Of what Python floats make of some NaN, in libraries that confirm packets."""
+"""Key for NaN values that Python floats change, in libraries that confirm packets."""
 TIME_KEY = "rosbags-time-signs"
-"""Of seconds of ROS 1 that rosbags takes for signed, and genpy does not."""
+"""Key for ROS 1 seconds, which rosbags reads as signed, and genpy as unsigned."""
 
 
 def assert_passed(result, known=()):
-    """Assert that a verdict, or that of a result, is a pass; return how many cases were judged.
+    """Assert that a verdict, or that of a result, is a pass; return the number of judged cases.
 
-    `known` are keys of differences between libraries, all of which there must be, and no others.
+    `known` has the keys of the expected differences between libraries; there must be no others.
     """
     verdict = getattr(result, "verdict", result)
     assert isinstance(verdict, KnownDifference if known else Passed), verdict
@@ -28,7 +28,7 @@ def assert_passed(result, known=()):
 
 
 def assert_known(result, *keys):
-    """Assert that a verdict, or that of a result, is a known difference of these keys alone."""
+    """Assert that a verdict, or that of a result, is a known difference with these keys only."""
     verdict = getattr(result, "verdict", result)
     assert isinstance(verdict, KnownDifference), verdict
     assert verdict.keys == keys

@@ -1,4 +1,4 @@
-"""Recordings as robots make them: several topics of several types, and what writers do to bytes."""
+"""Recordings like those of a robot: several topics and types, and packets of different writers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _WHEEL = "float32 speed\nuint8 state\nfloat64[] history\n"
 
 
 def store_of(form: str) -> Typestore:
-    """Return the types of a kind of file, two of the robot's own among them."""
+    """Return the types for a kind of file, including two of the robot's own."""
     is_bag = form.startswith("bag")
     store = get_typestore(Stores.ROS1_NOETIC if is_bag else Stores.ROS2_JAZZY)
     wheels = _WHEELS.replace("<=8", "") if is_bag else _WHEELS
@@ -47,7 +47,7 @@ def write(path: Path, form: str, messages: Sequence[Any], topics: Sequence[Any] 
         Without the extension.
     messages : sequence of (topic, type, nanoseconds, bytes)
     topics : sequence of (topic, type)
-        Those without messages.
+        Topics without messages.
     """
     store = store_of(form)
     kind, _, compression = form.partition("-")

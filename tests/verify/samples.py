@@ -1,4 +1,4 @@
-"""Types that together have every construct of plans, for tests that take seconds per type."""
+"""A few types that together have every construct of plans, for slow tests."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["OWN", "SAMPLE", "Sample", "own_package"]
 
 Sample = tuple[str, str, int]
 
-# Distribution, type, width of the bus in bytes; and why it is here.
+# Distribution, type, width of the bus in bytes; and the reason for the type.
 SAMPLE: list[Sample] = [
     # Loops over strings and over nothing, padding that depends on the packet, values in two steps.
     ("lyrical", "rcl_interfaces/msg/ParameterValue", 8),
@@ -22,11 +22,11 @@ SAMPLE: list[Sample] = [
     ("noetic", "shape_msgs/Plane", 64),
     # A bound that a length may break.
     ("lyrical", "shape_msgs/msg/SolidPrimitive", 2),
-    # Nothing but the byte of an empty message.
+    # Only the byte of an empty message.
     ("lyrical", "rcl_interfaces/msg/ParameterType", 8),
-    # No bytes at all: a packet that is empty, and a leaf that only triggers.
+    # No bytes at all: an empty packet, and a leaf that is only a trigger.
     ("noetic", "bond/Constants", 8),
-    # That leaf after others.
+    # A trigger leaf after other leaves.
     ("noetic", "nav_msgs/GetMapActionGoal", 8),
     # No alignment: strings in loops start in any lane.
     ("noetic", "sensor_msgs/JointState", 8),
@@ -34,7 +34,7 @@ SAMPLE: list[Sample] = [
     ("noetic", "std_msgs/Header", 1),
 ]
 
-# What no small type of a distribution has: three levels of loops, one run straight after another,
+# Constructs of no small type of a distribution: three levels of loops, one run after another,
 # a bounded sequence of messages, bounds of all kinds, a service.
 OWN = {
     "msg/Deep.msg": "Middle[] items\nuint8 end\n",

@@ -1,4 +1,4 @@
-"""Names that arguments take are those of the things themselves."""
+"""The names that arguments accept are the names of the registered objects."""
 
 from __future__ import annotations
 

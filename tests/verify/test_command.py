@@ -1,4 +1,4 @@
-"""``firm-hdl verify``: what it takes, what it prints, and its exit status."""
+"""``firm-hdl verify``: its arguments, its output, and its exit status."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "output"),
     [
         ([], "name types, or all of them with --all"),
         (["--all", "std_msgs/msg/Bool"], "name types, or all of them with --all"),
@@ -31,18 +31,18 @@ BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool
         (["--all", "--simulator", "abacus"], "invalid choice: 'abacus'"),
     ],
 )
-def test_wrong_calls_are_refused(capsys, arguments, said):
+def test_wrong_calls_are_refused(capsys, arguments, output):
     with pytest.raises(SystemExit) as left:
         main(["verify", *arguments])
     assert left.value.code == 2
-    assert said in capsys.readouterr().err
+    assert output in capsys.readouterr().err
 
 
 def test_type_passes_and_the_cross_check_is_counted(ghdl, capsys):
     assert main(["verify", *BOOL, "--simulator", "ghdl"]) == 0
-    said = capsys.readouterr().out
-    assert "lyrical     1 of    1 types pass (8-byte bus)\n" in said
-    assert "ghdl: 1 of 1 types the same in every cycle; " in said
+    output = capsys.readouterr().out
+    assert "lyrical     1 of    1 types pass (8-byte bus)\n" in output
+    assert "ghdl: 1 of 1 types the same in every cycle; " in output
 
 
 @pytest.mark.parametrize("arguments", [["--simulator", "ghdl"], ["--systems", "bench"]])
@@ -50,9 +50,9 @@ def test_missing_ghdl_is_an_error_without_a_traceback(capsys, monkeypatch, tmp_p
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("GHDL", raising=False)
     assert main(["verify", *BOOL, *arguments]) == 1
-    said = capsys.readouterr()
-    assert said.err == "error: GHDL is not installed (Debian, Ubuntu: apt install ghdl-mcode)\n"
-    assert said.out == ""
+    output = capsys.readouterr()
+    assert output.err == "error: GHDL is not installed (Debian, Ubuntu: apt install ghdl-mcode)\n"
+    assert output.out == ""
 
 
 def test_unknown_types_and_folders_are_errors(capsys, tmp_path):
@@ -70,12 +70,12 @@ def test_all_with_a_folder_is_all_in_the_folder(capsys, tmp_path, monkeypatch):
     (tmp_path / "own_msgs" / "msg" / "Wide.msg").write_text("wstring text\n")
     arguments = ["verify", "--all", "--path", str(tmp_path), "--cases", "1", "--jobs", "1"]
     assert main([*arguments, "--no-stalls", "--no-broken", "--reference", "none"]) == 0
-    said = capsys.readouterr()
+    output = capsys.readouterr()
     wide = "rosbags has no wstring, which own_msgs/msg/Wide.text is"
-    assert f"not judged: own_msgs/msg/Wide (lyrical), ts3, 8-byte bus: {wide}\n" in said.out
-    # Four messages; request, response and event of a service; and one that is not judged.
-    assert "lyrical     7 of    7 types pass (8-byte bus)\n" in said.out
-    assert "\n1 of 8 types not judged\n" in said.out
+    assert f"not judged: own_msgs/msg/Wide (lyrical), ts3, 8-byte bus: {wide}\n" in output.out
+    # Four messages; request, response and event of a service; and one unjudged message.
+    assert "lyrical     7 of    7 types pass (8-byte bus)\n" in output.out
+    assert "\n1 of 8 types not judged\n" in output.out
 
 
 def test_one_wrong_definition_does_not_keep_the_others_of_a_folder(capsys, tmp_path):
@@ -84,10 +84,10 @@ def test_one_wrong_definition_does_not_keep_the_others_of_a_folder(capsys, tmp_p
     (folder / "Good.msg").write_text("int8 a\n")
     (folder / "Bad.msg").write_text("Such a\n")
     assert main(["verify", "--systems", "ts2", "--all", "--path", str(tmp_path)]) == 1
-    said = capsys.readouterr()
-    assert "lyrical     1 of    1 plans are sound" in said.out
-    assert "Bad.msg:1:1: error: type 'Such' is not defined" in said.err
-    # Whoever names it wants to know at once.
+    output = capsys.readouterr()
+    assert "lyrical     1 of    1 plans are sound" in output.out
+    assert "Bad.msg:1:1: error: type 'Such' is not defined" in output.err
+    # If the definition is named explicitly, the error is reported at once.
     assert main(["verify", "--systems", "ts2", "own_msgs/msg/Bad", "--path", str(tmp_path)]) == 1
     assert capsys.readouterr().out == ""
 
@@ -102,7 +102,7 @@ def test_the_active_workspace_is_searched(capsys, tmp_path, monkeypatch):
     monkeypatch.setenv("AMENT_PREFIX_PATH", prefixes)
     assert main(["verify", "--systems", "ts1,ts2,ts3", *few, "a_msgs/msg/A"]) == 0
     assert "lyrical     1 of    1 types pass (8-byte bus)\n" in capsys.readouterr().out
-    # As if by the folder, which comes before what the variable names.
+    # The option `--path` has priority over the environment variable.
     assert main(["verify", *few, "--all", "--path", str(tmp_path / "a" / "share")]) == 0
     assert "lyrical     1 of    1 types pass (8-byte bus)\n" in capsys.readouterr().out
     # The types of the distributions are their own.
@@ -114,10 +114,10 @@ def test_the_active_workspace_is_searched(capsys, tmp_path, monkeypatch):
     assert capsys.readouterr().err.endswith("error: No distribution has a_msgs/msg/A\n")
 
 
-def test_what_is_to_be_known_of_many_types_is_said_once(capsys, tmp_path):
+def test_notes_on_many_types_are_printed_once(capsys, tmp_path):
     (tmp_path / "p" / "msg").mkdir(parents=True)
     for name in ("A", "B", "C"):
-        # To rosbags the second line is a field.
+        # rosbags reads the second line as a field.
         (tmp_path / "p" / "msg" / f"{name}.msg").write_text("uint8 a\nuint8 b=1\n")
     arguments = ["--all", "--path", str(tmp_path), "--distro", "noetic", "--cases", "1"]
     assert main(["verify", "--jobs", "1", *arguments, "--no-stalls", "--no-broken"]) == 0
@@ -126,11 +126,11 @@ def test_what_is_to_be_known_of_many_types_is_said_once(capsys, tmp_path):
     assert notes == [f"note: p/A (noetic): {why}", f"note: 2 more types: {why}"]
 
 
-def test_every_system_runs_whatever_comes_of_the_first(monkeypatch):
+def test_every_system_runs_even_if_the_first_fails(monkeypatch):
     ran = []
 
-    class Fake(System):
-        """Passes, or does not."""
+    class FixedSystem(System):
+        """A test system with a given result."""
 
         tests = ()
         options: ClassVar = {}
@@ -143,7 +143,7 @@ def test_every_system_runs_whatever_comes_of_the_first(monkeypatch):
             verdict = Passed(1) if self.is_well else Failed(("",))
             return [Judged(what="it", verdict=verdict)]
 
-    made = {name: Fake(name, name != "ts1") for name in ("ts1", "ts3")}
+    made = {name: FixedSystem(name, name != "ts1") for name in ("ts1", "ts3")}
     systems = {name: lambda given, name=name: made[name] for name in made}
     monkeypatch.setattr(run, "SYSTEMS", systems)
     assert main(["verify", "--all", "--systems", "ts1,ts3"]) == 1
@@ -153,7 +153,7 @@ def test_every_system_runs_whatever_comes_of_the_first(monkeypatch):
     assert ran == ["ts1", "ts3", "ts3", "ts3"]
 
 
-def test_what_is_asked_for_by_default_may_be_named_beside_client_libraries(monkeypatch):
+def test_default_systems_may_be_named_beside_client_libraries(monkeypatch):
     asked = []
     monkeypatch.setattr(run, "run_workload", lambda work: asked.append(work.request) or 0)
     words = ["verify", "--all", "--sut", "rosbags"]

@@ -1,4 +1,4 @@
-"""Tools that are called, end, and have said and done nothing: nothing is a pass because of them."""
+"""Tools that end without output and without doing anything never cause a pass."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 import firm_hdl.verify.ros_python.worker as worker
 from firm_hdl.cli import main
-from firm_hdl.equivalence import MissingToolError, ProofError, Tools, find_tools, prove
+from firm_hdl.equivalence import ProofError, Tools, find_tools, prove
 from firm_hdl.equivalence.converters import converter_vhdl
 from firm_hdl.frontend import Library
 from firm_hdl.jobs.processes import ToolError
@@ -48,14 +48,14 @@ def fake(tmp_path, monkeypatch):
 
 
 @ANY
-def test_bench_does_not_pass_with_a_ghdl_that_says_nothing(fake, capsys, status):
+def test_bench_does_not_pass_with_a_silent_ghdl(fake, capsys, status):
     fake(SILENT[status], "ghdl")
     call = ["verify", "--systems", "bench", "--distro", "lyrical", "--jobs", "1", BOOL]
     assert main(call) == 1
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     why = "ended without a word: it has not passed" if status == 0 else "exit status 1"
-    assert f"FAIL {BOOL} (lyrical)\n" in said and why in said
-    (row,) = [line.split() for line in said.splitlines() if line.startswith("lyrical")]
+    assert f"FAIL {BOOL} (lyrical)\n" in output and why in output
+    (row,) = [line.split() for line in output.splitlines() if line.startswith("lyrical")]
     assert row[:6] == ["lyrical", "1", "0", "1", "0", "0"]
 
 
@@ -64,9 +64,7 @@ def test_bench_does_not_pass_with_a_ghdl_that_says_nothing(fake, capsys, status)
     ("simulator", "names"),
     [("ghdl", ["ghdl"]), ("iverilog", ["vvp", "iverilog"]), ("verilator", ["verilator"])],
 )
-def test_cross_check_does_not_pass_with_a_simulator_that_says_nothing(
-    fake, status, simulator, names
-):
+def test_cross_check_does_not_pass_with_a_silent_simulator(fake, status, simulator, names):
     fake(SILENT[status], *names)
     few = {"most_cases": 1, "stalled": False, "broken": False, "references": ()}
     result = accept("lyrical", BOOL, Options(simulator=simulator, **few))
@@ -75,7 +73,7 @@ def test_cross_check_does_not_pass_with_a_simulator_that_says_nothing(
     assert isinstance(accept("lyrical", BOOL, Options(**few)).verdict, Passed)
 
 
-def test_cross_check_does_not_pass_with_a_compiler_that_says_nothing(fake):
+def test_cross_check_does_not_pass_with_a_silent_compiler(fake):
     try:
         Verilator()
     except ProgramMissingError as error:
@@ -98,17 +96,17 @@ def test_error_of_a_tool_has_a_text():
 
 @ANY
 @pytest.mark.parametrize("name", ["ghdl", "yosys"])
-def test_nothing_is_proved_with_tools_that_say_nothing(fake, status, name):
+def test_silent_tools_prove_nothing(fake, status, name):
     try:
         yosys = find_tools().yosys
-    except MissingToolError as error:
+    except ProgramMissingError as error:
         need(str(error), None)
     tool = (fake(SILENT[status], name),)
     if name == "ghdl":
         tools = Tools(ghdl=tool, yosys=yosys)
         match = "GHDL's netlist is empty" if status == 0 else "GHDL failed: 1"
     else:
-        # It is asked before anybody looks at what GHDL said.
+        # Yosys is called before the output of GHDL is read.
         tools = Tools(ghdl=(fake(SILENT[0], "ghdl"),), yosys=tool)
         match = "Yosys ended without an error" if status == 0 else "Yosys failed: 1"
     rtlil, vhdl = converter_vhdl(Library("lyrical").message(BOOL), "serializer")
@@ -134,7 +132,7 @@ chmod +x "$2"
         (HEADERS + MAKES_A_PROGRAM, "does not say what it is"),
     ],
 )
-def test_fast_cdr_is_not_here_where_its_compiler_does_nothing(
+def test_fast_cdr_is_missing_if_its_compiler_does_nothing(
     fake, tmp_path, monkeypatch, compiler, why
 ):
     fake(compiler, "g++")
@@ -143,7 +141,7 @@ def test_fast_cdr_is_not_here_where_its_compiler_does_nothing(
 
 
 @ANY
-def test_genpy_is_not_here_where_its_python_says_nothing(fake, monkeypatch, status):
+def test_genpy_is_missing_if_its_python_prints_nothing(fake, monkeypatch, status):
     monkeypatch.setattr(worker, "ROS_PYTHON", fake(SILENT[status], "python-of-ros"))
     assert "its Python does not start" in CLIENTS["genpy"]().missing()
 
@@ -155,7 +153,7 @@ def given_cases(distro, name):
 
 
 @pytest.mark.parametrize("answer", [{}, {"failed": worker.DIED}, {"facts": []}])
-def test_reference_that_answers_nothing_confirms_nothing(monkeypatch, library_here, answer):
+def test_reference_without_answers_confirms_nothing(monkeypatch, library_here, answer):
     genpy = library_here("genpy")
     message, wire, cases = given_cases("noetic", BOOL)
     assert confirm(message, wire, cases, ["genpy"]).by == ("genpy",)
@@ -165,8 +163,8 @@ def test_reference_that_answers_nothing_confirms_nothing(monkeypatch, library_he
     assert found.failures[0].startswith("genpy broke down: genpy")
 
 
-class Few:
-    """A library that forgets the last answer."""
+class OmitsLastAnswer:
+    """A library that omits the last answer."""
 
     name, wires, byte_orders = "few", frozenset({"cdr"}), ("little",)
 
@@ -183,7 +181,9 @@ class Few:
 @pytest.mark.parametrize("is_reference", [False, True])
 def test_library_that_does_not_answer_everything_fails(library_here, is_reference):
     rosbags = library_here("rosbags")
-    both = (rosbags, Few(rosbags)) if is_reference else (Few(rosbags), rosbags)
+    both = (
+        (rosbags, OmitsLastAnswer(rosbags)) if is_reference else (OmitsLastAnswer(rosbags), rosbags)
+    )
     message = Library("lyrical").message(BOOL)
     trial = LibraryComparison(*both, "cdr").judge(message, [{"data": True}, {"data": False}])
     (failure,) = trial.verdict.failures

@@ -1,4 +1,4 @@
-"""Results of all test systems: recorded as they were, resumed after a kill, and never made up."""
+"""Results of all test systems: recorded correctly, resumed after a kill, and never invented."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tests.frontend.workspace import make_files
 from tests.verify.judged import assert_known, assert_passed, without_times
 
 BOOL, CHAR = "std_msgs/msg/Bool", "std_msgs/msg/Char"
-# rosbags is always here.
+# rosbags is always installed.
 FAST = ["--jobs", "1", "--distro", "lyrical", "--oracle", "rosbags", "--cases", "2"]
 ALL = ["--systems", "ts1,ts2,ts3"]
 
@@ -82,15 +82,15 @@ def test_known_differences_are_no_failures_and_name_their_key(tmp_path):
     path, page = tmp_path / "r.jsonl", tmp_path / "r.html"
     assert verify("--systems", "ts1", "--results", path, "--report", page, CHAR) == 0
     (record,) = read_results(path).records.values()
-    (said,) = record.verdicts
-    assert said.oracle == "rosbags"
+    (output,) = record.verdicts
+    assert output.oracle == "rosbags"
     assert_known(record, "rosbags-char-hash")
-    assert_known(said, "rosbags-char-hash")
+    assert_known(output, "rosbags-char-hash")
     assert record.note == "known difference from rosbags: rosbags-char-hash"
     assert '<td class="t">rosbags-char-hash</td>' in page.read_text()
 
 
-def test_definition_that_nobody_reads_is_not_judged_for_a_reason(tmp_path, capsys):
+def test_definition_that_no_oracle_reads_is_not_judged_for_a_reason(tmp_path, capsys):
     text = "module p { module msg { struct A { long a; }; }; };"
     make_files(tmp_path, {"src/p/msg/A.idl": text})
     path, page = tmp_path / "r.jsonl", tmp_path / "r.html"
@@ -112,8 +112,8 @@ def test_definitions_that_are_refused_are_tests_of_ts1_and_named(tmp_path, capsy
         "ts1p/msg/Bad",
         "ts2p/msg/A",
     ]
-    (said,) = (r.verdicts for r in found.records.values() if r.test.type == "p/msg/Bad")
-    assert said[0].is_refused
+    (output,) = (r.verdicts for r in found.records.values() if r.test.type == "p/msg/Bad")
+    assert output[0].is_refused
     assert found.sessions[0]["definitions that are refused"].startswith("1: ")
     assert "definitions that are refused: 1: " in page.read_text()
 
@@ -132,14 +132,14 @@ def misplan(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("system", "breaks", "said"),
+    ("system", "breaks", "output"),
     [
         ("ts1", misread, "oracle refuses: I do not like it"),
         ("ts2", misplan, "bytes of padding before it"),
     ],
 )
-def test_what_is_wrong_fails_in_the_record_and_on_the_page(
-    tmp_path, monkeypatch, capsys, system, breaks, said
+def test_faults_fail_in_the_record_and_in_the_report(
+    tmp_path, monkeypatch, capsys, system, breaks, output
 ):
     path, page = tmp_path / "r.jsonl", tmp_path / "r.html"
     command = ["--systems", system, "--results", path, "--report", page]
@@ -148,12 +148,12 @@ def test_what_is_wrong_fails_in_the_record_and_on_the_page(
     assert verify(*command, name, BOOL) == 1
     records = read_results(path).records.values()
     failed = {r.test.type: r for r in records if isinstance(r.verdict, Failed)}
-    assert said in failed[name].verdict.failures[0]
+    assert output in failed[name].verdict.failures[0]
     text = page.read_text()
-    assert said in text and failed[name].command in text and "✗" in text
+    assert output in text and failed[name].command in text and "✗" in text
     printed = capsys.readouterr().out
     monkeypatch.undo()
-    # All is well now; the file still says what it said, and so does the command.
+    # The fault is gone, but the file still has the old result, and the command reports it.
     assert verify(*command, name, BOOL) == 1
     again = capsys.readouterr().out
     assert f"have a result in {path}" in again
@@ -161,7 +161,7 @@ def test_what_is_wrong_fails_in_the_record_and_on_the_page(
 
 
 def summary_of(text):
-    """What is counted, and no times."""
+    """Return the counts of a report, without times."""
     marks = ("rosbags 0", "lyrical  ", "different circuits", "golden plans")
     return [line for line in text.splitlines() if any(mark in line for mark in marks)]
 
@@ -181,7 +181,7 @@ def test_golden_plans_have_records_of_their_own(tmp_path, capsys):
     assert verdicts == ["passed", "failed"]
 
 
-def test_what_has_a_record_is_not_tested_again(tmp_path, monkeypatch, capsys):
+def test_recorded_tests_are_not_repeated(tmp_path, monkeypatch, capsys):
     path = tmp_path / "r.jsonl"
     assert verify(*ALL, "--results", path, BOOL, CHAR) == 0
     first = capsys.readouterr().out
@@ -196,7 +196,7 @@ def test_what_has_a_record_is_not_tested_again(tmp_path, monkeypatch, capsys):
     for what in ("2 of 2 definitions", "2 of 2 plans", "2 of 2 types"):
         assert f"{what} have a result in {path}\n" in again
     assert summary_of(again) == summary_of(first) != []
-    # What has no record is tested, or this would see nothing.
+    # Must-fail twin: a test without a record is run.
     with pytest.raises(AssertionError, match="it was tested before"):
         verify(*ALL, "--results", tmp_path / "new.jsonl", BOOL)
 
@@ -223,7 +223,7 @@ def test_other_definitions_are_another_run(tmp_path, capsys, system, changed):
 
 
 def run_until_killed(command, calls):
-    """Run the command, and end this process right after so many calls of `add`."""
+    """Run the command, and end this process after `calls` calls of `add`."""
     add, left = ResultsWriter.add, iter(range(calls))
 
     def counted(writer, *records):

@@ -1,7 +1,7 @@
 """Simulate a design in `amaranth.sim` and its VHDL in GHDL, on the same input vectors.
 
-A step sets all inputs at once, clocks among them, waits until everything has settled, and notes all
-outputs. GHDL reads the steps from a file and writes what it saw to another; Python compares.
+A step sets all inputs, including clocks, at once, waits until all signals have settled, and records
+all outputs. GHDL reads the steps from a file and writes the outputs to another; Python compares.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ Steps = list[dict[str, int]]
 def vectors(
     inputs: Mapping[str, int], clocks: Sequence[str], *, steps: int, seed: int, rare: float = 0.1
 ) -> Steps:
-    """Make input values: in turn, data and resets change, and some of the clocks do.
+    """Make input values: even steps change data and resets, odd steps change some of the clocks.
 
     Parameters
     ----------
     inputs : mapping of str to int
         Widths.
     rare : float
-        How often a reset is high.
+        Probability that a reset is high.
     """
     chosen = random.Random(seed)
     now = dict.fromkeys(inputs, 0)
@@ -61,7 +61,7 @@ def vectors(
 def expected(
     design: Any, inputs: Mapping[str, Value], outputs: Mapping[str, Value], steps: Steps
 ) -> Steps:
-    """Run Amaranth's simulator: the outputs after each step."""
+    """Run Amaranth's simulator; return the outputs after each step."""
     result: Steps = []
     outside = Cat(*inputs.values())
 
@@ -83,7 +83,7 @@ def expected(
 
 
 def run(folder: Path, *arguments: str) -> str:
-    """Run GHDL; what it said."""
+    """Run GHDL, which must succeed; return its output."""
     assert GHDL is not None
     done = subprocess.run(
         [GHDL, *arguments], cwd=folder, capture_output=True, text=True, timeout=300, check=False
@@ -94,14 +94,14 @@ def run(folder: Path, *arguments: str) -> str:
 
 
 def analyse(vhdl: Vhdl, folder: Path) -> None:
-    """Analyse and elaborate in GHDL, which must have nothing to say."""
+    """Analyse the files in GHDL, which must print nothing."""
     for name, text in vhdl.files.items():
         (folder / name).write_text(text)
     assert run(folder, "-a", "--std=08", "--warn-error", *vhdl.files) == ""
 
 
 def synthesize(vhdl: Vhdl, folder: Path) -> str:
-    """Give what GHDL synthesizes, as VHDL."""
+    """Return the netlist that GHDL synthesizes, as VHDL."""
     analyse(vhdl, folder)
     return run(folder, "--synth", "--std=08", "--out=raw-vhdl", vhdl.top)
 
@@ -109,7 +109,7 @@ def synthesize(vhdl: Vhdl, folder: Path) -> str:
 def simulate(
     vhdl: Vhdl, steps: Steps, inputs: Mapping[str, int], outputs: Mapping[str, int], folder: Path
 ) -> Steps:
-    """Run GHDL: the outputs after each step.
+    """Run GHDL; return the outputs after each step.
 
     Parameters
     ----------
@@ -126,8 +126,8 @@ def simulate(
     (folder / "stimuli.txt").write_text("".join(f"{row}\n" for row in rows))
     (folder / "bench.vhd").write_text(_bench(vhdl.top, ports, into, out))
     run(folder, "-a", "--std=08", "bench.vhd")
-    said = run(folder, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable-at-0")
-    assert said == "", said
+    printed = run(folder, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable-at-0")
+    assert printed == "", printed
     result: Steps = []
     for row in (folder / "results.txt").read_text().splitlines():
         seen, place = dict.fromkeys(outputs, 0), 0
@@ -151,7 +151,7 @@ def _associations(signal: str, ports: Mapping[str, str], widths: Mapping[str, in
 def _bench(
     top: str, ports: Mapping[str, str], inputs: Mapping[str, int], outputs: Mapping[str, int]
 ) -> str:
-    """Write a bench that knows nothing but bits."""
+    """Return a bench that applies rows of bits, and writes rows of bits."""
     parts = _associations("stim", ports, inputs) + _associations("seen", ports, outputs)
     joined = ",\n    ".join(parts)
     return f"""\
@@ -186,7 +186,7 @@ end architecture;
 
 
 def difference(want: Steps, got: Steps) -> str | None:
-    """Describe the first difference, if there is one."""
+    """Return a description of the first difference, or `None`."""
     if len(want) != len(got):
         return f"{len(got)} steps instead of {len(want)}"
     for index, (right, seen) in enumerate(zip(want, got, strict=True)):

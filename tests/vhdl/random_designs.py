@@ -1,7 +1,7 @@
 """Random Amaranth designs with every operator, statement, memory and clock domain of the language.
 
-A design is made from a seed and nothing else. Its signals form layers: a combinational signal reads
-those before it only, so that there are no loops; registers are read anywhere.
+A design depends on its seed only. Its signals form layers: a combinational signal reads signals of
+earlier layers, so that there are no combinational loops. Registers are read anywhere.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from amaranth.lib.memory import Memory
 __all__ = ["DOMAINS", "RandomDesign"]
 
 DOMAINS = ("sync", "neg", "areset", "free", "drop")
-"""Rising edge and synchronous reset; falling edge; asynchronous reset; the edges without reset."""
+"""Rising edge; falling edge; asynchronous reset; each edge without reset."""
 
 _NAMES = (
     "type range signal a A x__y _z q_ resize clk_2 value unsigned rtl top work p_sync count next "
@@ -41,7 +41,7 @@ _MAX_WIDTH = 70
 
 @dataclass(eq=False)
 class RandomDesign(Elaboratable):
-    """A design.
+    """A random design.
 
     Attributes
     ----------
@@ -82,11 +82,11 @@ class RandomDesign(Elaboratable):
 
     @property
     def ports(self) -> list[Signal]:
-        """All ports."""
+        """The inputs and the outputs."""
         return [*self.inputs, *self.outputs]
 
     def elaborate(self, platform: object) -> Module:
-        """Give the module."""
+        """Return the module."""
         return self._module
 
     def _build(self) -> Module:
@@ -131,8 +131,8 @@ class RandomDesign(Elaboratable):
         init = self._random.getrandbits(shape.width) if shape.width else 0
         if shape.signed and init >> (shape.width - 1):
             init -= 1 << shape.width
-        # When an asynchronous reset rises, Amaranth 0.5.10's simulator clocks what has no reset,
-        # memories included; its netlist does not.
+        # When an asynchronous reset rises, Amaranth 0.5.10's simulator clocks memories, and
+        # signals without reset; its netlist does not.
         reset_less = domain != "areset" and self._random.random() < 0.2
         return Signal(shape, name=name, init=init, reset_less=reset_less)
 
@@ -156,8 +156,10 @@ class RandomDesign(Elaboratable):
         return value.matches(*(self._pattern(value) for _ in range(self._random.randint(0, 3))))
 
     def _selectable(self, depth: int) -> Value:
-        """Give what selects part of: beyond the top bit of an operator's result, Amaranth 0.5.10's
-        simulator sees what Python's integers have there, and its netlist has zeros.
+        """Return a value that a part may be selected of.
+
+        Beyond the top bit of an operator's result, Amaranth 0.5.10's simulator reads the bits of
+        Python's integer, and its netlist reads zeros.
         """
         return self._leaf() if self._random.random() < 0.5 else Cat(self._expression(depth))
 
@@ -239,7 +241,7 @@ class RandomDesign(Elaboratable):
         init = [low + self._random.getrandbits(width) for _ in range(count)]
         memory = Memory(shape=shape, depth=depth, init=init)
         module.submodules += memory
-        # Amaranth 0.5.10's simulator resets read ports, its netlist does not.
+        # Amaranth 0.5.10's simulator resets read ports; its netlist does not.
         domain = self._random.choice(["free", "drop"])
         writes = []
         for _ in range(self._random.randint(0, 2)):

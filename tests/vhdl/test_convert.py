@@ -1,38 +1,19 @@
 # amaranth: UnusedElaboratable=no
-"""VHDL of small designs that show one thing each, and of our own converters."""
+"""The VHDL text of small designs that show one construct each, and its names."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any
 
 import pytest
-from amaranth.hdl import (
-    Assert,
-    Cat,
-    ClockDomain,
-    Const,
-    Cover,
-    Elaboratable,
-    Format,
-    Instance,
-    IOBufferInstance,
-    IOPort,
-    Module,
-    Print,
-    Signal,
-    Value,
-    unsigned,
-)
+from amaranth.hdl import Cat, Module, Signal, unsigned
 from amaranth.lib import enum, wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl import Deserializer, Parser, Serializer, load_message
 from firm_hdl.vhdl.convert import convert
-from tests.depth import by_depth
-from tests.vhdl.ghdl import analyse, difference, expected, run, simulate, synthesize, vectors
+from tests.vhdl.ghdl import analyse
 
 
 class State(enum.Enum, shape=unsigned(2)):
@@ -138,8 +119,8 @@ def test_gives_a_header_and_unsigned_ports() -> None:
     assert "limit  : in  unsigned(3 downto 0);" in text
 
 
-class Unless(wiring.Component):
-    """A register that is written in an `else` alone."""
+class AssignedInElse(wiring.Component):
+    """A register that is assigned in an `else` branch only."""
 
     def __init__(self) -> None:
         super().__init__({"hold": In(1), "a": In(2), "o": Out(2)})
@@ -153,13 +134,13 @@ class Unless(wiring.Component):
         return m
 
 
-def test_an_if_without_anything_is_turned_round() -> None:
-    text = convert(Unless(), name="unless").files["unless.vhd"]
+def test_an_empty_if_with_an_else_is_inverted() -> None:
+    text = convert(AssignedInElse(), name="unless").files["unless.vhd"]
     assert "if hold = '0' then\n          o_q <= unsigned(a);\n        end if;" in text
     assert "null" not in text
 
 
-def test_a_condition_with_two_arms_is_written_in_place() -> None:
+def test_a_switch_on_a_comparison_is_a_conditional_assignment() -> None:
     m = Module()
     a, b, o = (Signal(4, name=name) for name in "abo")
     with m.Switch(a == b):
@@ -172,7 +153,7 @@ def test_a_condition_with_two_arms_is_written_in_place() -> None:
     assert "signal" not in text
 
 
-def test_of_a_choice_that_comes_twice_the_first_one_counts() -> None:
+def test_the_first_of_two_equal_choices_counts() -> None:
     m = Module()
     a, o = Signal(2, name="a"), Signal(4, name="o")
     with m.Switch(a):
@@ -180,7 +161,7 @@ def test_of_a_choice_that_comes_twice_the_first_one_counts() -> None:
             with m.Case(*choices):
                 m.d.comb += o.eq(5 + value)
     text = convert(m, name="twice", ports=[a, o]).files["twice.vhd"]
-    # In VHDL, a choice that comes twice is an error.
+    # In VHDL, a repeated choice is an error.
     assert re.findall(r'when (.*) =>\n *o <= "(.*)";', text) == [
         ('"00" | "01"', "0101"),
         ('"10"', "0110"),
@@ -188,7 +169,7 @@ def test_of_a_choice_that_comes_twice_the_first_one_counts() -> None:
     ]
 
 
-def test_what_a_port_alone_reads_is_written_in_place() -> None:
+def test_an_expression_read_only_by_a_port_is_written_in_place() -> None:
     m = Module()
     a, b = (Signal(4, name=name) for name in "ab")
     o = Signal(8)
@@ -199,7 +180,7 @@ def test_what_a_port_alone_reads_is_written_in_place() -> None:
 
 
 def test_assigns_to_several_wires_at_once() -> None:
-    # Amaranth 0.5 prints no such connection; RTLIL has them.
+    # Amaranth 0.5 writes no such connection, but RTLIL allows it.
     rtlil = r"""
 attribute \top 1
 module \top
@@ -216,8 +197,8 @@ end
     assert "c <= std_logic_vector(unsigned(i(7 downto 4)));" in text
 
 
-def test_what_only_another_connection_reads_is_a_signal() -> None:
-    # What nobody reads is one more name, for whoever looks at a simulation.
+def test_a_wire_read_only_by_a_connection_is_a_signal() -> None:
+    # A wire without readers stays visible in a simulation.
     rtlil = r"""
 attribute \top 1
 module \top
@@ -277,7 +258,7 @@ def test_words_of_vhdl_ams_are_names_of_outermost_ports_only(tmp_path: Path) -> 
         ("AnySeq", r"^module 'top' has AnySeq \(\$anyseq\), whose value only a formal"),
     ],
 )
-def test_refuses_what_only_formal_tools_know(make: str, message: str) -> None:
+def test_cells_of_formal_tools_are_refused(make: str, message: str) -> None:
     from amaranth import asserts
 
     module, out = Module(), Signal(4)
@@ -286,52 +267,7 @@ def test_refuses_what_only_formal_tools_know(make: str, message: str) -> None:
         convert(module, ports=[out])
 
 
-@pytest.mark.usefixtures("ghdl")
-def test_keeps_hierarchy_and_instances(tmp_path: Path) -> None:
-    top, inner = Module(), Module()
-    a, b, c = Signal(4, name="a"), Signal(4, name="b"), Signal(name="c")
-    inner.d.sync += b.eq(a)
-    top.submodules.inner = inner
-    top.submodules.pll = Instance(
-        "PLL_2__x", p_RATIO=3, p_MODE="fast", p_MASK=Const(5, 4), i_A=Cat(a[:2], b[2:]), o_Q=c
-    )
-    vhdl = convert(top, ports=[a, b, c])
-    assert list(vhdl.files) == ["firm_hdl_pkg.vhd", "top_inner.vhd", "top.vhd"]
-    assert vhdl.entities["top"].instances == {"inner": "inner", "pll": "pll"}
-    text = vhdl.files["top.vhd"]
-    assert "inner : entity work.top_inner" in text
-    assert "component \\PLL_2__x\\ is" in text and 'MODE  => "fast"' in text
-    assert "A(1 downto 0) => a(1 downto 0)" in text
-    analyse(vhdl, tmp_path)
-
-
-@pytest.mark.usefixtures("ghdl")
-def test_connects_foreign_components_of_all_directions(tmp_path: Path) -> None:
-    top, inner = Module(), Module()
-    a, b, c = Signal(4, name="a"), Signal(4, name="b"), Signal(6, name="c")
-    x, pad = Signal(4, name="x"), IOPort(4, name="pad")
-    inner.submodules.u = Instance("one", i_A=Cat(a, Const(2, 2), b[1]), o_Q=x, io_P=pad[1:3])
-    top.submodules.inner = inner
-    top.submodules.v = Instance("two", o_Q=c, i_B=x + 1, io_P=pad[0])
-    top.d.comb += b.eq(~x)
-    vhdl = convert(top, ports=[a, b, c])
-    inside, outside = vhdl.files["top_inner.vhd"], vhdl.files["top.vhd"]
-    assert "Q : out std_logic_vector(3 downto 0);" in inside and "P : inout" in inside
-    assert 'A(5 downto 4) => "10",' in inside and "x <= unsigned(x_i);" in inside
-    assert "=> pad(2 downto 1)" in outside and "Q => c," in outside
-    analyse(vhdl, tmp_path)
-
-
-@pytest.mark.usefixtures("ghdl")
-def test_memories_without_words_read_as_zero(tmp_path: Path) -> None:
-    module, out = Module(), Signal(4, name="out_value")
-    module.submodules.memory = memory = Memory(shape=4, depth=0, init=[])
-    module.d.comb += out.eq(memory.read_port(domain="comb").data + 1)
-    vhdl = convert(module, ports=[out])
-    assert simulate(vhdl, [{}], {}, {"out_value": 4}, tmp_path) == [{"out_value": 1}]
-
-
-def test_what_is_written_is_read_at_once_if_the_addresses_are_the_same() -> None:
+def test_a_transparent_read_port_forwards_written_data() -> None:
     m = Module()
     m.submodules.memory = memory = Memory(shape=4, depth=4, init=[])
     write = memory.write_port()
@@ -340,96 +276,3 @@ def test_what_is_written_is_read_at_once_if_the_addresses_are_the_same() -> None
     text = convert(m, name="bypass", ports=ports).files["bypass.vhd"]
     same = "if unsigned(read_addr) = unsigned(write_addr) and write_en = '1' then"
     assert f"{same}  -- transparent" in text
-
-
-class Pads(Elaboratable):
-    """A pad of each direction, one level down."""
-
-    def __init__(self) -> None:
-        self.pads = [IOPort(3, name="pin_i"), IOPort(3, name="pin_o"), IOPort(3, name="pin_io")]
-        self.out, self.enable, self.seen = Signal(3), Signal(), Signal(3)
-        self.out.name, self.enable.name, self.seen.name = "out_value", "enable", "seen"
-
-    def elaborate(self, platform: object) -> Module:
-        m, inner = Module(), Module()
-        m.submodules.inner = inner
-        into, back = Signal(3), Signal(3)
-        inner.submodules.i = IOBufferInstance(self.pads[0], i=into)
-        inner.submodules.o = IOBufferInstance(self.pads[1], o=self.out)
-        inner.submodules.io = IOBufferInstance(self.pads[2], i=back, o=self.out, oe=self.enable)
-        m.d.comb += self.seen.eq(into ^ back)
-        return m
-
-
-@pytest.mark.usefixtures("ghdl")
-def test_drives_and_reads_pads(tmp_path: Path) -> None:
-    design = Pads()
-    vhdl = convert(design, name="pads", ports=[design.out, design.enable, design.seen])
-    analyse(vhdl, tmp_path)
-    assert "pin_io    : inout std_logic_vector(2 downto 0)" in vhdl.files["pads.vhd"]
-    assert 'else "ZZZ";' in "".join(vhdl.files.values())
-
-
-@pytest.mark.usefixtures("ghdl")
-def test_asserts_and_prints_in_simulation(tmp_path: Path) -> None:
-    module = Module()
-    value = Signal(8, name="value", init=250)
-    module.d.sync += value.eq(value + 1)
-    with module.If(value == 254):
-        module.d.sync += Print(Format("value {} {:x} {:s} {{}}", value, value, Const(0x4142, 16)))
-    module.d.sync += Assert(value != 255, "too far")
-    module.d.comb += Cover(value == 3)
-    vhdl = convert(module, name="dut", ports=[value])
-    analyse(vhdl, tmp_path)
-    (tmp_path / "bench.vhd").write_text("""\
-library ieee;
-use ieee.std_logic_1164.all;
-entity bench is end entity;
-architecture sim of bench is
-  signal clk : std_logic := '0';
-begin
-  dut : entity work.dut port map (clk => clk, rst => '0', value => open);
-  process begin
-    for i in 1 to 20 loop wait for 1 ns; clk <= not clk; end loop;
-    wait;
-  end process;
-end architecture;
-""")
-    run(tmp_path, "-a", "--std=08", "bench.vhd")
-    said = run(tmp_path, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable-at-0")
-    assert "(report note): value 254 FE AB {}" in said
-    assert "(assertion error): too far" in said
-
-
-def _ports(component: Any) -> tuple[dict[str, Value], dict[str, Value]]:
-    inputs, outputs = {}, {}
-    for path, member, value in component.signature.flatten(component):
-        side = inputs if member.flow == wiring.In else outputs
-        side["__".join(map(str, path))] = Value.cast(value)
-    return inputs, outputs
-
-
-@pytest.mark.usefixtures("ghdl")
-@pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 8, 64]))
-@pytest.mark.parametrize("converter", [Deserializer, Serializer, Parser])
-@pytest.mark.parametrize(
-    "name", ["geometry_msgs/msg/Twist", "sensor_msgs/msg/PointCloud2", "std_msgs/msg/Empty"]
-)
-def test_converters_do_in_ghdl_what_they_do_in_python(
-    name: str, converter: Any, bus_bytes: int, tmp_path: Path
-) -> None:
-    message = load_message(name, distro="humble")
-    vhdl = convert(converter(message, bus_bytes=bus_bytes), name="dut")
-    component = converter(message, bus_bytes=bus_bytes)
-    top, domain = Module(), ClockDomain("sync")
-    top.domains.sync = domain
-    top.submodules.dut = component
-    inputs, outputs = _ports(component)
-    inputs = {"clk": domain.clk, "rst": domain.rst, **inputs}
-    widths = {port: len(value) for port, value in inputs.items()}
-    steps = vectors(widths, ["clk"], steps=200, seed=1, rare=0.02)
-    want = expected(top, inputs, outputs, steps)
-    sizes = {port: len(value) for port, value in outputs.items()}
-    assert difference(want, simulate(vhdl, steps, widths, sizes, tmp_path)) is None
-    if bus_bytes == 8:
-        assert "latch" not in synthesize(vhdl, tmp_path).lower()

@@ -21,7 +21,7 @@ def _vhdl(name: str) -> Vhdl:
 
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("name", DESIGNS)
-def test_memories_do_what_amaranth_does(name: str, tmp_path: Path) -> None:
+def test_memories_behave_as_in_amaranth(name: str, tmp_path: Path) -> None:
     inputs, outputs, steps, wanted = simulated(DESIGNS[name], steps=STEPS, seed=len(name))
     assert difference(wanted, simulate(_vhdl(name), steps, inputs, outputs, tmp_path)) is None
 
@@ -47,20 +47,20 @@ def test_a_changed_memory_is_noticed(name: str, old: str, new: str, tmp_path: Pa
     assert difference(wanted, simulate(broken, steps, inputs, outputs, tmp_path)) is not None
 
 
-# GHDL does not make RAM of one word, nor of a memory with constant addresses.
+# GHDL infers no RAM for a single word, nor for a memory with constant addresses.
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("name", sorted(set(DESIGNS) - {"one word", "odd depth", "contents alone"}))
 def test_ghdl_infers_a_ram(name: str, tmp_path: Path) -> None:
-    said = synthesize(_vhdl(name), tmp_path)
+    output = synthesize(_vhdl(name), tmp_path)
     for memory, store in DESIGNS[name].items():
         width = store.shape if isinstance(store.shape, int) else store.shape.size
         signal = _vhdl(name).entities["stores"].memories[memory]
-        assert f'found RAM "{signal}", width: {width} bits, depth: {store.depth}' in said
+        assert f'found RAM "{signal}", width: {width} bits, depth: {store.depth}' in output
 
 
 @pytest.mark.usefixtures("ghdl")
 def test_a_write_beyond_the_last_word_stops_the_simulation(tmp_path: Path) -> None:
-    """A proof cannot find this, because synthesis may do anything there."""
+    """A proof cannot find this, because synthesis may do anything beyond the last word."""
     vhdl = _vhdl("transparent")
     broken = vhdl.files["stores.vhd"].replace("(mem_w0_addr) < 5", "(mem_w0_addr) <= 5")
     assert broken != vhdl.files["stores.vhd"]
@@ -124,8 +124,8 @@ def test_unknown_values_stop_no_simulation(
     analyse(vhdl, tmp_path)
     (tmp_path / "bench.vhd").write_text(_BENCH.format(read=read))
     run(tmp_path, "-a", "--std=08", "bench.vhd")
-    said = run(tmp_path, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable")
-    assert "done" in said
+    output = run(tmp_path, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable")
+    assert "done" in output
 
 
 @pytest.mark.usefixtures("ghdl")
@@ -136,5 +136,5 @@ def test_a_wrong_bench_fails(tmp_path: Path) -> None:
     assert GHDL is not None
     run(tmp_path, "-a", "--std=08", "bench.vhd")
     command = [GHDL, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode != 0 and "unknown address" in done.stdout + done.stderr
+    process = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert process.returncode != 0 and "unknown address" in process.stdout + process.stderr

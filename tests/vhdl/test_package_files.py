@@ -1,4 +1,4 @@
-"""The VHDL that is the same for every type: files of the package, which stand by themselves."""
+"""The VHDL files that are the same for every type, each analysed by itself."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 # amaranth: UnusedElaboratable=no
 """Random designs: VHDL in GHDL against `amaranth.sim`, step by step.
 
-``FIRM_HDL_DESIGNS=500`` runs more of them, ``FIRM_HDL_DESIGNS=1000:1500`` others.
+``FIRM_HDL_DESIGNS=500`` runs more designs, ``FIRM_HDL_DESIGNS=1000:1500`` runs other designs.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ def _seeds() -> range:
     return range(int(first or 0), int(last))
 
 
-def _both(seed: int) -> tuple[RandomDesign, Vhdl, Steps, Steps]:
-    """Give a design, its VHDL, input vectors, and what Amaranth makes of them."""
+def _design_and_vhdl(seed: int) -> tuple[RandomDesign, Vhdl, Steps, Steps]:
+    """Return a design, its VHDL, input vectors, and the outputs in Amaranth's simulator."""
     written, simulated = RandomDesign(seed), RandomDesign(seed)
     vhdl = convert(written, name="dut", ports=written.ports)
     inputs = {signal.name: signal for signal in simulated.inputs}
@@ -45,8 +45,8 @@ def _run(design: RandomDesign, vhdl: Vhdl, steps: Steps, folder: Path) -> Steps:
 
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("seed", _seeds())
-def test_vhdl_does_what_amaranth_does(seed: int, tmp_path: Path) -> None:
-    design, vhdl, steps, want = _both(seed)
+def test_vhdl_behaves_as_in_amaranth(seed: int, tmp_path: Path) -> None:
+    design, vhdl, steps, want = _design_and_vhdl(seed)
     assert difference(want, _run(design, vhdl, steps, tmp_path)) is None
 
 
@@ -54,17 +54,17 @@ def test_vhdl_does_what_amaranth_does(seed: int, tmp_path: Path) -> None:
 @pytest.mark.parametrize("seed", [1, 36])
 def test_no_latches_are_synthesized(seed: int, tmp_path: Path) -> None:
     # GHDL 2.0 itself fails for constants of more than 32 bits in products, and for some memories.
-    _, vhdl, _, _ = _both(seed)
+    _, vhdl, _, _ = _design_and_vhdl(seed)
     assert "latch" not in synthesize(vhdl, tmp_path).lower()
 
 
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("seed", [3, 4, 5])
 def test_a_changed_operator_is_noticed(seed: int, tmp_path: Path) -> None:
-    """The twin of the test above: of the operators of a design, most changes must show."""
-    design, vhdl, steps, want = _both(seed)
+    """Must-fail twin of the test above: most changed operators must cause a difference."""
+    design, vhdl, steps, want = _design_and_vhdl(seed)
     noticed = tried = 0
-    for index, twin in enumerate(_twins(vhdl)):
+    for index, twin in enumerate(_changed_operators(vhdl)):
         folder = tmp_path / str(index)
         folder.mkdir()
         tried += 1
@@ -74,15 +74,15 @@ def test_a_changed_operator_is_noticed(seed: int, tmp_path: Path) -> None:
     pytest.fail(f"none of {tried} changed operators was noticed")
 
 
-def _twins(vhdl: Vhdl) -> list[Vhdl]:
-    """Change one operator of the outermost architecture in each."""
+def _changed_operators(vhdl: Vhdl) -> list[Vhdl]:
+    """Yield the VHDL with one operator of the outermost architecture changed."""
     name = f"{vhdl.top}.vhd"
     head, body = vhdl.files[name].split("\nbegin\n", 1)
     twins = []
     for match in re.finditer(r" (and|or|xor|\+|-|<|>=) ", body):
         other = {"and": "or", "or": "and", "xor": "or", "+": "-", "-": "+", "<": ">=", ">=": "<"}
         changed = body[: match.start(1)] + other[match[1]] + body[match.end(1) :]
-        # Only a change of one operator may differ, not one that VHDL would not accept.
+        # The changed text must still be legal VHDL.
         if match[1] in ("+", "-", "<", ">="):
             twins.append(replace(vhdl, files={**vhdl.files, name: f"{head}\nbegin\n{changed}"}))
     return twins[:8]

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Registers: which share a process, what their reset is, and what of a process is no more said."""
+"""Registers: the processes that they share, their resets, and assignments that are left out."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.vhdl.convert import convert
 
 
-class Made(wiring.Component):
-    """A design of what a function puts into its module."""
+class FilledComponent(wiring.Component):
+    """A component whose module is filled by a function."""
 
-    def __init__(self, fill: Callable[[Made, Module], object], **ports: object) -> None:
+    def __init__(self, fill: Callable[[FilledComponent, Module], object], **ports: object) -> None:
         self.fill = fill
         super().__init__(ports)
 
@@ -25,19 +25,19 @@ class Made(wiring.Component):
         return m
 
 
-def written(fill: Callable[[Made, Module], object], **ports: object) -> str:
-    return convert(Made(fill, **ports), name="t").files["t.vhd"]
+def vhdl_of(fill: Callable[[FilledComponent, Module], object], **ports: object) -> str:
+    return convert(FilledComponent(fill, **ports), name="t").files["t.vhd"]
 
 
 def processes(text: str) -> list[list[str]]:
-    """Return the lines of each process, without what is around them."""
+    """Return the lines of each process, without its first and last words."""
     parts = text.split(" : process ")[1:]
     bodies = [part.partition("end process;")[0].strip() for part in parts]
     return [[line.strip() for line in body.splitlines()] for body in bodies]
 
 
 def test_one_register_with_a_reset() -> None:
-    text = written(lambda d, m: m.d.sync.__iadd__(d.q.eq(d.a)), a=In(4), q=Out(4, init=5))
+    text = vhdl_of(lambda d, m: m.d.sync.__iadd__(d.q.eq(d.a)), a=In(4), q=Out(4, init=5))
     assert "-- 1 register at rising_edge(clk), synchronous reset rst = '1'." in text
     (lines,) = processes(text)
     assert lines == [
@@ -53,12 +53,12 @@ def test_one_register_with_a_reset() -> None:
     ]
 
 
-def test_what_has_no_reset_is_apart_and_has_none() -> None:
-    def fill(d: Made, m: Module) -> None:
+def test_registers_without_reset_have_a_process_of_their_own() -> None:
+    def fill(d: FilledComponent, m: Module) -> None:
         bare = Signal(4, reset_less=True)
         m.d.sync += [bare.eq(d.a), d.q.eq(bare)]
 
-    text = written(fill, a=In(4), q=Out(4))
+    text = vhdl_of(fill, a=In(4), q=Out(4))
     assert "-- 1 register at rising_edge(clk), synchronous reset rst = '1'." in text
     assert "-- 1 register at rising_edge(clk), no reset." in text
     found = sorted(processes(text), key=len)
@@ -72,14 +72,14 @@ def test_what_has_no_reset_is_apart_and_has_none() -> None:
     assert found[1][3:6] == ["if rst = '1' then", "q_q <= (others => '0');", "else"]
 
 
-def test_an_asynchronous_reset_is_looked_at_first() -> None:
-    def fill(d: Made, m: Module) -> None:
+def test_an_asynchronous_reset_is_tested_first() -> None:
+    def fill(d: FilledComponent, m: Module) -> None:
         m.domains.fast = fast = ClockDomain(async_reset=True)
         m.d.comb += [fast.clk.eq(d.ck), fast.rst.eq(d.clear)]
         m.d.fast += d.q.eq(d.a)
         m.d.fast += d.p.eq(~d.a)
 
-    text = written(fill, ck=In(1), clear=In(1), a=In(4), q=Out(4, init=3), p=Out(4))
+    text = vhdl_of(fill, ck=In(1), clear=In(1), a=In(4), q=Out(4, init=3), p=Out(4))
     assert "-- 2 registers at rising_edge(ck), asynchronous reset clear = '1'." in text
     (lines,) = processes(text)
     assert lines[:3] == ["(ck, clear)", "begin", "if clear = '1' then"]
@@ -90,102 +90,102 @@ def test_an_asynchronous_reset_is_looked_at_first() -> None:
 
 
 def test_a_falling_edge_is_another_process() -> None:
-    def fill(d: Made, m: Module) -> None:
+    def fill(d: FilledComponent, m: Module) -> None:
         m.domains.down = down = ClockDomain(clk_edge="neg", reset_less=True)
         m.d.comb += down.clk.eq(d.ck)
         m.d.down += d.q.eq(d.a)
         m.d.sync += d.p.eq(d.a)
 
-    text = written(fill, ck=In(1), a=In(4), q=Out(4), p=Out(4))
+    text = vhdl_of(fill, ck=In(1), a=In(4), q=Out(4), p=Out(4))
     assert "-- 1 register at falling_edge(ck), no reset." in text
     assert "-- 1 register at rising_edge(clk), synchronous reset rst = '1'." in text
     assert len(processes(text)) == 2
 
 
-def test_a_register_that_only_holds_what_it_has_is_said_to() -> None:
-    def fill(d: Made, m: Module) -> None:
+def test_a_register_that_only_holds_its_value_is_assigned_to_itself() -> None:
+    def fill(d: FilledComponent, m: Module) -> None:
         m.d.sync += d.q.eq(d.q)
 
-    (lines,) = processes(written(fill, q=Out(4, init=9)))
+    (lines,) = processes(vhdl_of(fill, q=Out(4, init=9)))
     assert "q_q <= q_q;" in lines
 
 
-def test_what_is_written_under_a_condition_keeps_its_value_without_a_word() -> None:
-    def fill(d: Made, m: Module) -> None:
+def test_a_conditional_assignment_needs_no_else_branch() -> None:
+    def fill(d: FilledComponent, m: Module) -> None:
         with m.If(d.en):
             m.d.sync += d.q.eq(d.a)
 
-    (lines,) = processes(written(fill, en=In(1), a=In(4), q=Out(4)))
+    (lines,) = processes(vhdl_of(fill, en=In(1), a=In(4), q=Out(4)))
     assert lines[6:10] == ["if en = '1' then", "q_q <= unsigned(a);", "end if;", "end if;"]
     assert not [line for line in lines if line == "q_q <= q_q;"]
 
 
-def test_a_part_or_another_signal_is_no_holding() -> None:
-    # The first thing said is not that the register keeps what it has.
-    def moved(d: Made, m: Module) -> None:
+def test_an_assignment_of_rotated_bits_or_another_register_stays() -> None:
+    # The first assignment is not of the register to itself.
+    def moved(d: FilledComponent, m: Module) -> None:
         m.d.sync += d.q.eq(d.q.rotate_left(4))
 
-    text = " ".join(processes(written(moved, q=Out(8, init=1)))[0])
+    text = " ".join(processes(vhdl_of(moved, q=Out(8, init=1)))[0])
     assert "q_q(3 downto 0)" in text and "q_q(7 downto 4)" in text
 
-    def other(d: Made, m: Module) -> None:
+    def other(d: FilledComponent, m: Module) -> None:
         m.d.sync += [d.q.eq(d.p), d.p.eq(d.q)]
 
-    (lines,) = processes(written(other, q=Out(4, init=1), p=Out(4)))
+    (lines,) = processes(vhdl_of(other, q=Out(4, init=1), p=Out(4)))
     assert {"q_q <= p_q;", "p_q <= q_q;"} <= set(lines)
 
 
-def test_a_clear_like_a_reset_that_gives_another_value_is_none() -> None:
-    # Of one bit and the last thing said, but not what the register starts with.
-    def fill(d: Made, m: Module) -> None:
+def test_a_clear_to_a_value_other_than_the_initial_one_is_no_reset() -> None:
+    # The condition is one bit and the last assignment, but the value is not the initial one.
+    def fill(d: FilledComponent, m: Module) -> None:
         m.d.sync += d.q.eq(d.a)
         with m.If(d.clear):
             m.d.sync += d.q.eq(1)
 
-    def made(**more: object) -> str:
-        def bare(d: Made, m: Module) -> None:
+    def with_output(**more: object) -> str:
+        def bare(d: FilledComponent, m: Module) -> None:
             m.domains.sync = ClockDomain(reset_less=True)
             fill(d, m)
 
-        return written(bare, a=In(4), clear=In(1), **more)
+        return vhdl_of(bare, a=In(4), clear=In(1), **more)
 
-    assert "no reset" in made(q=Out(4))
-    assert "synchronous reset clear = '1'" in made(q=Out(4, init=1))
+    assert "no reset" in with_output(q=Out(4))
+    assert "synchronous reset clear = '1'" in with_output(q=Out(4, init=1))
 
 
-def test_a_clear_that_is_not_all_of_it_is_no_reset() -> None:
-    def text(fill: Callable[[Made, Module], object], **more: object) -> str:
-        def bare(d: Made, m: Module) -> None:
+def test_a_partial_or_dependent_clear_is_no_reset() -> None:
+    def text(fill: Callable[[FilledComponent, Module], object], **more: object) -> str:
+        def bare(d: FilledComponent, m: Module) -> None:
             m.domains.sync = ClockDomain(reset_less=True)
             m.d.sync += d.q.eq(d.a)
             fill(d, m)
 
-        return written(bare, a=In(4), clear=In(2), q=Out(4), **more)
+        return vhdl_of(bare, a=In(4), clear=In(2), q=Out(4), **more)
 
-    def part(d: Made, m: Module) -> None:
+    def part(d: FilledComponent, m: Module) -> None:
         with m.If(d.clear[0]):
             m.d.sync += d.q[:2].eq(0)
 
-    def more(d: Made, m: Module) -> None:
+    def more(d: FilledComponent, m: Module) -> None:
         with m.If(d.clear[0]):
             m.d.sync += d.q.eq(0)
             m.d.sync += d.q[0].eq(1)
 
-    def otherwise(d: Made, m: Module) -> None:
+    def otherwise(d: FilledComponent, m: Module) -> None:
         with m.If(d.clear[0]):
             m.d.sync += d.q.eq(0)
         with m.Else():
             m.d.sync += d.q.eq(3)
 
-    def wide(d: Made, m: Module) -> None:
+    def wide(d: FilledComponent, m: Module) -> None:
         with m.Switch(d.clear), m.Case(1):
             m.d.sync += d.q.eq(0)
 
-    def low(d: Made, m: Module) -> None:
+    def low(d: FilledComponent, m: Module) -> None:
         with m.Switch(d.clear[0]), m.Case(0):
             m.d.sync += d.q.eq(0)
 
-    def from_signal(d: Made, m: Module) -> None:
+    def from_signal(d: FilledComponent, m: Module) -> None:
         with m.If(d.clear[0]):
             m.d.sync += d.q.eq(d.clear)
 
@@ -194,7 +194,7 @@ def test_a_clear_that_is_not_all_of_it_is_no_reset() -> None:
 
 
 def test_a_clear_beside_an_asynchronous_reset_is_one_more_condition() -> None:
-    def fill(d: Made, m: Module) -> None:
+    def fill(d: FilledComponent, m: Module) -> None:
         m.domains.fast = fast = ClockDomain(async_reset=True)
         m.d.comb += [fast.clk.eq(d.ck), fast.rst.eq(d.rst)]
         m.d.fast += d.q.eq(d.a)
@@ -202,7 +202,7 @@ def test_a_clear_beside_an_asynchronous_reset_is_one_more_condition() -> None:
             m.d.fast += d.q.eq(3)
 
     ports = {"ck": In(1), "rst": In(1), "clear": In(1), "a": In(4), "q": Out(4, init=3)}
-    (lines,) = processes(written(fill, **ports))
+    (lines,) = processes(vhdl_of(fill, **ports))
     after = lines[lines.index("elsif rising_edge(ck) then") :]
     assert after[1:5] == [
         "q_q <= unsigned(a);",

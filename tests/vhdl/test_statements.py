@@ -1,4 +1,4 @@
-"""Statements of several registers as those of one process: what they assign stays what it was."""
+"""Statements of several registers merged into one process assign the same values as before."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ STATES = [
 
 
 def run(body: Iterable[Statement], state: dict[str, str], seen: dict[str, str]) -> dict[str, str]:
-    """Execute statements as RTLIL means them: the first arm that matches, the last assignment."""
+    """Execute statements by the rules of RTLIL: the first matching case, the last assignment."""
     for statement in body:
         if isinstance(statement, Assign):
             for target, value in zip(statement.target, statement.value, strict=True):
@@ -30,18 +30,18 @@ def run(body: Iterable[Statement], state: dict[str, str], seen: dict[str, str]) 
             continue
         bits = "".join(state[each.wire] for each in statement.selector if isinstance(each, Slice))
         for case in statement.cases:
-            if not case.patterns or any(fits(each, bits) for each in case.patterns):
+            if not case.patterns or any(matches(each, bits) for each in case.patterns):
                 run(case.body, state, seen)
                 break
     return seen
 
 
-def fits(pattern: str, bits: str) -> bool:
+def matches(pattern: str, bits: str) -> bool:
     return all(mark in ("-", bit) for mark, bit in zip(pattern, bits, strict=True))
 
 
 def body_of(wire: str, chosen: random.Random, depth: int = 0) -> Body:
-    """Make statements that assign one register."""
+    """Make random statements that assign one register."""
     result: list[Statement] = []
     for _ in range(chosen.randint(0 if depth else 1, 3)):
         if depth == 3 or chosen.random() < 0.4:
@@ -64,7 +64,7 @@ def assign(wire: str, text: str) -> Assign:
 
 
 @pytest.mark.parametrize("start", range(0, 600, 100))
-def test_statements_of_two_registers_do_together_what_they_do_apart(start: int) -> None:
+def test_merged_statements_assign_the_same_values(start: int) -> None:
     for seed in range(start, start + 100):
         chosen = random.Random(seed)
         first, second = (flatten(body_of(wire, chosen)) for wire in "pq")
@@ -75,26 +75,26 @@ def test_statements_of_two_registers_do_together_what_they_do_apart(start: int) 
 
 
 @pytest.mark.parametrize("start", range(0, 300, 100))
-def test_what_chooses_nothing_is_gone_and_missed_by_nobody(start: int) -> None:
+def test_empty_switches_are_removed_without_effect(start: int) -> None:
     for seed in range(start, start + 100):
         body = body_of("p", random.Random(seed))
         flat = flatten(body)
         for state in STATES:
             assert run(flat, state, {}) == run(body, state, {}), (seed, state)
-        for statement in everything(flat):
+        for statement in all_statements(flat):
             if isinstance(statement, Switch):
                 assert statement.selector and any(case.body for case in statement.cases)
 
 
-def everything(body: Body) -> Iterable[Statement]:
+def all_statements(body: Body) -> Iterable[Statement]:
     for statement in body:
         yield statement
         for case in statement.cases if isinstance(statement, Switch) else ():
-            yield from everything(case.body)
+            yield from all_statements(case.body)
 
 
-def on(wire: str, **bodies: str) -> Switch:
-    """Choose by `s`: a pattern such as `b01`, or `other`, to what `wire` becomes."""
+def switch_on(wire: str, **bodies: str) -> Switch:
+    """Return a switch on `s`: from a pattern such as `b01`, or `other`, to the value of `wire`."""
     cases = [
         Case(patterns=() if name == "other" else (name[1:],), body=(assign(wire, text),))
         for name, text in bodies.items()
@@ -105,18 +105,18 @@ def on(wire: str, **bodies: str) -> Switch:
 @pytest.mark.parametrize(
     ("one", "other", "together"),
     [
-        # The same arms, whatever they are.
+        # The same cases.
         ({"b01": "0001"}, {"b01": "0010"}, True),
         ({"b01": "0001", "other": "0010"}, {"b01": "0010", "other": "0011"}, True),
-        # Other arms, of which no two match.
+        # Different cases, of which at most one matches.
         ({"b01": "0001"}, {"b10": "0010", "b01": "0100"}, True),
-        # A default, or arms that overlap, have to be in their order.
+        # A default, or cases that overlap, must keep their order.
         ({"b01": "0001", "other": "0010"}, {"b01": "0010"}, False),
         ({"b01": "0001"}, {"b10": "0010", "other": "0011"}, False),
     ],
 )
 def test_one_choice_is_written_once(one: dict, other: dict, together: bool) -> None:
-    both = merged((on("p", **one),), (on("q", **other),))
+    both = merged((switch_on("p", **one),), (switch_on("q", **other),))
     assert (len(both) == 1) == together
 
 
@@ -130,7 +130,7 @@ def test_a_choice_of_a_bit_is_joined_only_if_its_arms_are_the_same() -> None:
 
 
 def test_later_statements_join_later_ones() -> None:
-    first = (on("p", b00="0000"), assign("p", "0001"), on("p", b01="0010"))
-    second = (on("q", b01="0001"), on("q", b00="0010"), assign("q", "1111"))
+    first = (switch_on("p", b00="0000"), assign("p", "0001"), switch_on("p", b01="0010"))
+    second = (switch_on("q", b01="0001"), switch_on("q", b00="0010"), assign("q", "1111"))
     both = merged(first, second)
     assert [type(each).__name__ for each in both] == ["Switch", "Assign", "Switch", "Assign"]

@@ -15,7 +15,7 @@ from threading import Lock
 
 from tools.mutation.explained import read_explanations
 from tools.mutation.judge import Judge
-from tools.mutation.map_store import BrokenTreeError, read_map, tree_digest
+from tools.mutation.map.store import BrokenTreeError, read_map, tree_digest
 from tools.mutation.mutants import Mutant
 from tools.mutation.report import markdown
 from tools.mutation.results import Record, append, read

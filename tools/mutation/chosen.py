@@ -13,13 +13,13 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-__all__ = ["CHOSEN", "RUNNING", "take_time"]
+__all__ = ["CHOSEN", "RUNNING", "remove_time_limits"]
 
 CHOSEN = "FIRM_HDL_MUTATION_CHOSEN"
 RUNNING = "FIRM_HDL_MUTATION_RUNNING"
 
 
-def take_time() -> None:
+def remove_time_limits() -> None:
     """Remove time limits of random tests: a failure on a slow machine would seem to be a kill."""
     calm = settings.get_profile("default")
     settings.register_profile(
@@ -30,7 +30,7 @@ def take_time() -> None:
 
 def pytest_configure() -> None:
     """Remove time limits before tests run."""
-    take_time()
+    remove_time_limits()
 
 
 @pytest.hookimpl(trylast=True)

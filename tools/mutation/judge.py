@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tools.mutation.coverage_map import CoverageMap, Test
+from tools.mutation.map.coverage_map import CoverageMap, Test
+from tools.mutation.map.selection import FOREIGN, batches, judges
 from tools.mutation.mutants import Mutant
 from tools.mutation.results import LOADING, Record
-from tools.mutation.selection import FOREIGN, batches, judges
 from tools.mutation.systems import REST, SNAPSHOT, SYSTEMS, system_of
 from tools.mutation.workshop import Run, Workshop
 

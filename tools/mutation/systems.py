@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 
 __all__ = ["REST", "SNAPSHOT", "SYSTEMS", "mirrored", "mirrors", "system_of", "test_files"]
 
-# Patterns of names of test files; `*` stands for folders, too. The first system that fits counts.
+# Patterns of names of test files; `*` also matches folders. The first matching system counts.
 SYSTEMS = {
     "ts1": ["tests/frontend/*", "tests/verify/ts1/*"],
     "ts2": ["tests/wire/*", "tests/plan/*", "tests/verify/ts2/test_golden*"],
@@ -47,9 +47,14 @@ def mirrored(path: str) -> str:
 
 
 def mirrors(name: str, path: str) -> bool:
-    """Return whether a test file is that of a module or grammar."""
+    """Return whether a test file tests a module or grammar of the same name.
+
+    The test file may be in a sub-folder of the folder that mirrors that of the module.
+    """
     module = "parse" if path.endswith(".lark") else PurePosixPath(path).stem
-    return name == f"{mirrored(path)}/test_{module}.py"
+    file = PurePosixPath(name)
+    folders = (file.parent, file.parent.parent)
+    return file.name == f"test_{module}.py" and PurePosixPath(mirrored(path)) in folders
 
 
 def test_files(root: Path, only: Sequence[str] = ()) -> list[str]:

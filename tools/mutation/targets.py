@@ -8,9 +8,9 @@ from collections.abc import Collection
 from math import sqrt
 from pathlib import Path
 
-from tools.mutation import grammar_rules, python_rules, semantic_rules
-from tools.mutation.index import Index, index_of_program
 from tools.mutation.mutants import Change, Mutant, identify
+from tools.mutation.rules import grammar_rules, python_rules, semantic_rules
+from tools.mutation.rules.index import Index, index_of_program
 
 __all__ = ["TARGETS", "all_mutants", "files", "is_fault", "sample"]
 

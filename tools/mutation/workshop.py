@@ -30,7 +30,7 @@ SECONDS = 1800
 LOADING_SECONDS = 60
 FAILED = re.compile(r"^(?:FAILED|ERROR) (\S.*?)(?: - .*)?$", re.MULTILINE)
 WRONG_COPY = 98
-# Exit status of pytest if no test was collected: no present test judges the mutant.
+# Exit status of pytest if no test was collected, so that no test judges the mutant.
 NOTHING = 5
 
 
@@ -111,7 +111,7 @@ class Workshop:
             yield
         finally:
             self._write(path, before)
-            # Its database would give a later mutant the examples on which an earlier one failed.
+            # The database would give a later mutant the examples of an earlier failure.
             storage = self.root.parent / f"{self.root.name}.hypothesis"
             shutil.rmtree(storage, ignore_errors=True)
 
@@ -178,7 +178,7 @@ class Workshop:
         return Run(status=status, by=by, cpu_seconds=answer["cpu"])
 
     def loads(self, path: str) -> bool:
-        """Tell whether Python loads a module of the copy."""
+        """Return whether Python loads a module of the copy."""
         module = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
         limits = {"cpu_seconds": LOADING_SECONDS, "seconds": 10 * LOADING_SECONDS}
         return bool(self._ask({"module": module, "environment": {}, **limits})["code"] == 0)

@@ -1,4 +1,4 @@
-"""SystemVerilog of messages without circuits, and linters that read it."""
+"""SystemVerilog packages and stubs of messages, and linters for them."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ def plan_of(message: Message, bus_bytes: int = 8) -> Plan:
     return build_plan(lay_out(message), bus_bytes=bus_bytes)
 
 
-# A vector of the Verilog becomes an array of items, and a number with a sign.
+# The wrapper converts Verilog vectors to arrays and signed numbers, which slang reports.
 SLANG = "slang --single-unit -Wextra -Wno-packed-array-conv -Wno-sign-conversion".split()
 
-# As slang's own command does it.
+# The same steps as in slang's own command.
 RUN_SLANG = """\
 import sys
 from pyslang.driver import Driver
@@ -46,19 +46,19 @@ sys.exit(not right)
 
 
 def slang(files: Iterable[str], folder: Path, *options: str) -> str:
-    """Have slang read files as one design; give all that it says."""
+    """Read files as one design with slang; return its output."""
     need("slang (pyslang)", "here" if find_spec("pyslang") else None)
     command = [sys.executable, "-c", RUN_SLANG, *SLANG, *options, *files]
     done = subprocess.run(
         command, cwd=folder, capture_output=True, text=True, timeout=300, check=False
     )
-    said = done.stdout + done.stderr
-    assert done.returncode == 0 or said
-    return said
+    output = done.stdout + done.stderr
+    assert done.returncode == 0 or output
+    return output
 
 
 def stub(plan: Plan, direction: Direction, module: str) -> str:
-    """A module with the ports of a converter, which offers nothing and takes nothing."""
+    """Return a module with the ports of a converter, whose outputs are all 0."""
     ports = ports_of(plan, direction)
 
     def range_(port: Port) -> str:
@@ -70,7 +70,7 @@ def stub(plan: Plan, direction: Direction, module: str) -> str:
 
 
 class Design:
-    """A folder with the SystemVerilog of several messages, and a module with all of theirs."""
+    """A folder with the SystemVerilog of several messages, and a module that instantiates all."""
 
     def __init__(self, folder: Path):
         self.folder = folder
@@ -78,7 +78,7 @@ class Design:
         self.instances: list[str] = []
 
     def add(self, message: Message, bus_bytes: int = 8) -> dict:
-        """Write a message's files but for `files.f`; give what the manifest says of them."""
+        """Add a message's files except `files.f`; return their section of the manifest."""
         plan = plan_of(message, bus_bytes)
         name = f"{identifier(message.name)}_{plan.wire}_{bus_bytes}"
         options = Options(bus_bytes=bus_bytes)
@@ -89,7 +89,7 @@ class Design:
         for file in section["files"]:
             if not file.startswith("../"):
                 text = made.files[f"systemverilog/{file}"]
-                # What types share is the same for all.
+                # Shared files are the same for all types.
                 assert self.texts.setdefault(file, text) == text
         for way in DIRECTIONS:
             core, wrapper = module_name(name, way), wrapper_name(name, way)
@@ -99,7 +99,7 @@ class Design:
         return section
 
     def write(self) -> list[str]:
-        """Write all files; give those for a compiler, in order."""
+        """Write all files; return those for a compiler, in order."""
         self.texts["all.sv"] = f"module all_of_them;\n{''.join(self.instances)}endmodule\n"
         for name, text in self.texts.items():
             (self.folder / name).write_text(text)
@@ -107,7 +107,7 @@ class Design:
         return [*packages, *(n for n in self.texts if n not in (*packages, "waivers.vlt"))]
 
     def lint(self, verilator: str) -> str:
-        """Have Verilator look at all; give what it says."""
+        """Lint all files with Verilator; return its output."""
         waived = (
             '`verilator_config\nlint_off -file "*_verilog.v"\n'
             'lint_off -rule PINMISSING -file "*all.sv"\n'

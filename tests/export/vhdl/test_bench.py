@@ -1,4 +1,4 @@
-"""The generated test bench, in GHDL: it passes on what is right and fails on what is not."""
+"""The generated test bench in GHDL: passes for correct converters, fails for deliberate faults."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.export.vhdl.test_layer import nasty, vhdl_of, write
 
 
 def run(folder: Path, *arguments: str, **environment: str) -> tuple[int, str]:
-    """Run the script from elsewhere; its status, and what it said."""
+    """Run the script from another folder; return its status and output."""
     done = subprocess.run(
         ["sh", str(folder / "run_ghdl.sh"), *arguments],
         cwd="/",
@@ -29,8 +29,8 @@ def run(folder: Path, *arguments: str, **environment: str) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
-def made(folder: Path, name: str, distro: str, bus_bytes: int) -> list[bytes]:
-    """Write the folder of a type; return its packets."""
+def write_folder(folder: Path, name: str, distro: str, bus_bytes: int) -> list[bytes]:
+    """Write the VHDL folder of a type; return its packets."""
     message = load_message(name, distro=distro)
     _, plan = vhdl_of(message, bus_bytes)
     packets = stimuli(message, plan)
@@ -53,14 +53,14 @@ def made(folder: Path, name: str, distro: str, bus_bytes: int) -> list[bytes]:
 )
 def test_passes(ghdl, tmp_path, name, distro, bus_bytes):
     folder = tmp_path / "with space"
-    packets = made(folder, name, distro, bus_bytes)
+    packets = write_folder(folder, name, distro, bus_bytes)
     for seed, stalls in ((1, 40), (2, 0)):
-        status, said = run(folder, f"-gseed={seed}", f"-gstalls={stalls}", GHDL=ghdl)
-        assert status == 0, said
+        status, output = run(folder, f"-gseed={seed}", f"-gstalls={stalls}", GHDL=ghdl)
+        assert status == 0, output
         size = sum(map(len, packets))
-        assert said.startswith(f"PASS {name}, "), said
-        assert f": {len(packets)} packets, {size} bytes, " in said
-        assert len(said.splitlines()) == 1, said
+        assert output.startswith(f"PASS {name}, "), output
+        assert f": {len(packets)} packets, {size} bytes, " in output
+        assert len(output.splitlines()) == 1, output
     assert (folder / "work" / "results.txt").read_text() == packets_text(packets)
     assert (folder / "work" / "transfers.txt").read_text().count("\n") >= len(packets)
 
@@ -72,12 +72,12 @@ def test_nasty_names_pass(ghdl, tmp_path, bus_bytes):
     packets = stimuli(message, plan)
     assert packets
     write(tmp_path / "vhdl", vhdl_of(message, bus_bytes, packets)[0].files)
-    status, said = run(tmp_path / "vhdl", GHDL=ghdl)
-    assert status == 0 and said.startswith("PASS "), said
+    status, output = run(tmp_path / "vhdl", GHDL=ghdl)
+    assert status == 0 and output.startswith("PASS "), output
 
 
 def test_changed_byte_more_and_fewer_packets_fail(ghdl, tmp_path):
-    packets = made(tmp_path, "geometry_msgs/msg/Twist", "lyrical", 8)
+    packets = write_folder(tmp_path, "geometry_msgs/msg/Twist", "lyrical", 8)
     changed = [bytearray(packet) for packet in packets]
     changed[2][17] ^= 1
     longer = [packets[0] + b"\0", *packets[1:]]
@@ -89,31 +89,31 @@ def test_changed_byte_more_and_fewer_packets_fail(ghdl, tmp_path):
     ):
         path = tmp_path / f"{what}.txt"
         path.write_text(packets_text(list(map(bytes, wrong))))
-        status, said = run(tmp_path, f"-gexpected={path}", "-gpatience=1000", GHDL=ghdl)
+        status, output = run(tmp_path, f"-gexpected={path}", "-gpatience=1000", GHDL=ghdl)
         assert status != 0, what
-        assert message in said
-        assert "PASS" not in said
+        assert message in output
+        assert "PASS" not in output
 
 
 def test_packet_that_is_not_of_the_type_fails(ghdl, tmp_path):
-    packets = made(tmp_path, "geometry_msgs/msg/Twist", "lyrical", 8)
+    packets = write_folder(tmp_path, "geometry_msgs/msg/Twist", "lyrical", 8)
     (tmp_path / "stimuli.txt").write_text(packets_text([packets[0][:-1]]))
-    status, said = run(tmp_path, GHDL=ghdl)
+    status, output = run(tmp_path, GHDL=ghdl)
     assert status != 0
-    assert "FAIL packet 0" in said
+    assert "FAIL packet 0" in output
 
 
-def test_missing_stimuli_and_missing_ghdl_are_told(tmp_path):
-    made(tmp_path, "std_msgs/msg/Empty", "lyrical", 8)
+def test_missing_stimuli_and_missing_ghdl_are_reported(tmp_path):
+    write_folder(tmp_path, "std_msgs/msg/Empty", "lyrical", 8)
     empty = tmp_path / "empty"
     empty.mkdir()
     for tool in ("dirname", "sh", "mkdir", "cat"):
         (empty / tool).symlink_to(Path("/usr/bin") / tool)
-    status, said = run(tmp_path, PATH=str(empty), GHDL="")
-    assert (status, said.count("apt install ghdl")) == (127, 1)
+    status, output = run(tmp_path, PATH=str(empty), GHDL="")
+    assert (status, output.count("apt install ghdl")) == (127, 1)
     (tmp_path / "stimuli.txt").unlink()
-    status, said = run(tmp_path, GHDL="true")
-    assert (status, said.count("stimuli.txt, one per line")) == (2, 1)
+    status, output = run(tmp_path, GHDL="true")
+    assert (status, output.count("stimuli.txt, one per line")) == (2, 1)
 
 
 def test_type_that_rosbags_cannot_write_has_no_stimuli(monkeypatch):

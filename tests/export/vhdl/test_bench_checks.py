@@ -1,4 +1,4 @@
-"""Each check of the generated benches fails on what it is there for, and says so."""
+"""Each check of the generated benches reports its fault."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.export.vhdl.parts import PARTS, packets_text
-from tests.export.vhdl.test_bench import made, run
+from tests.export.vhdl.test_bench import run, write_folder
 
-# Plays beats, one a line (data, keep, last, user in binary), and writes what the source sends.
+# The bench plays beats, one per line (data, keep, last, user in binary), and records the source.
 PLAYER = """\
 library ieee;
 use ieee.std_logic_1164.all;
@@ -94,7 +94,7 @@ def parts(tmp_path_factory):
 
 
 def play(ghdl: str, folder: Path, beats: list[str], packets: list[bytes]) -> str:
-    """Play beats to the sink, which expects packets; return what it said."""
+    """Play beats to the sink, which expects packets; return the output."""
     if not (folder / "work-obj08.cf").exists():
         subprocess.run([ghdl, "-a", "--std=08", *PARTS, "player.vhd"], cwd=folder, check=True)
     (folder / "beats.txt").write_text("".join(f"{beat}\n" for beat in beats))
@@ -109,7 +109,7 @@ def play(ghdl: str, folder: Path, beats: list[str], packets: list[bytes]) -> str
 
 
 def beat(data: bytes, *, keep: str = "", last: int = 1, user: int = 0) -> str:
-    """Return a beat; what is not kept is undefined."""
+    """Return a beat; bytes that are not kept are undefined."""
     bits = "".join(f"{byte:08b}" for byte in reversed(data))
     keep = keep or "1" * len(data)
     return f"{bits:U>32} {keep:0>4} {last} {user}"
@@ -119,16 +119,16 @@ WHOLE = beat(b"abcd", last=0)
 
 
 @pytest.mark.parametrize(
-    ("beats", "said"),
+    ("beats", "output"),
     [
         ([WHOLE, beat(b"e")], ""),
-        # One bit, an undefined bit, one byte more and one fewer, and a packet of twice the beats.
+        # A changed bit, an undefined bit, one byte more or fewer, and a packet of twice the beats.
         ([WHOLE, beat(b"d")], "FAIL packet 0: byte 4 is 64 instead of 65"),
         ([WHOLE, beat(b"e").replace("01100101", "0110010X")], "FAIL packet 0: byte 4 is 0110010X"),
         ([WHOLE, beat(b"ef")], "FAIL packet 0: byte 5 is 01100110, and 5 are expected"),
         ([beat(b"abcd")], "FAIL packet 0 has 4 bytes instead of 5"),
         ([WHOLE, WHOLE, beat(b"e")], "FAIL packet 0: byte 4 is 61 instead of 65"),
-        # Packets that are too many, even without bytes.
+        # Surplus packets, even without bytes.
         ([WHOLE, beat(b"e"), beat(b"e")], "FAIL packet 1: no such packet is expected"),
         ([WHOLE, beat(b"e"), beat(b"", keep="0000")], "FAIL packet 1: no such packet is expected"),
         # Lanes.
@@ -141,16 +141,16 @@ WHOLE = beat(b"abcd", last=0)
         ([WHOLE, beat(b"e", keep="1001")], "FAIL packet 0: tkeep is 1001 with tlast 1, after 4"),
         ([WHOLE, beat(b"e", keep="000X")], "FAIL packet 0: tkeep is 000X with tlast 1, after 4"),
         ([WHOLE, beat(b"e", last=0)], "FAIL packet 0: tkeep is 0001 with tlast 0, after 4"),
-        # Marks.
+        # `tuser` marks.
         ([WHOLE, beat(b"e", user=1)], "FAIL packet 0 is marked by tuser"),
         ([WHOLE.removesuffix("0") + "1", beat(b"e")], "FAIL packet 0: tuser is 1 with tlast 0"),
         ([WHOLE, beat(b"e").removesuffix("0") + "X"], "FAIL packet 0 is marked by tuser"),
     ],
 )
-def test_sink(ghdl, parts, beats, said):
+def test_sink(ghdl, parts, beats, output):
     found = play(ghdl, parts, beats, [b"abcde"])
-    assert said in found if said else not found
-    if not said:
+    assert output in found if output else not found
+    if not output:
         assert (parts / "results.txt").read_text() == b"abcde".hex() + "\n"
 
 
@@ -180,11 +180,11 @@ VALID = r"(status_valid +=> )m_axis_status_tvalid"
 
 
 @pytest.mark.parametrize(
-    ("side", "changes", "said"),
+    ("side", "changes", "output"),
     [
         ("deserializer", {STATUS: 'm_axis_status_tdata <= x"02";'}, "FAIL packet 0: the deserial"),
         ("serializer", {STATUS: 'm_axis_status_tdata <= x"06";'}, "FAIL packet 0: the serializer"),
-        # Statuses, and a leaf, that nobody asked for; then one that does not come.
+        # A surplus status, a surplus leaf, and a missing one.
         ("deserializer", {VALID: r"\1open", STATUS: "m_axis_status_tvalid <= '1';"}, "FAIL "),
         ("serializer", {VALID: r"\1open", STATUS: "m_axis_status_tvalid <= '1';"}, "FAIL "),
         ("serializer", {VALID: r"\1open", STATUS: "m_axis_status_tvalid <= '0';"}, "FAIL no beat"),
@@ -195,34 +195,34 @@ VALID = r"(status_valid +=> )m_axis_status_tvalid"
         ),
     ],
 )
-def test_bench(ghdl, tmp_path, side, changes, said):
-    made(tmp_path, "std_msgs/msg/UInt8", "lyrical", 8)
+def test_bench(ghdl, tmp_path, side, changes, output):
+    write_folder(tmp_path, "std_msgs/msg/UInt8", "lyrical", 8)
     (file,) = tmp_path.glob(f"*_8_{side}_flat.vhd")
     text = file.read_text()
     for pattern, to in changes.items():
         text, count = re.subn(pattern, to, text, count=1)
         assert count == 1
-    # What is driven here is no longer the instance's, and read by nobody.
+    # The changed text drives these outputs, so the wrapper's own assignments are removed.
     text = re.sub(
         r"^  status_valid <= .*|^  message_data_valid <= .*", "", text, flags=re.MULTILINE
     )
     file.write_text(text)
     status, found = run(tmp_path, "-gpatience=1000", GHDL=ghdl)
-    assert status != 0 and said in found and "PASS" not in found, found
+    assert status != 0 and output in found and "PASS" not in found, found
 
 
 def test_bench_without_packets_fails(ghdl, tmp_path):
-    made(tmp_path, "std_msgs/msg/UInt8", "lyrical", 8)
+    write_folder(tmp_path, "std_msgs/msg/UInt8", "lyrical", 8)
     (tmp_path / "stimuli.txt").write_text("# nothing\n")
     status, found = run(tmp_path, GHDL=ghdl)
     assert status != 0 and "FAIL there are no packets" in found
 
 
-def test_bench_says_what_is_left_over(ghdl, tmp_path):
-    made(tmp_path, "builtin_interfaces/msg/Time", "lyrical", 8)
+def test_bench_reports_leftover_transfers(ghdl, tmp_path):
+    write_folder(tmp_path, "builtin_interfaces/msg/Time", "lyrical", 8)
     (tmp_path / "stimuli.txt").write_text(packets_text([b"\0\1\0\0" + bytes(8)] * 3))
     (file,) = tmp_path.glob("*_8_deserializer_flat.vhd")
-    # One more of the second leaf is always there; the serializer takes it with the first alone.
+    # There is always one more of the second leaf; the serializer takes it only with the first.
     text = file.read_text()
     for pattern, to in {
         r"(message_nanosec_valid +=> )nanosec_valid": r"\1open",

@@ -1,4 +1,4 @@
-"""VHDL without records: converters with plain ports, and a bench that works on those."""
+"""VHDL without records: converters with plain ports, and their bench."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ def test_bench_passes(ghdl, tmp_path, name, bus_bytes):
     made, _ = vhdl_of(message, bus_bytes, packets, ports="flat")
     write(tmp_path / "vhdl", made.files)
     analyse(ghdl, tmp_path / "vhdl", [*made.manifest["files"], *made.manifest["bench"]["files"]])
-    status, said = run(tmp_path / "vhdl", GHDL=ghdl)
-    assert status == 0, said
-    assert said.startswith("PASS ") and f": {len(packets)} packets, " in said
+    status, output = run(tmp_path / "vhdl", GHDL=ghdl)
+    assert status == 0, output
+    assert output.startswith("PASS ") and f": {len(packets)} packets, " in output
     flat = (tmp_path / "vhdl" / "work" / "transfers.txt").read_text()
-    # The bench of the converters with records sees the same, cycle by cycle.
+    # The bench of the converters with records takes the same number of cycles.
     made, _ = vhdl_of(message, bus_bytes, packets)
     write(tmp_path / "records", made.files)
     assert run(tmp_path / "records", GHDL=ghdl)[0] == 0
@@ -60,13 +60,13 @@ def test_ports_are_an_option_of_the_command(tmp_path, capsys):
     folder = tmp_path / "lyrical" / "std_msgs_msg_Bool_cdr_8" / "vhdl"
     assert main(command) == 0
     assert (folder / "std_msgs_msg_bool_cdr_8_deserializer.vhd").exists()
-    # The other kind of ports takes the place of the first, as a whole.
+    # The other kind of ports replaces the first completely.
     assert main([*command, "--ports", "flat"]) == 0
     assert not (folder / "std_msgs_msg_bool_cdr_8_deserializer.vhd").exists()
     assert (folder / "std_msgs_msg_bool_cdr_8_deserializer_flat.vhd").exists()
     assert main([*command, "--ports", "flat"]) == 0
-    said = capsys.readouterr().out.splitlines()
-    states = [line.split()[0] for line in said if "lyrical" in line]
+    output = capsys.readouterr().out.splitlines()
+    states = [line.split()[0] for line in output if "lyrical" in line]
     assert states == ["wrote", "wrote", "current"]
     with pytest.raises(SystemExit) as caught:
         main([*command, "--ports", "round"])

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The user's layer: records under the message's own names, legal in VHDL whatever they are."""
+"""The user's layer in VHDL: records with the message's own names, made legal where necessary."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ bool view
 INNER = "uint32 process\nuint32 Process\nfloat64[2] units\n"
 
 
-# All that GHDL 2.0 has for VHDL-2008.
+# All warnings of GHDL 2.0 for VHDL-2008.
 WARNINGS = [
     f"--warn-{name}"
     for name in (
@@ -99,7 +99,7 @@ def write(folder: Path, files: dict[str, str]) -> None:
 
 
 def analyse(ghdl: str, folder: Path, files: Iterable[str]) -> None:
-    """Analyse in GHDL, which must have nothing to say."""
+    """Analyse files in GHDL, which must print nothing."""
     done = subprocess.run(
         [ghdl, "-a", "--std=08", "--warn-error", *WARNINGS, *files],
         cwd=folder,
@@ -159,7 +159,7 @@ def test_comments_and_units_stand_above_their_fields(tmp_path):
 def test_constants_have_their_values(tmp_path):
     text = re.sub(" +:", " :", own_package(layer(nasty(tmp_path))))
     for line in (
-        # `severity error` must go on to work.
+        # `severity error` must stay usable.
         'constant ERROR_CONSTANT : unsigned(7 downto 0) := x"01";  -- uint8 1',
         'constant range_field : unsigned(7 downto 0) := x"02";  -- uint8 2',
         'constant LEAST : signed(63 downto 0) := x"8000000000000000";',

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The README's pieces of code, with what they leave out, are designs that act on good packets."""
+"""The README's code, completed to designs: they act on good packets only."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.export.vhdl.parts import PARTS
+from tests.examples.test_examples import load
 from tests.export.vhdl.test_layer import analyse, vhdl_of, write
-from tests.test_examples import load
 
 ROOT = Path(__file__).parents[3]
 README = (ROOT / "README.md").read_text()
@@ -57,7 +57,7 @@ def converters():
 
 
 def bench() -> str:
-    """Return the bench of the motor in the examples, for these designs, whose bus is wider."""
+    """Return the bench of the motor example, adapted to the wider bus of these designs."""
     text = (EXAMPLES / "vhdl_motor" / "motor_tb.vhd").read_text()
     for old, new in (("(31 downto", "(63 downto"), ("(3 downto", "(7 downto"), ("=> 4,", "=> 8,")):
         assert old in text
@@ -83,20 +83,20 @@ def run(ghdl: str, converters, folder: Path, block: str) -> tuple[int, str]:
 
 
 @pytest.mark.parametrize("number", range(2))
-def test_pieces_act_on_good_packets_alone(ghdl, converters, tmp_path, number):
+def test_code_of_the_readme_acts_on_good_packets_only(ghdl, converters, tmp_path, number):
     assert len(BLOCKS) == 2
-    status, said = run(ghdl, converters, tmp_path, BLOCKS[number])
-    assert status == 0 and "PASS 8 packets, 4 speeds" in said, said
+    status, output = run(ghdl, converters, tmp_path, BLOCKS[number])
+    assert status == 0 and "PASS 8 packets, 4 speeds" in output, output
 
 
-def test_piece_that_does_not_look_at_the_status_fails(ghdl, converters, tmp_path):
+def test_code_that_ignores_the_status_fails(ghdl, converters, tmp_path):
     naive, count = re.subn(SAFE, ";", BLOCKS[0])
     assert count == 1
-    status, said = run(ghdl, converters, tmp_path, naive)
-    assert status != 0 and "FAIL after" in said, said
+    status, output = run(ghdl, converters, tmp_path, naive)
+    assert status != 0 and "FAIL after" in output, output
 
 
-def test_piece_of_systemverilog_is_the_examples_own():
+def test_systemverilog_code_is_that_of_the_example():
     (piece,) = re.findall(r"^```systemverilog\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
     example = (EXAMPLES / "sv_motor" / "motor.sv").read_text()
     assert piece in example and "status.tdata == STATUS_OK" in piece

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The record view in VHDL: whole messages of fixed size, through both entities, in GHDL."""
+"""The record view in VHDL: messages of fixed size pass through both entities in GHDL."""
 
 from __future__ import annotations
 
@@ -57,8 +57,8 @@ def arrays(tmp_path: Path, distro: str) -> Message:
     return load_message("array_msgs/Arrays", distro=distro, paths=[tmp_path / "src"])
 
 
-def made(folder: Path, message: Message, bus_bytes: int) -> tuple[str, list[bytes]]:
-    """Write the folder of a type; return its record bench and its packets."""
+def write_folder(folder: Path, message: Message, bus_bytes: int) -> tuple[str, list[bytes]]:
+    """Write the VHDL folder of a type; return its record bench and its packets."""
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
     packets = stimuli(message, plan)
     assert packets
@@ -70,12 +70,12 @@ def made(folder: Path, message: Message, bus_bytes: int) -> tuple[str, list[byte
 
 
 def check(ghdl: str, folder: Path, message: Message, bus_bytes: int) -> None:
-    bench, packets = made(folder, message, bus_bytes)
+    bench, packets = write_folder(folder, message, bus_bytes)
     for stalls in (0, 40):
-        status, said = run(folder, f"-gstalls={stalls}", GHDL=ghdl, BENCH=bench)
-        assert status == 0, said
-        assert said.startswith(f"PASS {message.name} record, "), said
-        assert f": {len(packets)} packets, " in said
+        status, output = run(folder, f"-gstalls={stalls}", GHDL=ghdl, BENCH=bench)
+        assert status == 0, output
+        assert output.startswith(f"PASS {message.name} record, "), output
+        assert f": {len(packets)} packets, " in output
     assert (folder / "work" / "results_record.txt").read_text() == packets_text(packets)
     rows = (folder / "work" / "transfers_record.txt").read_text().splitlines()
     assert [row.split()[1] for row in rows] == ["msg"] * len(packets)
@@ -101,27 +101,27 @@ def test_arrays_and_nasty_names_come_back(ghdl, tmp_path, distro, bus_bytes):
 
 
 def test_changed_byte_fails(ghdl, tmp_path):
-    bench, packets = made(tmp_path, load_message("geometry_msgs/msg/Twist"), 8)
+    bench, packets = write_folder(tmp_path, load_message("geometry_msgs/msg/Twist"), 8)
     changed = [bytearray(packet) for packet in packets]
     changed[2][17] ^= 1
     (tmp_path / "changed.txt").write_text(packets_text(list(map(bytes, changed))))
-    status, said = run(tmp_path, f"-gexpected={tmp_path}/changed.txt", GHDL=ghdl, BENCH=bench)
+    status, output = run(tmp_path, f"-gexpected={tmp_path}/changed.txt", GHDL=ghdl, BENCH=bench)
     assert status != 0
-    assert "FAIL packet 2: byte 17 is " in said
+    assert "FAIL packet 2: byte 17 is " in output
 
 
 def test_swapped_members_fail(ghdl, tmp_path):
-    # What the benches would miss if both ways were wrong alike is in the user's own design below.
-    bench, _ = made(tmp_path, load_message("geometry_msgs/msg/Twist"), 8)
+    # Both directions could have the same fault. The user's own design below would find it.
+    bench, _ = write_folder(tmp_path, load_message("geometry_msgs/msg/Twist"), 8)
     [package] = tmp_path.glob("*vector3_cdr_8_pkg.vhd")
     text = package.read_text()
     assert "    value.x := all_bits(63 downto 0);\n" in text
     text = text.replace("value.x := all_bits", "value.@ := all_bits")
     text = text.replace("value.y := all_bits", "value.x := all_bits")
     package.write_text(text.replace("value.@ := all_bits", "value.y := all_bits"))
-    status, said = run(tmp_path, GHDL=ghdl, BENCH=bench)
+    status, output = run(tmp_path, GHDL=ghdl, BENCH=bench)
     assert status != 0
-    assert "FAIL packet " in said
+    assert "FAIL packet " in output
 
 
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])
@@ -137,7 +137,7 @@ def test_package_reads_like_the_definition(tmp_path):
     text = vhdl.files["array_msgs_arrays_ros1_8_pkg.vhd"]
     start = text.index("  type arrays_value_t is record\n")
     record = text[start : text.index("  end record;\n", start)]
-    # What a long line has after it stands above it.
+    # The comment of a long line is above the line.
     record = re.sub(r"\n    (--.*)\n(.*)", r"\n\2 \1", record.replace("work.array_msgs_", ""))
     assert [" ".join(line.split()) for line in record.splitlines()[1:]] == [
         "range_field : std_logic; -- range: bool",
@@ -176,7 +176,7 @@ def test_package_reads_like_the_definition(tmp_path):
         ),
     ],
 )
-def test_what_has_no_record_says_why(tmp_path, text, reason):
+def test_types_without_a_record_state_the_reason(tmp_path, text, reason):
     folder = tmp_path / "big_msgs" / "msg"
     folder.mkdir(parents=True)
     (folder / "Big.msg").write_text(text)

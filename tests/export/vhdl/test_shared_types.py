@@ -1,4 +1,4 @@
-"""Two messages in one design have the types in common that they share in ROS."""
+"""Two messages in one design share the VHDL types that they share in ROS."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def folders(tmp_path_factory) -> list[Path]:
     return [each.folder / "vhdl" for each in build([SCAN, CLOUD], out)]
 
 
-def once(folders: Iterable[Path], listed: str) -> list[Path]:
-    """List the files of several folders, of each name the first."""
+def unique_files(folders: Iterable[Path], listed: str) -> list[Path]:
+    """List the files of several folders, each name once."""
     found: dict[str, Path] = {}
     for folder in folders:
         for name in (folder / listed).read_text().split():
@@ -137,27 +137,29 @@ def simulated(ghdl: str, folders: list[Path], work: Path, expected: Iterable[byt
     sent = [packets(frame_id)[0] for frame_id in ("map", "a longer name")]
     (work / "stimuli.txt").write_text("".join(f"{packet.hex()}\n" for packet in sent))
     (work / "expected.txt").write_text("".join(f"{packet.hex()}\n" for packet in expected))
-    files = [*once(folders, "files.txt"), *once(folders, "bench_files.txt")]
+    files = [*unique_files(folders, "files.txt"), *unique_files(folders, "bench_files.txt")]
     files = [file for file in files if "_tb" not in file.name]
     options = ["--std=08", f"--workdir={work}"]
-    status, said = run([ghdl, "-a", *options, "--warn-error", *map(str, files), "design.vhd"], work)
-    assert (status, said) == (0, "")
+    status, output = run(
+        [ghdl, "-a", *options, "--warn-error", *map(str, files), "design.vhd"], work
+    )
+    assert (status, output) == (0, "")
     return run([ghdl, "--elab-run", *options, "design", "--ieee-asserts=disable-at-0"], work)[1]
 
 
 def test_header_of_one_message_goes_to_another(ghdl, folders, tmp_path):
     expected = [packets(frame_id)[1] for frame_id in ("map", "a longer name")]
-    said = simulated(ghdl, folders, tmp_path, expected)
-    assert "PASS" in said and "FAIL" not in said
+    output = simulated(ghdl, folders, tmp_path, expected)
+    assert "PASS" in output and "FAIL" not in output
 
 
 def test_another_header_is_found(ghdl, folders, tmp_path):
     expected = [packets(frame_id)[1] for frame_id in ("map", "a longer Name")]
-    said = simulated(ghdl, folders, tmp_path, expected)
-    assert "FAIL packet 1" in said and "PASS" not in said
+    output = simulated(ghdl, folders, tmp_path, expected)
+    assert "FAIL packet 1" in output and "PASS" not in output
 
 
-def test_what_folders_have_in_common_is_one_text(folders):
+def test_shared_files_have_one_text(folders):
     one, other = ({path.name: path for path in folder.iterdir()} for folder in folders)
     both = {name for name in {*one} & {*other} if name.endswith((".vhd", ".core"))}
     assert {
@@ -194,7 +196,7 @@ def test_package_of_a_type_is_the_same_wherever_the_type_is():
 PACKAGES = ("geometry_msgs/", "sensor_msgs/", "nav_msgs/", "std_msgs/")
 
 
-# Each message of the second column has a type whose package is called like one of the first's.
+# `A` and `B` need packages with the same name, and so do `C` and `D`.
 SIMILAR = {
     "p/Inner.msg": "uint8 x\n",
     "p/INNER.msg": "uint16 x\n",
@@ -232,19 +234,19 @@ def test_two_types_whose_package_has_one_name_are_not_built_side_by_side(
     similar, tmp_path, one, other, package, types
 ):
     options = {"library": Library("noetic", [similar])}
-    said = f"{other}: the VHDL package '{package}' would be that of {types[0]}, but in .* it is "
-    with pytest.raises(BuildError, match=f"^{said}that of {types[1]}; build one of them"):
+    output = f"{other}: the VHDL package '{package}' would be that of {types[0]}, but in .* it is "
+    with pytest.raises(BuildError, match=f"^{output}that of {types[1]}; build one of them"):
         build([one, other], tmp_path / "at once", **options)
     assert not (tmp_path / "at once").exists()
 
 
-def test_what_was_built_before_counts(similar, tmp_path):
+def test_earlier_builds_count(similar, tmp_path):
     options = {"out": tmp_path / "out", "library": Library("noetic", [similar])}
     (before,) = build(["p/A"], **options)
     with pytest.raises(BuildError, match=r"that of p/INNER, but in '.*p_A_ros1_8' it is that"):
         build(["p/B"], **options)
     assert [before.folder] == list(before.folder.parent.glob("[!.]*"))
-    # What is no manifest says nothing.
+    # A file that is no manifest is ignored.
     (before.folder / "manifest.json").write_text(
         '{"vhdl": 5, "inputs": {}, "files": {}, "inputs_sha256": ""}'
     )
@@ -263,12 +265,12 @@ def test_types_that_are_similar_within_a_message_have_packages_each(ghdl, simila
 def test_tools_have_each_file_once(folders, tmp_path):
     tclsh = need("tclsh", shutil.which("tclsh"))
     (tmp_path / "stubs.tcl").write_text(STUBS)
-    status, said = run(
+    status, output = run(
         [tclsh, "stubs.tcl", *(str(folder / "vivado.tcl") for folder in folders)], tmp_path
     )
-    assert status == 0, said
-    read = [Path(line.split()[-1]).name for line in said.splitlines()]
-    assert read == [path.name for path in once(folders, "files.txt")]
+    assert status == 0, output
+    read = [Path(line.split()[-1]).name for line in output.splitlines()]
+    assert read == [path.name for path in unique_files(folders, "files.txt")]
     assert {"builtin_interfaces_msg_time_cdr_8_pkg.vhd", "std_msgs_msg_header_cdr_8_pkg.vhd"} <= {
         *read
     }
@@ -280,11 +282,11 @@ def test_tools_have_each_file_once(folders, tmp_path):
         "targets:\n  default:\n    filesets: [all]\n"
         "  sim:\n    default_tool: ghdl\n    filesets: [all]\n    toplevel: x\n"
     )
-    status, said = run([*fusesoc(), "run", "--setup", "--target=sim", "my:own:both"], tmp_path)
-    assert status == 0, said
+    status, output = run([*fusesoc(), "run", "--setup", "--target=sim", "my:own:both"], tmp_path)
+    assert status == 0, output
     (listed,) = (tmp_path / "build").rglob("*.eda.yml")
     text = listed.read_text()
-    for path in once(folders, "files.txt"):
+    for path in unique_files(folders, "files.txt"):
         assert text.count(f"/{path.name}\n") == 1, path.name
 
 

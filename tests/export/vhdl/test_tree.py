@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The user's VHDL, where types, fields and constants share names, or have odd values."""
+"""The user's VHDL for types, fields and constants with equal names or unusual values."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def test_ports_that_would_have_one_name_have_two(tmp_path):
     for direction in ("deserializer", "serializer"):
         ports = [port.name.lower() for port in ports_of(plan, direction)]
         assert len({*ports}) == len(ports)
-    # Of equal ones, the first on the wire stays.
+    # Of several ports with one name, the first on the wire keeps the name.
     assert names["a_b",] == "a_b" and names["a", "b_c"] == "a_b_c"
     assert names["a", "b"] != "a_b" and names["a_b_c",] != "a_b_c"
     assert names["s_axis",] != "s_axis" and names["m_axis_status",] != "m_axis_status"
@@ -197,7 +197,7 @@ ODD = [
 ]
 
 
-def test_comments_are_comments_whatever_they_say():
+def test_comments_stay_comments_for_any_text():
     for indent in ("", "  ", "    "):
         for text in ODD:
             lines = list(comment(text, indent))
@@ -213,12 +213,12 @@ def test_comments_are_comments_whatever_they_say():
     assert list(comment("a\n\nb", "")) == ["-- a\n", "--\n", "-- b\n"]
 
 
-def test_odd_comments_and_units_are_analysed(ghdl, tmp_path):
-    # Of what a line of a definition may have.
-    odd = [text for text in ODD if "\ud800" not in text]
-    odd = [re.sub(r"[\r\v\x85\u2028\x1b]", " ", text) for text in odd]
-    lines = [f'# {text}\nint8 f{n}  # {text} [{n} °"]' for n, text in enumerate(odd)]
-    lines += [f"# {text}\nint8 C{n}={n}  # [--]" for n, text in enumerate(odd)]
+def test_unusual_comments_and_units_are_analysed(ghdl, tmp_path):
+    # Characters that a line of a definition may have.
+    unusual = [text for text in ODD if "\ud800" not in text]
+    unusual = [re.sub(r"[\r\v\x85\u2028\x1b]", " ", text) for text in unusual]
+    lines = [f'# {text}\nint8 f{n}  # {text} [{n} °"]' for n, text in enumerate(unusual)]
+    lines += [f"# {text}\nint8 C{n}={n}  # [--]" for n, text in enumerate(unusual)]
     message = library(tmp_path / "src", {"p/T": '# "head" --\n\n' + "\n".join(lines)}).message(
         "p/T"
     )
@@ -246,7 +246,7 @@ def test_values_of_a_record_stand_where_the_layout_has_them(tmp_path):
         assert re.search(read, text), name
         assert re.search(rf"bits{re.escape(part)} := [a-z_0-9.]*\(?value\.{member}\)?;", text), name
     assert made.manifest["record_view"]["bits"] == layout.size == 1 + 24 + 96 + 192 + 8 + 96
-    # Two types of one name are two records, each with a size of its own.
+    # Two types with one name are two records, each with its own size.
     (body,) = re.findall(r"  type t_value_t is record\n(.*?)  end record;", text, re.DOTALL)
     types = {line.split()[0]: line.split()[2].rstrip(";") for line in body.splitlines()}
     assert types["a"] != types["b"] and types["c"].startswith(types["b"].removesuffix("_t"))
@@ -323,7 +323,7 @@ def test_items_have_as_many_lanes_as_the_bus(tmp_path, bus_bytes):
     ]
 
 
-def test_a_comment_stands_as_far_in_as_what_it_is_about(tmp_path):
+def test_a_comment_is_indented_like_its_declaration(tmp_path):
     made, _ = vhdl_of(library(tmp_path, TWO).message("p/T"))
     seen = 0
     for text in made.files.values():

@@ -1,4 +1,4 @@
-"""What is compared of a bench in VHDL: everything that it wrote, and nothing less."""
+"""The comparison of a VHDL bench covers everything that the bench writes."""
 
 from __future__ import annotations
 
@@ -44,19 +44,19 @@ def check(lines):
     return _check_transfers(PLAN, CASES, "".join(f"{line}\n" for line in lines))
 
 
-def test_what_is_right_is_counted():
+def test_correct_output_is_counted():
     assert check(LINES) == 10
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "output"),
     [
         ({0: "4 x FFFF"}, "transfers of x: number 0 of 2 is ['FFFF'] instead of ['FFFE']"),
         ({1: "4 b 0"}, "transfers of b: number 0 of 2 "),
         ({1: "4 b X"}, "transfers of b: number 0 of 2 is ['X'] instead of ['1']"),
         ({9: "17 s.items 0063"}, "transfers of s.items: number 3 of 4 is ['0063'] instead of"),
         ({8: "12 s.items 6261 *"}, "transfers of s.items: number 2 of 4 is ['6261 *'] instead"),
-        # What is in the lane that the text has not.
+        # A byte in a lane that the string does not use.
         ({9: "17 s.items A563 *"}, "transfers of s.items: number 3 of 4 "),
         ({7: None}, "transfers of s.length: number 1 of 2 is [] instead of ['00000003']"),
         ({9: None}, "transfers of s.items: number 3 of 4 is [] instead of ['0063 *']"),
@@ -67,11 +67,11 @@ def test_what_is_right_is_counted():
         ({0: "4 y FFFE"}, "transfers of x: number 0 of 2 is ['0005'] instead of ['FFFE']"),
     ],
 )
-def test_transfers(change, said):
+def test_transfers(change, output):
     lines = [change.get(number, line) for number, line in enumerate(LINES)]
     with pytest.raises(AssertionError) as caught:
         check([line for line in lines if line is not None])
-    assert str(caught.value).startswith(said)
+    assert str(caught.value).startswith(output)
 
 
 def test_no_transfers_at_all():
@@ -80,7 +80,7 @@ def test_no_transfers_at_all():
 
 
 @pytest.mark.parametrize(
-    ("got", "said"),
+    ("got", "output"),
     [
         ("00\n0101\n", "number 1 of 2 is ['0101'] instead of ['01']"),
         ("00\n", "number 1 of 2 is [] instead of ['01']"),
@@ -91,8 +91,8 @@ def test_no_transfers_at_all():
         ("", "number 0 of 2 is [] instead of ['00']"),
     ],
 )
-def test_packets(got, said):
+def test_packets(got, output):
     with pytest.raises(AssertionError) as caught:
         _compare("packets", got, "00\n01\n")
-    assert str(caught.value) == f"packets: {said}"
+    assert str(caught.value) == f"packets: {output}"
     _compare("packets", "00\n01\n", "00\n01\n")

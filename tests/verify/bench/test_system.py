@@ -29,7 +29,7 @@ def run_bench(ghdl, name, distro="lyrical", bus_bytes=8, **options):
     return benches.run_bench((Request(**options), ghdl), test)
 
 
-# Those of tests/export/vhdl/test_bench.py have no loops and no arrays but of floats.
+# The types of tests/export/vhdl/test_bench.py have no loops, and arrays of floats only.
 SAMPLE = [
     # Two levels of loops over strings.
     ("lyrical", "diagnostic_msgs/msg/DiagnosticArray", 8),
@@ -37,7 +37,7 @@ SAMPLE = [
     ("lyrical", "rcl_interfaces/msg/ParameterValue", 8),
     # Runs of a constant length in a loop, and structures in another.
     ("noetic", "shape_msgs/Mesh", 8),
-    # A leaf without bytes among others.
+    # A leaf without bytes between other leaves.
     ("noetic", "nav_msgs/GetMapActionGoal", 8),
     # Bounds, and strings of one character a lane.
     ("lyrical", "shape_msgs/msg/SolidPrimitive", 2),
@@ -64,7 +64,7 @@ def wide(folder, ghdl):
     return run_bench(ghdl, "own_msgs/msg/Wide", paths=(str(folder),))
 
 
-def test_wide_text_is_not_judged_unless_somebody_has_it(ghdl, tmp_path, monkeypatch):
+def test_wide_text_is_not_judged_without_a_reference(ghdl, tmp_path, monkeypatch):
     monkeypatch.setattr(references, "usable_references", lambda wanted=None: ())
     result = wide(tmp_path, ghdl)
     assert result.verdict == NotJudged("rosbags has no wstring, which own_msgs/msg/Wide.text is")
@@ -86,7 +86,7 @@ FALSIFY = "trap 'sed -i s/00/01/ results.txt' EXIT"
 
 
 def change(monkeypatch, file: str, before: str, after: str) -> None:
-    """Have the first `before` in one of the written files changed."""
+    """Replace the first `before` in one of the written files."""
     build = benches.build
 
     def built(names, folder, **options):
@@ -102,9 +102,9 @@ def change(monkeypatch, file: str, before: str, after: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("file", "before", "after", "said"),
+    ("file", "before", "after", "output"),
     [
-        # A warning of GHDL; an error of it; a bench that fails; bytes, and transfers, that differ.
+        # A warning and an error of GHDL; a bench that fails; different bytes; different transfers.
         ("8_tb.vhd", "\nbegin\n", "\n  signal unused : bit;\nbegin\n", "unused"),
         ("_deserializer.vhd", "architecture", "architektur", "_deserializer.vhd:"),
         ("_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ", "FAIL packet 0"),
@@ -113,11 +113,11 @@ def change(monkeypatch, file: str, before: str, after: str) -> None:
         (RUN_SCRIPT, 'exec "$ghdl"', 'echo nothing; exit 0\nexec "$ghdl"', "nothing"),
     ],
 )
-def test_what_is_wrong_is_found(ghdl, monkeypatch, file, before, after, said):
+def test_faults_are_found(ghdl, monkeypatch, file, before, after, output):
     change(monkeypatch, file, before, after)
     result = run_bench(ghdl, HEADER)
     (failure,) = result.verdict.failures
-    assert said in failure
+    assert output in failure
     assert not result.packets
 
 
@@ -132,7 +132,7 @@ def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
     assert "FAIL packet 0" in failure
 
 
-def test_table_and_status_say_what_failed_and_how_to_repeat(ghdl, monkeypatch, capsys):
+def test_table_and_status_have_failures_and_the_command_to_repeat(ghdl, monkeypatch, capsys):
     tasks = collect_tasks(["lyrical"], ["std_msgs/msg/Bool"])
     (found,) = Benches(tasks, Request(jobs=1)).run(Recorder())
     assert_passed(found)
@@ -142,13 +142,13 @@ def test_table_and_status_say_what_failed_and_how_to_repeat(ghdl, monkeypatch, c
     change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
     (found,) = Benches(tasks, Request(wire="ros1", widths=(4,), jobs=1)).run(Recorder())
     assert isinstance(found.verdict, Failed)
-    said = capsys.readouterr().out
-    assert "FAIL std_msgs/msg/Bool (lyrical)\n" in said
+    output = capsys.readouterr().out
+    assert "FAIL std_msgs/msg/Bool (lyrical)\n" in output
     again = "firm-hdl verify --systems bench --distro lyrical --wire ros1 --bus-bytes 4"
-    assert f"again: {again} std_msgs/msg/Bool\n" in said
+    assert f"again: {again} std_msgs/msg/Bool\n" in output
 
 
-def test_results_are_kept_and_not_found_out_again(ghdl, tmp_path, monkeypatch, capsys):
+def test_results_are_kept_and_not_repeated(ghdl, tmp_path, monkeypatch, capsys):
     file = tmp_path / "r.jsonl"
     names = ["std_msgs/msg/Bool", "std_msgs/msg/Empty"]
     call = ["verify", "--systems", "bench", "--distro", "lyrical", "--jobs", "1", *names]

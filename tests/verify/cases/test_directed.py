@@ -26,7 +26,7 @@ def cases_of(name, made, most=None):
 
 
 def not_taken(made, packets):
-    """Return the decisions that no packet takes."""
+    """Return the decisions of the plan that no packet takes."""
     return edges(made).difference(*(decode(made, packet).edges for packet in packets))
 
 
@@ -58,7 +58,7 @@ def test_missing_decisions_are_named():
     more = more_cases(ORACLE, name, made, cases)
     assert more
     better = not_taken(made, [case.packet for case in cases + more])
-    # Nothing but what bare strings take.
+    # Only the decisions that strings without a NUL take.
     assert len(better) < len(some)
     assert {edge.way for edge in better} <= {"no rest"}
 

@@ -1,4 +1,4 @@
-"""How much of a type is simulated, and what is said of the rest."""
+"""The effort limit: how much of a type is simulated, and how the rest is reported."""
 
 from __future__ import annotations
 
@@ -26,26 +26,26 @@ def some_edges(*numbers):
     return frozenset(Edge(number, "body") for number in numbers)
 
 
-def test_everything_if_it_is_not_much(plan):
+def test_small_types_are_simulated_completely(plan):
     assert effort.packets_to_simulate(plan, [bytes(8)] * 5, [some_edges(1)] * 5) == [0, 1, 2, 3, 4]
 
 
-def test_what_takes_most_for_its_size(plan):
+def test_cases_with_most_decisions_for_their_size_come_first(plan):
     packets = [bytes(8000), bytes(80), bytes(8), bytes(16)]
     taken = [some_edges(1, 2, 3), some_edges(1, 2), some_edges(1), some_edges(3)]
     work = effort.work_of(plan, 24)
-    # The second takes something new, and may cost more; the first takes nothing that is.
+    # The second case takes a new decision and may cost more; the first takes none.
     assert effort.packets_to_simulate(plan, packets, taken, most=work) == [2, 3]
     assert effort.packets_to_simulate(plan, packets, taken, most=2 * work) == [1, 2, 3]
 
 
-def test_what_takes_nothing_new_has_no_more_than_what_is_left(plan):
+def test_cases_without_new_decisions_fill_the_remaining_effort(plan):
     packets, taken = [bytes(8), bytes(8), bytes(8)], [some_edges(1)] * 3
     work = effort.work_of(plan, 8)
     assert effort.packets_to_simulate(plan, packets, taken, most=2 * work) == [0, 1]
 
 
-def test_one_in_any_case(plan):
+def test_at_least_one_case_is_simulated(plan):
     assert effort.packets_to_simulate(
         plan, [bytes(80), bytes(800)], [some_edges(1)] * 2, most=0
     ) == [0]
@@ -61,10 +61,10 @@ def test_types_are_simulated_in_part(monkeypatch):
     part = accept("lyrical", HEADER)
     assert assert_passed(part) and 0 < part.cycles < whole.cycles
     assert part.cases == whole.cases
-    # What was not simulated is not covered, although the golden model saw it.
+    # Cases that were not simulated do not count as covered, although the golden model ran them.
     assert part.coverage.taken < whole.coverage.taken == whole.coverage.possible
     assert f"of {whole.cases + 1} packets" in part.note and not whole.note
-    # Who says how many cases gets as many.
+    # A given number of cases is kept.
     assert not accept("lyrical", HEADER, Options(most_cases=3)).note
 
 
@@ -75,7 +75,7 @@ def test_without_the_largest(plan):
     assert effort.limit_work(plan, cases, 0) == []
 
 
-def test_what_is_too_large_for_more_is_not_stalled(monkeypatch):
+def test_types_near_the_limit_are_not_stalled(monkeypatch):
     whole = accept("lyrical", HEADER)
     monkeypatch.setattr(effort, "LARGE_WORK", 1)
     once = accept("lyrical", HEADER)
@@ -100,7 +100,7 @@ def test_long_messages_are_simulated(large, monkeypatch):
     assert result.beats > 3000 // 8
 
 
-def test_what_is_too_large_is_named(large):
+def test_types_over_the_limit_are_named(large):
     result = accept("lyrical", "large_msgs/msg/Cloud", large)
     assert not result.packets
     assert result.verdict == NotJudged(

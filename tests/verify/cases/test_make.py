@@ -1,4 +1,4 @@
-"""Cases: every length that matters is there, and everything follows from the seed."""
+"""Cases have every relevant length, and depend on the seed only."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values of cases: each mode chooses the bits that it is for, of each type."""
+"""Values of cases: each mode gives its bit patterns for each type."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_each_mode_has_its_bits(name):
     some = {maker("any", seed).bits(name) for seed in range(200)}
     assert len(some) == 2 if name == "bool" else len(some) > 50
     assert max(some) <= ones
-    # Each bit is one now and then, and none always.
+    # Each bit is sometimes 1 and sometimes 0.
     assert max(some) > ones // 2 and min(some) <= ones // 2
     mixed = {maker("mixed", seed).bits(name) for seed in range(200)}
     assert mixed & special and (name == "bool" or mixed - special)
@@ -97,7 +97,7 @@ def test_lengths_are_each_there_once_before_any_comes_again():
     assert again == {0, 2, 5, 7}
     one.budget = 0
     assert {one.length(("a",), [5, 7], cost=0) for _ in range(60)} == {0, 1}
-    # What was not there yet is, whatever it costs.
+    # Lengths that have not occurred yet are chosen, whatever their cost.
     assert one.length(("c",), [9], cost=40) == 9 and one.budget == -360
 
 

@@ -8,7 +8,7 @@ __all__ = ["EXAMPLES", "Example"]
 
 
 class Example(NamedTuple):
-    """Whom to ask what, of a type that has the only message's text, and in what they differ."""
+    """A library, a reference, a question about a type, and the two different answers."""
 
     library: str
     reference: str
@@ -18,7 +18,7 @@ class Example(NamedTuple):
 
     @property
     def distro(self) -> str:
-        """Whose rules the text follows."""
+        """The distribution whose rules the text follows."""
         if self.text.startswith("module"):
             return "humble"
         return "noetic" if "genpy" in (self.library, self.reference) else "lyrical"

@@ -1,4 +1,4 @@
-"""Each clause by which a difference is known, a packet is odd, or an answer counts."""
+"""Each condition for a known difference, an irregular packet, or an accepted answer."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def a_finding(what="decode", expected=None, got=None, **more):
     return Finding(**{**known, **more})
 
 
-class Says(Codec):
-    """A codec that writes by a rule, and reads nothing."""
+class RuleCodec(Codec):
+    """A codec whose packets follow a rule, and that refuses to decode."""
 
     def __init__(self, rule):
         self.rule = rule
@@ -54,7 +54,7 @@ class Says(Codec):
         raise REFUSED
 
 
-# What is known.
+# Known divergences.
 
 ENTRY = KnownDivergence(
     key="k", libraries=("mine",), wires="cdr", text="", case_names=("bool-2",), answer="takes"
@@ -80,7 +80,7 @@ ENTRY = KnownDivergence(
 def test_an_answer_is_explained_by_who_gives_it(answer, mine, other, explains):
     entry = replace(ENTRY, answer=answer)
     assert entry.explains_answer(a_finding("bool-2", got=mine, expected=other)) is explains
-    # The other way round, if it is the reference that the entry is about.
+    # Swapped, if the entry is about the reference.
     swapped = a_finding("bool-2", got=other, expected=mine, library="x", reference="mine")
     assert entry.explains_answer(swapped) is explains
     for change in ({"wire": "ros1"}, {"library": "x"}, {"what": "bool-22"}, {"what": "bool"},
@@ -89,15 +89,20 @@ def test_an_answer_is_explained_by_who_gives_it(answer, mine, other, explains):
         assert not entry.explains_answer(finding), change
 
 
-def quiet(kind, value):
+def without_highest_bit(kind, value):
     return value & 0x7F if isinstance(value, int) else value
 
 
 @pytest.fixture
 def one_entry(monkeypatch):
-    """Only one thing is known: the highest bit of numbers."""
+    """A single known divergence: the highest bit of numbers."""
     entry = KnownDivergence(
-        key="k", libraries=("mine",), wires="cdr", text="", take_out=quiet, same=quiet
+        key="k",
+        libraries=("mine",),
+        wires="cdr",
+        text="",
+        take_out=without_highest_bit,
+        same=without_highest_bit,
     )
     monkeypatch.setattr("firm_hdl.verify.clients.known.KNOWN", (entry,))
     return entry
@@ -115,11 +120,11 @@ def one_entry(monkeypatch):
         ({"f0": 0x81}, REFUSED, []),
     ],
 )
-def test_what_was_read_is_known_if_nothing_else_differs(expected, got, keys):
+def test_a_decode_difference_is_known_if_nothing_else_differs(expected, got, keys):
     finding = a_finding(expected=expected, got=got)
-    assert list(known_keys(finding, Says(bytes), Says(bytes))) == keys
+    assert list(known_keys(finding, RuleCodec(bytes), RuleCodec(bytes))) == keys
     other = a_finding(expected=expected, got=got, wire="ros1")
-    assert list(known_keys(other, Says(bytes), Says(bytes))) == []
+    assert list(known_keys(other, RuleCodec(bytes), RuleCodec(bytes))) == []
 
 
 def byte(value):
@@ -130,26 +135,26 @@ def byte(value):
 @pytest.mark.parametrize(
     ("value", "theirs", "keys"),
     [
-        # Without the highest bit, they write the same.
+        # Without the highest bit, both write the same.
         ({"f0": 0x81}, lambda v: byte({"f0": v["f0"] & 0x7F}), ["k"]),
-        # They do not: there is something else.
+        # The packets differ in another bit, too.
         ({"f0": 0x81}, lambda v: byte({"f0": v["f0"] ^ 1}), []),
-        # The value has nothing of what is known.
+        # The value does not have the highest bit.
         ({"f0": 0x01}, lambda v: byte({"f0": v["f0"] ^ 1}), []),
         ({"f0": 0x01}, byte, []),
-        # They refuse all.
+        # Both refuse every value.
         ({"f0": 0x81}, lambda v: REFUSED, []),
     ],
 )
-def test_what_was_written_is_known_if_nothing_else_differs(value, theirs, keys):
+def test_an_encode_difference_is_known_if_nothing_else_differs(value, theirs, keys):
     finding = a_finding("encode", expected=b"x", got=b"y", value=value)
-    assert list(known_keys(finding, Says(theirs), Says(byte))) == keys
+    assert list(known_keys(finding, RuleCodec(theirs), RuleCodec(byte))) == keys
 
 
 @pytest.mark.usefixtures("one_entry")
-def test_that_both_refuse_a_tame_value_explains_nothing():
+def test_both_refusing_the_plain_value_explains_nothing():
     finding = a_finding("encode", expected=b"x", got=b"y", value={"f0": 0x81})
-    refuses = Says(lambda value: REFUSED)
+    refuses = RuleCodec(lambda value: REFUSED)
     assert list(known_keys(finding, refuses, refuses)) == []
 
 
@@ -166,16 +171,16 @@ def test_changes_reach_every_number_and_text():
     }  # fmt: skip
     seen = []
 
-    def note(kind, item):
+    def record(kind, item):
         seen.append(str(kind))
         if isinstance(item, int | bytes):
             return item * 2
         return {"f0": 9} if kind is time else item
 
     twice = {"f0": 2, "f1": b"xx"}
-    assert changed(message, value, note) == {
+    assert changed(message, value, record) == {
         "f0": 2, "f1": twice, "f2": [twice] * 2, "f3": [2, 2], "f4": [b"xx"], "f5": 2,
-        # A whole is changed before its parts.
+        # A message is changed before its fields.
         "f6": {"f0": 18},
     }  # fmt: skip
     wholes = {"p/msg/A": 1, "p/msg/B": 3, "p/msg/B[2]": 1, "uint8[]": 1, "string[]": 1, "time": 1}
@@ -232,7 +237,7 @@ DURATION = Message(name="duration", dialect="ros1", fields=())
         ("genpy-not-utf8", "same", String(), "é".encode(), "é".encode()),
     ],
 )  # fmt: skip
-def test_a_change_takes_out_what_its_entry_is_about(key, how, kind, value, want):
+def test_a_change_removes_the_difference_of_its_entry(key, how, kind, value, want):
     assert getattr(entry_of(key), how)(kind, value) == want
 
 
@@ -245,7 +250,7 @@ def test_a_change_takes_out_what_its_entry_is_about(key, how, kind, value, want)
         (0xFFF8000000000000, 8, True), (0x7FEFFFFFFFFFFFFF, 8, False),
     ],
 )  # fmt: skip
-def test_not_a_number_is_what_ieee_says(bits, size, nan):
+def test_nan_is_that_of_ieee_754(bits, size, nan):
     assert is_nan(bits, size) is nan
     number = as_float(bits, size)
     assert (number != number) is nan
@@ -253,7 +258,7 @@ def test_not_a_number_is_what_ieee_says(bits, size, nan):
         assert bits_of(number, size) == bits
 
 
-# What is odd.
+# Irregular packets.
 
 ODD_TEXT = (
     "uint8 a\nuint32 n\nstring<=3 s\nstring e\nbool t\nbool u\nuint8[<=2] l\nuint16[<=2] m\n"
@@ -287,7 +292,7 @@ ODD = {
 
 
 @pytest.mark.parametrize("name", ODD)
-def test_an_odd_packet_is_odd_at_its_first_place_and_nowhere_else(make_message, name):
+def test_an_irregular_packet_is_changed_at_its_first_place_only(make_message, name):
     message = make_message(ODD_TEXT)
     assert plain_packet(message, "cdr", ODD_VALUE) == bytes.fromhex(PLAIN)
     packet = unusual_packet(message, "cdr", ODD_VALUE, name)

@@ -1,4 +1,4 @@
-"""A contest with libraries of our own making: what is counted, and what it comes to."""
+"""Contests of test libraries: counts, differences and verdicts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, 
 
 
 class Bytes(Codec):
-    """Packets of one byte after a header: its only field."""
+    """A codec for messages of one byte: a header and the byte."""
 
     def __init__(self, most=255):
         self.most = most
@@ -45,7 +45,7 @@ class Wrong(Bytes):
         return {"a": found["a"] + 1} if found["a"] > 2 else found
 
 
-class Made(Client):
+class CodecClient(Client):
     wires = frozenset({"cdr"})
 
     def __init__(self, name, codec, wires=None):
@@ -70,20 +70,22 @@ def message(make_message):
 
 
 def contest(codec, right=None):
-    return LibraryComparison(Made("mine", codec), Made("right", right or Bytes()), "cdr")
+    return LibraryComparison(
+        CodecClient("mine", codec), CodecClient("right", right or Bytes()), "cdr"
+    )
 
 
 VALUES = [{"a": 1}, {"a": 7}, {"a": 200}]
 
 
-def test_what_the_reference_refuses_is_compared_and_is_no_answer(message):
-    # Both refuse one of the values: nothing is read from it.
+def test_refusals_of_the_reference_are_compared_but_are_no_answers(message):
+    # Both refuse one of the values, so no packet of it is decoded.
     trial = contest(Bytes(), Bytes(most=100)).judge(message, VALUES[:2])
     assert (trial.findings, trial.unknown) == ([], 0)
     all_answers = trial.answers
     trial = contest(Bytes(most=100), Bytes(most=100)).judge(message, VALUES)
     assert trial.unknown == 0
-    # It was asked to write the third as well, and said no.
+    # The library refused to encode the third value.
     assert trial.answers == all_answers
     none = contest(Bytes(most=0), Bytes(most=0)).judge(message, VALUES)
     assert none.answers == 0 and none.comparisons == len(VALUES)
@@ -116,15 +118,15 @@ def test_one_thing_can_be_asked_again(message):
     assert (found.what, found.got) == ("decode", {"a": 10})
     assert made.again(message, "decode", {"a": 2}) is None
     assert made.again(message, "encode", {"a": 9}) is None
-    # What the reference cannot write, nobody reads.
+    # Packets that the reference cannot encode are not decoded.
     refusing = contest(Wrong(), Bytes(most=5))
     assert refusing.again(message, "decode", {"a": 9}) is None
     assert refusing.again(message, "encode", {"a": 9}).expected == Refusal("too large")
-    # An odd packet is made of the plain one, and of no other.
+    # An irregular packet is made from the plain packet only.
     assert made.again(message, "bare-string", {"a": 9}) is None
 
 
-def test_what_cannot_be_opened_is_not_judged_or_failed(message):
+def test_a_codec_that_cannot_be_opened_is_not_judged_or_fails(message):
     unsupported = contest(UnsupportedError("no such type"))
     assert unsupported.judge(message, VALUES).verdict == NotJudged("no such type")
     assert unsupported.again(message, "encode", VALUES[0]) is None
@@ -134,7 +136,9 @@ def test_what_cannot_be_opened_is_not_judged_or_failed(message):
     died = contest(ClientDiedError("it died")).judge(message, VALUES)
     assert died.verdict == Failed(("it died",))
     for ours, theirs, name in ((("ros1",), None, "mine"), (None, ("ros1",), "right")):
-        both = LibraryComparison(Made("mine", Bytes(), ours), Made("right", Bytes(), theirs), "cdr")
+        both = LibraryComparison(
+            CodecClient("mine", Bytes(), ours), CodecClient("right", Bytes(), theirs), "cdr"
+        )
         assert both.judge(message, VALUES).verdict == NotJudged(f"{name} does not speak cdr")
 
 
@@ -142,14 +146,14 @@ def trial(**more):
     return LibraryResult(library="mine", reference="right", type="p/A", **more)
 
 
-def test_what_a_trial_comes_to():
+def test_verdicts_of_trials():
     assert trial(comparisons=3, answers=1).verdict == Passed(3)
     known = trial(comparisons=3, answers=1, known=Counter({"b": 1, "a": 2}))
     assert known.verdict == KnownDifference(("a", "b"), 3)
     assert trial(answers=1, unknown=2).verdict == Failed(("2 differences",))
     obstacle = NotJudged("x")
     assert trial(answers=1, obstacle=obstacle).verdict == obstacle
-    # A difference that was found before it broke down is one.
+    # A difference found before the library failed counts.
     assert trial(unknown=1, obstacle=obstacle).verdict == Failed(("1 differences",))
     assert LibraryResult(library="x", reference="", type="y").verdict == NotJudged(
         "the reference had no answer to anything"
@@ -276,7 +280,7 @@ def test_changes_of_a_whole_come_before_those_of_its_parts(make_message):
 
 
 def smallest(message, value, shows):
-    """Shrink what shows a difference, by a function of the value."""
+    """Shrink a value that shows a difference, given a function that detects the difference."""
 
     def again(type_, what, given):
         assert what == "decode"
@@ -290,7 +294,7 @@ def smallest(message, value, shows):
     return found.message, found.value
 
 
-def test_what_does_not_matter_is_taken_away(make_message):
+def test_irrelevant_parts_are_removed(make_message):
     names = [f"f{n}" for n in range(9)]
     message = make_message("".join(f"uint8 {name}\n" for name in names))
     kind, value = smallest(message, dict.fromkeys(names, 9), lambda v: v["f2"] and v["f7"])
@@ -312,7 +316,7 @@ def test_nested_messages_get_smaller_too(make_message):
     message = make_message("B b\nB[] l\nuint8 z\n", B="uint8 x\nuint8 y\nstring t\n")
     inner = {"x": 1, "y": 2, "t": b"abc"}
     value = {"b": inner, "l": [inner, {**inner, "y": 9}], "z": 1}
-    # Where a nested one alone shows it, that is all there is.
+    # If a nested message alone shows the difference, only that is left.
     kind, found = smallest(message, value, lambda v: v["y"] == 9)
     assert found == {"y": 9} and [f.name for f in kind.fields] == ["y"]
     kind, found = smallest(message, value, lambda v: v["b"]["x"] and v["z"])
@@ -321,6 +325,6 @@ def test_nested_messages_get_smaller_too(make_message):
     assert found == {"l": [{"y": 9}]}
 
 
-def test_without_time_nothing_is_taken_away(message):
+def test_without_time_nothing_is_removed(message):
     finding = finding_of(message, value={"a": 9})
     assert shrunk(finding, lambda *given: finding_of(message), seconds=-1) is finding

@@ -1,4 +1,4 @@
-"""Each known divergence happens, is known by its key, and is what docs/divergences.md shows."""
+"""Each known divergence occurs, has a key, and is documented in docs/divergences.md."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PAGE = Path(__file__).parents[3] / "docs" / "divergences.md"
 
 
 @pytest.fixture
-def asked(library_here, make_message):
+def ask_example(library_here, make_message):
     """Ask for an example; return the difference and its keys."""
 
     def ask(example):
@@ -34,9 +34,9 @@ def asked(library_here, make_message):
 
 
 def block(finding):
-    """Write an example as the page has it: without the words of refusals, which releases change."""
+    """Return an example as on the page: without texts of refusals, which depend on the release."""
 
-    def said(answer):
+    def answer_text(answer):
         if isinstance(answer, Refusal):
             return "refuses"
         if isinstance(answer, bytes):
@@ -48,8 +48,8 @@ def block(finding):
         lines.append(f"value: {shown(finding.message, finding.value)}")
     else:
         lines.append(f"packet: {finding.packet.hex()}")
-    lines.append(f"{finding.reference}: {said(finding.expected)}")
-    lines.append(f"{finding.library}: {said(finding.got)}")
+    lines.append(f"{finding.reference}: {answer_text(finding.expected)}")
+    lines.append(f"{finding.library}: {answer_text(finding.got)}")
     return "\n".join(["```", *lines, "```"])
 
 
@@ -59,8 +59,8 @@ def section(key):
 
 
 @pytest.mark.parametrize("key", EXAMPLES)
-def test_divergence_is_known_by_its_key_and_shown(asked, key):
-    finding, keys = asked(EXAMPLES[key])
+def test_divergence_is_known_by_its_key_and_shown(ask_example, key):
+    finding, keys = ask_example(EXAMPLES[key])
     assert list(keys) == [key]
     assert block(finding) in section(key)
 

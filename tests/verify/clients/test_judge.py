@@ -1,4 +1,4 @@
-"""Libraries that are broken on purpose are found, and made small."""
+"""Faults of deliberately broken libraries are found and reduced to small examples."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ VALUES = [
 ]
 
 
-class Unaligned(Same):
-    """Leaves out all padding: what it writes is too short, where there is any."""
+class WithoutPadding(Same):
+    """Leaves out all padding, so packets with padding are too short."""
 
     def encode(self, value):
         packet = super().encode(value)
         return packet.replace(b"\1\0\0\0\0\0\0\0\2", b"\1\2")
 
 
-class Swaps(Same):
-    """Reads two neighbours in the wrong order."""
+class SwappedFields(Same):
+    """Decodes two neighbouring fields in the wrong order."""
 
     def decode(self, packet):
         value = super().decode(packet)
@@ -39,8 +39,8 @@ class Swaps(Same):
         return value
 
 
-class Careless(Same):
-    """Takes a packet that is cut."""
+class AcceptsTruncated(Same):
+    """Accepts a truncated packet."""
 
     def decode(self, packet):
         try:
@@ -51,7 +51,7 @@ class Careless(Same):
 
 @pytest.fixture
 def contest(library_here):
-    """Make a contest of a broken library with rosbags, which is right."""
+    """Return a contest of a broken library with rosbags, which is correct."""
     right = library_here("rosbags")
     return lambda fault: LibraryComparison(Twin(right, fault), right, "cdr")
 
@@ -61,7 +61,7 @@ def message(make_message):
     return make_message(TEXT, B=NESTED)
 
 
-def test_nothing_is_found_where_nothing_is_wrong(contest, message):
+def test_equal_libraries_have_no_differences(contest, message):
     trial = contest(Same).judge(message, VALUES)
     assert assert_passed(trial) == trial.comparisons > 30
 
@@ -69,12 +69,12 @@ def test_nothing_is_found_where_nothing_is_wrong(contest, message):
 @pytest.mark.parametrize(
     ("fault", "what", "text"),
     [
-        (Unaligned, "encode", "uint8 a\nfloat64 b\n"),
-        (Swaps, "decode", "uint16 c\nuint16 d\n"),
-        (Careless, "cut-1", "bool t\n"),
+        (WithoutPadding, "encode", "uint8 a\nfloat64 b\n"),
+        (SwappedFields, "decode", "uint16 c\nuint16 d\n"),
+        (AcceptsTruncated, "cut-1", "bool t\n"),
     ],
 )
-def test_faults_are_found_and_made_small(contest, message, fault, what, text):
+def test_faults_are_found_and_reduced(contest, message, fault, what, text):
     made = contest(fault)
     trial = made.judge(message, VALUES)
     assert isinstance(trial.verdict, Failed)
@@ -83,12 +83,12 @@ def test_faults_are_found_and_made_small(contest, message, fault, what, text):
     assert small.expected != small.got
     lines = len(full_text(small.message).splitlines())
     assert lines <= len(text.splitlines()), full_text(small.message)
-    if fault is Swaps:
+    if fault is SwappedFields:
         assert full_text(small.message) == text
         assert sorted(small.value.values())[0] == 0
 
 
-def test_a_type_that_a_library_has_not_is_not_judged(library_here, make_message):
+def test_a_type_that_a_library_lacks_is_not_judged(library_here, make_message):
     both = LibraryComparison(library_here("cyclonedds"), library_here("rosbags"), "cdr")
     trial = both.judge(make_message("wstring w\n"), [])
     assert trial.verdict == NotJudged("cyclonedds has no wstring")
@@ -96,7 +96,7 @@ def test_a_type_that_a_library_has_not_is_not_judged(library_here, make_message)
     assert wide.verdict == NotJudged("cyclonedds has no bound of 65536 elements")
     trial = both.judge(make_message("uint8[<=65535] w\n"), [{"w": [1]}])
     assert_known(trial, "cyclonedds-cut", "rosbags-trailing")
-    # Nobody was asked for anything.
+    # No library was asked.
     none = both.judge(make_message("uint8[<=65535] w\n"), [])
     assert none.verdict == NotJudged("rosbags had no answer to anything")
     other = LibraryComparison(library_here("cyclonedds"), library_here("rosbags"), "ros1")
@@ -104,7 +104,7 @@ def test_a_type_that_a_library_has_not_is_not_judged(library_here, make_message)
     assert trial.verdict == NotJudged("cyclonedds does not speak ros1")
 
 
-def test_odd_packets_are_odd_as_they_say(make_message):
+def test_irregular_packets_have_their_irregularity(make_message):
     message = make_message("uint8 a\nuint32 n\nstring<=2 s\nstring e\nbool t\nuint8[<=1] l\n")
     value = {"a": 1, "n": 2, "s": b"xy", "e": b"", "t": True, "l": [5]}
     plain = "00010000 01000000 02000000 03000000 78790000 01000000 00 01 0000 01000000 05"
@@ -125,7 +125,7 @@ def test_odd_packets_are_odd_as_they_say(make_message):
     assert "04000000787978" in packets["bound-text"]
 
 
-def test_what_has_no_place_is_not_made(make_message):
+def test_irregular_packets_need_a_place(make_message):
     message = make_message("uint8 a\n")
     for name in ("bare-string", "no-nul", "bool-2", "bound-items", "dirty-padding", "long-text"):
         assert unusual_packet(message, "cdr", {"a": 1}, name) is None

@@ -1,4 +1,4 @@
-"""What is left of a difference: the smallest type and value that still show it."""
+"""Shrinking a difference to the smallest type and value that still show it."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ VALUE = {
 }
 
 
-def everything(value):
-    """Yield all that is in a value, by the name of the field that it is in."""
+def all_items(value):
+    """Yield all numbers and texts of a value, each with the name of its field."""
     if isinstance(value, dict):
         for name, each in value.items():
             yield name, each
-            yield from everything(each)
+            yield from all_items(each)
     elif isinstance(value, list):
         for each in value:
-            yield from everything(each)
+            yield from all_items(each)
 
 
 def shrink(make_message, shows, text=TEXT, value=VALUE):
@@ -44,7 +44,7 @@ def shrink(make_message, shows, text=TEXT, value=VALUE):
     def again(message, what, value):
         asked.append(what)
         found = replace(finding, message=message, value=value)
-        return found if shows(dict(everything(value)), value) else None
+        return found if shows(dict(all_items(value)), value) else None
 
     finding = Finding(
         library="mine",
@@ -57,7 +57,7 @@ def shrink(make_message, shows, text=TEXT, value=VALUE):
         expected=None,
         got=None,
     )
-    assert shows(dict(everything(value)), value)
+    assert shows(dict(all_items(value)), value)
     found = shrunk(finding, again)
     assert {*asked} == {"encode"}
     lines = [line for line in full_text(found.message).splitlines() if line]
@@ -67,15 +67,15 @@ def shrink(make_message, shows, text=TEXT, value=VALUE):
 @pytest.mark.parametrize(
     ("shows", "lines", "value"),
     [
-        # A field of the type itself, of whatever value; then one whose value matters.
+        # A field of the type itself with any value; then a field whose value matters.
         (lambda all_, _: "a" in all_, ["uint8 a"], {"a": 0}),
         (lambda all_, _: all_.get("a") == 3, ["uint8 a"], {"a": 3}),
         (lambda all_, _: "t" in all_, ["bool t"], {"t": False}),
-        # Texts get shorter, from both ends, and plainer.
+        # Texts get shorter at both ends, and their characters plainer.
         (lambda all_, _: "s" in all_, ["string s"], {"s": b""}),
         (lambda all_, _: len(all_.get("s", b"")) > 2, ["string s"], {"s": b"xxx"}),
         (lambda all_, _: b"t" in all_.get("s", b""), ["string s"], {"s": b"t"}),
-        # So do sequences and arrays.
+        # Sequences and arrays get shorter, too.
         (lambda all_, _: "plain" in all_, ["uint32[] plain"], {"plain": []}),
         (lambda all_, _: 12 in all_.get("plain", []), ["uint32[] plain"], {"plain": [12]}),
         (lambda all_, _: 11 in all_.get("plain", []), ["uint32[] plain"], {"plain": [11]}),
@@ -86,11 +86,11 @@ def shrink(make_message, shows, text=TEXT, value=VALUE):
             ["uint16[3] fixed"],
             {"fixed": [0, 0, 0]},
         ),
-        # What is inside another type stands for itself, if it can.
+        # A nested field replaces the message around it, if possible.
         (lambda all_, _: "y" in all_, ["int8 y"], {"y": 0}),
         (lambda all_, _: all_.get("z") == 6, ["int8 z"], {"z": 6}),
         (lambda all_, _: all_.get("x") == 6, ["uint32 x"], {"x": 6}),
-        # Two fields that are both needed.
+        # Two fields are needed.
         (
             lambda all_, _: all_.get("a") == 3 and all_.get("t") is True,
             ["uint8 a", "bool t"],
@@ -98,7 +98,7 @@ def shrink(make_message, shows, text=TEXT, value=VALUE):
         ),
     ],
 )
-def test_nothing_is_left_that_does_not_matter(make_message, shows, lines, value):
+def test_everything_irrelevant_is_removed(make_message, shows, lines, value):
     assert shrink(make_message, shows) == (lines, value)
 
 
@@ -109,12 +109,12 @@ def test_an_element_keeps_the_type_that_it_needs(make_message):
     lines, value = shrink(make_message, shows, "uint8 a\nB[] many", {"a": 1, "many": [POINT] * 3})
     (items,) = value.values()
     assert len(items) == 2
-    # Of the element, one field is left, as a type needs one to be an element of something.
+    # One field of the element is left, because the type of an element needs a field.
     assert lines[0] == "B[] many" or lines[0].endswith("B[] many")
     assert all(len(each) <= 1 for each in items)
 
 
-def test_time_ends_it(make_message):
+def test_shrinking_ends_at_the_time_limit(make_message):
     message = make_message("uint8 a\nuint8 b")
     finding = Finding(
         library="", reference="", wire="cdr", what="decode", message=message,
@@ -123,5 +123,5 @@ def test_time_ends_it(make_message):
     same = lambda message, what, value: replace(finding, message=message, value=value)  # noqa: E731
     assert shrunk(finding, same, seconds=-1) is finding
     assert shrunk(finding, lambda *_: None) is finding
-    # What is no smaller is not taken, or it would never end.
+    # Candidates of the same size are refused; otherwise, shrinking would not end.
     assert shrunk(finding, lambda *_: replace(finding)) is finding

@@ -1,4 +1,4 @@
-"""What is told of a contest: the first differences with all that they need, the rest by number."""
+"""The printed results of contests: the first differences in full, the others as counts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def again(options, distro, name, library):
 
 @pytest.fixture(autouse=True)
 def small(monkeypatch):
-    """Let the smallest case of a difference be itself."""
+    """Replace shrinking, so that each difference stays as it is."""
     monkeypatch.setattr(command, "command_of", again)
     monkeypatch.setattr(command, "shrunk", lambda finding, again: finding)
     monkeypatch.setattr(command, "comparison_of", lambda *_: SimpleNamespace(again=None))
@@ -30,11 +30,11 @@ def small(monkeypatch):
 def trial(name, *whats, library="mine", obstacle=None, **more):
     findings = [SimpleNamespace(what=what, wire="cdr") for what in whats]
     task = SimpleNamespace(distro="lyrical", name=name)
-    made = {"library": library, "type": name, "findings": findings, "obstacle": obstacle, **more}
-    return task, SimpleNamespace(**made)
+    fields = {"library": library, "type": name, "findings": findings, "obstacle": obstacle, **more}
+    return task, SimpleNamespace(**fields)
 
 
-def told(*trials):
+def printed_differences(*trials):
     return "\n".join(command._differences(trials, OPTIONS)).splitlines()
 
 
@@ -48,15 +48,17 @@ def detailed(name, what, library="mine"):
 
 
 @pytest.mark.parametrize("count", [1, 5, 6, 8])
-def test_of_one_kind_the_first_is_told_in_full_and_five_by_name(count):
+def test_the_first_of_a_kind_is_printed_in_full_and_five_by_name(count):
     trials = [trial(f"T{n}", "encode") for n in reversed(range(count))]
     names = [line for n in range(1, min(count, 5)) for line in named(f"T{n}", "encode")]
     more = [f"DIFFERS mine, encode: and {count - 5} more types"] if count > 5 else []
-    assert told(*trials) == [*detailed("T0", "encode"), *names, *more]
+    assert printed_differences(*trials) == [*detailed("T0", "encode"), *names, *more]
 
 
 def test_kinds_and_libraries_are_counted_apart():
-    lines = told(trial("B", "encode", "decode"), trial("A", "decode", library="yours"))
+    lines = printed_differences(
+        trial("B", "encode", "decode"), trial("A", "decode", library="yours")
+    )
     assert lines == [
         *detailed("B", "encode"),
         *detailed("B", "decode"),
@@ -64,18 +66,18 @@ def test_kinds_and_libraries_are_counted_apart():
     ]
 
 
-def test_five_kinds_for_each_library_are_told_in_full():
-    lines = told(trial("A", *(f"kind{n:02}" for n in range(12))))
+def test_five_kinds_for_each_library_are_printed_in_full():
+    lines = printed_differences(trial("A", *(f"kind{n:02}" for n in range(12))))
     assert [line for line in lines if "small" in line] == [
         f"    small kind{n:02}" for n in range(10)
     ]
     assert lines[-2:] == named("A", "kind11")
 
 
-def test_who_could_not_be_asked_is_told_after_the_differences():
+def test_libraries_that_could_not_be_asked_follow_the_differences():
     failed = trial("A", obstacle=Failed(("it crashed", "and more")))
     silent = trial("B", obstacle=NotJudged("nobody"))
-    assert told(failed, silent, trial("C", "encode")) == [
+    assert printed_differences(failed, silent, trial("C", "encode")) == [
         *detailed("C", "encode"),
         "FAIL mine: A (lyrical): it crashed",
     ]
@@ -119,7 +121,7 @@ def test_known_differences_and_reasons_are_counted():
     ]
 
 
-def test_a_difference_is_described_by_all_that_one_needs(make_message, monkeypatch):
+def test_a_difference_is_described_completely(make_message, monkeypatch):
     monkeypatch.undo()
     given = {
         "library": "mine", "reference": "yours", "wire": "cdr", "value": {"a": 1},

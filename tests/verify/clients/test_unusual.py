@@ -1,4 +1,4 @@
-"""The table of odd packets: where each is made, how many, and up to what size."""
+"""The table of irregular packets: their places, their number, and their largest size."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ANYWHERE = (
 ).split()
 
 
-def test_each_is_where_it_can_be():
+def test_each_irregularity_has_its_places():
     wires = {**dict.fromkeys(CDR_ALONE, "cdr"), **dict.fromkeys(ANYWHERE, "ros1 cdr")}
     assert {**wires, "trailing-1": "ros1"} == UNUSUAL_CASES
 
@@ -45,7 +45,7 @@ ROS1_ODD = {
 }
 
 
-def test_packets_of_ros1_are_odd_at_their_first_place(make_message):
+def test_packets_of_ros1_are_irregular_at_their_first_place(make_message):
     message = make_message("uint8 a\nuint32 n\nstring<=2 s\nstring e\nbool t\nuint8[<=1] l\n")
     value = {"a": 1, "n": 2, "s": b"xy", "e": b"", "t": True, "l": [5]}
     assert plain_packet(message, "ros1", value) == bytes.fromhex(ROS1)
@@ -53,7 +53,7 @@ def test_packets_of_ros1_are_odd_at_their_first_place(make_message):
     assert found == {name: bytes.fromhex(text) for name, text in ROS1_ODD.items()}
 
 
-def test_two_packets_of_a_kind_are_made_odd_and_two_values(make_message):
+def test_two_packets_and_two_values_of_a_kind_are_made_irregular(make_message):
     message = make_message("string<=2 s\nuint8 a")
     values = [{"s": bytes([each]), "a": each} for each in (65, 66, 67)]
     packets = [(each, value["a"]) for each, value, _ in unusual_packets(message, "ros1", values)]
@@ -64,7 +64,7 @@ def test_two_packets_of_a_kind_are_made_odd_and_two_values(make_message):
     ]
 
 
-def test_who_has_no_place_for_it_is_passed_over(make_message):
+def test_packets_without_a_place_are_skipped(make_message):
     message = make_message("string s")
     values = [{"s": b"a"}, {"s": b""}, {"s": b"b"}, {"s": b""}]
     bare = [v for each, v, _ in unusual_packets(message, "cdr", values) if each == "bare-string"]
@@ -72,7 +72,7 @@ def test_who_has_no_place_for_it_is_passed_over(make_message):
 
 
 @pytest.mark.parametrize(("size", "is_made"), [(4096, True), (4097, False)])
-def test_packets_are_made_odd_up_to_a_size(make_message, size, is_made):
+def test_packets_are_made_irregular_up_to_a_size(make_message, size, is_made):
     message = make_message(f"uint8[{size}] a")
     packet = unusual_packet(message, "ros1", {"a": [0] * size}, "cut-1")
     assert (packet is not None) == is_made
@@ -116,9 +116,9 @@ def test_everything_of_a_packet_may_be_big_endian(make_message):
         ("B[2] a", {"a": [{"b": 0}, {"b": 0}]}),
     ],
 )
-def test_zero_is_what_a_library_makes_of_nothing(make_message, fields, value):
+def test_zero_has_the_fields_of_the_type(make_message, fields, value):
     assert zero(make_message(fields, B="uint8 b")) == value
 
 
-def test_lengths_that_lie_are_within_what_a_library_may_allocate():
+def test_wrong_lengths_are_within_the_allocation_limit():
     assert unusual.TOO_LONG > unusual.MOST_PACKET_BYTES and unusual.TOO_LONG < 1 << 20

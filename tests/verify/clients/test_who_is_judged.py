@@ -1,4 +1,4 @@
-"""Who is judged, and by whom: contests of libraries, and the commands of them."""
+"""Judges and judged libraries in contests, and the commands that repeat a contest."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class RefusesAll(Same):
         raise Refusal("never")
 
 
-class Loses(Same):
-    """Reads two kinds of packets in a wrong way."""
+class DecodesWrongly(Same):
+    """Decodes two kinds of packets incorrectly."""
 
     def decode(self, packet):
         value = super().decode(packet)
@@ -41,14 +41,14 @@ def test_an_empty_packet_is_read_and_not_written(wire):
     contest = LibraryComparison(Twin(client("firm-hdl"), Same), client("firm-hdl"), wire)
     trial = contest.judge(message, [{}])
     assert trial.verdict.name == "passed" and trial.comparisons >= 2
-    wrong = LibraryComparison(Twin(client("firm-hdl"), Loses), client("firm-hdl"), wire).judge(
-        message, [{}]
-    )
+    wrong = LibraryComparison(
+        Twin(client("firm-hdl"), DecodesWrongly), client("firm-hdl"), wire
+    ).judge(message, [{}])
     assert wrong.verdict.name == "failed"
     assert "decode" in {finding.what for finding in wrong.findings}
 
 
-def test_refusing_what_is_right_is_a_difference():
+def test_refusing_a_correct_packet_is_a_difference():
     message = a_message(UINT8, ROS2["uint16"])
     trial = LibraryComparison(
         Twin(client("firm-hdl"), RefusesAll), client("firm-hdl"), "cdr"
@@ -62,7 +62,7 @@ def test_the_first_of_each_kind_is_kept_and_all_are_counted():
     message = a_message(UINT8)
     values = [{"f0": n} for n in range(4)]
     own = client("firm-hdl")
-    trial = LibraryComparison(Twin(own, Loses), own, "cdr").judge(message, values)
+    trial = LibraryComparison(Twin(own, DecodesWrongly), own, "cdr").judge(message, values)
     kinds = [finding.what for finding in trial.findings]
     assert len(kinds) == len({*kinds}) > 2 and kinds[0] == "decode"
     assert trial.findings[0].value == {"f0": 0}
@@ -86,7 +86,7 @@ def test_byte_orders_are_asked_for_where_both_are_meant_to_read_them(monkeypatch
         assert contest.judge(message, [{"f0": 1}]).verdict.name == "passed"
 
 
-def test_nobody_judges_himself():
+def test_no_library_judges_itself():
     here = ("genpy", "rosbags", "fastcdr")
     assert reference_of("rosbags", "cdr", here) == "fastcdr"
     assert reference_of("fastcdr", "cdr", here) == "rosbags"
@@ -97,7 +97,7 @@ def test_nobody_judges_himself():
     assert reference_of("fastcdr", "cdr", ("fastcdr",)) is None
 
 
-def test_a_trial_is_worth_what_was_found_in_it():
+def test_the_verdict_of_a_trial_follows_its_findings():
     known = {"library": "a", "reference": "b", "type": "t", "comparisons": 5, "answers": 5}
     assert LibraryResult(**known).verdict.name == "passed"
     assert LibraryResult(**known, known=Counter(k=1)).verdict.name == "known difference"
@@ -115,7 +115,7 @@ def test_a_trial_is_worth_what_was_found_in_it():
         {"most_cases": 7, "paths": ("a b", "c")},
     ],
 )
-def test_the_command_that_repeats_says_all_that_was_asked_for(options):
+def test_the_repeating_command_has_all_options(options):
     made = Request(libraries=("rosbags",), **options)
     words = shlex.split(command_of(made, "humble", "p/msg/A", "rosbags"))
     assert words[:2] == ["firm-hdl", "verify"]

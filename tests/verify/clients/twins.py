@@ -1,4 +1,4 @@
-"""Client libraries that are like another one, or broken on purpose."""
+"""Client libraries that equal another one, or are broken on purpose."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["Same", "Twin"]
 
 
 class Twin(Client):
-    """A library that is right, with something wrong."""
+    """A correct library with an injected fault."""
 
     name = "twin"
     wires = frozenset({"cdr", "ros1"})
@@ -28,7 +28,7 @@ class Twin(Client):
 
 
 class Same(Codec):
-    """Nothing wrong."""
+    """A codec without a fault."""
 
     def __init__(self, right):
         self.right = right

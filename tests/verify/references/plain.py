@@ -1,4 +1,4 @@
-"""Plain values of values as people write them."""
+"""Plain values from Python values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Each client library's codec against bytes that are known; and what becomes of what is missing."""
+"""Codecs of client libraries against known bytes, and libraries that are not installed."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def packet_of(wire):
 @pytest.fixture
 def message_of(make_message):
     def get(wire):
-        # Every ROS 1 type has an int8, and its `char` is another one.
+        # Each ROS 1 type gets an int8; `char` is another type there.
         return make_message(
             TEXT, "noetic" if wire == "ros1" else "lyrical", B="int8 x\nuint8[] y\n"
         )
@@ -58,7 +58,7 @@ def test_value_becomes_the_known_bytes_and_back(library_here, message_of, name, 
     packet = packet_of(wire)
     assert codec.encode(VALUE) == packet
     assert codec.decode(packet) == VALUE
-    # Many at a time, with one among them that is refused.
+    # Many values at a time, one of which is refused.
     cut = packet[: len(packet) // 2]
     assert codec.encode_all([VALUE, VALUE]) == [packet] * 2
     first, second, third = codec.decode_all([packet, cut, packet])
@@ -94,7 +94,7 @@ def test_who_has_no_wide_text_says_so(library_here, make_message, name):
 
 
 @pytest.mark.parametrize("release", ["fastcdr", "fastcdr-2.2", "fastcdr-2.3"])
-def test_fast_cdr_writes_and_reads_what_ros_2_wrote(library_here, release):
+def test_fast_cdr_writes_and_reads_packets_of_ros_2(library_here, release):
     corpus = os.environ.get("FIRM_HDL_CORPUS")
     if not corpus:
         assert not os.environ.get("CI")
@@ -125,18 +125,18 @@ def test_packages_that_are_not_installed_are_missing(monkeypatch):
         raise ImportError(name)
 
     monkeypatch.setattr("importlib.import_module", not_found)
-    said = "cyclonedds is not installed (python3 -m pip install 'firm-hdl[clients]')"
-    assert client("cyclonedds").missing() == said
+    output = "cyclonedds is not installed (python3 -m pip install 'firm-hdl[clients]')"
+    assert client("cyclonedds").missing() == output
 
 
 @pytest.mark.parametrize(
-    ("compiler", "said"),
+    ("compiler", "output"),
     [("/nowhere/c++", "there is no C++ compiler"), ("true", "headers are not installed")],
 )
-def test_without_compiler_or_library_fast_cdr_is_missing(monkeypatch, compiler, said):
+def test_without_compiler_or_library_fast_cdr_is_missing(monkeypatch, compiler, output):
     monkeypatch.setenv("CXX", compiler)
     why = FastCdr().missing()
-    assert said in why and "apt install g++ libfastcdr-dev" in why
+    assert output in why and "apt install g++ libfastcdr-dev" in why
 
 
 def test_without_its_python_genpy_is_missing(monkeypatch):

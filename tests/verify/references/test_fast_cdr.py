@@ -1,7 +1,7 @@
-"""Every release of Fast CDR on bytes that are known, and what the releases do otherwise.
+"""Every release of Fast CDR against known bytes, and the differences between releases.
 
-What they have to write stands in ``tests/plan/test_wire_facts.py``, too, where it is our plans that
-have to write it: so it holds where no Fast CDR is installed.
+``tests/plan/test_wire_facts.py`` has the same bytes and compares our plans with them, also where no
+Fast CDR is installed.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def test_a_unit_of_wide_text_that_is_too_large(library_here, release):
     codec = library_here(release).open(message, "cdr")
     packet = data("00010000 01000000 61000100")
     if release == "fastcdr":
-        # It goes through a wchar_t of 32 bits, and is cut to 16 after it.
+        # The unit passes through a wchar_t of 32 bits, and is truncated to 16 bits afterwards.
         assert codec.decode(packet) == {"w": [0x61]}
         return
     with pytest.raises(Refusal, match="more than 16 bits"):
@@ -109,7 +109,7 @@ WIDE_IDL = "module p { module msg { struct W { octet a; wchar b; }; }; };"
 
 
 @pytest.mark.parametrize(("distro", "judge"), [("humble", "fastcdr"), ("kilted", "fastcdr-2.3")])
-def test_who_has_a_type_judges_it(library_here, tmp_path, distro, judge):
+def test_a_release_with_the_type_judges_it(library_here, tmp_path, distro, judge):
     for name in RELEASES:
         library_here(name)
     root = make_files(tmp_path, {"p/msg/W.idl": WIDE_IDL})

@@ -1,4 +1,4 @@
-"""The oracle's walk, against transfers written by hand."""
+"""The transfers of the oracle against transfers written by hand."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def test_empty_messages_transfer_once(distro, wire, path, payload):
     assert oracle.transfers(value, name, wire, 8) == {path: [payload]}
 
 
-def test_structures_tell_types_apart():
+def test_structures_differ_for_different_types():
     humble, jazzy = distro_oracle("humble"), distro_oracle("jazzy")
     same, other = "sensor_msgs/msg/Imu", "sensor_msgs/msg/Range"
     assert humble.structure(same) == jazzy.structure(same)
@@ -117,12 +117,12 @@ def test_builtin_times_of_ros1_are_no_types_of_their_own():
 
 
 def test_a_wire_that_rosbags_does_not_have_is_not_judged():
-    said = "^rosbags does not write can$"
+    output = "^rosbags does not write can$"
     oracle = distro_oracle("lyrical")
     value = oracle.store.types["std_msgs/msg/Bool"](data=True)
-    with pytest.raises(NotJudgedError, match=said):
+    with pytest.raises(NotJudgedError, match=output):
         oracle.write(value, "std_msgs/msg/Bool", "can")
-    with pytest.raises(NotJudgedError, match=said):
+    with pytest.raises(NotJudgedError, match=output):
         oracle.read(b"\0\1\0\0\1", "std_msgs/msg/Bool", "can")
 
 

@@ -1,4 +1,4 @@
-"""rosbags as the judge of types of one's own."""
+"""rosbags as the judge of user-defined types."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.verify.judged import assert_passed
 
 
 def own(folder: Path, text: str, distro: str = "lyrical", name: str = "Own") -> Message:
-    """Load a type of a package of its own."""
+    """A function that loads a type of a user's package."""
     (folder / "own_msgs" / "msg").mkdir(parents=True, exist_ok=True)
     (folder / "own_msgs" / "msg" / f"{name}.msg").write_text(text)
     return load_message(f"own_msgs/{name}", distro=distro, paths=[folder])
@@ -54,7 +54,7 @@ def test_wide_strings_are_not_judged(tmp_path):
 
 
 def test_definition_that_rosbags_reads_in_another_way_is_noted(tmp_path):
-    # To rosbags the second line is a field, and not a constant.
+    # rosbags reads the second line as a field instead of a constant.
     message = own(tmp_path, "uint8 a\nuint8 b=1\n", distro="noetic")
     judge = judge_of(message)
     assert [name for name, _ in judge.oracle.fields(judge.name)] == ["a"]
@@ -89,14 +89,14 @@ def test_chars_of_idl_are_signed(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("error", "said"),
+    ("error", "output"),
     [
         (KeyError("gone"), "'gone'"),
         (ValueError("first\nsecond"), "first"),
         (RecursionError(), "RecursionError"),
     ],
 )
-def test_what_rosbags_refuses_is_not_judged(tmp_path, monkeypatch, error, said):
+def test_types_that_rosbags_refuses_are_not_judged(tmp_path, monkeypatch, error, output):
     def refuse(*given: object) -> None:
         raise error
 
@@ -104,4 +104,4 @@ def test_what_rosbags_refuses_is_not_judged(tmp_path, monkeypatch, error, said):
     monkeypatch.setattr(module, "get_types_from_msg", refuse)
     with pytest.raises(NotJudgedError) as raised:
         module._oracle(message, {message.name: "uint8 a\n"})
-    assert str(raised.value) == f"rosbags refuses the definition: {said}"
+    assert str(raised.value) == f"rosbags refuses the definition: {output}"

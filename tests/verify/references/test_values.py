@@ -1,4 +1,4 @@
-"""Plain values: nothing that a packet may have is lost."""
+"""Plain values keep everything that a packet may have."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ def test_packed_values_come_back(message):
     data = packed(message, VALUE)
     assert unpacked(message, data) == VALUE
     assert data[:4] == bytes.fromhex("4523817f")
-    for wrong, said in ((data[:-1], "too short"), (data + b"\0", "too long")):
-        with pytest.raises(ValueError, match=said):
+    for wrong, output in ((data[:-1], "too short"), (data + b"\0", "too long")):
+        with pytest.raises(ValueError, match=output):
             unpacked(message, wrong)
 
 

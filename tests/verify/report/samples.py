@@ -1,4 +1,4 @@
-"""Results as a run would write them, without the run."""
+"""Sample results, in the form that a run writes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def a_test(name="std_msgs/msg/Header", **more):
 
 
 def a_record(test=None, **more):
-    """Return a record that passed, but for what is given."""
+    """Return a passed record, with other values where given."""
     known = {
         "verdict": Passed(40),
         "seconds": Seconds(generation=0.1, simulation=0.2, testing=0.01),

@@ -1,4 +1,4 @@
-"""Charts: each mark stands where its axes say, and says what it is."""
+"""Charts: each mark is at its place on the axes, and has its description."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def a_curve(suite="ts3", times=TIMES, **more):
 
 
 def drawn(text):
-    """Return what a figure has: (tag, attributes, title or text)."""
+    """Return the elements of a figure as (tag, attributes, title or text)."""
     root = ET.fromstring(text)
     return [(each.tag, each.attrib, each.findtext("title") or each.text or "") for each in root]
 
@@ -67,7 +67,7 @@ def test_the_curve_of_a_suite_climbs_from_its_fastest_test_to_all():
 
 
 def test_the_axis_of_stages_has_the_least_and_the_most_of_all():
-    # Drawn are only some values, and the box knows more of them.
+    # Only some values are drawn, but the box is computed from all.
     curve = a_curve(stage_values={"generation": (0.3,), "testing": (0.02,)})
     x = Scale.logarithmic([0.01, 10.0], 96, 740)
     text = stages(curve)
@@ -80,7 +80,7 @@ def test_the_axis_of_stages_has_the_least_and_the_most_of_all():
     assert at(dot) == (x(0.3), 12 + 32 + 8) and dot[2] == seconds(0.3)
 
 
-def test_a_box_has_its_quartiles_where_the_axis_says():
+def test_a_box_has_its_quartiles_at_their_places_on_the_axis():
     text = stages(a_curve())
     x = Scale.logarithmic([0.01, 10.0], 96, 740)
     box = box_of(TIMES)
@@ -97,7 +97,7 @@ def test_a_box_has_its_quartiles_where_the_axis_says():
     _, p95 = of_kind(text, "line", "whisker c1")
     assert p95[1]["x1"] == p95[1]["x2"] == str(x(box.p95))
     assert (float(p95[1]["y2"]) - float(p95[1]["y1"])) == 10
-    # A box of equal times is still seen.
+    # A box of equal times has a visible width.
     same = a_curve(stages={"testing": box_of([1.0, 1.0])}, stage_values={"testing": (1.0,)})
     (rect,) = of_kind(stages(same), "rect", "box c1")
     assert float(rect[1]["width"]) == 2
@@ -143,7 +143,7 @@ def test_points_of_a_trend_are_where_the_axes_say():
     assert not of_kind(text, "path", "fit-line") and not of_kind(text, "path", "fit-law")
 
 
-def test_what_was_fitted_is_drawn_inside_of_the_axes():
+def test_fits_are_drawn_inside_the_axes():
     law, line = Fit(a=0.1, b=1.0, r2=0.5), Fit(a=1.0, b=0.01, r2=0.25)
     text = scatter(a_trend(power=law, linear=line))
     x, y = Scale(1, 100, 62, 346, True), Scale(0.1, 10, 236, 14, True)
@@ -154,7 +154,7 @@ def test_what_was_fitted_is_drawn_inside_of_the_axes():
     assert drawn_law[1]["d"].startswith(f"M{x(1)} {y(0.1)}L")
     assert drawn_line[2] == "line 1 + 0.01·x, R² 0.25"
     assert drawn_law[2] == "power law 0.1·x^1.00, R² 0.50"
-    # Nothing of it is inside, or one point, which is no line.
+    # No point, or only one, is inside the axes, so there is no line.
     for far in (Fit(a=1000.0, b=0.0, r2=0.0), Fit(a=1e-6, b=0.0, r2=0.0)):
         assert not of_kind(scatter(a_trend(power=far)), "path", "fit-law")
 
@@ -179,7 +179,7 @@ def test_a_bar_has_a_part_of_each_count():
     assert 'aria-hidden="true"' in bar and "role" not in bar
 
 
-def test_a_bar_leaves_out_what_is_not_there():
+def test_a_bar_leaves_out_counts_of_zero():
     parts = drawn(
         counts_bar(replace(COUNTS, passed=30, known=0, not_judged=0, not_run=0, failed=10))
     )
@@ -232,11 +232,11 @@ def test_axes_have_a_grid_line_and_a_figure_at_each_tick():
     assert {(a["x1"], a["x2"]) for a in grid[len(ticks) :]} == {("50", "260")}
     labels = of_kind(text, "text", "tick")
     across = labels[: len(ticks)]
-    assert [(float(a["x"]), float(a["y"]), said) for _, a, said in across] == [
+    assert [(float(a["x"]), float(a["y"]), output) for _, a, output in across] == [
         (x(value), 165, f"{value:g}") for value in ticks
     ]
     up = labels[len(ticks) :]
-    assert [said for *_, said in up] == [
+    assert [output for *_, output in up] == [
         "0%",
         "20%",
         "40%",
@@ -253,7 +253,7 @@ def test_axes_have_a_grid_line_and_a_figure_at_each_tick():
     assert {(a["x"], a["text-anchor"]) for _, a, _ in up} == {("44", "end")}
     assert [float(a["y"]) for _, a, _ in up[:6]] == [y(value) + 4 for value in y.ticks()]
     names = of_kind(text, "text", "label")
-    assert [(said, a["x"], a["y"]) for _, a, said in names] == [
+    assert [(output, a["x"], a["y"]) for _, a, output in names] == [
         ("across", "150.0", "183"),
         ("up", "14", "100.0"),
         ("up", "14", "100.0"),

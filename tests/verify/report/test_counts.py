@@ -1,6 +1,6 @@
-"""Every figure of a report, where each of them is another number.
+"""Every figure of a report, with a different number for each figure.
 
-Where all counts are 1, columns that are swapped and tests that are left out are not seen.
+If all counts were 1, swapped columns and missing tests would not be found.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def run_of(*records, planned=()):
 
 
 def mixed(**counts):
-    """A run with so many tests of each verdict; `not_run` are planned only."""
+    """Return a run with so many tests of each verdict; `not_run` tests are only planned."""
     records = []
     for name, verdict in VERDICTS.items():
         for number in range(counts.get(name, 0)):
@@ -63,7 +63,7 @@ def rows(table):
     return [[cell.text for cell in row] for row in table.rows]
 
 
-def test_every_verdict_is_counted_as_what_it_is():
+def test_every_verdict_is_counted():
     counts = count(outcomes_of([mixed(**ALL)]))
     assert counts == Counts(**ALL) and counts.total == 28
     found = json.loads(FORMATS["json"](summarise({"r": mixed(**ALL)})))
@@ -93,7 +93,7 @@ def test_every_verdict_is_counted_as_what_it_is():
 )
 def test_the_worst_decides(counts, verdict):
     assert Counts(**counts).verdict == verdict
-    # Each form says the same.
+    # Each format has the same figures.
     found = json.loads(FORMATS["json"](summarise({"r": mixed(**counts)})))
     assert found["verdict"] == verdict
     line = next(line for line in FORMATS["md"](summarise({"r": mixed(**counts)})).splitlines()
@@ -117,7 +117,7 @@ def test_columns_have_the_counts_of_their_headings():
     }  # fmt: skip
 
 
-def test_groups_are_by_all_that_tells_them_apart():
+def test_groups_differ_in_each_of_their_keys():
     tests = [
         a_test("a_msgs/msg/A", bus_bytes=8, distro="iron", same=("humble", "iron")),
         a_test("a_msgs/msg/A", bus_bytes=4, distro="iron", same=("iron",)),
@@ -165,7 +165,7 @@ def test_every_failure_is_named(form):
     for number in range(45):
         assert f"reason {number};" in text, number
         assert f"m/msg/T{number}" in text.replace("\\", "")
-    # With all that is to be said about the first ones.
+    # The first ones have all details.
     assert all(f"more of {number};" in text for number in (0, 1))
 
 
@@ -177,7 +177,7 @@ def test_failures_of_a_cut_list_are_the_next_ones(monkeypatch):
     assert "3 more tests failed" in text and all(f"reason {n};" in text for n in range(5))
 
 
-def test_long_lists_keep_what_did_not_pass():
+def test_long_lists_keep_tests_that_did_not_pass():
     run = mixed(passed=6, known=2, failed=2, not_judged=2, not_run=2)
     shown, rest = shown_tests(summarise({"r": run}), 5)
     names = [outcome.verdict.name for outcome in shown]
@@ -185,7 +185,7 @@ def test_long_lists_keep_what_did_not_pass():
     assert rest.startswith("and 9 more")
     groups, rest = shown_packages(summarise({"r": run}), 4)
     assert "passed_msgs" not in {group.labels[-1] for group in groups} and "more" in rest
-    # Tests that did the same: the slowest of them.
+    # Of tests of the same kind, the slowest.
     slow = [a_record(a_test(f"m/msg/T{n}"), seconds=Seconds(testing=float(n))) for n in range(6)]
     shown, _ = shown_tests(summarise({"r": run_of(*slow)}), 2)
     assert [outcome.test.type for outcome in shown] == ["m/msg/T5", "m/msg/T4"]
@@ -242,7 +242,7 @@ def test_times_are_in_their_columns():
     place = every.headings.index("Time#")
     assert every.headings[place + 1] == "CPU#"
     assert next((row[place].value, row[place + 1].value) for row in every.rows) == (11.0, 100.0)
-    # Shares within a time include the time itself.
+    # Shares within a limit include the limit itself.
     values = [0.1, 0.2, 0.2, 0.5, 3]
     assert [share_within(values, limit) for limit in (0.05, 0.1, 0.2, 0.5, 3)] == [
         0, 0.2, 0.6, 0.8, 1
@@ -296,7 +296,7 @@ def test_command_takes_all_files_its_title_and_its_format(tmp_path, capsys):
         assert {run["name"] for run in found["runs"]} == {one, two}
     assert main(["report", one, "--title", "Mine"]) == 0
     assert capsys.readouterr().out.startswith("# Mine\n")
-    # What is asked for goes before what the name says.
+    # The option has priority over the file name.
     out = tmp_path / "report.html"
     assert main(["report", one, "--out", str(out), "--format", "json", "--title", "Mine"]) == 0
     assert json.loads(out.read_text())["title"] == "Mine"
@@ -312,13 +312,13 @@ def test_no_text_ends_the_block_that_it_is_in():
 
 
 def definition(name, verdict, is_refused=False, oracle="genmsg"):
-    """A record of TS1 with what one oracle said."""
+    """Return a record of TS1 with the verdict of one oracle."""
     said = OracleVerdict(oracle=oracle, verdict=verdict, is_refused=is_refused)
     test = a_test(name, system="ts1", simulator="", wire="", bus_bytes=0, options="")
     return a_record(test, verdicts=(said,), coverage=None, shape="", metrics={})
 
 
-def test_what_oracles_said_is_in_its_columns():
+def test_verdicts_of_oracles_are_in_their_columns():
     records = [
         definition(f"m/msg/{name}{n}", VERDICTS[name])
         for name, number in (("passed", 2), ("known", 3), ("failed", 5), ("not_judged", 7))
@@ -344,7 +344,7 @@ def test_the_most_frequent_word_of_an_oracle_comes_first():
     records = [definition(f"m/msg/T{n}", NotJudged(reason)) for n, reason in enumerate(reasons)] + [
         definition("m/msg/Z", NotJudged("nobody is here"), oracle="a")
     ]
-    # A type of two distributions is two definitions.
+    # A type of two distributions counts as two definitions.
     for distro in ("iron", "jazzy"):
         test = a_test("m/msg/Z", system="ts1", distro=distro, same=(distro,))
         records.append(a_record(test, verdicts=records[-1].verdicts))

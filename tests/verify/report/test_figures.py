@@ -1,4 +1,4 @@
-"""What a report makes of figures: Markdown that renders, the slowest, limits, relations."""
+"""Figures of a report: Markdown tables, the slowest tests, limits, and relations."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_a_table_has_numbers_on_the_right_and_no_marks():
         ("1. - + (x)!", "1. - + (x)!"),
     ],
 )
-def test_nothing_in_a_text_is_a_mark(text, written):
+def test_special_characters_are_escaped(text, written):
     assert _text(text) == written
 
 
@@ -65,7 +65,7 @@ def test_the_slowest_come_first_and_no_more_than_fifteen():
     assert found == [f"p/msg/T{n}" for n in range(19, 4, -1)]
 
 
-def test_what_took_no_time_and_what_did_not_run_is_not_slow():
+def test_tests_without_time_are_not_slow():
     records = [timed("p/msg/A", 0), timed("p/msg/B", 0.1)]
     planned = (*(each.test for each in records), a_test("p/msg/C"))
     assert [each.test.type for each in summary_of(*records, planned=planned).slowest] == ["p/msg/B"]
@@ -139,7 +139,7 @@ def test_a_report_may_go_into_folders_that_are_not_there(tmp_path):
     assert out.read_text().startswith("# Verification of firm-hdl\n")
     write_report([], out, title="Mine")
     assert out.read_text().startswith("# Mine\n")
-    # Nothing else is left there.
+    # No other file is left in the folder.
     assert list(out.parent.iterdir()) == [out]
 
 

@@ -1,4 +1,4 @@
-"""Reports: all that is in the results, in every form, and nothing that is not."""
+"""Reports have all results and nothing else, in every format."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ def run_of(*records, planned=None):
     return Results(planned=tests, records={record.test.key: record for record in records})
 
 
-def made(form, *runs):
+def rendered(form, *runs):
     return FORMATS[form](summarise({f"run{n}.jsonl": run for n, run in enumerate(runs)}))
 
 
 class Page(HTMLParser):
-    """Checks that elements are closed in order, and keeps what is in them."""
+    """A parser that checks that elements are closed in order, and keeps their content."""
 
     VOID = ("meta", "input", "line", "rect", "circle", "path")
 
@@ -70,9 +70,9 @@ class Page(HTMLParser):
 
 
 @pytest.mark.parametrize("form", list(FORMATS))
-def test_failure_is_one_in_every_form(form):
-    passed = made(form, run_of(a_record()))
-    failed = made(form, run_of(a_record(), FAILED))
+def test_a_failure_is_shown_in_every_format(form):
+    passed = rendered(form, run_of(a_record()))
+    failed = rendered(form, run_of(a_record(), FAILED))
     for text in (FAILED.verdict.failures[0], FAILED.command, FAILED.waveform_command):
         assert text in failed and text not in passed
     said = {"html": "1 of 2 tests passed, 1 failed", "md": "1 of 2 tests passed, 1 failed"}
@@ -90,7 +90,7 @@ def test_failure_is_one_in_every_form(form):
 @pytest.mark.parametrize("form", list(FORMATS))
 def test_missing_record_is_no_pass(form):
     missing = a_test("nav_msgs/msg/Path")
-    text = made(form, run_of(a_record(), planned=(a_test(), missing)))
+    text = rendered(form, run_of(a_record(), planned=(a_test(), missing)))
     if form == "json":
         found = json.loads(text)
         assert found["verdict"] == "not run" and found["not_run"] == [missing.key]
@@ -102,8 +102,8 @@ def test_missing_record_is_no_pass(form):
 def test_no_results_are_no_pass():
     assert count([]).verdict == "not run"
     for form in ("html", "md"):
-        assert "? no tests" in made(form, Results())
-    assert json.loads(made("json", Results()))["verdict"] == "not run"
+        assert "? no tests" in rendered(form, Results())
+    assert json.loads(rendered("json", Results()))["verdict"] == "not run"
 
 
 def test_test_that_failed_once_failed():
@@ -112,12 +112,12 @@ def test_test_that_failed_once_failed():
         assert [outcome.verdict for outcome in outcomes_of(files)] == [FAILED.verdict]
 
 
-def test_what_was_not_judged_is_no_pass_and_has_its_reason():
+def test_unjudged_tests_are_no_pass_and_have_a_reason():
     skipped = a_record(a_test("a/msg/W"), verdict=NotJudged("no oracle for wstring"))
     outcomes = outcomes_of([run_of(a_record(), skipped)])
     assert count(outcomes).not_judged == 1 and count(outcomes).passed == 1
     for form in FORMATS:
-        text = made(form, run_of(a_record(), skipped))
+        text = rendered(form, run_of(a_record(), skipped))
         assert "no oracle for wstring" in text and "skipped" not in text
         if form != "json":
             assert "1 of 2 tests passed, 1 not judged" in text
@@ -141,7 +141,7 @@ def test_what_was_not_judged_is_no_pass_and_has_its_reason():
         ),
     ],
 )
-def test_shared_circuit_is_worth_what_its_own_test_is(other, verdict, why):
+def test_a_shared_circuit_has_the_verdict_of_its_test(other, verdict, why):
     twin = a_record(a_test("a/msg/Twin"), same_as=a_test().key, shape="aa")
     records = [twin] if other is None else [twin, other]
     (outcome,) = (o for o in outcomes_of([run_of(*records)]) if o.test == twin.test)
@@ -170,7 +170,7 @@ def test_distributions_and_packages_are_counted():
 EVIL = "</title><script>alert(1)</script>\"'&`|*_<b>\n```"
 
 
-def test_what_users_name_is_text_in_every_form():
+def test_names_of_users_are_plain_text_in_every_format():
     record = replace(
         FAILED,
         test=a_test(f"a/msg/{EVIL}", distro=EVIL, same=(EVIL,), options=EVIL),
@@ -187,19 +187,19 @@ def test_what_users_name_is_text_in_every_form():
     ]
     run = replace(run_of(record, *more), options={EVIL: EVIL}, sessions=({EVIL: EVIL},))
     calm = replace(run_of(a_record()), options={"x": "y"})
-    page, plain = Page(made("html", run)), Page(made("html", calm))
+    page, plain = Page(rendered("html", run)), Page(rendered("html", calm))
     assert page.tags.count("script") == plain.tags.count("script") == 1
     assert page.tags.count("b") == page.attributes.count(("class", "tile"))
     assert "alert(1)" in "".join(page.text)
     assert not [name for name, _ in page.attributes if name.startswith("on")]
-    assert json.loads(made("json", run))["outcomes"][0]["details"] == [EVIL, EVIL]
-    text = made("md", run)
+    assert json.loads(rendered("json", run))["outcomes"][0]["details"] == [EVIL, EVIL]
+    text = rendered("md", run)
     outside = re.sub(r"(?ms)^(`{3,})$.*?^\1$", "", text)
     assert not re.search(r"(?<!\\)<", outside)
 
 
-def test_page_needs_nothing_else_and_is_well_formed():
-    text = made("html", a_run())
+def test_page_is_self_contained_and_well_formed():
+    text = rendered("html", a_run())
     page = Page(text)
     assert not set(page.tags) & {"link", "img", "iframe", "object", "base", "image", "use"}
     links = [value for name, value in page.attributes if name in ("src", "href", "xlink:href")]
@@ -212,14 +212,14 @@ def test_page_needs_nothing_else_and_is_well_formed():
     assert "prefers-color-scheme: dark" in text
     targets = {value for name, value in page.attributes if name == "id"}
     assert {link[1:] for link in links} <= targets
-    # A search field finds its table, and no section of the same name.
+    # A search field refers to its table, not to a section of the same name.
     assert len(targets) == len([name for name, _ in page.attributes if name == "id"])
     searched = {value for name, value in page.attributes if name == "data-table"}
     assert searched and searched <= targets
 
 
 def test_charts_have_axes_with_units_and_titles():
-    text = made("html", a_run())
+    text = rendered("html", a_run())
     for label in (
         "time per test in s, logarithmic",
         "share of tests completed",
@@ -231,22 +231,22 @@ def test_charts_have_axes_with_units_and_titles():
 
 def test_reports_are_the_same_each_time():
     for form in FORMATS:
-        assert made(form, a_run()) == made(form, a_run())
+        assert rendered(form, a_run()) == rendered(form, a_run())
 
 
 def test_coverage_that_is_missing_is_named():
     coverage = PlanCoverage(taken=4, possible=5, missing=("step 3: padding 5",))
     run = run_of(a_record(), a_record(a_test("a/msg/A"), coverage=coverage))
     for form in ("html", "md"):
-        text = made(form, run)
+        text = rendered(form, run)
         assert "step 3: padding 5" in text and "90.0" in text and "4 of 5" in text
-    assert json.loads(made("json", run))["coverage"][0]["taken"] == 9
+    assert json.loads(rendered("json", run))["coverage"][0]["taken"] == 9
 
 
 def test_nothing_rounds_up_to_all():
     coverage = PlanCoverage(taken=99_999, possible=100_000)
     run = run_of(a_record(coverage=coverage))
-    assert "99.99%" in made("md", run) and "100.00%" not in made("md", run)
+    assert "99.99%" in rendered("md", run) and "100.00%" not in rendered("md", run)
 
 
 def definition(name, *verdicts, **more):
@@ -280,9 +280,9 @@ def test_verdicts_of_oracles_are_counted_and_known_differences_named():
         ("not judged", "a/msg/C is too deep", 2, "a/msg/C"),
     ]
     for form in FORMATS:
-        text = made(form, run)
+        text = rendered(form, run)
         assert "a-key" in text and "rosbags: x" in text
-    assert 'id="oracles"' not in made("html", run_of(a_record()))
+    assert 'id="oracles"' not in rendered("html", run_of(a_record()))
 
 
 def test_tests_that_were_not_judged_and_notes_are_grouped_by_reason():
@@ -295,7 +295,7 @@ def test_tests_that_were_not_judged_and_notes_are_grouped_by_reason():
     groups = reason_groups(outcomes_of([run_of(*skipped, other)]))
     assert [len(group.outcomes) for group in groups] == [60, 1]
     for form in ("html", "md"):
-        said = made(form, run)
+        said = rendered(form, run)
         assert text.format("a/msg/W0") in said and "and 10 more" in said
         assert "it is too large: 8 bytes" in said and noted.note in said
 
@@ -317,7 +317,7 @@ def test_circuits_are_counted_for_each_test_system():
         "ts2": 3,
         "ts3": 3,
     }
-    assert '<div class="tile"><b>3</b><span>different circuits</span>' in made("html", run)
+    assert '<div class="tile"><b>3</b><span>different circuits</span>' in rendered("html", run)
 
 
 def test_who_wrote_the_packets_is_counted():
@@ -326,10 +326,10 @@ def test_who_wrote_the_packets_is_counted():
         a_record(a_test("a/msg/A"), written_by=("rosbags",)),
     )
     counted = {"ts3, python, 8-byte bus": {"rosbags": 2, "fastcdr": 1}}
-    assert json.loads(made("json", run))["writers"] == counted
-    assert "| ts3, python, 8-byte bus | fastcdr | 1 |" in made("md", run)
-    assert 'id="writers"' in made("html", run)
-    assert 'id="writers"' not in made("html", run_of(a_record()))
+    assert json.loads(rendered("json", run))["writers"] == counted
+    assert "| ts3, python, 8-byte bus | fastcdr | 1 |" in rendered("md", run)
+    assert 'id="writers"' in rendered("html", run)
+    assert 'id="writers"' not in rendered("html", run_of(a_record()))
 
 
 def test_long_reports_are_cut_and_say_so(monkeypatch):
@@ -340,13 +340,13 @@ def test_long_reports_are_cut_and_say_so(monkeypatch):
         for n in range(4)
     ]
     run = run_of(*a_run(60).records.values(), *failed)
-    text = made("html", run)
+    text = rendered("html", run)
     assert text.count("<article>") == 2 and "2 more tests failed" in text
     assert "Show 20 of 64 tests" in text and "and 44 more: those that did not pass" in text
-    # Those that failed are not among those that are left out.
+    # Failed tests are not left out.
     assert all(f"it is {number}" in text for number in range(4))
     assert text.count("z3_msgs/msg/F3, ") == 1 and '<td class="t">z3_msgs/msg/F3</td>' in text
-    assert len(json.loads(made("json", run))["outcomes"]) == 64
+    assert len(json.loads(rendered("json", run))["outcomes"]) == 64
     assert Page(text)
 
 
@@ -358,7 +358,7 @@ def written(path, run):
 
 
 @pytest.mark.parametrize("form", list(FORMATS))
-def test_command_writes_what_the_name_says(tmp_path, form, capsys):
+def test_the_file_name_selects_the_format(tmp_path, form, capsys):
     path = written(tmp_path / "r.jsonl", a_run(8))
     out = tmp_path / "new" / f"report.{form}"
     assert main(["report", path, "--out", str(out)]) == 0
@@ -368,7 +368,7 @@ def test_command_writes_what_the_name_says(tmp_path, form, capsys):
     assert [each.name for each in out.parent.iterdir()] == [out.name]
 
 
-def test_command_refuses_what_is_no_results(tmp_path, capsys):
+def test_command_refuses_other_files(tmp_path, capsys):
     (tmp_path / "x").write_text("hello\n")
     assert main(["report", str(tmp_path / "x")]) == 1
     assert capsys.readouterr().err == (f"error: '{tmp_path}/x' has no results of firm-hdl verify\n")
@@ -383,7 +383,7 @@ def test_whiskers_end_inside_the_axis_though_few_points_are_drawn(monkeypatch):
     monkeypatch.setattr(summary_of, "MOST_POINTS", 3)
     run = a_run(60)
     longest = a_record(a_test("z/msg/Z"), seconds=Seconds(simulation=5000.0))
-    text = made("html", run_of(*run.records.values(), longest))
+    text = rendered("html", run_of(*run.records.values(), longest))
     places = [float(x) for x in re.findall(r'x2="([\d.]+)"[^>]*class="whisker', text)]
     assert places and max(places) <= 740
 

@@ -1,4 +1,4 @@
-"""Statistics: of figures whose statistics are known."""
+"""Statistics of numbers with known results."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def trend(metric, spearman, time="total", power=LAW):
 
 
 def test_points_without_a_logarithm_are_not_drawn():
-    """Types without leaves, and times of zero, have no place on logarithmic axes."""
+    """Types without leaves, and times of zero, cannot be drawn on logarithmic axes."""
     points = ((0.0, 2.0), (2.0, 0.0), (0.0, 0.0), (2.0, 3.0), (50.0, 90.0))
     drawn = scatter(replace(trend("leaves", 0.5), points=points))
     assert drawn.count('class="point c1"') == 2
@@ -72,7 +72,7 @@ def test_the_trends_that_explain_most_are_drawn():
     assert len(shown_trends(trends, 9)) == 4
 
 
-def test_what_was_not_fitted_has_no_formula():
+def test_trends_without_a_fit_have_no_formula():
     assert (line_text(None), law_text(None)) == ("-", "-")
     assert line_text(Fit(a=-1.5, b=2.0, r2=1.0)) == f"-{number(1.5)} + {number(2.0)}·x"
     assert line_text(Fit(a=1.5, b=-2.0, r2=1.0)) == f"{number(1.5)} - {number(2.0)}·x"
@@ -97,7 +97,7 @@ def test_power_law_is_found():
 
 
 def test_known_noise_has_its_r2():
-    # Around the line, 24/9 are left of 42/9, twice each.
+    # Around the line, the remaining sum of squares is 24/9 of 42/9.
     found = correlate([1, 2, 3, 1, 2, 3], [1, 0, 3, 1, 0, 3])
     assert found.linear.b == pytest.approx(1)
     assert found.linear.r2 == pytest.approx(1 - 24 / 42)
@@ -108,13 +108,13 @@ def test_equal_values_share_their_rank():
     assert correlate([1, 2, 3], [3, 2, 1]).spearman == pytest.approx(-1)
 
 
-def test_what_does_not_vary_goes_with_nothing():
+def test_constant_values_have_no_correlation():
     assert correlate([1, 1, 1], [1, 2, 3]) is None
     assert correlate([1, 2, 3], [1, 1, 1]) is None
     assert correlate([], []) is None
 
 
-def test_few_points_are_fitted_to_nothing():
+def test_few_points_have_no_fit():
     assert correlate([1, 2, 3, 4], [1, 2, 3, 5]).linear is None
     assert correlate([1, 1, 2, 2, 2], [1, 2, 3, 5, 4]).linear is None
 

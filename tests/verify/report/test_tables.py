@@ -1,4 +1,4 @@
-"""Tables: each cell under its heading, and what a report says in words."""
+"""Tables with each cell under its heading, and the sentences of a report."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def under_headings(table, row=0):
 PLAIN = a_test("p/msg/A", system="ts1", simulator="", wire="", bus_bytes=0, options="", same=())
 
 
-def test_all_of_a_test_is_in_the_columns_of_its_row():
+def test_each_value_of_a_test_is_in_its_column():
     whole = a_record(
         a_test("p/msg/A", wire="ros1", bus_bytes=4, same=("iron", "jazzy")),
         metrics={"leaves": 3, "steps": 4},
@@ -78,7 +78,7 @@ def test_a_test_that_did_not_run_has_a_row():
     assert found["Result"] == "? not run" and found["Time"] == "-" and found["Packets"] == "0"
 
 
-def test_titles_of_tests_have_what_tells_them_apart():
+def test_titles_of_tests_are_unique():
     (whole,) = summary_of(a_record(a_test("p/msg/A", same=("iron", "jazzy")))).outcomes
     assert title_of(whole) == "p/msg/A, iron jazzy, ts3, python, cdr, 8-byte bus, seed=0"
     (plain,) = summary_of(a_record(PLAIN)).outcomes
@@ -170,7 +170,7 @@ def test_a_session_on_the_same_machine_is_as_the_one_before():
     ]
 
 
-def test_the_headline_names_what_there_is():
+def test_the_headline_names_all_verdicts():
     assert headline(summary_of()) == "? no tests"
     assert headline(summary_of(a_record())) == "✓ 1 of 1 tests passed"
     both = summary_of(
@@ -192,15 +192,15 @@ def test_processor_time_is_of_types_that_have_all_tests():
         a_record(a_test("p/msg/B", system="ts1"), cpu_seconds=8),
         a_record(a_test("p/msg/C"), cpu_seconds=16),
     ]
-    found = {what: said for said, what in facts(summary_of(*records))}
+    found = {what: output for output, what in facts(summary_of(*records))}
     assert found["median CPU time per type, 2 tests of each"] == "12 s"
     assert found["CPU time in total"] == "31 s"
     assert found["types"] == "3" and found["tests"] == "5" and found["failed"] == "0"
-    alone = {what: said for said, what in facts(summary_of(*records[2:3]))}
+    alone = {what: output for output, what in facts(summary_of(*records[2:3]))}
     assert alone["median CPU time per test"] == "4 s"
 
 
-def test_long_lists_have_a_word_on_the_rest():
+def test_long_lists_end_with_the_number_of_omitted_rows():
     records = [a_record(a_test(f"p{n}/msg/A"), seconds=Seconds(testing=n)) for n in range(1, 5)]
     summary = summary_of(*records)
     assert shown_tests(summary, 4) == (list(summary.outcomes), "")

@@ -1,4 +1,4 @@
-"""Results on the disk: nothing is lost or made up, and no run goes on with another's file."""
+"""Result files: complete and correct after a crash, and bound to one run."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_last_of_two_records_of_a_test_counts(tmp_path):
     assert read_results(again).records == {HEADER.key: a_record()}
 
 
-def test_keys_tell_all_that_matters_apart():
+def test_keys_differ_for_different_tests():
     others = [
         a_test("std_msgs/msg/Bool"),
         a_test(system="ts2"),
@@ -63,14 +63,14 @@ def test_keys_tell_all_that_matters_apart():
 
 
 @pytest.mark.parametrize(
-    ("more", "said"),
+    ("more", "output"),
     [
         ({"verdict": None}, r"^What became of a test must be a verdict, not None$"),
         ({"verdict": "passed"}, r"^What became of a test must be a verdict, not 'passed'$"),
     ],
 )
-def test_records_without_a_verdict_are_refused(more, said):
-    with pytest.raises(ValueError, match=said):
+def test_records_without_a_verdict_are_refused(more, output):
+    with pytest.raises(ValueError, match=output):
         a_record(**more)
 
 
@@ -120,7 +120,7 @@ def test_other_files_are_refused_and_left_alone(tmp_path, content):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "output"),
     [
         ({"options": {"seed": 1, "paths": []}}, "seed was 0, and is 1"),
         ({"options": {"paths": []}}, "seed was 0, and is not given"),
@@ -131,13 +131,13 @@ def test_other_files_are_refused_and_left_alone(tmp_path, content):
         ),
     ],
 )
-def test_other_runs_are_refused(tmp_path, change, said):
+def test_other_runs_are_refused(tmp_path, change, output):
     path = written(tmp_path / "r", a_record())
     before = path.read_bytes()
     with pytest.raises(ResultsError) as caught:
         written(path, **change)
     assert str(caught.value) == (
-        f"'{path}' is of another run: {said}; name another file, or remove it"
+        f"'{path}' is of another run: {output}; name another file, or remove it"
     )
     assert path.read_bytes() == before
 
@@ -151,7 +151,7 @@ def test_file_has_one_writer_at_a_time(tmp_path):
         ResultsWriter(path, options=OPTIONS, planned=[HEADER])
 
 
-def test_times_are_no_part_of_what_is_compared():
+def test_times_are_not_compared():
     one = a_record()
     assert without_times(one) == without_times(replace(one, cpu_seconds=9.0))
     assert without_times(one) != without_times(replace(one, cycles=9))
@@ -251,7 +251,7 @@ def test_workers_end_with_a_run_that_was_killed(tmp_path):
 @pytest.mark.parametrize(
     ("line", "reason"),
     [
-        # In Python's words a list's indices must be integers; nobody wrote that for readers.
+        # Python's own message about list indices would not help readers.
         ("[]", "it is damaged"),
         ("{}", "it is damaged"),
         ("3", "it is damaged"),
@@ -260,14 +260,14 @@ def test_workers_end_with_a_run_that_was_killed(tmp_path):
         ('{"record": {"test": {"system": "x"}}}', "it is damaged"),
         ('{"record": []}', "A record must be an object, not a list"),
         ('{"record": {"test": 3}}', "Test must be an object, not a number"),
-        # Python reads such numbers, and reports could not write them.
+        # Python reads such numbers, but reports cannot write them.
         ('{"session": NaN}', "it is damaged"),
         ('{"session": 1e999}', "it is damaged"),
         ('{"session": 7}', "A session must be an object of texts"),
         ('{"session": {"started": 7}}', "A session must be an object of texts"),
     ],
 )
-def test_a_line_that_is_none_is_named_with_the_reason(tmp_path, line, reason):
+def test_an_invalid_line_is_reported_with_the_reason(tmp_path, line, reason):
     path = written(tmp_path / "r.jsonl", a_record())
     with path.open("a") as file:
         file.write(f"{line}\n")

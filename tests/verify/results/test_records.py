@@ -1,4 +1,4 @@
-"""Records: what of a test is kept, in which form, and what one test says of another."""
+"""Records: the stored data of a test, its JSON form, and references to other tests."""
 
 from __future__ import annotations
 
@@ -50,10 +50,10 @@ def test_of_more_failures_the_first_are_kept_and_the_others_counted(more):
 def test_long_failures_are_cut_and_say_how_long_they_were():
     fits, long = "x" * MOST_CHARACTERS, "y" * (MOST_CHARACTERS + 1)
     start = "y" * MOST_CHARACTERS
-    said = f"{start}... ({MOST_CHARACTERS + 1} characters)"
-    assert clipped([fits, long, "z"]) == (fits, said, "z")
-    assert clipped_verdict(Failed((long, "z"))) == Failed((said, "z"))
-    assert clipped_verdict(NotJudged(long)) == NotJudged(said)
+    output = f"{start}... ({MOST_CHARACTERS + 1} characters)"
+    assert clipped([fits, long, "z"]) == (fits, output, "z")
+    assert clipped_verdict(Failed((long, "z"))) == Failed((output, "z"))
+    assert clipped_verdict(NotJudged(long)) == NotJudged(output)
 
 
 @pytest.mark.parametrize(
@@ -68,7 +68,7 @@ def test_the_time_of_a_test_is_that_of_its_stages():
     assert Seconds().total == 0
 
 
-def test_what_people_read_a_test_by():
+def test_titles_of_tests():
     assert WHOLE.title == "p/msg/A (iron, jazzy), ts3, 8-byte bus"
     assert WHOLE.key == "ts3 python iron p/msg/A cdr/8 seed=1"
     assert (WHOLE.package, WHOLE.distros) == ("p", ("iron", "jazzy"))
@@ -102,7 +102,7 @@ RECORD = Record(
 )
 
 
-def test_a_record_says_in_json_all_that_it_has():
+def test_the_json_of_a_record_is_complete():
     assert to_json(RECORD) == {
         "test": {
             "system": "ts3",
@@ -122,7 +122,7 @@ def test_a_record_says_in_json_all_that_it_has():
         "packets": 2,
         "cycles": 3,
         "beats": 4,
-        # That none was taken is said, too.
+        # An empty list is written, too.
         "coverage": {"taken": 0, "possible": 2, "missing": ["m", "n"]},
         "metrics": {"fields": 3.0},
         "shape": "shape",
@@ -137,7 +137,7 @@ def test_a_record_says_in_json_all_that_it_has():
     }
 
 
-def test_a_bare_record_says_in_json_its_test_and_its_verdict():
+def test_the_json_of_a_minimal_record_has_the_test_and_the_verdict():
     bare = Record(test=Tested(system="ts2", distro="iron", type="p/A"), verdict=Passed(1))
     given = {
         "test": {"system": "ts2", "distro": "iron", "type": "p/A"},
@@ -162,17 +162,17 @@ def test_each_part_of_a_record_is_read_back(name):
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("given", "output"),
     [
         ([], "A record must be an object, not a list"),
         ({}, "Test must be an object, not nothing"),
         ({"test": {"system": "x", "size": 1, "age": 2}}, "Test has no age, size"),
     ],
 )
-def test_what_is_no_record_is_refused(given, said):
+def test_invalid_records_are_refused(given, output):
     with pytest.raises(ValueError) as error:
         from_json(Record, given)
-    assert str(error.value) == said
+    assert str(error.value) == output
 
 
 def test_parts_of_a_record_are_refused_by_name():
@@ -180,14 +180,14 @@ def test_parts_of_a_record_are_refused_by_name():
         "test": {"system": "ts2", "distro": "iron", "type": "p/A"},
         "verdict": {"verdict": "passed", "cases": 1},
     }
-    for part, said in {
+    for part, output in {
         "seconds": "Seconds must be an object, not a number",
         "coverage": "PlanCoverage must be an object, not a number",
         "test": "Test must be an object, not a number",
     }.items():
         with pytest.raises(ValueError) as error:
             from_json(Record, {**whole, part: 3})
-        assert str(error.value) == said
+        assert str(error.value) == output
     with pytest.raises(ValueError, match="What an oracle says must be an object, not a number"):
         from_json(Record, {**whole, "verdicts": [3]})
     with pytest.raises(ValueError, match="Test: "):

@@ -1,4 +1,4 @@
-"""Each verdict carries what makes it believable."""
+"""Each verdict has the data that justifies it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TEST = Tested(system="ts2", distro="iron", type="p/A")
 
 
 def read_back(verdict):
-    """Read a verdict as that of a record."""
+    """Write a verdict as part of a record, and read the record."""
     return from_json(Record, {"test": to_json(TEST), "verdict": verdict}).verdict
 
 

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Exported VHDL in GHDL is the Python simulation, cycle by cycle; a changed line is found."""
+"""Exported VHDL in GHDL equals the Python simulation in each cycle; a changed line is found."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def accepted(distro: str, name: str, bus_bytes: int = 8, **options) -> Result:
 
 
 @pytest.mark.parametrize(("distro", "name", "bus_bytes"), SAMPLE)
-def test_vhdl_does_in_each_cycle_what_the_simulation_does(ghdl, distro, name, bus_bytes):
+def test_vhdl_equals_the_simulation_in_each_cycle(ghdl, distro, name, bus_bytes):
     result = accepted(distro, name, bus_bytes)
     assert_passed(result)
     found = result.comparison
@@ -45,7 +45,7 @@ def test_vhdl_does_in_each_cycle_what_the_simulation_does(ghdl, distro, name, bu
 
 
 def replay_marked(other: TextSimulator, folder: Path) -> None:
-    """Replay a serializer that marks packets, which no loopback does."""
+    """Replay a serializer that marks packets, which loopback tests never do."""
     message = load_message("std_msgs/msg/String")
 
     def make() -> Serializer:
@@ -94,7 +94,7 @@ OWN_TYPES = [
 
 
 @pytest.mark.parametrize(("name", "bus_bytes"), OWN_TYPES)
-def test_types_of_ones_own_do_as_well(ghdl, tmp_path, name, bus_bytes):
+def test_user_defined_types_behave_the_same(ghdl, tmp_path, name, bus_bytes):
     paths = (str(own_package(tmp_path)),)
     result = accepted("lyrical", name, bus_bytes, paths=paths)
     assert assert_passed(result) and result.note == ""
@@ -102,7 +102,7 @@ def test_types_of_ones_own_do_as_well(ghdl, tmp_path, name, bus_bytes):
 
 
 def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
-    """Have one line of one file of the VHDL changed, the first where `pattern` is found."""
+    """A function that changes the first line with `pattern` in one VHDL file."""
     convert = exported.convert
 
     def converted(top, **options):
@@ -119,7 +119,7 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("file", "pattern", "text", "said"),
+    ("file", "pattern", "text", "output"),
     [
         # A condition, an operator, a limit that costs nothing but cycles; what registers hold
         # initially, and after a reset.
@@ -147,21 +147,21 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
             r"\1:= (0 => '1', others => '0')",
             "hardware, cycle 0: stamp_sec_data of the deserializer is 0x1 instead of 0x0",
         ),
-        # Of what is offered, only the status is reset: all others keep what they last held.
+        # Only the status output is reset: the other outputs keep their last value.
         (
             "_deserializer_flat_core_mover.vhd",
             r"status_payload_q( +)<= \(others => '0'\);",
             r"status_payload_q\1<= (0 => '1', others => '0');",
             "cycle 0: m_axis_status_tdata of the deserializer is 0x1 instead of 0x0",
         ),
-        # An output that means nothing while nothing is offered.
+        # An output that has no meaning while `valid` is low.
         (
             "_deserializer_flat.vhd",
             r"(stamp_nanosec_data +<= )(.*);",
             r"\1not \2;",
             "stamp_nanosec_data of the deserializer is 0xffffffff instead of 0x0",
         ),
-        # What is undefined is a difference, too.
+        # Undefined values are differences, too.
         (
             "_serializer_flat.vhd",
             r"(m_axis_status_tdata +<= ).*;",
@@ -170,16 +170,16 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
         ),
     ],
 )
-def test_a_changed_line_is_found(ghdl, monkeypatch, file, pattern, text, said):
+def test_a_changed_line_is_found(ghdl, monkeypatch, file, pattern, text, output):
     change_line(monkeypatch, file, pattern, text)
     result = accepted("lyrical", HEADER)
-    assert any(said in failure for failure in result.failures), result.failures
-    # It is the VHDL that is blamed, and nothing else.
+    assert any(output in failure for failure in result.failures), result.failures
+    # Only the VHDL is reported as faulty.
     assert all(failure.startswith("GHDL") for failure in result.failures)
 
 
 def undefined_at_first(vhdl: str) -> tuple[str, int]:
-    """Give undefined initial values to registers without a reset and to memories."""
+    """Make the initial values of memories, and of registers without a reset, undefined."""
     count = 0
     for process in re.findall(r"process \(aclk\)\n.*?end process;", vhdl, re.DOTALL):
         if "rst = '1'" in process:
@@ -201,7 +201,7 @@ def undefined_at_first(vhdl: str) -> tuple[str, int]:
         ("lyrical", "sensor_msgs/msg/Joy", 4),
     ],
 )
-def test_what_is_not_reset_is_written_before_it_is_offered(
+def test_registers_without_reset_are_written_before_they_are_offered(
     ghdl, monkeypatch, distro, name, bus_bytes
 ):
     convert, counts = exported.convert, []
@@ -216,7 +216,7 @@ def test_what_is_not_reset_is_written_before_it_is_offered(
     monkeypatch.setattr(exported, "convert", converted)
     result = accepted(distro, name, bus_bytes)
     assert sum(counts) > 30
-    # Ports show it, but whatever is transferred is the same.
+    # Ports differ, but the transfers are the same.
     (difference,) = result.failures
     assert re.fullmatch(r"GHDL: hardware, cycle 0: \w+_data of the .* is 'X+' .*", difference)
 
@@ -229,15 +229,15 @@ def test_vhdl_that_ghdl_refuses_is_a_failure(ghdl, monkeypatch):
 
 
 def test_cycles_that_are_missing_are_found(monkeypatch):
-    monkeypatch.setattr(circuit, "simulator", lambda name: Short())
+    monkeypatch.setattr(circuit, "simulator", lambda name: ShortSimulator())
     result = accepted("lyrical", "std_msgs/msg/Bool")
     cycles = result.simulated_cycles + 4
     assert result.failures[0] == f"short: {cycles - 9} cycles instead of {cycles}"
     assert "packets differ" in result.failures[1]
 
 
-class Short:
-    """Repeats what it should find, and forgets the end."""
+class ShortSimulator:
+    """Returns the expected rows without the last ones."""
 
     title = "short"
 
@@ -245,8 +245,8 @@ class Short:
         return trace.expected[:-9]
 
 
-class Breaks:
-    """Does not run."""
+class FailingSimulator:
+    """A simulator that cannot be run."""
 
     title = "broken"
 
@@ -255,22 +255,22 @@ class Breaks:
 
 
 def test_simulator_that_fails_is_a_failure(monkeypatch):
-    monkeypatch.setattr(circuit, "simulator", lambda name: Breaks())
+    monkeypatch.setattr(circuit, "simulator", lambda name: FailingSimulator())
     assert accepted("lyrical", "std_msgs/msg/Bool").failures == ["broken: out of order"]
 
 
-def test_what_a_hanging_circuit_did_is_compared_as_well(ghdl, monkeypatch):
-    class Deaf(circuit.Harness):
+def test_the_cycles_of_a_hanging_circuit_are_compared(ghdl, monkeypatch):
+    class HangingHarness(circuit.Harness):
         def run_packets(self, packets, options):
             return super().run_packets(packets, replace(options, limit=20))
 
-    monkeypatch.setattr(circuit, "Harness", Deaf)
+    monkeypatch.setattr(circuit, "Harness", HangingHarness)
     result = accepted("lyrical", HEADER)
     assert result.failures and all("DeadlineError" in failure for failure in result.failures)
     assert result.comparison is not None and result.comparison.cycles > 60
 
 
-def test_missing_ghdl_says_how_to_get_it(monkeypatch, tmp_path):
+def test_error_for_missing_ghdl_explains_the_installation(monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("GHDL", raising=False)
     with pytest.raises(

@@ -1,4 +1,4 @@
-"""Exported Verilog is the Python simulation, cycle by cycle; a changed line is found."""
+"""Exported Verilog equals the Python simulation in each cycle; a changed line is found."""
 
 from __future__ import annotations
 
@@ -38,15 +38,15 @@ WIDE = ("lyrical", "service_msgs/msg/ServiceEventInfo", 16)
 @pytest.mark.parametrize(
     ("of_verilog", "sample"),
     [
-        # Ports of all widths, among them some of more than 64 bits.
+        # Ports of all widths, some of more than 64 bits.
         ("iverilog", WIDE),
-        # A bus of one byte; no bytes at all, and a leaf that only triggers.
+        # A bus of one byte; no bytes at all, and a leaf that is only a trigger.
         ("iverilog", ("noetic", "std_msgs/Header", 1)),
         ("iverilog", ("noetic", "bond/Constants", 8)),
     ],
     indirect=["of_verilog"],
 )
-def test_verilog_does_in_each_cycle_what_the_simulation_does(of_verilog, sample):
+def test_verilog_equals_the_simulation_in_each_cycle(of_verilog, sample):
     result = accepted(of_verilog, *sample)
     assert_passed(result)
     found = result.comparison
@@ -62,7 +62,7 @@ EVERY_STANDARD = ("2005", "2005-sv", "2009", "2012")
 
 @pytest.fixture
 def standards(of_verilog, monkeypatch) -> list[str]:
-    """Languages in which Icarus Verilog was run; the last one is that with a difference."""
+    """Languages in which Icarus Verilog was run, up to the first one with a difference."""
     done: list[str] = []
     traces: list[Trace] = []
 
@@ -102,8 +102,8 @@ def test_verilog_is_the_same_in_every_language(of_verilog, standards, name):
     assert result.comparison.cycles == result.simulated_cycles + 4
 
 
-# A process that waits for a change of what it reads: a register's initial value is one in Verilog,
-# and none in SystemVerilog.
+# A process that waits for a change of its inputs: in Verilog, the initial value of a register is a
+# change; in SystemVerilog, it is not.
 WAITING = r"reg [7:0] waiting; always @* waiting = \2; assign \1 = waiting;"
 
 
@@ -116,18 +116,18 @@ def test_process_that_waits_for_its_first_change_is_found(of_verilog, standards,
 
 
 EVERY_LANGUAGE = ("1364-2001", "1364-2005", "1800-2005", "1800-2009", "1800-2012", "1800-2017")
-# C++ takes its time.
+# Compiling the C++ is slow.
 IN_VERILATOR = by_depth([WIDE], [("lyrical", name, 8) for name in TYPES])
 
 
 def model(folder: Path) -> dict[str, str]:
-    """Read what Verilator has made, without comments, which have names of folders."""
+    """Read the files of Verilator without comments, because comments contain names of folders."""
     made = [path for path in folder.glob("Vreplay*") if path.suffix in (".h", ".cpp")]
     return {path.name: re.sub(r"(?m)^//.*", "", path.read_text()) for path in made}
 
 
 def make_models(of_verilog: Verilator, files: list[str], folder: Path) -> Iterator[dict[str, str]]:
-    """Have Verilator read files in each language."""
+    """Translate files with Verilator in each language."""
     for each in EVERY_LANGUAGE:
         options = ["--Mdir", each, "--default-language", each]
         run_tool([of_verilog.path, *verilator.VERILATE, *options, *files], folder)
@@ -153,14 +153,14 @@ def test_verilator_makes_the_same_of_every_language(of_verilog, monkeypatch, sam
     assert found is not None
     assert found.cycles == result.simulated_cycles + 4
     assert (found.packets, found.statuses) == (result.packets, 2 * result.packets)
-    # What ran is what each language makes.
+    # The simulated model is the same in each language.
     ran, *others = made
     assert len(ran) > 3 and len(others) == len(EVERY_LANGUAGE)
     assert all(other == ran for other in others)
 
 
 @pytest.mark.parametrize("of_verilog", ["verilator"], indirect=True)
-def test_what_verilator_makes_is_another_of_another_text(of_verilog, tmp_path):
+def test_verilator_output_depends_on_the_text(of_verilog, tmp_path):
     text = "module replay(input [1:0] a, output reg [1:0] z); {} z = a{}; endmodule\n"
     for name, process, more in (
         ("one", "always @*", ""),
@@ -190,7 +190,7 @@ def test_text_is_that_of_build(tmp_path):
 
 
 def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
-    """Have one line of one file of the Verilog changed, the first where `pattern` is found."""
+    """A function that changes the first line with `pattern` in one Verilog file."""
     to_verilog = verilog.to_verilog
 
     def changed(top, *, module, header):
@@ -239,14 +239,14 @@ CHANGES = {
         "1'h0",
         "hardware, nothing taken, cycle 7: stamp_sec_data of the deserializer is",
     ),
-    # An output that means nothing while nothing is offered.
+    # An output that has no meaning while `valid` is low.
     "payload": (
         "_deserializer",
         r"(?<=reg \[64:0\] message__frame_id__items__payload = 65'h)0+",
         "0ffffffffffffffff",
         "cycle 0: frame_id_items_data of the deserializer is 0xffffffffffffffff instead of 0x0",
     ),
-    # What is undefined, or not driven, is a difference, too.
+    # Undefined and undriven values are differences, too.
     "constant": ("_serializer", STATUS, "{ 5'h10, status__payload }", "is 0x80 instead of 0x0"),
     "undefined": ("_serializer", STATUS, "8'hxx", "m_axis_status_tdata of the serializer is 'XXXX"),
     "undefined bytes": (
@@ -256,7 +256,7 @@ CHANGES = {
         "hardware: packets differ: number 0",
     ),
 }
-# What a simulator without undefined values has to do something for.
+# Changes to undefined values, which Verilator does not have.
 UNDEFINED = ("no initial value", "undefined")
 
 
@@ -266,11 +266,11 @@ UNDEFINED = ("no initial value", "undefined")
     indirect=["of_verilog"],
 )
 def test_a_changed_line_is_found(of_verilog, monkeypatch, change):
-    *where, said = CHANGES[change]
+    *where, output = CHANGES[change]
     change_line(monkeypatch, *where)
     result = accepted(of_verilog, "lyrical", HEADER)
-    assert any(said in failure for failure in result.failures), result.failures
-    # It is the Verilog that is blamed, and nothing else.
+    assert any(output in failure for failure in result.failures), result.failures
+    # Only the Verilog is reported as faulty.
     assert all(failure.startswith(of_verilog.title) for failure in result.failures)
 
 
@@ -296,7 +296,7 @@ def test_row_that_the_bench_cannot_read_is_a_failure(of_verilog, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("kind", "variable", "said"),
+    ("kind", "variable", "output"),
     [
         (
             Icarus,
@@ -310,14 +310,16 @@ def test_row_that_the_bench_cannot_read_is_a_failure(of_verilog, monkeypatch):
         ),
     ],
 )
-def test_missing_simulator_says_how_to_get_it(monkeypatch, tmp_path, kind, variable, said):
+def test_error_for_a_missing_simulator_explains_the_installation(
+    monkeypatch, tmp_path, kind, variable, output
+):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv(variable, raising=False)
-    with pytest.raises(ProgramMissingError, match=f"^{said}$"):
+    with pytest.raises(ProgramMissingError, match=f"^{output}$"):
         kind()
     monkeypatch.setenv(variable, "nowhere")
-    said = f"^{kind.title} is 'nowhere' in the environment, but there is no such command$"
-    with pytest.raises(ProgramMissingError, match=said):
+    output = f"^{kind.title} is 'nowhere' in the environment, but there is no such command$"
+    with pytest.raises(ProgramMissingError, match=output):
         kind()
 
 

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Traces: rows as their form is defined, and what is read from them again."""
+"""Traces: the format of their rows, and reading rows back."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PACKETS = [bytes((0, 1, 0, 0, value)) for value in (1, 0, 1)]
 
 @pytest.fixture(scope="module")
 def recorded():
-    """A trace of two runs with a `Bool` on a bus of two bytes, and what the first has shown."""
+    """A trace of two runs with a `Bool` on a bus of two bytes, and the traffic of the first run."""
     message = load_message("std_msgs/msg/Bool")
     options = {"bus_bytes": 2, "max_message_bytes": 99}
     rx, tx = Deserializer(message, **options), Serializer(message, **options)
@@ -52,17 +52,17 @@ def test_pins_are_numbered_over_both_devices_and_the_reset_is_the_first_input(re
     assert names[-1] == (1, "m_axis_status_tready")
 
 
-def test_rows_have_what_changed_and_resets_stand_between_runs(recorded):
+def test_rows_have_changes_and_resets_separate_runs(recorded):
     trace, _ = recorded
     first = dict(read_row(trace.stimuli[0].removeprefix("1 ")))
-    # The reset is released, and everything is told once.
+    # The reset is released, and every port is written once.
     assert first == {0: "1"} | {pin.number: "0" * pin.port.width for pin in trace.inputs}
     assert set(dict(read_row(trace.expected[0]))) == {pin.number for pin in trace.outputs}
-    # The first beat has two bytes and is not the last. How many are kept does not count there.
+    # The first beat has two bytes and is not the last, so `count` has no meaning.
     beats = [dict(read_row(row.partition(" ")[2])) for row in trace.stimuli[1:9]]
     assert (beats[0][1], beats[0][4]) == ("0000000100000000", "1")
     assert {beat[2] for beat in beats if 2 in beat} > {"11"}
-    # The last one's second byte is not there, and no zero.
+    # The second byte of the last beat is absent, not zero.
     last = next(beat for beat in beats if beat.get(3) == "1")
     assert last[1].endswith("00000001") and last[1] != "0000000000000001"
     at = trace.stimuli.index("0 0 0")
@@ -91,7 +91,7 @@ def test_packet_that_a_reset_has_cut_is_no_part_of_the_next(limit):
     assert whole.difference(seen) is None and whole.packets == PACKETS
 
 
-def test_every_bit_that_changes_is_told_and_no_other():
+def test_exactly_the_changed_bits_are_written():
     message = load_message("std_msgs/msg/Bool")
     options = {"bus_bytes": 1, "max_message_bytes": 99}
     trace = Trace((Deserializer(message, **options), Serializer(message, **options)), message.name)
@@ -112,7 +112,7 @@ def test_every_bit_that_changes_is_told_and_no_other():
     assert len(told) == sum(pin.port.width for pin in [*trace.inputs, *trace.outputs])
 
 
-def test_traffic_is_what_the_simulation_showed(recorded):
+def test_traffic_equals_that_of_the_simulation(recorded):
     trace, seen = recorded
     runs = traffic(trace, trace.expected)
     assert [run.name for run in runs] == ["plain", "stalled"]
@@ -123,7 +123,7 @@ def test_traffic_is_what_the_simulation_showed(recorded):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "output"),
     [
         ({"packets": PACKETS[:2]}, "packets differ: number 2 of 2 is "),
         (
@@ -135,7 +135,7 @@ def test_traffic_is_what_the_simulation_showed(recorded):
         ({"sent_statuses": [Status.OK] * 2}, "statuses of the serializer differ: number 2 of 2"),
         ({"packet_errors": [False] * 2}, "tuser differ: number 2 of 2 is [False] instead of []"),
         ({"transfers": {0: [1, 1, 1]}}, "transfers of data differ: number 1 of 3 is [0] instead "),
-        # More there than here, and fewer.
+        # Surplus traffic and missing traffic.
         (
             {"transfers": {0: [1, 0]}},
             "transfers of data differ: number 2 of 2 is [1] instead of []",
@@ -144,13 +144,13 @@ def test_traffic_is_what_the_simulation_showed(recorded):
         ({"transfers": {0: [1, 0, 1, 1]}}, "transfers of data differ: number 3 of 4 is [] instead"),
     ],
 )
-def test_other_traffic_is_told(recorded, change, said):
+def test_different_traffic_is_reported(recorded, change, output):
     trace, seen = recorded
     found = traffic(trace, trace.expected)[0].difference(replace(seen[0], **change))
-    assert found is not None and found.startswith(said)
+    assert found is not None and found.startswith(output)
 
 
-def doctored(trace, direction, name, change):
+def with_changed_values(trace, direction, name, change):
     """Return the rows with each value of a port changed."""
     (pin,) = [
         pin
@@ -170,9 +170,9 @@ FLIP = str.maketrans("01", "10")
 
 
 @pytest.mark.parametrize(
-    ("direction", "name", "change", "said"),
+    ("direction", "name", "change", "output"),
     [
-        # A lane more, a hole, a bit, what is undefined; no end, and no pause.
+        # A surplus lane, a gap, a changed bit, an undefined bit; no end, and no pause.
         ("serializer", "m_axis_tkeep", lambda bits: "11", "packets differ: number 0 of 3"),
         ("serializer", "m_axis_tkeep", lambda bits: "10", "packets differ: number 0 of 3"),
         ("serializer", "m_axis_tkeep", lambda bits: bits.replace("01", "10"), "packets differ: n"),
@@ -201,10 +201,10 @@ FLIP = str.maketrans("01", "10")
         ("deserializer", "data_valid", lambda bits: "0", "transfers of data differ: number 0 of"),
     ],
 )
-def test_traffic_is_what_the_ports_showed(recorded, direction, name, change, said):
+def test_traffic_equals_that_of_the_ports(recorded, direction, name, change, output):
     trace, seen = recorded
-    rows = doctored(trace, direction, name, change)
-    each = said if isinstance(said, tuple) else (said,) * len(seen)
+    rows = with_changed_values(trace, direction, name, change)
+    each = output if isinstance(output, tuple) else (output,) * len(seen)
     for run, right, start in zip(traffic(trace, rows), seen, each, strict=True):
         found = run.difference(right)
         assert found is not None and found.startswith(start)
@@ -212,7 +212,7 @@ def test_traffic_is_what_the_ports_showed(recorded, direction, name, change, sai
 
 
 @pytest.mark.parametrize("fewer", [1, 9, 40])
-def test_rows_that_are_missing_or_too_many_are_told(recorded, fewer):
+def test_missing_and_surplus_rows_are_reported(recorded, fewer):
     trace, _ = recorded
     rows = trace.expected
     count = len(rows)
@@ -230,7 +230,7 @@ def test_first_difference_names_run_cycle_port_and_both_values(recorded):
     ready = next(p for p in trace.outputs if p.port.name == "s_axis_tready")
     at = trace.runs[1][1] + 5
     rows = list(trace.expected)
-    # Only the first of two differences is told, and a value lasts until it changes.
+    # Only the first of two differences is reported, and a value holds until it changes.
     rows[at] = f"{rows[at]} {tdata.number} 1111000011110000".strip()
     rows[at + 2] += f" {ready.number} U"
     told = first_difference(trace, rows)
@@ -243,7 +243,7 @@ def test_first_difference_names_run_cycle_port_and_both_values(recorded):
     )
 
 
-def test_a_value_that_is_told_twice_is_no_difference(recorded):
+def test_a_repeated_value_is_no_difference(recorded):
     trace, _ = recorded
     rows = list(trace.expected)
     number, bits = next(iter(read_row(rows[0])))

@@ -1,4 +1,4 @@
-"""What was not judged is no pass: the exit status, and what is printed at the end of a run."""
+"""The end of a run: unjudged tests are no pass in the exit status and the printed summary."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ def found(*verdicts):
         ([], False, False),
     ],
 )
-def test_success_needs_a_judgement_and_of_what_is_named_each(verdicts, of_all, named):
+def test_success_needs_a_judgement_of_each_named_type(verdicts, of_all, named):
     assert succeeded(found(*verdicts), is_named=False) is of_all
     assert succeeded(found(*verdicts), is_named=True) is named
 
 
-def test_end_lists_what_was_not_judged_by_name_and_reason():
+def test_end_lists_unjudged_types_by_name_and_reason():
     lines = ["not judged: p/msg/T1 (lyrical), ts3: nobody knows"]
     some = found(PASSED, SILENT)
     assert concluded(some, is_named=False) == [*lines, "1 of 2 tests was not judged"]
@@ -66,8 +66,8 @@ def test_end_lists_what_was_not_judged_by_name_and_reason():
 
 
 @pytest.fixture
-def nobody_knows_wide(monkeypatch):
-    """Have rosbags not judge the type `Wide`."""
+def without_judge_of_wide(monkeypatch):
+    """Prevent rosbags from judging the type `Wide`."""
 
     def judge(message, *arguments, **options):
         if message.name.endswith("Wide"):
@@ -85,34 +85,34 @@ def source(tmp_path):
 LINE = "not judged: p/msg/Wide (lyrical), ts3, 8-byte bus: it is wide\n"
 
 
-def test_named_type_that_is_not_judged_is_no_success(source, nobody_knows_wide, capsys):
+def test_named_type_that_is_not_judged_is_no_success(source, without_judge_of_wide, capsys):
     call = ["verify", *FEW, "--path", source]
     assert main([*call, "p/A", "p/Wide"]) == 1
-    said = capsys.readouterr().out
-    assert LINE + "1 of 2 tests was not judged, although named, so the run fails\n" in said
+    output = capsys.readouterr().out
+    assert LINE + "1 of 2 tests was not judged, although named, so the run fails\n" in output
     assert main([*call, "p/A"]) == 0
     assert "not judged" not in capsys.readouterr().out
 
 
 def test_of_all_types_those_that_are_not_judged_are_listed(
-    source, nobody_knows_wide, tmp_path, capsys
+    source, without_judge_of_wide, tmp_path, capsys
 ):
     call = ["verify", *FEW, "--path", source, "--all", "--no-share-circuits"]
     call += ["--results", str(tmp_path / "r.jsonl")]
-    # Found out, and read from the file.
+    # The first run judges; the second reads the file.
     for _ in range(2):
         assert main(call) == 0
         assert capsys.readouterr().out.endswith(LINE + "1 of 2 tests was not judged\n")
 
 
 def test_all_types_of_which_none_is_judged_are_no_success(monkeypatch, source, capsys):
-    def nobody(*arguments, **options):
+    def no_judge(*arguments, **options):
         raise NotJudgedError("nobody is here")
 
-    monkeypatch.setattr(acceptance, "judge_of", nobody)
+    monkeypatch.setattr(acceptance, "judge_of", no_judge)
     assert main(["verify", *FEW, "--path", source, "--all"]) == 1
     assert capsys.readouterr().out.endswith("no test was judged, so the run fails\n")
-    # As the issue has it.
+    # As in the reported issue.
     assert main(["verify", "--jobs", "1", "geometry_msgs/msg/Twist"]) == 1
     assert "2 of 2 types not judged" in capsys.readouterr().out
 
@@ -148,7 +148,7 @@ def test_type_with_the_circuit_of_one_that_is_not_judged_is_not_judged(
         (None, NotJudged),
     ],
 )
-def test_record_that_rests_on_another_is_worth_what_that_is(other, verdict):
+def test_a_dependent_record_has_the_verdict_of_the_other(other, verdict):
     twin = a_record(a_test("a/msg/Twin"), same_as=a_test().key, shape="aa")
     records = {} if other is None else {other.test.key: other}
     assert isinstance(settled(twin, records), verdict)
@@ -157,15 +157,15 @@ def test_record_that_rests_on_another_is_worth_what_that_is(other, verdict):
 
 
 @pytest.mark.parametrize("system", ["ts1", "ts2"])
-def test_named_definition_that_nobody_reads_is_no_success(tmp_path, capsys, system):
+def test_named_definition_that_no_oracle_reads_is_no_success(tmp_path, capsys, system):
     text = "module p { module msg { struct A { long double a; }; }; };"
     path = str(make_files(tmp_path, {"p/msg/A.idl": text, "p/msg/B.msg": "int8 x\n"}))
     call = ["verify", *FEW, "--systems", system, "--oracle", "rosbags", "--path", path]
     assert main([*call, "p/A", "p/B"]) == 1
     bus = ", 8-byte bus" if system == "ts2" else ""
-    said = capsys.readouterr().out
-    assert f"not judged: p/msg/A (lyrical), {system}{bus}: " in said
-    assert "1 of 2 tests was not judged, although named, so the run fails\n" in said
+    output = capsys.readouterr().out
+    assert f"not judged: p/msg/A (lyrical), {system}{bus}: " in output
+    assert "1 of 2 tests was not judged, although named, so the run fails\n" in output
     assert main([*call, "--all"]) == 0
     assert capsys.readouterr().out.endswith("1 of 2 tests was not judged\n")
 

@@ -1,4 +1,4 @@
-"""Libraries that tests of a process share."""
+"""Type libraries shared by the tests of a process."""
 
 from __future__ import annotations
 

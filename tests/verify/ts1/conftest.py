@@ -1,4 +1,4 @@
-"""What tests of TS1 share: a workspace made for one test, and oracles where they are installed."""
+"""Fixtures of TS1: a workspace for one test, and the installed oracles."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.frontend.workspace import make_files
 
 
 def judged_by(run):
-    """Judge everything; return the tally, and the names and failures of what differs."""
+    """Judge all definitions; return the tally, and the names and failures of those that differ."""
     with closing(run.judgements()) as shares:
         found = {number: record for share in shares for number, record in share}
     wrong = [
@@ -30,7 +30,7 @@ def judged_by(run):
 
 
 class Court:
-    """Definitions in a folder, and oracles to put them before."""
+    """Definitions in a folder, and the oracles that judge them."""
 
     def __init__(self, distro, root, files, stack):
         (root / "src").mkdir(parents=True, exist_ok=True)
@@ -40,19 +40,19 @@ class Court:
         self._stack = stack
 
     def oracle(self, name):
-        """Give an oracle. Where it is not installed, skip the test; in CI, fail it."""
+        """Return an oracle; if it is not installed, skip the test, or fail in CI."""
         oracle = ORACLES[name](self.universe)
         self._stack.callback(oracle.close)
         need(name, oracle.missing())
         return oracle
 
     def answer(self, name, type_):
-        """What an oracle says of a type."""
+        """Return the answer of an oracle about a type."""
         (answer,) = self.oracle(name).judge(self.universe.select([type_]))
         return answer
 
     def outcome(self, name, type_):
-        """What comes of the comparison."""
+        """Return the outcome of the comparison."""
         (case,) = self.universe.select([type_])
         return judge(self.universe, self.oracle(name), case)
 
@@ -69,7 +69,7 @@ def need(name, missing):
 
 @pytest.fixture
 def court(tmp_path):
-    """Make a court of ``package/kind/file`` texts."""
+    """A function that makes a court from texts of ``package/kind/file``."""
     numbers = count()
     with ExitStack() as stack:
         yield lambda distro, files: Court(distro, tmp_path / str(next(numbers)), files, stack)

@@ -15,8 +15,8 @@ JUDGED = ("passed", "failed", "known difference")
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
 
 
-def differing(request, oracle):
-    """Judge; list what differs, and count what both refuse and what was judged."""
+def differences(request, oracle):
+    """Judge; return the differences, and the numbers of refused and judged definitions."""
     with Ts1Run(replace(request, oracles=(oracle,), jobs=1)) as run:
         need(oracle, run.missing.get(oracle))
         tally, wrong = judged_by(run)
@@ -29,7 +29,7 @@ def differing(request, oracle):
         ("ros1", "genmsg", 10),
         ("ros2", "rosidl_adapter", 20),
         ("ros2", "rosidl_parser", 100),
-        # With hashes, which need all that a type is made of.
+        # Includes hashes, which need all nested types.
         ("ros2", "rosidl_parser-4.9", 100),
     ],
 )
@@ -38,7 +38,7 @@ def test_a_sample_is_read_as_oracles_read_it(corpus, dialect, oracle, step):
     cases = Universe(distro, [path]).select([])
     types = tuple(case.spelled_name for case in cases if len(case.text) < 20_000)[::step]
     request = Request(distros=(distro,), paths=(path,), types=types)
-    wrong, refused, judged = differing(request, oracle)
+    wrong, refused, judged = differences(request, oracle)
     assert (wrong, refused) == ([], 0)
     assert judged >= 0.9 * len(types) > 60
 
@@ -47,12 +47,12 @@ def test_a_sample_is_read_as_oracles_read_it(corpus, dialect, oracle, step):
     ("dialect", "oracle"),
     [("ros1", "genmsg"), ("ros2", "rosidl_adapter"), ("ros2", "rosidl_parser")],
 )
-def test_what_is_invalid_is_refused_by_both(corpus, dialect, oracle):
+def test_invalid_definitions_are_refused_by_both(corpus, dialect, oracle):
     distro = DISTROS[dialect]
     bad = str(corpus / "invalid" / dialect)
     types = tuple(case.spelled_name for case in Universe(distro, [bad]).select([]))
     paths = (bad, str(corpus / dialect))
     request = Request(distros=(distro,), paths=paths, types=types)
-    wrong, refused, judged = differing(request, oracle)
+    wrong, refused, judged = differences(request, oracle)
     assert wrong == []
     assert refused == judged == len(types) > 10

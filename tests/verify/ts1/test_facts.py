@@ -1,4 +1,4 @@
-"""Facts of a model, and how two of them are compared."""
+"""Facts of a model, and their comparison."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def model(tmp_path, text=TEXT):
     return load_message("p/msg/A", paths=[tmp_path])
 
 
-def test_facts_say_all_that_a_definition_says(tmp_path):
+def test_facts_have_the_whole_definition(tmp_path):
     plain = {"default": None, "comment": "", "unit": None}
     facts = structure(model(tmp_path))["p/msg/A"]
     assert facts["comment"] == "Head."
@@ -49,7 +49,7 @@ def test_facts_say_all_that_a_definition_says(tmp_path):
     ]
 
 
-def test_primitives_that_an_oracle_cannot_tell_apart_are_one(tmp_path):
+def test_primitives_that_an_oracle_does_not_distinguish_are_equal(tmp_path):
     fields = structure(model(tmp_path), {"char": "uint8"})["p/msg/A"]["fields"]
     assert fields[2]["type"] == "uint8"
 
@@ -80,7 +80,7 @@ def test_another_set_or_order_of_fields_is_one_difference(tmp_path):
         ]
 
 
-def test_what_we_do_not_have_is_a_difference_and_what_the_oracle_does_not_say_is_none():
+def test_a_missing_fact_of_ours_is_a_difference_and_one_of_the_oracle_is_none():
     assert [str(each) for each in differences({"a": 1}, {"b": 2})] == [
         "b: firm-hdl has none; oracle 2"
     ]

@@ -1,4 +1,4 @@
-"""Verdicts. A front end that errs must be caught: each way of erring is tried here."""
+"""Verdicts of TS1: each kind of fault in the front end must be found."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ GOOD = {
 ROS1 = {"p/msg/A.msg": "int8 LOW=-1\nstring name\nuint16[] codes\nB b\n", "p/msg/B.msg": "int8 x\n"}
 
 
-class Fake:
-    """An oracle that says what it is told to."""
+class FixedOracle:
+    """An oracle with given answers."""
 
     name = "genmsg"
 
@@ -33,7 +33,7 @@ class Fake:
 
 def verdict(court, ours, answer):
     case = court("noetic", ROS1).universe.select(["p/A"])[0]
-    return compare(Fake(), case, ours, answer)
+    return compare(FixedOracle(), case, ours, answer)
 
 
 def refusal():
@@ -63,18 +63,18 @@ def test_an_exception_that_is_no_refusal_is_a_difference(court, answer):
     assert outcome.verdict.details == ("verdict: firm-hdl raised RecursionError: deep",)
 
 
-def test_what_is_not_judged_is_neither(court):
+def test_unjudged_definitions_are_neither_passed_nor_failed(court):
     outcome = verdict(court, refusal(), NotJudged("it slept"))
     assert outcome.verdict == NotJudged("it slept")
 
 
-def test_an_oracle_that_takes_it_and_knows_nothing_has_not_judged(court):
+def test_an_accepting_oracle_without_facts_has_not_judged(court):
     model = court("noetic", ROS1).universe.library.message("p/A")
     for facts in ({}, {"structure": {}}, {"structure": {model.name: {}}, "md5": {}}):
         assert isinstance(verdict(court, model, Accepted(facts)).verdict, NotJudged)
 
 
-def test_what_was_compared_is_counted(court):
+def test_comparisons_are_counted(court):
     model = court("noetic", ROS1).universe.library.message("p/A")
     part = {"fields": [{"name": name} for name in ("name", "codes", "b")]}
     facts = {"structure": {model.name: part}}
@@ -82,9 +82,9 @@ def test_what_was_compared_is_counted(court):
 
 
 @pytest.mark.parametrize("answers", [[], [Refused("no")] * 2, [Refused("no")] * 3])
-def test_an_oracle_that_gives_not_one_answer_to_a_question_fails(court, answers):
+def test_an_oracle_without_one_answer_per_question_fails(court, answers):
     here = court("noetic", ROS1)
-    oracle = Fake()
+    oracle = FixedOracle()
     oracle.languages, oracle.judges_changes = {"ros1": {"msg"}}, True
     oracle.judge = lambda cases: iter(answers)
     found = judge(here.universe, oracle, here.universe.select(["p/A"])[0])
@@ -92,21 +92,21 @@ def test_an_oracle_that_gives_not_one_answer_to_a_question_fails(court, answers)
     assert found.verdict == Failed((why,))
 
 
-def test_an_answer_that_is_none_fails(court):
+def test_an_invalid_answer_fails(court):
     here = court("noetic", ROS1)
-    oracle = Fake()
+    oracle = FixedOracle()
     oracle.languages, oracle.judges_changes = {"ros1": {"msg"}}, True
     oracle.cpu_seconds = lambda: 0.0
     oracle.judge = lambda cases: [None]
     (case,) = here.universe.select(["p/A"])
     test = Tested(system="ts1", distro="noetic", type="p/A")
-    (said,) = judge_case(here.universe, [oracle], case, test).verdicts
-    assert isinstance(said.verdict, Failed) and "not None" in said.verdict.failures[0]
+    (output,) = judge_case(here.universe, [oracle], case, test).verdicts
+    assert isinstance(output.verdict, Failed) and "not None" in output.verdict.failures[0]
 
 
 def test_a_part_that_we_cannot_compute_is_a_difference(court):
     model = court("lyrical", GOOD).universe.library.message("p/A")
-    outcome = compare(Fake(), None, model, Accepted({"md5": {model.name: "0"}}))
+    outcome = compare(FixedOracle(), None, model, Accepted({"md5": {model.name: "0"}}))
     assert "raises ValueError" in outcome.verdict.details[0]
 
 
@@ -151,13 +151,13 @@ def test_every_mistake_is_caught(court, oracle, monkeypatch):
         return compare(here.oracle(oracle), case, ours, answer, here.universe)
 
     assert_passed(outcome(model))
-    verdicts = {name: outcome(spoil(model)).verdict for name, spoil in MISTAKES.items()}
+    verdicts = {name: outcome(change(model)).verdict for name, change in MISTAKES.items()}
     missed = {name for name, found in verdicts.items() if not isinstance(found, Failed)}
-    if is_ros1:  # It has neither bounds nor defaults to get wrong.
+    if is_ros1:  # This dialect has neither bounds nor defaults.
         assert "a field is dropped" not in missed and "a constant has another value" not in missed
         missed -= {name for name in missed if "bound" in name or "default" in name}
     if oracle == "rosbags":
-        missed -= {"a default is invented"}  # It does not keep any.
+        missed -= {"a default is invented"}  # rosbags keeps no defaults.
     assert missed == set()
 
 
@@ -170,12 +170,12 @@ def test_sums_and_hashes_catch_mistakes_by_themselves(court):
         facts = here.answer(oracle, "p/A").facts
         model = here.universe.library.message("p/A")
         only = Accepted({part: facts[part]})
-        assert_passed(compare(Fake(), None, model, only))
-        outcome = compare(Fake(), None, replace(model, fields=()), only)
+        assert_passed(compare(FixedOracle(), None, model, only))
+        outcome = compare(FixedOracle(), None, replace(model, fields=()), only)
         assert isinstance(outcome.verdict, Failed)
 
 
-def _spoil(monkeypatch, mistake):
+def _inject(monkeypatch, mistake):
     read = judging.read
     monkeypatch.setattr(judging, "read", lambda universe, case: mistake(read(universe, case)))
 
@@ -221,7 +221,7 @@ def test_a_front_end_that_accepts_too_little_is_caught(court, distro, oracle, mo
     assert isinstance(outcome.verdict, Failed) and "oracle accepts" in outcome.verdict.details[0]
 
 
-def test_only_languages_that_an_oracle_reads_are_put_before_it(court):
+def test_an_oracle_judges_only_the_languages_that_it_reads(court):
     here = court("lyrical", {"p/srv/S.srv": "---\n"})
     (case,) = here.universe.select(["p/srv/S"])
     assert judge(here.universe, here.oracle("rosbags"), case) is None

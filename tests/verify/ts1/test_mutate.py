@@ -1,4 +1,4 @@
-"""Texts with small mistakes: how they are made, and that oracles and we agree on them."""
+"""Mutated definitions: the mutation rules, and agreement with the oracles on the mutants."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_oracles_and_we_agree_on_mistakes(tmp_path, distro, oracle, count):
         tally, wrong = judged_by(run)
     assert wrong == []
     assert sum(tally.verdicts.values()) - tally.verdicts[oracle, "not judged"] == count
-    # Neither are all mistakes, nor none.
+    # Some mutants are invalid, and some are valid.
     assert count / 5 < tally.refused[oracle] < count * 9 / 10
 
 
@@ -61,7 +61,7 @@ def test_a_mutation_is_decided_by_its_number(court):
     assert all(case.text != case.before for case in texts)
 
 
-def test_changes_are_told_line_by_line(court):
+def test_changes_are_listed_by_line(court):
     cases = court("lyrical", {"p/msg/A.msg": "int8 a\n"}).universe.select([])
     changed = mutation(cases, 1)
     assert changed.changes and all(line[0] in "+-" for line in changed.changes)
@@ -72,62 +72,62 @@ def test_an_empty_text_can_be_mutated(court):
     assert all(mutation(cases, number).is_changed for number in range(50))
 
 
-def made(rule, text, times=600):
-    """All texts that a rule makes of one."""
+def mutants(rule, text, times=600):
+    """Return all texts that a rule makes from a text."""
     return {rule(random.Random(number), text) for number in range(times)}
 
 
 def test_characters_are_dropped_doubled_swapped_and_put_in():
-    assert made(rules._drop_character, "abc") == {"bc", "ac", "ab", "abc"}
-    assert made(rules._double_character, "abc") == {"aabc", "abbc", "abcc", "abc"}
-    assert made(rules._swap_characters, "abc") == {"bac", "acb", "abc"}
-    found = made(rules._insert_sign, "ab", 3000)
+    assert mutants(rules._drop_character, "abc") == {"bc", "ac", "ab", "abc"}
+    assert mutants(rules._double_character, "abc") == {"aabc", "abbc", "abcc", "abc"}
+    assert mutants(rules._swap_characters, "abc") == {"bac", "acb", "abc"}
+    found = mutants(rules._insert_sign, "ab", 3000)
     assert found == {
         text for sign in rules._SIGNS for text in (f"{sign}ab", f"a{sign}b", f"ab{sign}")
     }
 
 
 def test_words_and_values_are_others_in_one_place():
-    assert made(rules._change_digit, "a1b2") == {f"a{n}b2" for n in range(10)} | {
+    assert mutants(rules._change_digit, "a1b2") == {f"a{n}b2" for n in range(10)} | {
         f"a1b{n}" for n in range(10)
     }
-    assert made(rules._change_case, "aB 1") == {"AB 1", "ab 1"}
-    assert made(rules._change_value, "int8 A=1 2#x\n") == {
+    assert mutants(rules._change_case, "aB 1") == {"AB 1", "ab 1"}
+    assert mutants(rules._change_value, "int8 A=1 2#x\n") == {
         f"int8 A={each}#x\n" for each in rules._NUMBERS
     }
-    assert made(rules._change_value, "int8[3] a\nstring b\nint8[4] c") == {
+    assert mutants(rules._change_value, "int8[3] a\nstring b\nint8[4] c") == {
         text.format(each)
         for each in rules._NUMBERS
         for text in ("int8[{}] a\nstring b\nint8[4] c", "int8[3] a\nstring b\nint8[{}] c")
     }
-    assert made(rules._change_type, "int8 a\nq/B b") == {
+    assert mutants(rules._change_type, "int8 a\nq/B b") == {
         text for each in rules._TYPES for text in (f"{each} a\nq/B b", f"int8 a\n{each} b")
     }
-    assert made(rules._change_name, "int8 a_1") == {f"int8 {each}" for each in rules._NAMES}
-    assert made(rules._add_value, "int8 a\n\nb)", 2000) == {
+    assert mutants(rules._change_name, "int8 a_1") == {f"int8 {each}" for each in rules._NAMES}
+    assert mutants(rules._add_value, "int8 a\n\nb)", 2000) == {
         f"int8 a{sign}{n}\n\nb)" for sign in (" ", "=", " = ") for n in rules._NUMBERS
     }
 
 
 def test_a_rule_without_a_place_changes_nothing():
     for rule in (rules._change_digit, rules._change_value, rules._change_name, rules._add_value):
-        assert made(rule, "--", 20) == {"--"}
-    assert made(rules._change_case, "1", 20) == {"1"}
+        assert mutants(rule, "--", 20) == {"--"}
+    assert mutants(rules._change_case, "1", 20) == {"1"}
 
 
 def test_comments_are_spared_where_anything_else_is():
-    assert made(rules._change_digit, "a1 # 2") == {f"a{n} # 2" for n in range(10)}
-    assert made(rules._change_digit, "a # 2") == {f"a # {n}" for n in range(10)}
-    assert made(rules._change_digit, "a # 2\nb1") == {f"a # 2\nb{n}" for n in range(10)}
+    assert mutants(rules._change_digit, "a1 # 2") == {f"a{n} # 2" for n in range(10)}
+    assert mutants(rules._change_digit, "a # 2") == {f"a # {n}" for n in range(10)}
+    assert mutants(rules._change_digit, "a # 2\nb1") == {f"a # 2\nb{n}" for n in range(10)}
 
 
 def test_lines_are_dropped_repeated_moved_indented_joined_and_ended():
-    assert made(rules._lines, "a\nb\nc", 5000) == {
+    assert mutants(rules._lines, "a\nb\nc", 5000) == {
         # Dropped, repeated, moved.
         *("b\nc", "a\nc", "a\nb"),
         *("a\na\nb\nc", "a\nb\nb\nc", "a\nb\nc\nc"),
         *("a\nb\nc", "b\na\nc", "b\nc\na", "c\na\nb", "a\nc\nb"),
-        # Indented, ended in another way.
+        # Indented, or with another line end.
         *(f"{i}a\nb\nc" for i in (" ", "\t", "  ")),
         *(f"a\n{i}b\nc" for i in (" ", "\t", "  ")),
         *(f"a\nb\n{i}c" for i in (" ", "\t", "  ")),
@@ -141,7 +141,7 @@ def test_lines_are_dropped_repeated_moved_indented_joined_and_ended():
 
 
 def test_words_are_dropped_repeated_and_moved():
-    assert made(rules._tokens, "a b\nc", 2000) == {
+    assert mutants(rules._tokens, "a b\nc", 2000) == {
         *("b\nc", "a\nc", "a b\n"),
         *("a a b\nc", "a b b\nc", "a b\nc c"),
         *("a b\nc", "b a\nc"),

@@ -1,4 +1,4 @@
-"""Whole runs: what is judged, what is printed, and what the exit status is."""
+"""Complete runs of TS1: judged definitions, printed output, and exit status."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ def source(tmp_path):
 
 
 def run_ts1(request, oracles):
-    """Judge definitions as the command does; return how many things failed."""
+    """Judge definitions as the command does; return the number of failures."""
     with Ts1([replace(request, oracles=tuple(oracles), jobs=1)]) as system:
         found = system.run(Recorder())
     return sum(isinstance(each.verdict, Failed) for each in found)
 
 
 def judged(request, oracles=(), jobs=1):
-    """Run everything; return the tally, and versions of the oracles that were there."""
+    """Run all tests; return the tally, and the versions of the installed oracles."""
     with Ts1Run(replace(request, oracles=tuple(oracles), jobs=jobs)) as run:
         for name in oracles:
             need(name, run.missing.get(name))
@@ -59,13 +59,13 @@ def judged(request, oracles=(), jobs=1):
 
 
 @pytest.mark.parametrize("distro", DISTROS)
-def test_embedded_types_are_what_fast_oracles_say(distro):
+def test_embedded_types_agree_with_fast_oracles(distro):
     oracles = ["genmsg", "rosbags"] if distro == "noetic" else ["rosidl_adapter", "rosbags"]
     tally, run = judged(Request(distros=(distro,)), oracles)
     assert tally.differences == 0
     assert tally.verdicts[oracles[0], "passed"] == run.total > 140
     assert sum(tally.refused.values()) == 0
-    # rosbags hashes char otherwise, in a few types of each distribution.
+    # rosbags hashes `char` differently, in a few types of each distribution.
     known = tally.verdicts["rosbags", "known difference"]
     assert (
         known <= 5
@@ -74,7 +74,7 @@ def test_embedded_types_are_what_fast_oracles_say(distro):
     )
 
 
-def test_a_sample_of_embedded_types_is_what_rosidl_parser_says():
+def test_a_sample_of_embedded_types_agrees_with_rosidl_parser():
     names = ["Imu", "PointCloud2", "NavSatStatus", "JointState", "CameraInfo", "Range"]
     types = tuple(f"sensor_msgs/msg/{name}" for name in names)
     types += ("diagnostic_msgs/msg/DiagnosticArray", "std_msgs/msg/Empty", "std_msgs/msg/Char")
@@ -89,7 +89,7 @@ def test_all_of_a_folder_is_judged_and_no_more(source):
     assert tally.refused == {"genmsg": 1}
 
 
-def test_processes_give_what_one_gives(source):
+def test_several_processes_give_the_results_of_one(source):
     request = Request(distros=("noetic",), paths=(source,))
     one, two = (judged(request, ["rosbags"], jobs)[0] for jobs in (1, 2))
     assert one.verdicts == two.verdicts and one.details == two.details
@@ -104,14 +104,14 @@ def test_the_report_names_oracles_verdicts_and_types(source, capsys):
     assert re.search(r"^4 definitions, \d+ s, 0 differences$", out, re.MULTILINE)
 
 
-def test_a_difference_is_told_with_the_command_that_repeats_it(source, capsys, monkeypatch):
+def test_a_difference_is_printed_with_the_command_that_repeats_it(source, capsys, monkeypatch):
     monkeypatch.setattr(
         ORACLES["rosbags"], "judge", lambda self, cases: [Refused("I do not like it")] * len(cases)
     )
     words = ["verify", "--systems", "ts1", "--distro", "noetic", "--path", source, "--jobs", "1"]
     assert main([*words, "--oracle", "rosbags", "q/B"]) == 1
-    said = capsys.readouterr()
-    text = said.out + said.err
+    verdict_of = capsys.readouterr()
+    text = verdict_of.out + verdict_of.err
     assert "DIFFERS q/B.msg, rosbags" in text
     assert "verdict: firm-hdl accepts; oracle refuses: I do not like it" in text
     again = re.search(r"again: (.*)", text)
@@ -122,14 +122,14 @@ def test_a_difference_is_told_with_the_command_that_repeats_it(source, capsys, m
     ]
 
 
-def test_an_oracle_that_is_asked_for_and_not_here_fails(source, capsys, monkeypatch):
+def test_a_requested_oracle_that_is_not_installed_fails(source, capsys, monkeypatch):
     monkeypatch.setenv("PATH", "/nowhere")
     request = Request(distros=("lyrical",), paths=(source,), types=("q/B",))
     assert run_ts1(request, ["ros2"]) == 1
     assert "is not available: there is no command 'ros2'" in capsys.readouterr().out
 
 
-def test_a_type_or_folder_that_is_not_there(source, tmp_path, capsys):
+def test_a_missing_type_or_folder(source, tmp_path, capsys):
     words = ["verify", "--systems", "ts1", "--oracle", "rosbags"]
     assert main([*words, "--path", source, "q/C"]) == 1
     assert main([*words, "--path", str(tmp_path / "none"), "--all"]) == 1
@@ -153,7 +153,7 @@ def distros_of(**asked):
 def test_distributions_that_have_the_types_are_chosen():
     assert distros_of(types=("sensor_msgs/Imu",)) == list(DISTROS)
     assert distros_of(types=("std_msgs/msg/Header",)) == list(DISTROS)
-    # Some are in distributions that stand between those that lack them, some in the last alone.
+    # Some types are missing in a distribution before or after; some are in the last one only.
     for name, distros in {
         "actionlib/msg/TestAction": ["noetic"],
         "libstatistics_collector/DummyMessage": ["foxy"],
@@ -199,17 +199,17 @@ def test_the_command_that_repeats_a_test(types, number, oracles, command):
 
 
 def test_verdicts_are_counted_by_oracle_and_name():
-    def said(oracle, verdict, **more):
+    def verdict_of(oracle, verdict, **more):
         return OracleVerdict(oracle=oracle, verdict=verdict, **more)
 
     tally = Tally(
         [
-            said("one", Passed(3), is_refused=True),
-            said("one", Passed(2)),
-            said("one", Failed(("x", "y"))),
-            said("two", KnownDifference(("k", "l"), 3)),
-            said("two", NotJudged("because")),
-            said("one", Failed(("x", "y"))),
+            verdict_of("one", Passed(3), is_refused=True),
+            verdict_of("one", Passed(2)),
+            verdict_of("one", Failed(("x", "y"))),
+            verdict_of("two", KnownDifference(("k", "l"), 3)),
+            verdict_of("two", NotJudged("because")),
+            verdict_of("one", Failed(("x", "y"))),
         ]
     )
     assert tally.verdicts == {
@@ -227,7 +227,7 @@ def test_verdicts_are_counted_by_oracle_and_name():
     }
 
 
-def test_a_crash_of_ours_ends_no_run(source, monkeypatch):
+def test_a_crash_of_the_front_end_ends_no_run(source, monkeypatch):
     def read(universe, case):
         return RecursionError("deep") if case.name == "A" else universe.interface(case)
 
@@ -237,26 +237,26 @@ def test_a_crash_of_ours_ends_no_run(source, monkeypatch):
     assert tally.verdicts == {("rosbags", "failed"): 1, ("rosbags", "passed"): 1}
 
 
-def test_mutations_are_repeatable_and_told_by_number(source, capsys, monkeypatch):
+def test_mutations_are_repeatable_and_numbered(source, capsys, monkeypatch):
     monkeypatch.setattr(
         ORACLES["genmsg"], "judge", lambda self, cases: [Refused("no")] * len(cases)
     )
     monkeypatch.setattr(ORACLES["genmsg"], "missing", lambda self: None)
     request = Request(distros=("noetic",), paths=(source,), types=("q/B",), mutations=30, seed=7)
     assert run_ts1(request, ["genmsg"]) > 0
-    said = capsys.readouterr()
-    text = said.out + said.err
+    verdict_of = capsys.readouterr()
+    text = verdict_of.out + verdict_of.err
     blocks = re.findall(r"DIFFERS .*\n((?:    .*\n)+)", text)
     numbers = [int(re.search(r"--mutations 1 --seed (\d+) q/B", block)[1]) for block in blocks]
     assert all(7 <= number < 37 for number in numbers) and len(set(numbers)) == len(numbers)
     one = replace(request, mutations=1, seed=numbers[0])
     assert run_ts1(one, ["genmsg"]) == 1
-    said = capsys.readouterr()
-    assert blocks[0] in said.out + said.err
+    verdict_of = capsys.readouterr()
+    assert blocks[0] in verdict_of.out + verdict_of.err
 
 
 def test_oracles_read_the_text_that_we_take(tmp_path):
-    # One type overrides another of the same package, and the rest of that package stays.
+    # One type overrides another of the same package; the other types of the package stay.
     files = {"one/std_msgs/msg/Header.msg": "int8 x\n", "two/p/msg/A.msg": "std_msgs/Header h\n"}
     files |= {"three/p/msg/A.msg": "int8 x\n", "three/p/msg/B.msg": "A a\nstd_msgs/String s\n"}
     make_files(tmp_path, files)
@@ -279,7 +279,7 @@ def test_mutations_have_results_that_a_run_goes_on_with_and_a_report_shows(
     assert len(set(keys)) == 12 and not found.missing
     assert [key.rpartition("mutation=")[2] for key in keys] == [str(n) for n in range(5, 17)]
     assert all("--mutations 1 --seed" in record.command for record in found.records.values())
-    # What is there is not judged again.
+    # Recorded results are not judged again.
     whole = results.read_text().splitlines(keepends=True)
     cut = [line for line in whole if '"record"' in line][-4:]
     results.write_text("".join(line for line in whole if line not in cut))

@@ -1,4 +1,4 @@
-"""Which definitions there are for oracles, and what they are given of each."""
+"""The definitions that oracles judge, and the files that oracles get."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_a_type_is_found_by_its_name_with_and_without_its_kind(universe_of, dist
 
 
 @pytest.mark.parametrize("name", ["p/msg/S", "p/srv/A", "p/action/S", "p/C", "r/A", "A", "p/x/A"])
-def test_what_is_not_there_is_not_found(universe_of, name):
+def test_missing_types_are_not_found(universe_of, name):
     with pytest.raises(DefinitionError):
         universe_of("lyrical", FILES).select(["p/A", name])
 
@@ -92,7 +92,7 @@ def test_changed_texts_are_read_in_place_of_the_files(universe_of):
     assert [each.name for each in universe.interface(mutant).fields] == ["other"]
     assert universe.show(mutant) == "int8 other\n"
     assert universe.show(case) == "q/B b\n  int8 x\n"
-    # And only for that.
+    # The change affects only that definition.
     (other,) = universe.select(["q/B"])
     both = replace(other, text="int8 y\n", before=other.text)
     assert [each.name for each in universe.interface(both).fields] == ["y"]
@@ -116,7 +116,7 @@ def test_all_messages_are_changed_and_nothing_else(universe_of):
     assert texts == expected
     assert {(each.dialect, each.language, each.kind) for each in seen} == {("ros2", "msg", "msg")}
     assert "q/msg/B" in {each.spelled_name for each in seen}
-    # What it was made of stays as it was.
+    # The original definition is unchanged.
     assert universe.select(["q/B"])[0].text == "int8 x\n"
     (case,) = changed.select(["p/A"])
     (field,) = changed.interface(case).fields
@@ -177,12 +177,12 @@ def test_definitions_are_written_as_they_are_wherever_they_are_from(tmp_path):
     write_definitions(universe)
     folder = tmp_path / "all"
     texts = {path.name: path.read_text() for path in (folder / "p" / "msg").iterdir()}
-    # The first folder that has a type is the one.
+    # The first folder with a type counts.
     assert texts == {"A.msg": "int8 x\n", "B.msg": "int8 y\n", "C.msg": "int8 z\n"}
-    # Some of a package are files, and some come with firm-hdl.
+    # Some types of a package are files, and some are embedded in firm-hdl.
     assert (folder / "std_msgs" / "msg" / "Own.msg").read_text() == "int8 own\n"
     assert "string data" in (folder / "std_msgs" / "msg" / "String.msg").read_text()
-    # A folder that is whole is linked.
+    # A complete folder is linked.
     assert (folder / "q" / "srv").is_symlink()
     assert (folder / "q" / "srv" / "S.srv").read_text() == "int8 s\n---\n"
     for case in universe.select([]):

@@ -1,4 +1,4 @@
-"""Golden plans (TS2): those of the project, and the tool itself.
+"""Golden plans (TS2): the plans of the project, and the tool that compares them.
 
 To accept a change of plans: ``firm-hdl golden accept tests/verify/golden``.
 """
@@ -36,7 +36,7 @@ def test_todays_plans_are_the_golden_ones():
 
 
 @pytest.mark.snapshot
-def test_the_golden_plans_cover_what_both_wires_have():
+def test_the_golden_plans_cover_both_wires():
     have, want = set(), set()
     for golden in read_golden(FOLDER):
         message = Library(golden.distro).message(golden.plan.message)
@@ -76,7 +76,7 @@ def test_a_changed_plan_is_named_with_all_types_that_it_touches(folder):
     }
 
 
-def test_a_type_that_is_gone_is_a_problem(folder):
+def test_a_removed_type_is_a_problem(folder):
     path = next((folder / "lyrical").glob("*String*"))
     path.write_text(path.read_text().replace("std_msgs/msg/String", "std_msgs/msg/Strong"))
     wrong = [result for result in check_golden(read_golden(folder)) if result.problems]

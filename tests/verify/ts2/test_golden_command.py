@@ -1,4 +1,4 @@
-"""``firm-hdl golden``, as users call it."""
+"""The command ``firm-hdl golden``."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_a_change_fails_until_it_is_accepted(folder, capsys):
     assert main(["golden", "check", str(folder)]) == 0
 
 
-def test_a_type_that_is_gone_cannot_be_accepted(folder, capsys):
+def test_a_removed_type_cannot_be_accepted(folder, capsys):
     path = sorted((folder / "lyrical").iterdir())[1]
     text = path.read_text().replace("std_msgs/msg/String", "std_msgs/msg/Strung")
     path.write_text(text)
@@ -80,6 +80,6 @@ def test_plans_of_recorded_types_are_kept_and_checked(tmp_path, capsys):
     folder = str(tmp_path / "golden")
     assert main(["golden", "add", folder, "my_msgs/msg/Wheel", *bag]) == 0
     assert main(["golden", "check", folder, *bag]) == 0
-    # No other source has it.
+    # No other source has the type.
     assert main(["golden", "check", folder]) == 1
     assert "package 'my_msgs'" in capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""Acceptance: passes on what is right, and a twin that must fail for each thing it checks."""
+"""Acceptance: correct converters pass, and each check has a must-fail twin."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from tests.verify.judged import NAN_KEY, TIME_KEY, assert_passed
 HEADER = "std_msgs/msg/Header"
 
 
-# Wider buses have more cases, and so values that libraries write in different ways.
+# Wider buses have more cases, and thus values that libraries encode differently.
 KNOWN = {("sensor_msgs/Joy", 16): (NAN_KEY, TIME_KEY)}
 
 
@@ -50,7 +50,7 @@ def test_types_pass(distro, name, bus_bytes):
 
 
 class Mirror(wiring.Component):
-    """A converter with the ports of another, to put faults in between."""
+    """A converter with the ports of another one, and faults between them."""
 
     def __init__(self, inner):
         self.inner, self.plan, self.tree = inner, inner.plan, inner.tree
@@ -70,11 +70,11 @@ class Mirror(wiring.Component):
         return m
 
     def fault(self, m):
-        """Add the fault."""
+        """Add the fault to the module."""
 
 
 class BadByte(Mirror):
-    """Turns a bit of what would be padding or text in most packets."""
+    """Inverts a bit that is padding or text in most packets."""
 
     def fault(self, m):
         bit = self.packets.payload.data[7][0]
@@ -82,7 +82,7 @@ class BadByte(Mirror):
 
 
 class BadLeaf(Mirror):
-    """Turns a bit of a leaf on the way out, and nothing on the wire."""
+    """Inverts a bit of an output leaf, and no bit of the packets."""
 
     def fault(self, m):
         port, inner = self.message.stamp.nanosec, self.inner.message.stamp.nanosec
@@ -90,28 +90,28 @@ class BadLeaf(Mirror):
 
 
 class BadStatus(Mirror):
-    """Always OK."""
+    """Always reports the status OK."""
 
     def fault(self, m):
         m.d.comb += self.status.payload.eq(0)
 
 
-class Marks(Mirror):
+class MarksPackets(Mirror):
     """Marks every packet."""
 
     def fault(self, m):
         m.d.comb += self.packet_error.eq(self.packets.payload.last)
 
 
-class MarksAll(Mirror):
+class MarksBeats(Mirror):
     """Marks every beat."""
 
     def fault(self, m):
         m.d.comb += self.packet_error.eq(1)
 
 
-class Sticks(Mirror):
-    """Takes twenty beats and no more."""
+class Hangs(Mirror):
+    """Accepts twenty beats, and then none."""
 
     def fault(self, m):
         count = Signal(8)
@@ -122,34 +122,34 @@ class Sticks(Mirror):
 
 
 @pytest.mark.parametrize(
-    ("which", "fault", "said"),
+    ("which", "fault", "output"),
     [
         ("Serializer", BadByte, "hardware: packet "),
         ("Deserializer", BadLeaf, "hardware: leaf stamp.nanosec, transfer 0 of "),
         ("Deserializer", BadStatus, " is OK instead of "),
-        ("Serializer", Marks, "hardware: packet_error is [True"),
-        ("Serializer", MarksAll, "hardware: AssertionError: packet_error is high in cycle "),
-        ("Deserializer", Sticks, "hardware, Stalls("),
-        ("Deserializer", Sticks, "hardware: DeadlineError: No transfer in "),
+        ("Serializer", MarksPackets, "hardware: packet_error is [True"),
+        ("Serializer", MarksBeats, "hardware: AssertionError: packet_error is high in cycle "),
+        ("Deserializer", Hangs, "hardware, Stalls("),
+        ("Deserializer", Hangs, "hardware: DeadlineError: No transfer in "),
     ],
 )
-def test_faults_in_hardware_are_found(monkeypatch, which, fault, said):
+def test_faults_in_hardware_are_found(monkeypatch, which, fault, output):
     original = {"Serializer": Serializer, "Deserializer": Deserializer}[which]
     made = lambda message, **options: fault(original(message, **options))  # noqa: E731
     monkeypatch.setattr(circuit, which, made)
     result = accept("humble", HEADER)
-    assert any(said in failure for failure in result.failures), result.failures
+    assert any(output in failure for failure in result.failures), result.failures
 
 
 RUNS = ("hardware: ", "hardware, Stalls(", "hardware, broken packets, Stalls(")
 
 
 @pytest.mark.parametrize("number", range(len(RUNS)))
-def test_all_that_a_run_shows_is_judged(monkeypatch, number):
-    """In one of the runs, everything that is seen differs a little: the least that there is."""
+def test_all_outputs_of_a_run_are_judged(monkeypatch, number):
+    """Each output of a run is changed in turn, as little as possible."""
     runs = []
 
-    class Doctored(circuit.Harness):
+    class ChangedHarness(circuit.Harness):
         def run_packets(self, packets, options):
             seen = super().run_packets(packets, options)
             runs.append(options)
@@ -161,7 +161,7 @@ def test_all_that_a_run_shows_is_judged(monkeypatch, number):
                 seen.packet_errors[-1] = True
             return seen
 
-    monkeypatch.setattr(circuit, "Harness", Doctored)
+    monkeypatch.setattr(circuit, "Harness", ChangedHarness)
     result = accept("humble", "std_msgs/msg/UInt8", Options(most_cases=2))
     assert len(runs) == len(RUNS)
     where = RUNS[number]
@@ -188,7 +188,7 @@ def test_broken_packets_are_of_every_kind():
         "STRING",
     }
     sizes = {len(each) - len(packet) for each in found}
-    # One byte, and a whole beat or more, both ways; and changes that leave the size as it was.
+    # One byte, a whole beat or more, added or removed; and changes that keep the size.
     assert {-1, 0, 3, 4} <= sizes and min(sizes) < -8 and max(sizes) > 11
     changed = [each for each in found if len(each) == len(packet)]
     assert {sum(a != b for a, b in zip(each, packet, strict=True)) for each in changed} > {
@@ -213,7 +213,7 @@ def test_fault_in_the_golden_model_is_found(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("which", "change", "said"),
+    ("which", "change", "output"),
     [
         ("decode", lambda found: replace(found, status="TRUNCATED"), "status TRUNCATED"),
         ("encode", lambda found: (found[0], "ITEMS"), "status ITEMS when encoding"),
@@ -221,13 +221,13 @@ def test_fault_in_the_golden_model_is_found(monkeypatch):
         ("encode", lambda found: (found[0] + b"\0", found[1]), "packet 0 of 1 differs at byte 5: "),
     ],
 )
-def test_each_answer_of_the_golden_model_is_judged(monkeypatch, which, change, said):
+def test_each_answer_of_the_golden_model_is_judged(monkeypatch, which, change, output):
     original = getattr(acceptance, which)
     monkeypatch.setattr(acceptance, which, lambda *given: change(original(*given)))
     result = accept("humble", "std_msgs/msg/UInt8", Options(simulated=False))
     assert result.failures
     for failure in result.failures:
-        assert failure.startswith("golden model, case ") and f": {said}" in failure
+        assert failure.startswith("golden model, case ") and f": {output}" in failure
 
 
 def test_unknown_types_fail_and_say_how_to_repeat():
@@ -264,10 +264,10 @@ def test_command_reports_and_exits(capsys, monkeypatch):
     arguments = ["--distro", "humble", "--jobs", "1", "--cases", "2", "std_msgs/Bool"]
     assert main(arguments) == 0
     assert "humble      1 of    1 types pass (8-byte bus)" in capsys.readouterr().out
-    monkeypatch.setattr(circuit, "Serializer", lambda *a, **o: Marks(Serializer(*a, **o)))
+    monkeypatch.setattr(circuit, "Serializer", lambda *a, **o: MarksPackets(Serializer(*a, **o)))
     assert main(arguments) == 1
-    said = capsys.readouterr().out
-    assert "FAIL std_msgs/msg/Bool (humble)" in said
-    assert "again: firm-hdl verify --distro humble --bus-bytes 8 --seed 0" in said
+    output = capsys.readouterr().out
+    assert "FAIL std_msgs/msg/Bool (humble)" in output
+    assert "again: firm-hdl verify --distro humble --bus-bytes 8 --seed 0" in output
     assert main(["--distro", "humble", "no_msgs/Such"]) == 1
     assert capsys.readouterr().err == "error: No distribution has no_msgs/msg/Such\n"

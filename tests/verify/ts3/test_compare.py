@@ -1,4 +1,4 @@
-"""Every clause of the comparison of a run: what differs in it is told, and nothing else."""
+"""Every part of the comparison of a run: exactly the differences are reported."""
 
 from __future__ import annotations
 
@@ -40,16 +40,16 @@ WANTED = Expected(
 NAMES = ("one", "two", "three")
 
 
-def told(**changes):
+def differences_of(**changes):
     return list(run_differences("here", PLAN, replace(SEEN, **changes), WANTED, NAMES))
 
 
-def test_the_same_is_the_same():
-    assert told() == []
+def test_equal_runs_have_no_differences():
+    assert differences_of() == []
 
 
 @pytest.mark.parametrize(
-    ("packets", "said"),
+    ("packets", "output"),
     [
         # A bit, a byte more or fewer, a packet more or fewer, another order.
         ([*PACKETS[:1], b"\2\0\0\1\0", b""], "packet 1 of 3 differs at byte 3: 0200000100 instead"),
@@ -64,19 +64,19 @@ def test_the_same_is_the_same():
         ([PACKETS[1], PACKETS[0], b""], "packet 0 of 3 differs at byte 0: "),
     ],
 )
-def test_packets(packets, said):
-    (difference,) = told(packets=packets)
-    assert difference.startswith(f"here: {said}")
+def test_packets(packets, output):
+    (difference,) = differences_of(packets=packets)
+    assert difference.startswith(f"here: {output}")
 
 
 @pytest.mark.parametrize(
-    ("leaf", "payloads", "said"),
+    ("leaf", "payloads", "output"),
     [
         (0, [1, 3, 0], "leaf x, transfer 1 of 3: [3] instead of [2] (two)"),
         (0, [1, 2], "leaf x, transfer 2 of 3: [] instead of [0] (three)"),
         (0, [1, 2, 0, 0], "leaf x, transfer 3 of 3: [0] instead of []"),
         (0, [], "leaf x, transfer 0 of 3: [] instead of [1] (one)"),
-        # The last message is damaged; what it transfers counts all the same.
+        # The last message is damaged, but its transfers count.
         (0, [1, 2, 3], "leaf x, transfer 2 of 3: [3] instead of [0] (three)"),
         (1, [3, 0, 1], "leaf s.length, transfer 2 of 3: [1] instead of [0] (three)"),
         (2, [((97, 98), False), ((99, 0), False)], "leaf s.items, transfer 1 of 2: [((99, 0), F"),
@@ -84,13 +84,13 @@ def test_packets(packets, said):
         (2, [*TRANSFERS[2], ((0, 0), True)], "leaf s.items, transfer 2 of 2: [((0, 0), True)] in"),
     ],
 )
-def test_transfers(leaf, payloads, said):
-    (difference,) = told(transfers={**TRANSFERS, leaf: payloads})
-    assert difference.startswith(f"here: {said}")
+def test_transfers(leaf, payloads, output):
+    (difference,) = differences_of(transfers={**TRANSFERS, leaf: payloads})
+    assert difference.startswith(f"here: {output}")
 
 
 def test_leaves_that_are_missing_or_unknown():
-    assert len(told(transfers={})) == 3
+    assert len(differences_of(transfers={})) == 3
     more = [{**WANTED.transfers[0], ("y",): [1]}, *WANTED.transfers[1:]]
     found = list(run_differences("here", PLAN, SEEN, replace(WANTED, transfers=more), NAMES))
     assert found == ["here: no leaves y"]
@@ -98,7 +98,7 @@ def test_leaves_that_are_missing_or_unknown():
 
 @pytest.mark.parametrize("field", ["statuses", "sent_statuses"])
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "output"),
     [
         (lambda right: [Status.STRING, *right[1:]], " of packet 0 is STRING instead of OK (one)"),
         (lambda right: [*right[:2], Status.OK], " of packet 2 is OK instead of "),
@@ -106,10 +106,10 @@ def test_leaves_that_are_missing_or_unknown():
         (lambda right: [*right, Status.OK], ": 4 instead of 3"),
     ],
 )
-def test_statuses(field, change, said):
-    (difference,) = told(**{field: change(getattr(SEEN, field))})
+def test_statuses(field, change, output):
+    (difference,) = differences_of(**{field: change(getattr(SEEN, field))})
     what = {"statuses": "status", "sent_statuses": "sent_status"}[field]
-    assert difference.startswith(f"here: {what}{said}")
+    assert difference.startswith(f"here: {what}{output}")
 
 
 @pytest.mark.parametrize(
@@ -123,5 +123,5 @@ def test_statuses(field, change, said):
     ],
 )
 def test_marks(marked):
-    (difference,) = told(packet_errors=marked)
+    (difference,) = differences_of(packet_errors=marked)
     assert difference == f"here: packet_error is {marked} instead of [False, False, True]"

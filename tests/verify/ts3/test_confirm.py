@@ -1,4 +1,4 @@
-"""Other libraries write the cases of TS3, too: who confirms what, and what a wrong one is worth."""
+"""Confirmation of the packets of TS3 by other libraries, and disagreements with them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SMALL = Options(most_cases=4, stalled=False, broken=False)
 
 @pytest.fixture(autouse=True)
 def all_here():
-    """Need all references, in CI at least."""
+    """Require all references in CI; otherwise skip without them."""
     for name in WRITERS:
         if client(name).missing() is not None:
             need(f"{name} ({client(name).missing()})", None)
@@ -38,12 +38,12 @@ def cases_of(distro, name):
     ("distro", "name", "by"),
     [
         ("noetic", "sensor_msgs/msg/Imu", ("genpy",)),
-        # With NaN that a Python float does not keep.
+        # Includes NaN values that a Python float does not keep.
         ("lyrical", "sensor_msgs/msg/Joy", CDR),
         ("lyrical", "rcl_interfaces/msg/ParameterValue", CDR),
     ],
 )
-def test_others_write_what_rosbags_writes(distro, name, by):
+def test_other_libraries_write_the_packets_of_rosbags(distro, name, by):
     message = Library(distro).message(name)
     found = confirm(message, message.wire, cases_of(distro, name))
     assert (found.by, found.failures) == (by, ())
@@ -58,7 +58,7 @@ def test_a_library_that_disagrees_is_a_failure_with_both_names(monkeypatch, answ
     assert all("fastcdr" in text and "rosbags writes 00010000" in text for text in result.failures)
 
 
-def test_result_says_who_took_part():
+def test_result_names_the_references():
     result = accept("lyrical", "std_msgs/msg/Bool", SMALL)
     assert_passed(result)
     assert result.written_by == CDR
@@ -67,8 +67,8 @@ def test_result_says_who_took_part():
     assert none.command.endswith(" --reference none std_msgs/msg/Bool")
 
 
-def test_known_divergence_of_a_reference_is_told_by_its_key():
-    """`Joy` has NaN among its cases that Cyclone's Python turns into others."""
+def test_known_divergence_of_a_reference_is_reported_by_its_key():
+    """Cases of `Joy` have NaN values that Cyclone's Python changes."""
     options = Options(simulated=False, references=("cyclonedds",))
     result = accept("lyrical", "sensor_msgs/msg/Joy", options)
     assert assert_passed(result, (NAN_KEY,)) > 6
@@ -109,14 +109,14 @@ def test_named_reference_without_the_type_is_no_pass(monkeypatch):
     assert_passed(accept("lyrical", "std_msgs/msg/Bool", Options(most_cases=1)))
 
 
-def test_nobody_wrote_what_was_not_judged(capsys, make_wide):
+def test_unjudged_types_have_no_writer(capsys, make_wide):
     arguments = ["verify", "--distro", "lyrical", "--jobs", "1", "--path", str(make_wide)]
     assert main([*arguments, "--reference", "none", "p/msg/Wide"]) == 1
     shown = capsys.readouterr().out
     assert "not judged" in shown and "rosbags 1 types" not in shown
 
 
-def test_wide_text_is_judged_if_somebody_has_it(tmp_path, make_wide):
+def test_wide_text_is_judged_with_a_reference(tmp_path, make_wide):
     options = Options(most_cases=6, paths=(str(make_wide),))
     result = accept("lyrical", "p/msg/Wide", options)
     assert_passed(result)
@@ -141,13 +141,13 @@ def make_wide(tmp_path):
     return tmp_path
 
 
-def test_command_names_who_took_part(capsys):
+def test_command_names_the_references(capsys):
     arguments = ["verify", "--distro", "lyrical", "--jobs", "1", "--cases", "2"]
     assert main([*arguments, "--reference", "fastcdr", "std_msgs/msg/Bool"]) == 0
     assert "\nwire bytes: rosbags 1 types, fastcdr 1 types\n" in capsys.readouterr().out
 
 
-def test_what_is_missing_is_said_or_an_error(capsys, monkeypatch):
+def test_missing_references_are_reported_or_an_error(capsys, monkeypatch):
     monkeypatch.setattr(CLIENTS["cyclonedds"], "missing", lambda self: "cyclonedds is not there")
     assert usable_references() == ("genpy", *FAST_CDR)
     assert find_references(None, ["cdr"]) == [

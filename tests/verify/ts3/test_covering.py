@@ -1,6 +1,6 @@
-"""TS3 in full depth, on few types that have every feature of all; `make verify` takes all.
+"""TS3 in full depth, on a few types that have every feature; `make verify` runs all types.
 
-The types are in ``covering/``. After a change that asks for others: ``make cover``.
+The types are in ``covering/``. ``make cover`` selects them again after a change.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from tests.verify.judged import NAN_KEY, assert_passed
 FOLDER = Path(__file__).parents[1] / "covering"
 DISTROS = ("lyrical", "noetic")
 KEPT = {distro: read_chosen(FOLDER / f"{distro}.txt") for distro in DISTROS}
-# The generator's branches of all types take a minute: `make cover` looks at them.
+# The branches of the generator for all types take a minute; `make cover` checks them.
 STRIDE = 20
-# All cases of these take as long as those of all others together.
+# All cases of these types take as long as those of all other types together.
 LARGE = ("InteractiveMarker", "InteractiveMarkerControl", "InteractiveMarkerInit")
 FEW_CASES = 4
 KNOWN = {("lyrical", "sensor_msgs/msg/Joy"): (NAN_KEY,)}
@@ -46,7 +46,7 @@ def planned(library, name):
 
 
 def missing(distro, kept):
-    """Features of a distribution that none of some of its types has."""
+    """Return the features of a distribution that none of the given types has."""
     library = Library(distro)
     found = {name: all_features(library, *planned(library, name)) for name in library.names()}
     return set().union(*found.values()) - set().union(*(found[name] for name in kept))
@@ -67,7 +67,7 @@ def test_a_type_that_is_left_out_is_missed(distro):
 
 
 def not_taken(library, wanted, kept):
-    """Branches that none of some types takes, the small ones first, until nothing is left."""
+    """Remove the branches that types take, small types first; return the branches that are left."""
     left = set(wanted)
     plans = sorted((planned(library, name) for name in kept), key=lambda both: cost(both[1]))
     for message, plan in plans:
@@ -85,5 +85,5 @@ def test_other_types_take_no_branch_that_the_kept_do_not(distro):
     taken = set().union(*(branches(*planned(library, name)) for name in others))
     assert len(taken) > 1000
     assert not_taken(library, taken, KEPT[distro]) == set(), "choose again: make cover"
-    # Few of them do not suffice, so that the comparison can fail.
+    # Must-fail twin: a few of the types do not take all branches.
     assert not_taken(library, taken, KEPT[distro][-8:-5])

@@ -1,4 +1,4 @@
-"""Every type of every distribution, a few cases each."""
+"""Every type of every distribution, with a few cases each."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ TASKS = list(collect_tasks((), ()))
 WIDTHS = (8, 4)
 OTHER_WIDTHS = (1, 2, 16, 32, 64)
 LARGEST = 12
-"""The first ones have so many leaves that they would take as long as a hundred others."""
+"""Number of largest types; each has so many leaves that its test takes as long as many others."""
 SAMPLE = range(by_depth(LARGEST, 0), len(TASKS), by_depth(36, 9))
 SIMULATED = by_depth(5, 1)
-"""One in so many of the others is simulated. Of the rest, the plan alone is judged."""
+"""One in this many of the other types is simulated. For the rest, only the plan is judged."""
 
 
 @pytest.mark.parametrize("index", range(len(TASKS)), ids=[task.name for task in TASKS])
@@ -43,16 +43,16 @@ def test_a_sample_passes_on_other_buses(index):
 
 
 @pytest.mark.parametrize("test", [test_every_type_passes, test_a_sample_passes_on_other_buses])
-def test_these_tests_fail_where_nobody_judges(test, monkeypatch):
-    def nobody(message, *arguments, **options):
+def test_these_tests_fail_without_a_judge(test, monkeypatch):
+    def no_judge(message, *arguments, **options):
         raise NotJudgedError(f"{message.name} is not judged")
 
-    monkeypatch.setattr(acceptance, "judge_of", nobody)
+    monkeypatch.setattr(acceptance, "judge_of", no_judge)
     with pytest.raises(AssertionError, match="is not judged"):
         test(SAMPLE[0])
 
 
-def test_these_tests_fail_where_there_is_no_case(monkeypatch):
+def test_these_tests_fail_without_a_case(monkeypatch):
     monkeypatch.setattr(acceptance, "all_cases", lambda *given: [])
     with pytest.raises(AssertionError):
         test_every_type_passes(8)

@@ -15,11 +15,11 @@ from tests.strategies import BUS_WIDTHS, definitions
 from tests.verify.judged import NAN_KEY, TIME_KEY, assert_passed
 
 MOST_WORK = 5_000
-"""Beats times leaves of the smallest packet: one example in a hundred takes minutes otherwise."""
+"""Limit on beats times leaves of the smallest packet; larger examples may take minutes."""
 
 
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
-# Shrinking would simulate for many minutes; the message of a failure says how to repeat it.
+# Shrinking would simulate for many minutes; the failure message has the command to repeat it.
 @settings(
     max_examples=by_depth(8, 40),
     deadline=None,

@@ -1,4 +1,4 @@
-"""TS3 with results on the disk: recorded as it was, resumed after a kill, reported."""
+"""TS3 with a result file: recorded correctly, resumed after a kill, and reported."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def task_of(name):
     return task
 
 
-def test_records_say_what_was_found():
+def test_records_have_all_results():
     task, options = task_of("std_msgs/msg/Header"), Options()
     record = record_of(task, accept("humble", task.name, options), options)
     assert assert_passed(record) >= 2 * record.cases
@@ -67,7 +67,7 @@ def test_wrong_answer_to_a_bare_string_is_found(monkeypatch):
     right = acceptance.bare_packets
 
     def wrong(plan, cases):
-        # The packet of one case, expected to come out as another.
+        # The packet of one case, with the expected packet of another.
         return [(cases[-1], packet) for _, packet in right(plan, cases)]
 
     monkeypatch.setattr(acceptance, "bare_packets", wrong)
@@ -84,19 +84,19 @@ def test_failures_are_recorded_and_not_run_again(tmp_path, monkeypatch, capsys):
     (record,) = read_results(path).records.values()
     assert "golden model" in record.verdict.failures[0]
     capsys.readouterr()
-    # All is well now, and the file still says what it said.
+    # The fault is gone, but the file still has the old result.
     assert verify("--results", str(path), "std_msgs/Bool") == 1
-    said = capsys.readouterr().out
-    assert f"1 of 1 types have a result in {path}" in said and "0 of    1 types pass" in said
+    output = capsys.readouterr().out
+    assert f"1 of 1 types have a result in {path}" in output and "0 of    1 types pass" in output
 
 
 def test_results_of_another_run_are_refused(tmp_path, capsys):
     path = tmp_path / "r.jsonl"
     assert verify("--results", str(path), "std_msgs/Bool") == 0
     assert verify("--results", str(path), "--seed", "1", "std_msgs/Bool") == 1
-    said = capsys.readouterr().err
-    assert said.startswith(f"error: '{path}' is of another run: seed was 0, and is 1; ")
-    assert "Traceback" not in said
+    output = capsys.readouterr().err
+    assert output.startswith(f"error: '{path}' is of another run: seed was 0, and is 1; ")
+    assert "Traceback" not in output
 
 
 def test_results_of_other_code_are_refused(tmp_path, capsys, monkeypatch):
@@ -115,16 +115,16 @@ def test_report_is_written_with_the_results(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "output"),
     [
         (["--report", "r.html"], "--report needs --results"),
         (["--executor", "x"], "executor must be 'processes' or 'dask://HOST:PORT', not 'x'"),
     ],
 )
-def test_wrong_calls_are_refused(arguments, said, capsys):
+def test_wrong_calls_are_refused(arguments, output, capsys):
     with pytest.raises(SystemExit) as caught:
         verify(*arguments, "std_msgs/Bool")
-    assert caught.value.code == 2 and said in capsys.readouterr().err
+    assert caught.value.code == 2 and output in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("more", [[], ["--simulator", "iverilog"]])
@@ -138,7 +138,7 @@ def test_waveforms_are_written(tmp_path, request, more):
     assert "packets" in (folder / names[0]).read_text()
 
 
-# Both are a sequence of what has the same figures.
+# Both are a sequence of elements with the same layout.
 TWINS = ["geometry_msgs/msg/Point", "geometry_msgs/msg/Vector3"]
 
 
@@ -152,8 +152,8 @@ def test_same_circuits_are_found():
 def test_same_circuits_are_simulated_once(tmp_path, capsys):
     path = tmp_path / "r.jsonl"
     assert verify("--results", str(path), "--share-circuits", *TWINS) == 0
-    said = capsys.readouterr().out
-    assert "1 of 2 types have the circuit of another, which was simulated" in said
+    output = capsys.readouterr().out
+    assert "1 of 2 types have the circuit of another, which was simulated" in output
     one, two = (
         next(r for r in read_results(path).records.values() if r.test.type == name)
         for name in TWINS

@@ -1,4 +1,4 @@
-"""Which messages of a recording are selected, and that their bytes are the recorded ones."""
+"""The selected messages of a recording, and their bytes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def chosen(selection: Selection) -> list[tuple[str, int]]:
 
 
 def counted(path: Path, sizes: dict[str, list[int]]) -> Path:
-    """Record messages of some sizes on topics, one after the other on each."""
+    """Record messages of given sizes on topics, in order on each topic."""
     messages = [
         (topic, STRING, number * 100 + index, bytes([number]) * size)
         for index, (topic, each) in enumerate(sizes.items())
@@ -88,7 +88,7 @@ def test_file_that_is_cut_is_refused(tmp_path: Path) -> None:
     bag = write(tmp_path / "run", "bag", robot("bag"))
     topics = topics_of(str(bag))
     data = bag.read_bytes()
-    # Where the index says that the messages are is something else.
+    # The index refers to a place that has no messages.
     at = data.index(b"tick ")
     bag.write_bytes(data[:100] + b"\xff" * (at - 100) + data[at:])
     with pytest.raises(DefinitionError, match="cannot be read as a recording: "):

@@ -1,4 +1,4 @@
-"""Replay: recordings pass as they are, and what is wrong with one, or with us, is found."""
+"""Replay: recordings pass unchanged; faults of recordings and of firm-hdl are found."""
 
 from __future__ import annotations
 
@@ -43,22 +43,22 @@ def replayed(bag, name=STRING, distro="lyrical", **options):
 @pytest.mark.parametrize("form", FORMATS)
 def test_recordings_pass(capsys, tmp_path, form):
     messages = robot(form, 4)
-    # What is compressed is read by rosbags; one circuit is enough to see that it is read at all.
+    # rosbags reads compressed recordings; one circuit is enough to check that they are read.
     only = [] if form in ("bag", "mcap") else ["std_msgs/String"]
     bag = write(tmp_path / "run", form, messages, [("/never", "std_msgs/msg/Bool")])
-    status, said = run(capsys, "--bag", bag, *only)
-    assert status == 0 and said.err == ""
+    status, output = run(capsys, "--bag", bag, *only)
+    assert status == 0 and output.err == ""
     ros1 = form.startswith("bag")
     distro, infix = ("noetic", "") if ros1 else ("lyrical", "msg/")
     assert f"note: std_msgs/{infix}String ({distro}): 4 of 4 messages of 1 topic replayed\n" in (
-        said.out
+        output.out
     )
-    assert f"{distro:8} {1 if only else 4:4} of {1 if only else 4:4} types pass" in said.out
+    assert f"{distro:8} {1 if only else 4:4} of {1 if only else 4:4} types pass" in output.out
     if not only:
         scans = f"note: sensor_msgs/{infix}LaserScan ({distro}): 6 of 6 messages of 2 topics"
-        assert scans in said.out
+        assert scans in output.out
         silent = f"std_msgs/{infix}Bool ({distro}), ts3, 8-byte bus"
-        assert f"not judged: {silent}: no messages of it" in said.out
+        assert f"not judged: {silent}: no messages of it" in output.out
 
 
 def test_every_packet_is_sent_twice_and_its_decisions_are_counted(tmp_path):
@@ -72,13 +72,13 @@ def test_every_packet_is_sent_twice_and_its_decisions_are_counted(tmp_path):
 
 def test_exported_vhdl_replays_recordings(ghdl, capsys, tmp_path):
     bag = write(tmp_path / "run", "mcap", robot("mcap", 3))
-    status, said = run(capsys, "--bag", bag, "--simulator", "ghdl", STRING)
+    status, output = run(capsys, "--bag", bag, "--simulator", "ghdl", STRING)
     assert status == 0
-    assert "ghdl: 1 of 1 types the same in every cycle; " in said.out
+    assert "ghdl: 1 of 1 types the same in every cycle; " in output.out
 
 
-class Deaf(BadLeaf):
-    """Turns a bit of the text."""
+class InvertedBit(BadLeaf):
+    """Inverts a bit of the string."""
 
     def fault(self, m):
         port, inner = self.message.data.items, self.inner.message.data.items
@@ -86,13 +86,13 @@ class Deaf(BadLeaf):
 
 
 @pytest.mark.parametrize(
-    ("which", "fault", "said"),
+    ("which", "fault", "output"),
     [
         ("Serializer", BadByte, "hardware: packet 0 of 2 differs at byte 15: "),
-        ("Deserializer", Deaf, "hardware: leaf data.items, transfer 0 of 2: "),
+        ("Deserializer", InvertedBit, "hardware: leaf data.items, transfer 0 of 2: "),
     ],
 )
-def test_faults_in_hardware_are_found(capsys, monkeypatch, tmp_path, which, fault, said):
+def test_faults_in_hardware_are_found(capsys, monkeypatch, tmp_path, which, fault, output):
     original = {"Serializer": Serializer, "Deserializer": Deserializer}[which]
     made = lambda message, **options: fault(original(message, **options))  # noqa: E731
     monkeypatch.setattr(circuit, which, made)
@@ -101,7 +101,7 @@ def test_faults_in_hardware_are_found(capsys, monkeypatch, tmp_path, which, faul
     status, printed = run(capsys, "--bag", bag, "--cases", "5")
     assert status == 1
     assert f"FAIL {STRING} (lyrical)\n" in printed.out
-    (line,) = [each for each in printed.out.splitlines() if said in each and "Stalls" not in each]
+    (line,) = [each for each in printed.out.splitlines() if output in each and "Stalls" not in each]
     assert line.endswith("(/text message 0 at 1.000000000)")
     assert (
         f"again: firm-hdl verify --distro lyrical --bag {bag} --bus-bytes 8 --seed 0 --cases 5 "
@@ -117,14 +117,14 @@ def test_oracle_that_reads_another_byte_disagrees(monkeypatch, tmp_path):
 
     monkeypatch.setattr(RosbagsOracle, "read", read)
     result = replayed(strings(tmp_path, TEXT))
-    # Both models of ours, and the circuit, say what is in the packet.
+    # Both models and the circuit give the content of the packet.
     assert any(each.startswith("golden model, /text message 0") for each in result.failures)
     assert any(each.startswith("hardware: leaf data.items") for each in result.failures)
-    # rosbags' own rewriting would have been another packet, too.
+    # The packet that rosbags writes would differ, too.
     assert any(each.startswith("hardware: packet 0 of 1 differs") for each in result.failures)
 
 
-def test_what_rosbags_cannot_read_is_judged_by_what_it_can(monkeypatch, tmp_path):
+def test_a_partly_unreadable_message_is_judged_by_its_readable_parts(monkeypatch, tmp_path):
     latin = TEXT[:9] + b"\xff" + TEXT[10:]
     bag = strings(tmp_path, latin)
     assert replayed(bag).failures == []
@@ -133,7 +133,7 @@ def test_what_rosbags_cannot_read_is_judged_by_what_it_can(monkeypatch, tmp_path
     def read(self, packet, name, wire):
         return original(self, packet.replace(b"c\0", b"C\0"), name, wire)
 
-    # Beside the text that is not UTF-8, rosbags reads another letter.
+    # Besides the string that is not UTF-8, rosbags reads a wrong letter.
     monkeypatch.setattr(RosbagsOracle, "read", read)
     (failure,) = replayed(bag).failures
     assert "its 12 bytes do not fit the definition: status OK; rosbags says: " in failure
@@ -179,12 +179,12 @@ def test_floats_that_python_does_not_keep_pass(tmp_path):
     bag = strings(tmp_path, *packets, name="std_msgs/msg/Float32")
     result = replayed(bag, "std_msgs/msg/Float32")
     assert_passed(result)
-    # Which Pythons keep them is their business.
+    # Some versions of Python keep such values, others do not.
     assert "signalling" in result.note or result.note == "3 of 3 messages of 1 topic replayed"
 
 
 @pytest.mark.parametrize(
-    ("form", "packet", "said"),
+    ("form", "packet", "output"),
     [
         ("mcap", TEXT[:-2], "its 10 bytes do not fit the definition: status TRUNCATED; rosbags "),
         ("mcap", TEXT + b"\0" * 4, "its 16 bytes do not fit the definition: status TRAILING; "),
@@ -194,13 +194,13 @@ def test_floats_that_python_does_not_keep_pass(tmp_path):
         ("bag", b"\0\0\0\0\0", "its 5 bytes do not fit the definition: status TRAILING; "),
     ],
 )
-def test_message_that_does_not_fit_is_named(capsys, tmp_path, form, packet, said):
+def test_message_that_does_not_fit_is_named(capsys, tmp_path, form, packet, output):
     good = TEXT if form == "mcap" else b"\3\0\0\0abc"
     status, printed = run(capsys, "--bag", strings(tmp_path, good, packet, good, form=form))
     assert status == 1
-    # That one, and no other: the circuit reports it, and goes on with the next.
+    # Only that message: the circuit reports it, and continues with the next.
     assert printed.out.count("    /text message ") == 1
-    assert f"    /text message 1 at 1.000000001: {said}" in printed.out
+    assert f"    /text message 1 at 1.000000001: {output}" in printed.out
     assert "hardware" not in printed.out
 
 
@@ -215,7 +215,7 @@ def test_bound_that_is_exceeded_is_named_though_rosbags_reads_it(tmp_path):
 
 
 def _with_mode(packet, mode):
-    """Put a longer text in place of the one of the first message, which has one character."""
+    """Replace the string of the first message, which has one character, by a longer one."""
     at = packet.index(b"\3\0\0\0" + "ä".encode() + b"\0")
     body = packet[:at] + struct.pack("<I", len(mode) + 1) + mode + b"\0"
     return body + b"\0" * (-len(body) % 4) + b"\0\0\0\0"
@@ -230,7 +230,7 @@ def test_converter_that_always_says_ok_is_found(monkeypatch, tmp_path):
             transfers=decoded.transfers, status="OK", steps=decoded.steps, edges=decoded.edges
         )
 
-    # The judge believes that all is well, and circuit and golden model do not.
+    # The judge expects OK; the circuit and the golden model do not.
     monkeypatch.setattr(replay_module, "decode", decode)
     result = replayed(strings(tmp_path, TEXT, TEXT[:-2]))
     assert any("status TRUNCATED" in each for each in result.failures)
@@ -245,17 +245,17 @@ def test_results_are_kept_with_the_recording(capsys, tmp_path):
     assert record["note"] == "1 of 1 messages of 1 topic replayed"
     assert record["command"].startswith(f"firm-hdl verify --distro lyrical --bag {bag} ")
     assert STRING in (tmp_path / "r.md").read_text()
-    status, said = run(capsys, "--bag", bag, "--cases", "3", *kept)
-    assert status == 1 and "is of another run: " in said.err
+    status, output = run(capsys, "--bag", bag, "--cases", "3", *kept)
+    assert status == 1 and "is of another run: " in output.err
 
 
 def test_several_recordings_are_replayed_together(capsys, tmp_path):
     one = write(tmp_path / "one", "mcap", [("/a", STRING, 1, TEXT)])
     two = write(tmp_path / "two", "db3", [("/a", STRING, 1, TEXT), ("/b", STRING, 2, TEXT[:-1])])
-    status, said = run(capsys, "--bag", one, "--bag", two)
+    status, output = run(capsys, "--bag", one, "--bag", two)
     assert status == 1
-    assert "3 of 3 messages of 3 topics replayed" in said.out
-    assert f"    {two}: /b message 0 at 0.000000002: its 11 bytes do not fit" in said.out
+    assert "3 of 3 messages of 3 topics replayed" in output.out
+    assert f"    {two}: /b message 0 at 0.000000002: its 11 bytes do not fit" in output.out
 
 
 def test_topics_with_another_definition_are_left_out(monkeypatch, tmp_path):
@@ -299,7 +299,7 @@ def test_converters_have_room_for_the_longest_message(monkeypatch, tmp_path):
         return TEXT[:4] + struct.pack("<I", size - 8) + b"x" * (size - 9) + b"\0"
 
     bag = strings(tmp_path, packet(512), packet(100))
-    # 64 KiB otherwise, which takes long to simulate.
+    # The default is 64 KiB, which takes long to simulate.
     monkeypatch.setattr(replay_module, "MAX_MESSAGE_BYTES", 64)
     assert_passed(replayed(bag))
     monkeypatch.setattr(replay_module, "_room", lambda longest: longest - 1)
@@ -308,7 +308,7 @@ def test_converters_have_room_for_the_longest_message(monkeypatch, tmp_path):
 
 def test_more_than_simulates_in_a_minute_is_left_out_unless_asked_for(monkeypatch, tmp_path):
     bag = strings(tmp_path, *[TEXT] * 20)
-    # Few leaves count as 8, so that is 7 beats: 56 bytes.
+    # A few leaves count as 8, so the limit is 7 beats: 56 bytes.
     monkeypatch.setattr(replay_module, "MOST_WORK", 60)
     assert replayed(bag).note == (
         "4 of 20 messages of 1 topic replayed; more would take long, --cases N takes N"
@@ -317,7 +317,7 @@ def test_more_than_simulates_in_a_minute_is_left_out_unless_asked_for(monkeypatc
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "output"),
     [
         (["--path", "."], "argument --bag: not allowed with argument --path"),
         (["--systems", "ts2,ts3"], "--bag requires --systems ts3"),
@@ -328,11 +328,11 @@ def test_more_than_simulates_in_a_minute_is_left_out_unless_asked_for(monkeypatc
         (["--max-message-bytes", "0"], "must be from 1 to 2147483647, not 0"),
     ],
 )
-def test_wrong_calls_are_refused(capsys, arguments, said):
+def test_wrong_calls_are_refused(capsys, arguments, output):
     with pytest.raises(SystemExit) as left:
         main(["verify", "--bag", "none.bag", *arguments])
     assert left.value.code == 2
-    assert said in capsys.readouterr().err
+    assert output in capsys.readouterr().err
 
 
 def test_longest_message_is_of_recordings(capsys):
@@ -342,27 +342,27 @@ def test_longest_message_is_of_recordings(capsys):
     assert "--max-message-bytes needs --bag" in capsys.readouterr().err
 
 
-def test_what_cannot_be_replayed_is_an_error(capsys, tmp_path):
+def test_unusable_recordings_are_an_error(capsys, tmp_path):
     bag = strings(tmp_path, TEXT)
     missing = tmp_path / "none.bag"
     assert run(capsys, "--bag", missing)[1].err == f"error: '{missing}' does not exist\n"
     old = make_old_db3(tmp_path / "old.db3", [STRING])
-    status, said = run(capsys, "--bag", old)
-    assert status == 1 and said.out == ""
-    assert said.err.startswith(f"error: '{old}' has no definitions of its types")
-    status, said = run(capsys, "--bag", bag, "std_msgs/Bool")
-    assert status == 1 and said.err.startswith("error: type 'Bool' is not defined in package")
-    status, said = run(capsys, "--bag", bag, "--wire", "ros1")
-    assert status == 1 and said.err == f"error: '{bag}' has messages of cdr, not of ros1\n"
-    status, said = run(capsys, "--bag", bag, "--distro", "noetic")
-    assert status == 1 and "is a recording of ROS 2, and noetic is ROS 1" in said.err
+    status, output = run(capsys, "--bag", old)
+    assert status == 1 and output.out == ""
+    assert output.err.startswith(f"error: '{old}' has no definitions of its types")
+    status, output = run(capsys, "--bag", bag, "std_msgs/Bool")
+    assert status == 1 and output.err.startswith("error: type 'Bool' is not defined in package")
+    status, output = run(capsys, "--bag", bag, "--wire", "ros1")
+    assert status == 1 and output.err == f"error: '{bag}' has messages of cdr, not of ros1\n"
+    status, output = run(capsys, "--bag", bag, "--distro", "noetic")
+    assert status == 1 and "is a recording of ROS 2, and noetic is ROS 1" in output.err
 
 
 def test_type_that_only_others_use_has_no_messages(capsys, tmp_path):
     bag = write(tmp_path / "run", "mcap", robot("mcap", 1))
-    status, said = run(capsys, "--bag", bag, "my_msgs/Wheel")
-    assert (status, said.out) == (1, "")
-    assert said.err == (
+    status, output = run(capsys, "--bag", bag, "my_msgs/Wheel")
+    assert (status, output.out) == (1, "")
+    assert output.err == (
         "error: There is no topic of my_msgs/msg/Wheel, only of geometry_msgs/msg/Twist, "
         "my_msgs/msg/Wheels, sensor_msgs/msg/LaserScan, std_msgs/msg/String\n"
     )
@@ -377,6 +377,6 @@ def test_recording_that_is_damaged_fails_its_types(capsys, tmp_path):
     at = data.index(TEXT)
     data[at - 40 :] = b"\xff" * (len(data) - at + 40)
     alone.write_bytes(data)
-    status, said = run(capsys, "--bag", alone)
+    status, output = run(capsys, "--bag", alone)
     assert status == 1
-    assert "cannot be read as a recording: " in said.out + said.err
+    assert "cannot be read as a recording: " in output.out + output.err

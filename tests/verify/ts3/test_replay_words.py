@@ -1,4 +1,4 @@
-"""What is said of recorded messages, and which packets stand for others."""
+"""Descriptions of recorded messages, and packets that are equivalent."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ PACKET = b"\0\1\0\0\1\0\0\0"
             "with option bits, bytes after the message, padding that is not zero, or a bool that "
             "is neither 0 nor 1",
         ),
-        # Padding at the end that is not there.
+        # Missing padding at the end.
         (PACKET[:-1], "with padding that is not zero, or a bool that is neither 0 nor 1"),
     ],
 )
@@ -106,9 +106,9 @@ def test_kinds_are_counted_with_the_first_of_each():
     assert replay._kinds(judged[:1]) == []
 
 
-def test_what_does_not_fit_is_told_with_its_size_and_status():
-    said = replay._misfit(case("message 3", given=b"12345", status="TRUNCATED"), "why")
-    assert said == ("message 3: its 5 bytes do not fit the definition: status TRUNCATED; why")
+def test_messages_that_do_not_fit_are_reported_with_size_and_status():
+    output = replay._misfit(case("message 3", given=b"12345", status="TRUNCATED"), "why")
+    assert output == ("message 3: its 5 bytes do not fit the definition: status TRUNCATED; why")
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,7 @@ def test_bytes_of_texts_lose_their_highest_bit_and_signed_ones_do_not():
         ("std_msgs/msg/UInt32", "<I", 0x7F800001),
     ],
 )
-def test_what_python_keeps(name, code, signalling):
+def test_floats_that_python_keeps(name, code, signalling):
     plan = plan_of(name)
     for bits in (0, 1, signalling):
         streams = decode(plan, b"\0\1\0\0" + struct.pack(code, bits)).streams
@@ -196,15 +196,15 @@ def test_topics_of_another_definition_are_named(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("error", "said"),
+    ("error", "output"),
     [
         (ValueError(" first\nsecond"), "first"),
         (KeyError(3), "3"),
         (OverflowError(), "OverflowError"),
     ],
 )
-def test_what_rosbags_raises_is_told_in_a_line(error, said):
+def test_errors_of_rosbags_are_reported_in_one_line(error, output):
     here = case("message 3", given=b"12345", status="TRUNCATED")
     found = replay._refused(None, None, here, SimpleNamespace(status="TRUNCATED"), error)
-    assert found.finding == replay._misfit(here, f"rosbags says: {said.strip()}")
+    assert found.finding == replay._misfit(here, f"rosbags says: {output.strip()}")
     assert (found.case, found.kind) == (here, "")

@@ -1,4 +1,4 @@
-"""What TS3 prints at the end of a run: who passed, what took long, and what a failure says."""
+"""The summary that TS3 prints: passed types, times, references, and failures."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def result(name, took, **more):
 PYTHON = SimpleNamespace(simulator="python")
 
 
-def test_nothing_is_said_of_nothing(capsys):
+def test_an_empty_run_has_no_summary(capsys):
     system._summarize([], PYTHON)
     assert capsys.readouterr().out == ""
 
@@ -39,15 +39,15 @@ def test_times_are_those_of_the_types_and_the_slowest_come_first(capsys):
     ]
 
 
-def test_who_wrote_bytes_is_counted_by_types(capsys):
+def test_references_are_counted_by_types(capsys):
     results = [
         result("A", 1, cases=2, written_by=("genpy", "fastcdr")),
         result("B", 1, cases=1, written_by=("genpy",)),
         result("C", 1, cases=0, written_by=("genpy",)),
     ]
     system._summarize(results, PYTHON)
-    said = capsys.readouterr().out.splitlines()[-1]
-    assert said == "wire bytes: rosbags 2 types, genpy 2 types, fastcdr 1 types"
+    output = capsys.readouterr().out.splitlines()[-1]
+    assert output == "wire bytes: rosbags 2 types, genpy 2 types, fastcdr 1 types"
     system._summarize([result("C", 1)], PYTHON)
     assert capsys.readouterr().out.splitlines()[-1] == "wire bytes: no library wrote any"
 
@@ -80,7 +80,7 @@ def test_notes_that_many_types_share_are_counted_once(capsys):
 
 
 @pytest.mark.parametrize(("count", "more"), [(8, []), (9, ["    and 1 more"])])
-def test_eight_failures_are_told_and_how_to_see_them_again(count, more):
+def test_eight_failures_are_printed_with_the_command_to_repeat_them(count, more):
     task = SimpleNamespace(name="a/B", same=("kilted", "lyrical"))
     failures = tuple(f"failure {n}" for n in range(count))
     told = system._describe(task, result("a/B", 1, command="firm-hdl verify"), Failed(failures))

@@ -1,11 +1,11 @@
 # amaranth: UnusedElaboratable=no
-"""Conditions: which are repeated or named, and what becomes an `if`, a `case` or an assignment."""
+"""Conditions: repeated in place, or a signal; written as an `if`, a `case` or an assignment."""
 
 from __future__ import annotations
 
 from amaranth.hdl import Module
 
-from tests.vhdl.gallery import Made, shows, signals
+from tests.vhdl.gallery import Design, shows, signals
 
 
 @shows(
@@ -22,8 +22,8 @@ begin
         '0';
 """
 )
-def one_condition_for_three() -> Made:
-    """A comparison that three read is written three times."""
+def one_condition_for_three() -> Design:
+    """A comparison with three readers is repeated for each reader."""
     m, (p, q), outputs = Module(), signals("p q", 4), signals("o0 o1 o2")
     with m.If(p < q):
         m.d.comb += [each.eq(1) for each in outputs]
@@ -52,8 +52,8 @@ begin
         '0';
 """
 )
-def one_condition_for_four() -> Made:
-    """One that four read has a name."""
+def one_condition_for_four() -> Design:
+    """A comparison with four readers gets a signal."""
     m, (p, q), outputs = Module(), signals("p q", 4), signals("o0 o1 o2 o3")
     with m.If(p < q):
         m.d.comb += [each.eq(1) for each in outputs]
@@ -76,8 +76,8 @@ begin
         '0';
 """
 )
-def a_longer_condition_for_two() -> Made:
-    """So has one with an operator in it that two read."""
+def a_longer_condition_for_two() -> Design:
+    """A comparison with an operator in it gets a signal for two readers already."""
     m, (p, q, r), outputs = Module(), signals("p q r", 4), signals("o0 o1")
     with m.If((p + r)[:4] < q):
         m.d.comb += [each.eq(1) for each in outputs]
@@ -101,8 +101,8 @@ begin
         '0';
 """
 )
-def an_inverted_bit() -> Made:
-    """The opposite of a bit is as short as any name, however many read it."""
+def an_inverted_bit() -> Design:
+    """An inverted bit never gets a signal: the comparison is as short as a name."""
     m, (a,), outputs = Module(), signals("a"), signals("o0 o1 o2 o3")
     with m.If(~a):
         m.d.comb += [each.eq(1) for each in outputs]
@@ -121,8 +121,8 @@ begin
        (others => '0');
 """
 )
-def conditions() -> Made:
-    """An `if` in an `if` is one; what nothing happens in is left to the others."""
+def conditions() -> Design:
+    """Nested `if` statements are joined; an empty branch assigns the default value."""
     m, (a, b), (o, u) = Module(), signals("a b"), signals("o u", 2)
     with m.If(a), m.If(b):
         m.d.comb += o.eq(1)
@@ -171,8 +171,11 @@ begin
   end process;
 """
 )
-def choices() -> Made:
-    """Plain values make a `case`, unless all do the same; don't-care bits are not asked for."""
+def choices() -> Design:
+    """Choices by value become a `case`, or one condition if all have the same value.
+
+    Don't-care bits are not compared.
+    """
     m, (s,), outputs = Module(), signals("s", 3), signals("o k h v", 3)
     o, k, h, v = outputs
     with m.Switch(s):
@@ -200,7 +203,7 @@ def choices() -> Made:
     return m, [s, *outputs]
 
 
-def _ways(count: int) -> Made:
+def _ways(count: int) -> Design:
     m, (o,) = Module(), signals("o", 3)
     inputs = signals(" ".join(f"a{n}" for n in range(count)))
     for n, each in enumerate(inputs):
@@ -221,8 +224,8 @@ begin
        (others => '0');
 """
 )
-def six_ways() -> Made:
-    """Six values fit in one assignment."""
+def six_ways() -> Design:
+    """A choice of six values is one conditional assignment."""
     return _ways(5)
 
 
@@ -249,8 +252,8 @@ begin
   end process;
 """
 )
-def seven_ways() -> Made:
-    """Seven do not."""
+def seven_ways() -> Design:
+    """A choice of seven values is a process."""
     return _ways(6)
 
 
@@ -263,8 +266,8 @@ begin
        (others => '0');
 """
 )
-def ways_to_the_same() -> Made:
-    """What would be the default anyway is not asked for."""
+def ways_to_the_same() -> Design:
+    """A branch that assigns the default value is left out."""
     m, inputs, (o,) = Module(), signals("a b c"), signals("o", 3)
     a, b, c = inputs
     with m.If(a):
@@ -289,8 +292,8 @@ begin
   end process;
 """
 )
-def one_bit_of_many() -> Made:
-    """A part of a signal needs a process."""
+def one_bit_of_many() -> Design:
+    """A conditional assignment to a part of a signal is a process."""
     m, (a,), (i, o) = Module(), signals("a"), signals("i o", 3)
     m.d.comb += o.eq(i)
     with m.If(a):
@@ -309,8 +312,8 @@ begin
        (others => '0');
 """
 )
-def always_and_never() -> Made:
-    """What always matches ends a choice; what never does is not asked for."""
+def always_and_never() -> Design:
+    """A pattern that always matches ends a choice; a choice without patterns is left out."""
     m, (s,), (o, z) = Module(), signals("s", 3), signals("o z", 2)
     with m.Switch(s):
         with m.Case("1--"):

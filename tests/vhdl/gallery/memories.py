@@ -8,7 +8,7 @@ from typing import Any
 from amaranth.hdl import Module, Signal
 from amaranth.lib.memory import Memory
 
-from tests.vhdl.gallery import Made, shows, signals
+from tests.vhdl.gallery import Design, shows, signals
 
 
 def _members(port: Any) -> list[Any]:
@@ -61,8 +61,8 @@ begin
   later_data <= std_logic_vector(later_data_q);
 """
 )
-def memory_of_an_odd_size() -> Made:
-    """Beyond the last word is nothing; bytes are written one by one."""
+def memory_of_an_odd_size() -> Design:
+    """Reads beyond the last word give 0; each lane has its own write enable."""
     m = Module()
     m.submodules.mem = memory = Memory(shape=8, depth=5, init=[0, 3, 0, 255])
     now = memory.read_port(domain="comb")
@@ -106,8 +106,11 @@ begin
   read_data <= read_data_q;
 """
 )
-def memory_of_bits() -> Made:
-    """All words are used, and what is being written is read at once."""
+def memory_of_bits() -> Design:
+    """A memory without unused addresses has no range checks.
+
+    A transparent read port forwards the word that is being written.
+    """
     m = Module()
     m.submodules.mem = memory = Memory(shape=1, depth=2, init=[1, 1])
     write = memory.write_port()
@@ -135,8 +138,8 @@ begin
   beyond_addr <= "101";
 """
 )
-def memory_at_fixed_places() -> Made:
-    """A place that is there needs no test, and one that is not is 0."""
+def memory_at_fixed_places() -> Design:
+    """A constant address needs no range check; beyond the last word, the port reads 0."""
     m = Module()
     m.submodules.mem = memory = Memory(shape=4, depth=5, init=[])
     there = memory.read_port(domain="comb")
@@ -164,8 +167,8 @@ begin
   port_data <= unsigned(o);
 """
 )
-def a_memory_after_an_empty_one() -> Made:
-    """One without words is not there, and the next one is."""
+def a_memory_after_an_empty_one() -> Design:
+    """A memory without words is left out; the next memory is written as usual."""
     m, (o,) = Module(), signals("o", 4)
     m.submodules.none = Memory(shape=4, depth=0, init=[])
     m.submodules.some = memory = Memory(shape=4, depth=2, init=[1])

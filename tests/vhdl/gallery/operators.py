@@ -1,12 +1,12 @@
 # amaranth: UnusedElaboratable=no
-"""Operators: how many share an expression, and how numbers, bits and literals are written."""
+"""Operators: the size of expressions, and the form of numbers, bits and literals."""
 
 from __future__ import annotations
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value, signed
 from amaranth.lib import data
 
-from tests.vhdl.gallery import Made, shows, signals
+from tests.vhdl.gallery import Design, shows, signals
 
 
 @shows(
@@ -21,8 +21,8 @@ begin
   z <= or_11 and a;
 """
 )
-def operands() -> Made:
-    """Up to six operands stand in one expression."""
+def operands() -> Design:
+    """An expression has at most six operands; a longer one gets a signal."""
     m, inputs, (y, z) = Module(), signals("a b c d e f g"), signals("y z")
     a, b, c, d, e, f, g = inputs
     m.d.comb += [y.eq((a ^ b ^ c ^ d ^ e ^ f) | g), z.eq(((a ^ b ^ c ^ d ^ e ^ f) | g) & a)]
@@ -40,8 +40,8 @@ begin
       (others => '0');
 """
 )
-def divisions() -> Made:
-    """Dividing by zero gives 0 without a word; other choices stay."""
+def divisions() -> Design:
+    """The check for a divisor of zero is part of the function; other choices stay."""
     m, (p, q, s), outputs = Module(), signals("p q s", 4), signals("o0 o1 o2 o3", 4)
     values = [p // q, p % q, Mux(q.any(), s, 0), Mux(p.any(), p // q, 0)]
     m.d.comb += [output.eq(value) for output, value in zip(outputs, values, strict=True)]
@@ -63,8 +63,8 @@ begin
   part <= std_logic_vector(mul_2(5 downto 2));
 """
 )
-def widths() -> Made:
-    """An operator has the bits that are read, and no carry besides."""
+def widths() -> Design:
+    """An operator has only the bits that are read, without an unused carry."""
     m, (p, q, sum_), (part,) = Module(), signals("p q s", 8), signals("part", 4)
     whole = Signal(9, name="whole")
     m.d.comb += [sum_.eq(p + q), whole.eq(p + q), part.eq((p * q)[2:6])]
@@ -85,8 +85,8 @@ begin
   seen <= unsigned(p(4 downto 2));
 """
 )
-def fields() -> Made:
-    """A field is a part of its signal, and has no name beside it."""
+def fields() -> Design:
+    """A field is written as a slice of its signal."""
     m, (p,), (o,) = Module(), signals("p", 5), signals("o", 2)
     whole = Signal(data.StructLayout({"x": 2, "y": 3}), name="whole")
     seen = Signal(3, name="seen")
@@ -120,8 +120,8 @@ begin
   o7 <= std_logic_vector(sign_extend(o7_0, 8));
 """
 )
-def arithmetic() -> Made:
-    """Operands are as wide as results ask for, by their sign."""
+def arithmetic() -> Design:
+    """Operands are extended to the width of the result, according to their sign."""
     m, (p, q), outputs = Module(), signals("p q", 4), signals("o0 o1 o2 o3 o4 o5 o6 o7", 8)
     sp, sq = Signal(signed(4), name="sp"), Signal(signed(4), name="sq")
     by = q[:2]
@@ -144,8 +144,8 @@ begin
       to_integer(unsigned(q(1 downto 0)))), 2), 8));
 """
 )
-def bits() -> Made:
-    """Bits are joined, reduced, chosen and compared."""
+def bits() -> Design:
+    """Concatenation, reduction, selection and comparison of bits."""
     m, (p, q), outputs = Module(), signals("p q", 4), signals("o0 o1 o2 o3 o4 o5 o6", 8)
     sp, sq = Signal(signed(4), name="sp"), Signal(signed(4), name="sq")
     values: list[Value] = [Cat(p, q), p.any(), p.all(), p.xor(), sp < sq, Mux(p[0], p, q)]
@@ -168,8 +168,8 @@ begin
   w <= std_logic_vector(unsigned'(not a & a));
 """
 )
-def comparisons() -> Made:
-    """Each comparison is written as one says it, its opposite as well."""
+def comparisons() -> Design:
+    """Comparisons and inverted comparisons use the matching VHDL operator."""
     m, (p, q), (a,) = Module(), signals("p q", 4), signals("a")
     outputs, (v,), (w,) = signals("o0 o1 o2 o3 o4"), signals("v", 4), signals("w", 2)
     values = [p == 0, ~(p == q), (p != 3) & ~a, p >= q, p[1:3] == q[2:], p & ~q | 12, Cat(a, ~a)]
@@ -192,8 +192,8 @@ begin
   o8 <= '1' when unsigned(q) <= 3 else '0';
 """
 )
-def limits() -> Made:
-    """Numbers are decimal up to what an integer of VHDL holds, and literals beyond it."""
+def limits() -> Design:
+    """Constants in the range of a VHDL integer are decimal; larger ones are bit strings."""
     m, (p,), (q,) = Module(), signals("p", 40), signals("q", 4)
     s, outputs = Signal(signed(40), name="s"), signals("o0 o1 o2 o3 o4 o5 o6 o7 o8")
     values = [p == (1 << 40) - 1, p < (1 << 33), p == 5, s == -1, Const(5, 4) < q]
@@ -216,8 +216,8 @@ begin
   o6 <= std_logic_vector(resize(unsigned(q), 5));
 """
 )
-def sums() -> Made:
-    """What is added to or taken from a signal is a number, on either side."""
+def sums() -> Design:
+    """A constant in a sum or difference is decimal, on either side."""
     m, (q,), outputs = Module(), signals("q", 4), signals("o0 o1 o2 o3 o4 o5 o6", 5)
     sq = Signal(signed(4), name="sq")
     values: list[Value] = [q + 3, 3 + q, 3 - q, q - 3, sq - 3, sq + (-3), q + Const(0, 4)]
@@ -241,8 +241,8 @@ begin
        (others => '0');
 """
 )
-def single_bits() -> Made:
-    """Bits are compared without a detour over numbers, but for their order."""
+def single_bits() -> Design:
+    """Bits are compared as std_logic, unless their order is compared."""
     m, (a, b), outputs = Module(), signals("a b"), signals("o0 o1 o2 o3 o4 o5")
     sa, sb = Signal(signed(1), name="sa"), Signal(signed(1), name="sb")
     w = Signal(2, name="w")

@@ -1,11 +1,11 @@
 # amaranth: UnusedElaboratable=no
-"""Registers and signals with their names and attributes, and messages for simulators."""
+"""Names and attributes of registers and signals, and messages for simulators."""
 
 from __future__ import annotations
 
 from amaranth.hdl import Assert, Assume, Cover, Format, Module, Print, Signal, signed
 
-from tests.vhdl.gallery import Made, shows, signals
+from tests.vhdl.gallery import Design, shows, signals
 
 
 @shows(
@@ -41,8 +41,8 @@ begin
   r <= o_q;
 """
 )
-def names_of_signals() -> Made:
-    """What has a name keeps it; a register's second name is one more."""
+def names_of_signals() -> Design:
+    """Signals keep their names; a second name of a register is one more signal."""
     m, (i, o, o2) = Module(), signals("i o o2", 4)
     r, total = Signal(4, name="r", init=5), Signal(4, name="total")
     m.d.comb += total.eq(r + i)
@@ -77,8 +77,8 @@ begin
   o <= std_logic_vector(o_q);
 """
 )
-def parts_of_registers() -> Made:
-    """A reset gives the first value; statements stay in their order."""
+def parts_of_registers() -> Design:
+    """A reset restores the initial value; statements keep their order."""
     m, (i,) = Module(), signals("i", 4)
     o = Signal(4, name="o", init=9)
     with m.If(i[0]):
@@ -112,8 +112,8 @@ begin
   end process;
 """
 )
-def attributes() -> Made:
-    """What tools are told of a signal is told them here, too."""
+def attributes() -> Design:
+    """Attributes of a signal become VHDL attributes."""
     m, (i,) = Module(), signals("i", 4)
     kept = Signal(4, name="kept", attrs={"keep": "true", "n": 3})
     m.d.sync += kept.eq(i)
@@ -187,8 +187,8 @@ begin
   -- synthesis translate_on
 """
 )
-def messages() -> Made:
-    """Messages are for simulators; of a format the kinds of numbers are kept."""
+def messages() -> Design:
+    """Messages are excluded from synthesis, and keep the number formats."""
     m, (a,), (d,) = Module(), signals("a"), signals("d", 8)
     sd = Signal(signed(8), name="sd")
     with m.If(a):

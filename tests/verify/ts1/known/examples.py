@@ -1,6 +1,6 @@
-"""Of each known difference an example, and beside it what is planted for its twin.
+"""An example of each known difference, with an injected fault for its must-fail twin.
 
-The twin of a key is a front end that errs beside what is known: it must be reported.
+The twin is a front end with a fault besides the known difference. The fault must be reported.
 """
 
 from __future__ import annotations
@@ -14,48 +14,48 @@ from firm_hdl.model import Message, Service
 
 __all__ = ["EXAMPLES", "Example", "drop_last", "refuse"]
 
-_Plant = Callable[[Any], Any]
+_Fault = Callable[[Any], Any]
 
 
 def refuse(read):
-    """Refuse everything."""
+    """Refuse the definition."""
     return DefinitionError([Diagnostic(message="it is planted")])
 
 
 def drop_last(read):
-    """Lose the last field."""
+    """Drop the last field."""
     if isinstance(read, Service):
         return replace(read, response=drop_last(read.response))
     return replace(read, fields=read.fields[:-1]) if isinstance(read, Message) else read
 
 
 def _constant(**changes):
-    """Get something of the first constant wrong."""
+    """Return a fault that changes the first constant."""
 
-    def plant(read):
+    def fault(read):
         if not isinstance(read, Message):
             return read
         first = replace(read.constants[0], **changes)
         return replace(read, constants=(first, *read.constants[1:]))
 
-    return plant
+    return fault
 
 
 def _field(index, **changes):
-    """Get something of a field wrong."""
+    """Return a fault that changes a field."""
 
-    def plant(read):
+    def fault(read):
         if not isinstance(read, Message):
             return read
         fields = list(read.fields)
         fields[index] = replace(fields[index], **changes)
         return replace(read, fields=tuple(fields))
 
-    return plant
+    return fault
 
 
 def _accept(read):
-    """Take what is to be refused for something else."""
+    """Accept a definition that must be refused."""
     return Message(name="p/msg/A", dialect="ros2", fields=()) if refuses(read) else read
 
 
@@ -63,7 +63,7 @@ def refuses(read):
     return isinstance(read, DefinitionError)
 
 
-def _misname(read):
+def _rename(read):
     return replace(read, name="p/msg/B") if isinstance(read, Message) else read
 
 
@@ -72,12 +72,12 @@ def _length(read):
 
 
 def _response(change):
-    """Get something of the response of a service wrong."""
+    """Return a fault that changes the response of a service."""
 
-    def plant(read):
+    def fault(read):
         return replace(read, response=change(read.response)) if isinstance(read, Service) else read
 
-    return plant
+    return fault
 
 
 def _comment(read):
@@ -92,56 +92,57 @@ class Example:
     ----------
     key, oracle : str
     text : str
-        It has to have another field last that nothing is known about.
-    plant : callable
-        What the twin makes of what is read.
+        Its last field must have no known difference.
+    fault : callable
+        Changes the definition that the twin has read.
     distro : str
     idl : bool
     kind : str
-        Of the definition.
+        Kind of the definition.
     more : mapping of str to str
         Other definitions.
-    spared : str
-        A text like it without what is known, if that cannot be judged: its twin refuses this.
+    judgeable : str
+        A similar text without the known difference, if the text with it cannot be judged. Its twin
+        refuses this text.
     """
 
     key: str
     oracle: str
     text: str
-    plant: _Plant
+    fault: _Fault
     distro: str = "lyrical"
     idl: bool = False
     kind: str = "msg"
     more: Mapping[str, str] = field(default_factory=dict)
-    spared: str = ""
+    judgeable: str = ""
 
     @property
     def files(self):
         return {self.file: self.text, **self.more}
 
     @property
-    def spared_files(self):
-        return {self.file: self.spared, **self.more}
+    def judgeable_files(self):
+        return {self.file: self.judgeable, **self.more}
 
     @property
     def file(self):
         return f"p/{self.kind}/A.{'idl' if self.idl else self.kind}"
 
 
-def _ros1(key, oracle, text, plant, **more):
+def _ros1(key, oracle, text, fault, **more):
     return Example(
-        key=key, oracle=oracle, text=text + "uint16 last\n", plant=plant, distro="noetic", **more
+        key=key, oracle=oracle, text=text + "uint16 last\n", fault=fault, distro="noetic", **more
     )
 
 
-def _ros2(key, oracle, text, plant, **more):
-    return Example(key=key, oracle=oracle, text=text + "uint16 last\n", plant=plant, **more)
+def _ros2(key, oracle, text, fault, **more):
+    return Example(key=key, oracle=oracle, text=text + "uint16 last\n", fault=fault, **more)
 
 
 def _idl(
     key,
     members,
-    plant,
+    fault,
     before="",
     name="A",
     modules=("p", "msg"),
@@ -153,7 +154,7 @@ def _idl(
         f"{include}module {modules[0]} {{ module {modules[1]} {{ {before} "
         f"struct {name} {{ {members} unsigned short last; }}; }}; }};"
     )
-    return Example(key=key, oracle=oracle, text=text, plant=plant, idl=True, **more)
+    return Example(key=key, oracle=oracle, text=text, fault=fault, idl=True, **more)
 
 
 _N = "module A_Constants { const long N = 3; };"
@@ -163,7 +164,7 @@ _B = {
 }
 
 EXAMPLES: tuple[Example, ...] = (
-    # rosbags refuses it, or reads it otherwise.
+    # Definitions that rosbags refuses, or reads differently.
     _ros2("rosbags-crlf", "rosbags", "int8 X=1\r\nint8 a\r\n", _constant(value=2)),
     _ros2("rosbags-wstring", "rosbags", "wstring<=4[] a\n", _field(0, name="b")),
     _ros2(
@@ -193,7 +194,7 @@ EXAMPLES: tuple[Example, ...] = (
     _ros1("rosbags-floats", "rosbags", "float32 LOW = 0\n", _constant(value=-0.0)),
     _ros2("rosbags-floats", "rosbags", "float64 X=-inf # low\n", _constant(value=float("inf"))),
     _ros2("rosbags-char-hash", "rosbags", "char c\n", _field(0, name="d")),
-    # rosbags takes it.
+    # Definitions that rosbags accepts.
     _ros2("rosbags-names", "rosbags", "int32 Bad\n", drop_last),
     _ros2(
         "rosbags-type-names",
@@ -201,7 +202,7 @@ EXAMPLES: tuple[Example, ...] = (
         "bad b\n",
         refuse,
         more={"p/msg/bad.msg": "int8 x\n", "p/msg/Good.msg": "int8 x\n"},
-        spared="Good b\n",
+        judgeable="Good b\n",
     ),
     _ros1("rosbags-twice", "rosbags", "int8 a\nint8 a\n", drop_last),
     _ros2("rosbags-twice", "rosbags", "int8 A=1\nint8 A=2\n", drop_last),
@@ -246,7 +247,7 @@ EXAMPLES: tuple[Example, ...] = (
     ),
     _ros2("ros2-comment-blanks", "rosidl_adapter", "# Head. \n\nint8 x\n", _comment),
     # IDL.
-    _idl("idl-names", "long x;", _misname, modules=("q", "idl")),
+    _idl("idl-names", "long x;", _rename, modules=("q", "idl")),
     Example(
         key="idl-names",
         oracle="rosidl_parser",
@@ -254,7 +255,7 @@ EXAMPLES: tuple[Example, ...] = (
         idl=True,
         text="module q { module srv { struct A_Request { long a; }; "
         "struct A_Response { string b; unsigned short last; }; }; };",
-        plant=_response(lambda part: replace(part, name="p/srv/A_Reply")),
+        fault=_response(lambda part: replace(part, name="p/srv/A_Reply")),
     ),
     _idl("idl-lengths", "long x[-1];", drop_last),
     _idl("idl-long-names", "long longitude; unsigned long doubled[2];", _field(0, name="itude")),
@@ -305,7 +306,7 @@ EXAMPLES: tuple[Example, ...] = (
         text="module p { module srv { module A_Request_Constants { const long K = 1; }; "
         "struct A_Request { long a; }; module A_Response_Constants { const long K = 1; }; "
         "struct A_Response { string b; unsigned short last; }; }; };",
-        plant=_response(lambda part: replace(part, constants=())),
+        fault=_response(lambda part: replace(part, constants=())),
     ),
     _idl(
         "idl-includes",
@@ -339,7 +340,7 @@ EXAMPLES: tuple[Example, ...] = (
         oracle="rosidl_parser",
         idl=True,
         text="module p { module msg { typedef sequence<long> L; struct A { L x[3]; }; }; };",
-        plant=refuse,
-        spared="module p { module msg { typedef sequence<long> L; struct A { L x; }; }; };",
+        fault=refuse,
+        judgeable="module p { module msg { typedef sequence<long> L; struct A { L x; }; }; };",
     ),
 )

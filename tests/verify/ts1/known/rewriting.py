@@ -1,4 +1,4 @@
-"""What tests of single entries of the table of known differences share."""
+"""Helpers for tests of single entries of the table of known differences."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def rewritten(key, text, **more):
     return rewrite(case_of(text, **more))
 
 
-def private(text):
-    """Write characters as those that stand for them."""
+def hidden(text):
+    """Replace characters by their placeholders in the private use area."""
     return "".join(chr(0xE000 + ord(each)) for each in text)
 
 

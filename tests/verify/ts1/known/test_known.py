@@ -1,6 +1,6 @@
-"""Each deliberate difference happens, is known by its key, and stands in docs/errata.md.
+"""Each deliberate difference occurs, has a key, and is documented in docs/errata.md.
 
-And it hides nothing else: each has a twin that errs beside it.
+A must-fail twin with one more fault shows that the known difference hides no other.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from tests.verify.ts1.known.examples import EXAMPLES, drop_last, refuse
 ERRATA = Path(__file__).parents[4] / "docs" / "errata.md"
 
 NAMED = {f"{number} {each.key} {each.oracle}": each for number, each in enumerate(EXAMPLES)}
-SPARED = {name: each for name, each in NAMED.items() if each.spared}
-BY_NAME = {name: each for name, each in NAMED.items() if not each.spared}
+JUDGEABLE = {name: each for name, each in NAMED.items() if each.judgeable}
+BY_NAME = {name: each for name, each in NAMED.items() if not each.judgeable}
 
 
-def outcome(here, example, monkeypatch, plant=None):
-    """Judge an example; with a plant, as a front end does that errs so."""
-    with monkeypatch.context() as planted:
-        if plant is not None:
+def outcome(here, example, monkeypatch, fault=None):
+    """Judge an example, optionally with a fault in the front end."""
+    with monkeypatch.context() as with_fault:
+        if fault is not None:
             read = judging.read
-            planted.setattr(judging, "read", lambda *given: plant(read(*given)))
+            with_fault.setattr(judging, "read", lambda *given: fault(read(*given)))
         return here.outcome(example.oracle, f"p/{example.kind}/A")
 
 
@@ -40,27 +40,27 @@ def test_difference_is_known_by_its_key_and_hides_no_mistake(court, name, monkey
     here = court(example.distro, example.files)
     found = outcome(here, example, monkeypatch)
     assert_known(found, example.key)
-    # What is not refused is compared: each field has at least a name and a type.
+    # An accepted definition is compared: each field has at least a name and a type.
     assert found.is_refused or found.verdict.cases >= 4
-    for plant in (example.plant, refuse, drop_last):
-        planted = outcome(here, example, monkeypatch, plant)
-        # Where both refuse, there is no field to lose, and a refusal is right.
-        if found.is_refused and plant is not example.plant:
-            assert planted.verdict == found.verdict
+    for fault in (example.fault, refuse, drop_last):
+        with_fault = outcome(here, example, monkeypatch, fault)
+        # If both refuse, there is no field to drop, and a refusal is correct.
+        if found.is_refused and fault is not example.fault:
+            assert with_fault.verdict == found.verdict
         else:
-            assert isinstance(planted.verdict, Failed), (plant, planted.verdict)
+            assert isinstance(with_fault.verdict, Failed), (fault, with_fault.verdict)
 
 
-@pytest.mark.parametrize("name", SPARED)
-def test_what_is_in_the_way_of_judging_excuses_nothing_else(court, name, monkeypatch):
-    example = SPARED[name]
+@pytest.mark.parametrize("name", JUDGEABLE)
+def test_an_unjudgeable_text_excuses_no_other_fault(court, name, monkeypatch):
+    example = JUDGEABLE[name]
     found = outcome(court(example.distro, example.files), example, monkeypatch)
     assert isinstance(found.verdict, NotJudged)
     assert found.verdict.reason.startswith(f"{example.key}: ")
-    here = court(example.distro, example.spared_files)
+    here = court(example.distro, example.judgeable_files)
     assert_passed(outcome(here, example, monkeypatch))
-    for plant in (example.plant, refuse, drop_last):
-        assert isinstance(outcome(here, example, monkeypatch, plant).verdict, Failed)
+    for fault in (example.fault, refuse, drop_last):
+        assert isinstance(outcome(here, example, monkeypatch, fault).verdict, Failed)
 
 
 def test_every_entry_has_an_example_with_a_twin_and_stands_in_the_errata():
@@ -68,8 +68,8 @@ def test_every_entry_has_an_example_with_a_twin_and_stands_in_the_errata():
     assert len(pairs) == len(set(pairs))
     found = {(each.key, each.oracle.partition("-")[0]) for each in EXAMPLES}
     assert sorted(found) == pairs
-    spoiled = {entry.key for entry in KNOWN if entry.unavoidable is not None}
-    assert {each.key for each in SPARED.values()} == spoiled
+    unjudgeable = {entry.key for entry in KNOWN if entry.unavoidable is not None}
+    assert {each.key for each in JUDGEABLE.values()} == unjudgeable
     _, _, page = ERRATA.read_text(encoding="utf-8").partition("\n## Definitions\n")
     listed = re.findall(r"^\| `([a-z0-9-]+)` \|", page, re.MULTILINE)
     assert sorted(listed) == sorted({entry.key for entry in KNOWN})
@@ -96,7 +96,7 @@ def test_an_entry_normalises_one_thing_and_leaves_other_texts_alone(entry, diale
 @pytest.mark.parametrize(
     ("distro", "oracle", "text"),
     [
-        # One mistake that is known does not hide another.
+        # A known mistake does not hide another.
         ("noetic", "genmsg", "int8 a-b=1\nint8 A=1000\n"),
         ("noetic", "genmsg", "int8[0] x\nint8 x-y\n"),
         ("lyrical", "rosidl_adapter", "int8[4294967296] x\nint8 Bad\n"),
@@ -108,16 +108,16 @@ def test_a_known_difference_hides_no_other(court, distro, oracle, text):
 
     here = court(distro, {"p/msg/A.msg": text})
     case = here.universe.select(["p/A"])[0]
-    # The oracle is told to take the other one, too.
-    told = here.oracle(oracle)
-    told.judge_changed = lambda case, change: Accepted({"structure": {case.full_name: {}}})
+    # The oracle accepts the other mistake, too.
+    judge = here.oracle(oracle)
+    judge.judge_changed = lambda case, change: Accepted({"structure": {case.full_name: {}}})
     ours = read(here.universe, case)
-    found = compare(told, case, ours, told.judge_changed(case, None), here.universe)
+    found = compare(judge, case, ours, judge.judge_changed(case, None), here.universe)
     assert isinstance(found.verdict, Failed)
 
 
-def test_we_read_only_what_is_a_mistake_in_another_text(court, monkeypatch):
-    # rosbags refuses CR LF, which is no mistake: our reader must not refuse it as well.
+def test_a_text_that_only_the_oracle_refuses_must_be_accepted(court, monkeypatch):
+    # rosbags refuses CR LF, which is no mistake. Our reader must not refuse it.
     read = judging.read
 
     def refuses_returns(universe, case):
@@ -138,7 +138,7 @@ def test_several_known_differences_are_all_named_and_no_others(court):
     assert_known(found, "rosbags-crlf", "rosbags-constant-bool", "rosbags-integers")
 
 
-def test_what_is_known_of_a_needed_definition_is_known_of_the_whole(court):
+def test_a_known_difference_of_a_dependency_is_one_of_the_definition(court):
     files = {"p/msg/A.msg": "B b\nint8 last\n", "p/msg/B.msg": "wstring x\r\n"}
     found = court("lyrical", files).outcome("rosbags", "p/A")
     assert_known(found, "rosbags-crlf", "rosbags-wstring")
@@ -159,7 +159,7 @@ def test_where_a_needed_definition_cannot_be_changed_it_is_not_judged(
     assert isinstance(found.verdict, NotJudged)
     assert found.verdict.reason.endswith(f", a known difference: {key}")
     assert isinstance(court(distro, files).outcome(oracle, "p/B").verdict, KnownDifference)
-    # A refusal of what nothing is known about is none.
+    # A refusal without a known difference is not excused.
     good = {**files, "p/msg/B.msg": "int8 x\n"}
     read = judging.read
     monkeypatch.setattr(judging, "read", lambda universe, case: refuse(read(universe, case)))
@@ -190,7 +190,7 @@ def test_ordinary_files_raise_no_alarm(court, text):
     assert not isinstance(here.outcome("rosidl_parser", "p/A").verdict, Failed)
 
 
-def test_rosbags_does_not_judge_what_needs_a_type_in_idl(court, monkeypatch):
+def test_rosbags_does_not_judge_types_that_need_idl(court, monkeypatch):
     idl = "module p { module msg { struct I { long x; }; }; };"
     files = {"p/msg/A.msg": "B b\n", "p/msg/B.msg": "I[] i\n", "p/msg/I.idl": idl}
     found = court("lyrical", files).outcome("rosbags", "p/A")
@@ -204,7 +204,7 @@ def test_rosbags_does_not_judge_times_that_it_takes_for_those_of_ros1(court):
     assert isinstance(found.verdict, NotJudged) and "builtin_interfaces" in found.verdict.reason
 
 
-def test_rosbags_refuses_what_contains_itself(court):
+def test_rosbags_refuses_recursive_types(court):
     files = {"p/msg/A.msg": "B b\n", "p/msg/B.msg": "C[] c\n", "p/msg/C.msg": "B[] b\n"}
     for type_ in ("p/A", "p/B"):
         assert court("lyrical", files).outcome("rosbags", type_).is_refused
@@ -237,7 +237,7 @@ def test_entries_are_for_some_oracles_releases_and_languages(court):
 
 
 @pytest.mark.parametrize("text", ["", "a", "a'b\\\"c", 'é"[', "RENAMED41"])
-def test_what_stands_for_something_can_be_put_back(text):
+def test_placeholders_can_be_replaced_back(text):
     assert shown(hidden(text, "\"'\\")) == text
     assert shown([hidden(text, "a"), 1]) == [text, 1]
     name = {"name": text or "x"}

@@ -1,15 +1,15 @@
-"""What entries of the table of known differences rewrite in lines, and what they leave.
+"""Lines that entries of the table of known differences rewrite, and lines that they leave.
 
-Here they are asked directly; whether ROS's readers then agree is tested with these.
+The entries are called directly. Tests with ROS's readers check that the readers then agree.
 """
 
 from __future__ import annotations
 
 import pytest
 
-from tests.verify.ts1.known.rewriting import numbered, private, rewritten
+from tests.verify.ts1.known.rewriting import hidden, numbered, rewritten
 
-# Each with a line after it that is to change as well, or a line that is not.
+# After each line, there is another line that must change, or one that must not.
 MSG = [
     # key, dialect, before, after
     ("rosbags-crlf", "ros2", "int8 a\r\nint8 b\rint8 c\n\r\n", "int8 a\nint8 b\nint8 c\n\n"),
@@ -57,21 +57,21 @@ MSG = [
         "uint8 structure_needs_at_least_one_member=1",
         "uint8 structure_needs_at_least_one_member=1",
     ),
-    # In ROS 1, a text is all of the line; in ROS 2, quotes are around it, and a comment may follow.
+    # In ROS 1, a string is the rest of the line; in ROS 2, it has quotes, and a comment may follow.
     (
         "rosbags-texts",
         "ros1",
         'string A=  7 # "x"  \nint8 B=7\nstring c\nstring D=a\\b\nstring e 7',
-        f'string A=  "7 # {private(chr(34))}x{private(chr(34))}"\nint8 B=7\nstring c\n'
-        f'string D="a{private(chr(92))}b"\nstring e 7',
+        f'string A=  "7 # {hidden(chr(34))}x{hidden(chr(34))}"\nint8 B=7\nstring c\n'
+        f'string D="a{hidden(chr(92))}b"\nstring e 7',
     ),
     (
         "rosbags-texts",
         "ros2",
         "string A='7' # x\nstring B=7\nstring C=\"it's\"\nstring D='a\\'b'\nstring E='a'b'\n"
         "string F='7\nwstring G=7\nint8 H=7",
-        f'string A="7"\nstring B="7"\nstring C="it{private(chr(39))}s"\n'
-        f'string D="a{private(chr(39))}b"\nstring E=\'a\'b\'\nstring F="{private(chr(39))}7"\n'
+        f'string A="7"\nstring B="7"\nstring C="it{hidden(chr(39))}s"\n'
+        f'string D="a{hidden(chr(39))}b"\nstring E=\'a\'b\'\nstring F="{hidden(chr(39))}7"\n'
         'wstring G="7"\nint8 H=7',
     ),
     (
@@ -110,7 +110,7 @@ MSG = [
         "char a\nchar[] b\nchar[<=3] c\nbyte d\nchar E=1\np/char f",
         "uint8 a\nuint8[] b\nuint8[<=3] c\nbyte d\nuint8 E=1\np/char f",
     ),
-    # What rosbags takes, and ROS does not.
+    # Lines that rosbags accepts and ROS refuses.
     (
         "rosbags-names",
         "ros2",
@@ -221,17 +221,17 @@ MSG = [
         "ros2",
         "string[] a ['x\\'y', \"z\\\"w\"] # '\\''\nstring b 'x\\'y'\nstring[] C=['\\'']\n"
         "int8[] d ['\\'']\nwstring[] e ['\\'']\nstring[] f [\\'a]",
-        f"string[] a ['x{private(chr(39))}y', \"z{private(chr(34))}w\"] # '\\''\nstring b 'x\\'y'\n"
-        f"string[] C=['\\'']\nint8[] d ['\\'']\nwstring[] e ['{private(chr(39))}']\n"
+        f"string[] a ['x{hidden(chr(39))}y', \"z{hidden(chr(34))}w\"] # '\\''\nstring b 'x\\'y'\n"
+        f"string[] C=['\\'']\nint8[] d ['\\'']\nwstring[] e ['{hidden(chr(39))}']\n"
         "string[] f [\\'a]",
     ),
     (
         "ros2-backslashes",
         "ros2",
         "string a 'x\\y\\'z' # \\n\nint8 B=\\n\nwstring C=\"\\n\\\"\"\nstring[] d ['\\t']",
-        f"string a 'x{private(chr(92))}y\\'z' # \\n\nint8 B=\\n\n"
-        f'wstring C="{private(chr(92))}n\\""\n'
-        f"string[] d ['{private(chr(92))}t']",
+        f"string a 'x{hidden(chr(92))}y\\'z' # \\n\nint8 B=\\n\n"
+        f'wstring C="{hidden(chr(92))}n\\""\n'
+        f"string[] d ['{hidden(chr(92))}t']",
     ),
     (
         "ros2-infinite-numbers",
@@ -278,7 +278,7 @@ MSG += values(
         ("bool A=False", "bool A=False"),
         ("string A=x", "string A=x"),
         ("Other A=x", "Other A=x"),
-        # Defaults go away with what is wrong; a comment stays.
+        # Invalid defaults are removed; a comment stays.
         ("int8 a 128 # x", "int8 a# x"),
         ("int8 a 128", "int8 a"),
         ("int8 a 127 # x", "int8 a 127 # x"),

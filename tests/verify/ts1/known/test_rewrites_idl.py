@@ -1,4 +1,4 @@
-"""What entries of the table of known differences rewrite in IDL, and what they leave."""
+"""IDL texts that entries of the table of known differences rewrite, and texts that they leave."""
 
 from __future__ import annotations
 
@@ -208,7 +208,7 @@ LIMITS = {
     "unsigned long long": (0, (1 << 64) - 1),
 }
 CONSTANTS = [
-    # type, value, what is written instead; `None` if it fits
+    # type, value, replacement; `None` if the value fits
     *((kind, str(value), None) for kind, values in LIMITS.items() for value in values),
     *((kind, str(least - 1), "0") for kind, (least, _) in LIMITS.items()),
     *((kind, str(most + 1), "0") for kind, (_, most) in LIMITS.items()),
@@ -332,10 +332,10 @@ def test_included_files_are_looked_up():
         'sequence<long> f; long h[3]; long g; const long Y = 1 + 3; long N; "N" // N\n; '
         "const P = P;"
     )
-    # What the text declares itself has its own meaning; without files, there is none.
+    # Declarations of the text itself have priority; without files, the name is unknown.
     text = "const long N = 7; typedef short T; long a[N]; T b; long c[M];"
-    mended = text.replace("[M]", "[4]")
-    assert rewritten("idl-includes", text, language="idl", included=included) == mended
+    expected = text.replace("[M]", "[4]")
+    assert rewritten("idl-includes", text, language="idl", included=included) == expected
     assert rewritten("idl-includes", text, language="idl") == text
 
 
@@ -377,7 +377,7 @@ NAMES = {"N": 3, "M": -2}
         ("'\\x41'", 65),
         ("L'\\u00e9'", 233),
         ("'ab'", None),
-        # What is one to Python alone.
+        # Integers for Python only.
         ("0b1", None),
         ("0o7", None),
         ("1_000", None),

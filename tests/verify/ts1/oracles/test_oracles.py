@@ -1,4 +1,4 @@
-"""What each oracle says of small definitions, and what becomes of those that it stumbles over."""
+"""Answers of each oracle for small definitions, and for definitions that make it fail."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def test_rosidl_and_we_agree(court, oracle, type_):
     ("distro", "oracle"),
     [("noetic", "genmsg"), ("lyrical", "rosidl_adapter"), ("lyrical", "rosbags")],
 )
-def test_a_type_that_is_nowhere_is_refused(court, distro, oracle):
+def test_an_unknown_type_is_refused(court, distro, oracle):
     files = {"p/msg/A.msg": "B b\n", "p/msg/B.msg": "C[] c\n"}
     here = court(distro, files)
     for type_ in ("p/A", "p/B"):
@@ -165,29 +165,29 @@ def test_whatever_a_definition_is_the_worker_answers(court):
 
 
 @pytest.mark.parametrize("python", ["/nowhere/python", "/bin/false", "/bin/cat"])
-def test_a_python_that_has_not_what_is_needed(tmp_path, python):
+def test_a_python_without_the_needed_packages(tmp_path, python):
     assert Worker("genmsg", str(tmp_path), modules=MODULES, python=python).missing
 
 
-def test_what_a_worker_says_is_an_answer(court):
-    class Told(Genmsg):
+def test_a_failure_of_the_worker_is_an_answer(court):
+    class FailedOracle(Genmsg):
         _worker = type("W", (), {"ask": lambda self, request: {"failed": "too slow"}})()
 
     here = court("noetic", FILES)
-    (answer,) = Told(here.universe).judge(here.universe.select(["q/B"]))
+    (answer,) = FailedOracle(here.universe).judge(here.universe.select(["q/B"]))
     assert answer == NotJudged("too slow")
 
 
-def test_a_worker_whose_answer_is_none_fails(court):
-    class Silent(Genmsg):
+def test_an_invalid_answer_of_a_worker_fails(court):
+    class SilentOracle(Genmsg):
         cpu_seconds = lambda self: 0.0  # noqa: E731
         _worker = type("W", (), {"ask": lambda self, request: {}})()
 
     here = court("noetic", FILES)
     (case,) = here.universe.select(["q/B"])
     test = Tested(system="ts1", distro="noetic", type="q/B")
-    (said,) = judge_case(here.universe, [Silent(here.universe)], case, test).verdicts
-    assert isinstance(said.verdict, Failed) and "answered {}" in said.verdict.failures[0]
+    (output,) = judge_case(here.universe, [SilentOracle(here.universe)], case, test).verdicts
+    assert isinstance(output.verdict, Failed) and "answered {}" in output.verdict.failures[0]
 
 
 ROS2_COMMAND = """#!/bin/sh
@@ -219,7 +219,7 @@ def test_ros2_interface_proto_is_compared_with_ours(court, ros2_command):
     assert outcome.verdict == NotJudged("ros2 does not have it: Unknown package 'p'")
 
 
-def test_ros2_that_says_nothing_has_not_judged(court, ros2_command):
+def test_ros2_without_output_has_not_judged(court, ros2_command):
     (ros2_command / "ros2").write_text("#!/bin/sh\nexit 0\n")
     outcome = court("lyrical", ROS2).outcome("ros2", "q/B")
     assert outcome.verdict == NotJudged("ros2 says nothing of it")

@@ -25,7 +25,7 @@ FILES = {
     "p/msg/Odd.idl": "module other { module idl { struct Odd { long x; p::msg::I i; }; }; };",
     "q/msg/B.msg": "float32 x 1.5\n",
 }
-# What rosidl_generator_type_description 4.6.6 and 4.9.5 say, after ``RIHS01_``.
+# The hashes of rosidl_generator_type_description 4.6.6 and 4.9.5, after ``RIHS01_``.
 HASHES = {
     "p/msg/A": "d76639cf2c33b33aedddcba570b4246bd66ad63a43d44bc11349274dfad02cdb",
     "p/msg/Empty": "bab64e8def664f6934378948fdbc689bb938b4c8bffd316c1dfff75c4f742d73",
@@ -53,7 +53,7 @@ def test_newer_rosidl_and_we_agree(court, oracle):
 
 
 @pytest.mark.parametrize("release", RELEASES, ids=lambda release: release.name)
-def test_a_report_says_which_release_it_was(court, release):
+def test_a_report_names_the_release(court, release):
     oracle = court("lyrical", FILES).oracle(f"rosidl_parser-{release.rosidl}")
     assert oracle.version().startswith(f"{release.rosidl}.")
 
@@ -70,7 +70,7 @@ def test_events_of_services_are_judged(court, oracle):
         ("response", "p/srv/S_Response[<=1]"),
     ]
     assert "p/action/Do_GetResult_Event" in here.answer(oracle, "p/Do").facts["structure"]
-    # The must-fail twin: services as humble has them.
+    # Must-fail twin: services as in humble.
     humble = Library("humble", [here.universe.folder])
     found = outcomes(here, oracle, read=lambda case: humble.interface(case.spelled_name))
     wrong = next(text for text in found["p/srv/S"].failures if "S_Event" in text)

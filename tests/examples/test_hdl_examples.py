@@ -1,0 +1,126 @@
+"""The designs in `examples/` drop damaged packets; benches fail on designs that do not."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from tests.examples.test_examples import ROOT, load
+from tests.tools import need
+from tests.vhdl.ghdl import GHDL
+
+EXAMPLES = ROOT / "examples"
+
+# The change that makes a design naive: it acts on `valid` and ignores the status.
+NAIVE = {
+    "vhdl_motor": ("motor.vhd", r"take = '1' and status = STATUS_OK", "msg_valid = '1'"),
+    "vhdl_two_types": ("restamp.vhd", r"good <= '1' when [^;]*;", "good <= '1';"),
+    "sv_motor": (
+        "motor.sv",
+        r"status.tvalid && status.tdata == STATUS_OK",
+        "msg.linear.x.valid",
+    ),
+    "cocotb_motor": (
+        "motor.v",
+        r"m_axis_status_tvalid && m_axis_status_tdata == OK",
+        "linear_x_valid",
+    ),
+}
+
+
+@pytest.fixture
+def example_copies(tmp_path):
+    """Copies of the examples, which build into themselves."""
+    need("make", shutil.which("make"))
+    shutil.copytree(EXAMPLES, tmp_path / "examples", ignore=shutil.ignore_patterns("work"))
+    return tmp_path / "examples"
+
+
+def make(folder: Path) -> tuple[int, str]:
+    """Make an example as users do, with this Python's environment active."""
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    done = subprocess.run(
+        ["make", "-C", str(folder)],
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def make_naive(example_copies: Path, name: str) -> None:
+    """Replace a design by its naive form."""
+    file, safe, naive = NAIVE[name]
+    text, count = re.subn(safe, naive, (example_copies / name / file).read_text())
+    assert count == 1
+    (example_copies / name / file).write_text(text)
+
+
+def passes(example_copies: Path, name: str, expected: str = "PASS 8 packets, 4 speeds") -> None:
+    status, output = make(example_copies / name)
+    assert status == 0 and expected in output, output
+
+
+def fails(example_copies: Path, name: str, expected: str = "FAIL after") -> None:
+    status, output = make(example_copies / name)
+    assert status != 0 and expected in output and not re.search(r"PASS (?!=)", output), output
+
+
+def test_motors_obey_good_packets_alone(example_copies):
+    """One test for the three, because all need the converters of a Twist."""
+    need("GHDL", GHDL)
+    need("Icarus Verilog", shutil.which("iverilog"))
+    need("Verilator", shutil.which("verilator"))
+    passes(example_copies, "vhdl_motor")
+    for name in ("sv_motor", "cocotb_motor"):
+        commands = re.findall(
+            r"^\t(firm-hdl build .*)$", (example_copies / name / "Makefile").read_text(), re.M
+        )
+        assert commands == ["firm-hdl build geometry_msgs/msg/Twist --bus-bytes 4 --out $(WORK)"]
+        (example_copies / name / "work").mkdir()
+        (example_copies / name / "work" / "lyrical").symlink_to(
+            example_copies / "vhdl_motor" / "work" / "lyrical"
+        )
+    passes(example_copies, "sv_motor")
+    make_naive(example_copies, "vhdl_motor")
+    fails(example_copies, "vhdl_motor")
+    found = find_spec("cocotb") and find_spec("cocotbext") and find_spec("cocotbext.axi")
+    make_naive(example_copies, "sv_motor")
+    fails(example_copies, "sv_motor")
+    need("cocotbext-axi", "here" if found else None)
+    passes(example_copies, "cocotb_motor", "PASS=1 FAIL=0")
+    make_naive(example_copies, "cocotb_motor")
+    fails(example_copies, "cocotb_motor", "PASS=0 FAIL=1")
+
+
+def test_clouds_with_headers_of_scans_are_good_ones_alone(example_copies):
+    need("GHDL", GHDL)
+    passes(example_copies, "vhdl_two_types", "PASS 8 scans and clouds, 3 clouds with new headers")
+    make_naive(example_copies, "vhdl_two_types")
+    fails(example_copies, "vhdl_two_types", "FAIL packet")
+
+
+def test_naive_filter_lets_damaged_scans_pass(tmp_path, capsys):
+    text = (EXAMPLES / "range_filter.py").read_text()
+    safe, naive = "held.verdict.payload.eq(good)", "held.verdict.payload.eq(1)"
+    assert text.count(safe) == 1
+    (tmp_path / "naive_filter.py").write_text(text.replace(safe, naive))
+    assert load(tmp_path / "naive_filter.py").main() == 1
+    assert "'laser': [inf, inf" in capsys.readouterr().out
+
+
+def test_make_examples_runs_every_one():
+    text = (ROOT / "Makefile").read_text()
+    (named,) = re.findall(r"^HDL_EXAMPLES := (.*)$", text, re.M)
+    assert sorted(named.split()) == sorted(path.parent.name for path in EXAMPLES.glob("*/Makefile"))
+    page = (ROOT / "README.md").read_text()
+    assert all(f"(examples/{name}/" in page for name in named.split())

@@ -1,0 +1,80 @@
+"""Nets and ports of the Verilog: whole vectors with meaningful names."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+from amaranth.back import rtlil
+from amaranth.hdl import Cat, Module, Signal
+
+from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl.export.top import DIRECTIONS, Top
+from firm_hdl.export.verilog import to_verilog
+from firm_hdl.export.verilog.ports import named_ports
+from firm_hdl.export.verilog.vectors import whole_vectors
+
+
+def test_parts_are_put_together_in_the_order_of_their_bits() -> None:
+    m = Module()
+    a, b = Signal(4, name="a"), Signal(3, name="b")
+    both = Signal(8, name="both", init=0b1000)
+    turned = Signal(7, name="turned")
+    # Bit 3 has no driver, and keeps its initial value 1.
+    m.d.comb += [both[4:].eq(a), both[:3].eq(b), turned.eq(Cat(a, b))]
+    before = rtlil.convert(m, ports=[a, b, both, turned], emit_src=False)
+    after = whole_vectors(before)
+    assert "process" in before and "process" not in after
+    for value, name in ((r"\a [3:0] 1'1 \b [2:0]", "both"), (r"\b [2:0] \a [3:0]", "turned")):
+        assert f"connect \\A {{ {value} }}\n    connect \\Y \\{name}\n" in after
+
+
+@pytest.mark.usefixtures("verilator")
+@pytest.mark.parametrize("keeps", [True, False])
+def test_a_vector_is_no_loop_through_its_parts(tmp_path: Path, keeps: bool, monkeypatch) -> None:
+    if not keeps:
+        monkeypatch.setattr("firm_hdl.export.verilog.yosys.whole_vectors", lambda design: design)
+    text = to_verilog(Top(Deserializer(load_message("std_msgs/msg/String"))), module="t", header="")
+    (tmp_path / "t.v").write_text(text)
+    done = subprocess.run(
+        ["verilator", "--lint-only", "t.v"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert ("UNOPTFLAT" in done.stderr) == (not keeps)
+
+
+def test_overlapping_and_conditional_parts_stay_processes() -> None:
+    m = Module()
+    a, b, o, p = Signal(4, name="a"), Signal(name="b"), Signal(8, name="o"), Signal(8, name="p")
+    m.d.comb += [o[:4].eq(a), o[2:6].eq(a), p[:4].eq(a)]
+    with m.If(b):
+        m.d.comb += p[4:].eq(a)
+    design = rtlil.convert(m, ports=[a, b, o, p], emit_src=False)
+    assert whole_vectors(design) == design
+
+
+def test_ports_that_are_parts_have_the_name_of_the_whole() -> None:
+    inner, outer = Module(), Module()
+    a, b, both = Signal(8, name="a"), Signal(4, name="b"), Signal(12, name="both")
+    seen, taken = Signal(12, name="seen"), Signal(name="both_0")
+    outer.d.sync += a.eq(a + 1)
+    outer.d.comb += both.eq(Cat(a, b))
+    inner.d.sync += seen.eq(both)
+    inner.d.comb += taken.eq(both[0])
+    outer.submodules.inner = inner
+    design = rtlil.convert(outer, ports=[b, seen, taken], emit_src=False)
+    named = named_ports(design)
+    assert "port$" in design and "port$" not in named
+    assert "connect \\both { \\both_8 [3:0] \\both_0_2 [7:0] }\n" in named
+    assert "    connect \\both_8 \\b [3:0]\n" in named
+
+
+@pytest.mark.parametrize("direction", DIRECTIONS)
+@pytest.mark.parametrize("name", ["sensor_msgs/msg/JointState", "geometry_msgs/msg/Twist"])
+def test_every_signal_of_a_converter_has_a_name(direction: str, name: str) -> None:
+    converter = Deserializer if direction == "deserializer" else Serializer
+    text = to_verilog(Top(converter(load_message(name))), module="t", header="")
+    # Results of operators have numbers. `$signal` is a signal for which Amaranth found no name.
+    assert set(re.findall(r"\\(\$?\w*\$[A-Za-z]\w*|port\$\S*)", text)) == set()
+    assert r"\$1 " in text

@@ -1,0 +1,178 @@
+"""Spellings of definitions that ROS's own tools and other readers of recordings accept."""
+
+from __future__ import annotations
+
+import hashlib
+import sqlite3
+
+import pytest
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import get_types_from_idl
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import Library, open_library, show
+from firm_hdl.identity import md5sum
+from tests.frontend.recordings import make_recording
+from tests.frontend.workspace import make_files
+
+
+@pytest.mark.parametrize("length", ["010", "0010", "00"])
+def test_zeros_before_a_length_are_kept_as_genmsg_keeps_them(tmp_path, length):
+    text = f"uint8[{length}] a\nint8[3] b\n"
+    ours = Library("noetic", [make_files(tmp_path, {"p/msg/A.msg": text})])
+    if int(length) == 0:
+        with pytest.raises(DefinitionError):
+            ours.message("p/A")
+        return
+    assert ours.message("p/A").fields[0].type.count == 10
+    results = show(ours, "p/A"), md5sum(ours.message("p/A"))
+    assert results == (text, hashlib.md5(text.strip().encode()).hexdigest())
+
+
+def recorded(path, text, name="p/msg/A"):
+    with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        writer.add_connection("/t", name, msgdef=text, rihs01="RIHS01_" + "0" * 64)
+    return path
+
+
+LINE = "=" * 80
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"q/msg/Pt p\nq/msg/Pt[] more\n{LINE}\nMSG: q/msg/Pt\nint8 x\n",
+        f"  q/Pt p\n\tq/Pt[] more\n  # a comment\n{LINE}\nMSG: q/Pt\n  int8 x\n",
+        f"  q/msg/Pt p\n\tq/msg/Pt[] more\n{LINE}\nMSG: q/msg/Pt\n  int8 x\n",
+    ],
+    ids=["full names", "indented lines", "both"],
+)
+def test_full_names_and_indented_lines_are_read_in_recordings(tmp_path, text):
+    ours = open_library(bags=[recorded(tmp_path / "r", text)])
+    assert [str(f.type) for f in ours.message("p/A").fields] == ["q/msg/Pt", "q/msg/Pt[]"]
+    assert ours.message("q/Pt").fields[0].name == "x"
+
+
+STRUCTS = "module p { module msg { struct B { long b; }; struct A { B b; }; }; };\n"
+
+
+def test_schemas_of_other_tools_are_named(tmp_path):
+    # rosbags takes omgidl for ros2idl, and refuses it in a database.
+    folder = make_recording(tmp_path, "db3")
+    (file,) = folder.glob("*.db3")
+    database = sqlite3.connect(file)
+    database.execute("UPDATE message_definitions SET encoding = 'omgidl'")
+    database.commit()
+    database.close()
+    with pytest.raises(DefinitionError, match="in 'omgidl', and only ros2msg and ros2idl are read"):
+        open_library(bags=[file])
+    path = recorded(tmp_path / "r", f"{'=' * 80}\nIDL: p/msg/A\n{STRUCTS}")
+    for each in path.glob("*.mcap"):
+        # The format is recognised by the heading, so it is removed.
+        head = f"{'=' * 80}\nIDL: p/msg/A\n".encode()
+        each.write_bytes(each.read_bytes().replace(head, b" " * len(head)))
+    with pytest.raises(DefinitionError, match="defines 'p/msg/A' in 'omgidl', and only ros2msg"):
+        open_library(bags=[path])
+
+
+def test_scopes_of_idl_in_the_name_of_a_topics_type_are_those_of_omgidl(tmp_path):
+    (path,) = recorded(tmp_path / "r", "struct W { long b; };", "p/msg//Long").glob("*.mcap")
+    data = path.read_bytes().replace(b"p/msg//Long", b"p::msg::Lon")
+    path.write_bytes(data.replace(b"ros2msg", b"ros2idl"))
+    message = "defines 'p/msg/Lon' in 'omgidl', and only ros2msg"
+    with pytest.raises(DefinitionError, match=message):
+        open_library(bags=[path])
+    other = recorded(tmp_path / "other", "int8 a\n")
+    with pytest.raises(DefinitionError, match=message):
+        open_library(bags=[other, path]).message("p/Lon")
+    with pytest.raises(DefinitionError, match="package 'q' is not found"):
+        open_library(bags=[other]).message("q/Lon")
+
+
+SEVERAL = """\
+module q { module msg { typedef long T;
+  @verbatim(language="comment", text="struct X { }; of q")
+  struct C { T t; }; }; };
+module p { module msg {
+  module A_Constants { const long N = 3; };
+  struct B { long b[A_Constants::N]; };  // struct D { long d; };
+  @verbatim(language="comment", text="of A")
+  struct A { B b; sequence<B> bs; p::msg::B more[2]; q::msg::C c; long B_last; };
+}; };
+"""
+
+
+def test_a_section_in_idl_may_declare_several_messages_in_recordings(tmp_path):
+    heading = f"{'=' * 80}\nIDL: p/msg/A\n"
+    ours = open_library(bags=[recorded(tmp_path / "r", heading + SEVERAL)])
+    a = ours.message("p/A")
+    assert [(f.name, str(f.type)) for f in a.fields] == [
+        ("b", "p/msg/B"), ("bs", "p/msg/B[]"), ("more", "p/msg/B[2]"), ("c", "q/msg/C"),
+        ("B_last", "int32"),
+    ]  # fmt: skip
+    assert (a.comment, [c.name for c in a.constants]) == ("of A", ["N"])
+    assert ours.message("q/C").comment == "struct X { }; of q"
+    assert [str(f.type) for f in ours.message("p/B").fields] == ["int32[3]"]
+    assert [str(name) for name in ours.names()] == ["p/msg/A", "p/msg/B", "q/msg/C"]
+    # The reader of rosbags gives the same result.
+    theirs = get_types_from_idl(SEVERAL)
+    assert {name: len(fields) for name, (_, fields) in theirs.items() if fields} == {
+        str(name): len(ours.message(str(name)).fields) for name in ours.names()
+    }
+
+
+def test_mistakes_in_one_of_several_messages_are_shown_where_they_are(tmp_path):
+    heading = f"{'=' * 80}\nIDL: p/msg/A\n"
+    text = SEVERAL.replace("long B_last", "lang B_last")
+    ours = open_library(bags=[recorded(tmp_path / "r", heading + text)])
+    with pytest.raises(DefinitionError, match=r"p/msg/A\.idl:8:\d+: error: .*lang"):
+        ours.message("p/A")
+    assert len(ours.message("p/B").fields) == 1
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        STRUCTS.replace("struct A", "struct C"),
+        "module p { struct B { long b; }; struct A { long a; }; };",
+        "struct B { long b; }; struct A { long a; };",
+    ],
+)
+def test_several_structs_that_are_no_messages_of_ros_are_one_message_per_file(tmp_path, text):
+    heading = f"{'=' * 80}\nIDL: p/msg/A\n"
+    ours = open_library(bags=[recorded(tmp_path / "r", heading + text)])
+    with pytest.raises(DefinitionError):
+        ours.message("p/A")
+
+
+def idl(body, name="A"):
+    return f"module p {{ module msg {{ {body} struct {name} {{ T a; }}; }}; }};"
+
+
+@pytest.mark.parametrize("scope", ["T", "msg::T", "p::msg::T", "::p::msg::T"])
+def test_typedefs_are_found_by_any_scope_that_a_constant_has(tmp_path, scope):
+    text = idl("typedef long T;").replace("{ T a; }", f"{{ {scope} a; }}")
+    ours = Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})])
+    assert str(ours.message("p/A").fields[0].type) == "int32"
+
+
+@pytest.mark.parametrize("scope", ["::T", "p::T", "msg::msg::T", "q::msg::T", "::msg::T"])
+def test_typedefs_are_found_by_no_scope_that_they_have_not(tmp_path, scope):
+    text = idl("typedef long T;").replace("{ T a; }", f"{{ {scope} a; }}")
+    with pytest.raises(DefinitionError):
+        Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})]).message("p/A")
+
+
+def test_typedefs_of_a_module_beside_are_found_by_its_name(tmp_path):
+    text = idl("module A_T { typedef long T; };").replace("{ T a; }", "{ A_T::T a; }")
+    ours = Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})])
+    assert str(ours.message("p/A").fields[0].type) == "int32"
+    text = text.replace("{ A_T::T a; }", "{ B_T::T a; }")
+    with pytest.raises(DefinitionError):
+        Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})]).message("p/A")
+
+
+def test_two_structs_in_a_file_are_one_too_many(tmp_path):
+    text = idl("typedef long T; struct B { long b; };")
+    with pytest.raises(DefinitionError, match="one message per file"):
+        Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})]).message("p/A")
