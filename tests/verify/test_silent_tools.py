@@ -104,11 +104,11 @@ def test_silent_tools_prove_nothing(fake, status, name):
     tool = (fake(SILENT[status], name),)
     if name == "ghdl":
         tools = Tools(ghdl=tool, yosys=yosys)
-        match = "GHDL's netlist is empty" if status == 0 else "GHDL failed: 1"
+        match = "GHDL's netlist is empty" if status == 0 else "GHDL failed: exit status 1"
     else:
         # Yosys is called before the output of GHDL is read.
         tools = Tools(ghdl=(fake(SILENT[0], "ghdl"),), yosys=tool)
-        match = "Yosys ended without an error" if status == 0 else "Yosys failed: 1"
+        match = "Yosys ended without an error" if status == 0 else "Yosys failed: exit status 1"
     rtlil, vhdl = converter_vhdl(Library("lyrical").message(BOOL), "serializer")
     with pytest.raises(ProofError, match=match):
         prove(rtlil, vhdl, tools=tools)
