@@ -1,4 +1,4 @@
-"""Compile the circuits of a type into a program: Verilator's models, and the harness around them."""
+"""Compile the circuits of a type into a program: Verilator's models and the harness around them."""
 
 from __future__ import annotations
 
@@ -109,9 +109,7 @@ def build(circuits: Sequence[Circuit], table: Table, folder: Path, tools: Tools)
     )
     (folder / "model.cc").write_text(main, encoding="utf-8")
     own = tuple(sorted(_HARNESS.glob("*.cpp")))
-    runtime = runtime_of(
-        tools.verilator, tools.compiler, _HARNESS_OPTIONS, own, tuple(parts)
-    )
+    runtime = runtime_of(tools.verilator, tools.compiler, _HARNESS_OPTIONS, own, tuple(parts))
     command = [*tools.compiler, *_MODEL_OPTIONS, *runtime.includes, "model.cc", *runtime.objects]
     run_tool([*command, "-pthread", "-o", _PROGRAM], folder)
     made_by(tools.compiler[0], folder / _PROGRAM)

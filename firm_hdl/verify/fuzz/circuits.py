@@ -180,7 +180,9 @@ class _Maker:
         _, serializer = self._top("serializer")
         ports = ports_of(plan, "deserializer")
         # Each port of a leaf has the same name on both sides.
-        inner = [(port.name, f"inner_{n}", port.width) for n, port in enumerate(ports) if port.member]
+        inner = [
+            (port.name, f"inner_{n}", port.width) for n, port in enumerate(ports) if port.member
+        ]
         shared = [(name, wire) for name, wire, _ in inner]
         bus = self.bus_bytes
         wires = [(wire, width) for _, wire, width in inner]
@@ -221,7 +223,9 @@ class _Maker:
             max_message_bytes=self.max_message_bytes,
         )
         module = f"gate_{policy}"
-        text = to_verilog(rtlil.convert(gate, name=module, emit_src=False), module=module, header="")
+        text = to_verilog(
+            rtlil.convert(gate, name=module, emit_src=False), module=module, header=""
+        )
         count_bits = bus.bit_length()
         size_bits = memory.bit_length()
         wires = [("payload", 8 * bus + count_bits + 1), ("size", size_bits), ("status_code", 4)]

@@ -8,6 +8,8 @@ namespace {
 constexpr uint64_t MOST_IDLE = 5000;
 // Cycles after all has come, in which nothing may come.
 constexpr int QUIET_CYCLES = 24;
+// In an episode.
+constexpr int MOST_RESETS = 8;
 
 }  // namespace
 
@@ -37,6 +39,7 @@ const Bytes* Bench::bytes_of(uint64_t packet) const {
 void Bench::run(uint64_t episode) {
     const uint64_t kind = 2 * static_cast<uint64_t>(circuit_.kind) + circuit_.drops;
     Random random(Random::mixed(seed_, kind, episode));
+    start_ = counts.cycles;
     sent_.clear();
     next_ = 0;
     must_be_good_ = true;
@@ -45,13 +48,16 @@ void Bench::run(uint64_t episode) {
         circuit_.kind == CircuitKind::Deserializer && table_.transfers_once();
     stalls_.choose(random, may_wait);
     reset(random, true);
-    const bool has_resets = random.one_in(4);
+    int resets = random.one_in(4) ? MOST_RESETS : 0;
     const uint32_t apart = 1 + random.below(2000);
     while (!all_sent() || !checker_->is_done()) {
-        if (has_resets && random.one_in(apart)) reset(random, false);
-        cycle(random);
+        if (resets && random.one_in(apart)) {
+            reset(random, false);
+            --resets;
+        }
+        do_cycle(random);
     }
-    for (int n = 0; n < QUIET_CYCLES; ++n) cycle(random);
+    for (int n = 0; n < QUIET_CYCLES; ++n) do_cycle(random);
     checker_->at_end();
 }
 
@@ -181,7 +187,7 @@ void Bench::step() {
     ++counts.cycles;
 }
 
-void Bench::cycle(Random& random) {
+void Bench::do_cycle(Random& random) {
     look();
     stalls_.take(random, valid_.data(), circuit_.ready);
     if (!is_offering_) offer(random);

@@ -34,6 +34,9 @@ public:
     // For messages: a packet that was sent in the last episode, or nothing.
     const Bytes* bytes_of(uint64_t packet) const;
 
+    // Cycles of the last episode.
+    uint64_t cycle() const { return counts.cycles - start_; }
+
     Counts counts;
     const Tally& tally() const { return checker_->tally; }
 
@@ -42,7 +45,7 @@ private:
     void make(Random& random, uint64_t number);
     void offer(Random& random);
     void look();
-    void cycle(Random& random);
+    void do_cycle(Random& random);
     void step();
     void check_progress(bool did_something);
     bool all_sent() const { return next_ == sent_.size() && !is_offering_; }
@@ -65,6 +68,7 @@ private:
     // Valid streams, and payloads that were offered and not taken.
     std::vector<uint32_t> valid_, held_;
     std::vector<std::vector<uint32_t>> payloads_;
+    uint64_t start_ = 0;   // cycles before this episode
     uint64_t idle_ = 0;    // cycles without a transfer
     uint64_t waited_ = 0;  // cycles since a status, in which nothing was stalled
     uint64_t judged_ = 0;  // packets with a status, at the last cycle
