@@ -88,7 +88,7 @@ def _tasks(given: argparse.Namespace) -> list[FuzzTask]:
     """List the tasks such that the first ones have all types, and all widths of the bus."""
     types = given.types or TYPES
     widths = given.bus_bytes or USUAL_BUS_BYTES
-    tasks = []
+    tasks: list[FuzzTask] = []
     for turn in range(len(widths)):
         for index, name in enumerate(types):
             large = len(tasks) % _ONE_IN == _ONE_IN - 1

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from firm_hdl.frontend import Distro, Library
+from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 
 __all__ = ["BUS_BYTES", "TYPES", "message_of"]
@@ -85,5 +85,5 @@ def message_of(name: str) -> Message:
     ------
     DefinitionError
     """
-    distro: Distro = "lyrical" if name.count("/") == 2 else "noetic"
+    distro = "lyrical" if name.count("/") == 2 else "noetic"
     return Library(distro, [_DEFINITIONS / distro]).message(name)

@@ -10,6 +10,8 @@ constexpr uint64_t MOST_IDLE = 5000;
 constexpr int QUIET_CYCLES = 24;
 // In an episode.
 constexpr int MOST_RESETS = 8;
+// One packet in so many is cut, at one byte after the other.
+constexpr uint64_t CUT_ONE_IN = 8;
 
 }  // namespace
 
@@ -42,7 +44,6 @@ void Bench::run(uint64_t episode) {
     start_ = counts.cycles;
     sent_.clear();
     next_ = 0;
-    must_be_good_ = true;
     for (uint64_t n = 0; n < EPISODE; ++n) make(random, episode * EPISODE + n);
     const bool may_wait =
         circuit_.kind == CircuitKind::Deserializer && table_.transfers_once();
@@ -61,16 +62,18 @@ void Bench::run(uint64_t episode) {
     checker_->at_end();
 }
 
-// Make the next packet: a bad one is followed by a good one.
+// Make the next packet. Every second one is good, so each bad one is followed by a good one.
 void Bench::make(Random& random, uint64_t number) {
     auto packet = std::make_shared<Sent>();
     packet->number = number;
-    const bool is_whole = must_be_good_ || random.one_in(8);
+    const bool is_cut = number % CUT_ONE_IN == 1;
+    const bool is_whole = number % 2 == 0 || (!is_cut && random.one_in(8));
     if (is_whole) {
         packet->bytes = writer_.write(random).bytes;
     } else {
         Damage kind;
-        packet->bytes = damager_.damaged(random, number / 2, kind);
+        packet->bytes = is_cut ? damager_.cut(number / CUT_ONE_IN) : damager_.damaged(random, kind);
+        if (is_cut) kind = Damage::Cut;
         ++counts.damages[static_cast<size_t>(kind)];
     }
     judge_.judge(packet->bytes, packet->expected);
@@ -79,8 +82,7 @@ void Bench::make(Random& random, uint64_t number) {
                      name_of(packet->expected.status) + std::string(" of ") + hex(packet->bytes));
     const size_t bus = circuit_.bus_bytes;
     packet->beats = static_cast<uint32_t>(std::max<size_t>(1, (packet->bytes.size() + bus - 1) / bus));
-    must_be_good_ = packet->expected.status != OK;
-    counts.bad += must_be_good_;
+    counts.bad += packet->expected.status != OK;
     ++counts.packets;
     sent_.push_back(std::move(packet));
 }

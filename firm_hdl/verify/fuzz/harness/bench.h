@@ -63,7 +63,6 @@ private:
     size_t next_ = 0;            // to be sent
     size_t beat_ = 0;            // of the packet that is being sent
     bool is_offering_ = false;
-    bool must_be_good_ = true;   // the packet before this one was bad
 
     // Valid streams, and payloads that were offered and not taken.
     std::vector<uint32_t> valid_, held_;

@@ -96,33 +96,31 @@ void Writer::node(const Node& node) {
     }
 }
 
-Bytes Damager::damaged(Random& random, uint64_t cut, Damage& kind) {
+Bytes Damager::damaged(Random& random, Damage& kind) {
     static constexpr Damage KINDS[] = {
-        Damage::Cut,    Damage::Cut,      Damage::Cut,   Damage::CutAnywhere, Damage::CutAnywhere,
-        Damage::Splice, Damage::Flip,     Damage::Flip,  Damage::Length,      Damage::Length,
-        Damage::Length, Damage::Header,   Damage::Insert, Damage::Erase,      Damage::Trailing,
-        Damage::Empty,  Damage::Trailing, Damage::Rubbish};
+        Damage::CutAnywhere, Damage::CutAnywhere, Damage::Splice,   Damage::Flip,   Damage::Flip,
+        Damage::Length,      Damage::Length,      Damage::Length,   Damage::Header, Damage::Insert,
+        Damage::Erase,       Damage::Trailing,    Damage::Trailing, Damage::Empty,  Damage::Rubbish};
     kind = KINDS[random.below(sizeof KINDS / sizeof KINDS[0])];
-    if (kind == Damage::Cut) return cut_at(cut);
     Written packet = writer_.write(random);
     // Not every packet has a header, or a length.
-    while (!damage(random, cut, kind, packet))
+    while (!damage(random, kind, packet))
         kind = random.one_in(2) ? Damage::CutAnywhere : Damage::Trailing;
     return packet.bytes;
 }
 
-// Cut one packet at every byte, then the next one; each whole packet is the last of its cuts.
-Bytes Damager::cut_at(uint64_t cut) {
-    if (cut < first_cut_) first_cut_ = victims_ = 0, victim_.clear();
-    while (victims_ == 0 || cut - first_cut_ > victim_.size()) {
+// The whole packet is the last of its cuts.
+Bytes Damager::cut(uint64_t number) {
+    if (number < first_cut_) first_cut_ = victims_ = 0;
+    while (victims_ == 0 || number - first_cut_ > victim_.size()) {
         if (victims_) first_cut_ += victim_.size() + 1;
         Random random(Random::mixed(seed_, 0xc07, victims_++));
         victim_ = writer_.write(random).bytes;
     }
-    return Bytes(victim_.begin(), victim_.begin() + static_cast<long>(cut - first_cut_));
+    return Bytes(victim_.begin(), victim_.begin() + static_cast<long>(number - first_cut_));
 }
 
-bool Damager::damage(Random& random, uint64_t, Damage kind, Written& packet) {
+bool Damager::damage(Random& random, Damage kind, Written& packet) {
     Bytes& bytes = packet.bytes;
     const uint32_t size = static_cast<uint32_t>(bytes.size());
     switch (kind) {

@@ -55,13 +55,14 @@ class Damager {
 public:
     Damager(const Table& table, uint64_t seed) : writer_(table), table_(table), seed_(seed) {}
 
-    // `cut` numbers the cuts: consecutive ones are at consecutive bytes of the same packet.
-    Bytes damaged(Random& random, uint64_t cut, Damage& kind);
+    Bytes damaged(Random& random, Damage& kind);
+
+    // Consecutive numbers cut the same packet at consecutive bytes, then the next packet.
+    Bytes cut(uint64_t number);
 
 private:
-    bool damage(Random& random, uint64_t cut, Damage kind, Written& packet);
+    bool damage(Random& random, Damage kind, Written& packet);
     bool play_with_length(Random& random, Written& packet);
-    Bytes cut_at(uint64_t cut);
 
     Writer writer_;
     const Table& table_;
