@@ -41,6 +41,20 @@ templates = jinja2.Environment(
 _COUNTERS = 9
 _STORED_PACKETS = 8
 _LEAST_MEMORY_BYTES = 256
+_GATE_PORTS = [
+    ("clk", "clk"),
+    ("rst", "~control[2]"),
+    ("packets_in__valid", "control[0]"),
+    ("packets_in__ready", "accept[0]"),
+    ("packets_out__valid", "valid[0]"),
+    ("packets_out__ready", "ready[0]"),
+    ("packets_out__payload", "payload"),
+    ("size", "size"),
+    ("status__valid", "valid[1]"),
+    ("status__ready", "ready[1]"),
+    ("status__payload", "status_code"),
+    ("counters", "counters"),
+]
 
 
 def unaltered(module: str, text: str) -> str:
@@ -226,27 +240,24 @@ class _Maker:
         text = to_verilog(
             rtlil.convert(gate, name=module, emit_src=False), module=module, header=""
         )
-        count_bits = bus.bit_length()
+        # A payload has the data in its lowest bits, then the count, then `last`.
+        data, last = 8 * bus, 8 * bus + bus.bit_length()
         size_bits = memory.bit_length()
-        wires = [("payload", 8 * bus + count_bits + 1), ("size", size_bits), ("status_code", 4)]
+        wires = [("payload", last + 1), ("size", size_bits), ("status_code", 4)]
         packets = (
-            (f"payload[{8 * bus + count_bits}]", 1),
-            (f"payload[{8 * bus - 1}:0]", 8 * bus),
-            (f"payload[{8 * bus + count_bits - 1}:{8 * bus}]", count_bits),
+            (f"payload[{last}]", 1),
+            (f"payload[{data - 1}:0]", data),
+            (f"payload[{last - 1}:{data}]", last - data),
             ("size", size_bits),
         )
         outputs = [
             _Output(name="packets_out", index=0, values=packets),
             _status(1, "status", "status_code", 4),
         ]
-        beat = f"{{control[1], keep[{count_bits - 1}:0], data[{8 * bus - 1}:0]}}"
-        ports = [("clk", "clk"), ("rst", "~control[2]"), ("packets_in__payload", beat)]
-        ports += [("packets_in__valid", "control[0]"), ("packets_in__ready", "accept[0]")]
-        ports += [("packets_out__valid", "valid[0]"), ("packets_out__ready", "ready[0]")]
-        ports += [("status__valid", "valid[1]"), ("status__ready", "ready[1]")]
-        ports += [("packets_out__payload", "payload"), ("size", "size")]
-        ports += [("status__payload", "status_code"), ("counters", "counters")]
-        instance = _Instance(module=module, name="dut", ports=ports)
+        beat = f"{{control[1], keep[{last - data - 1}:0], data[{data - 1}:0]}}"
+        instance = _Instance(
+            module=module, name="dut", ports=[*_GATE_PORTS, ("packets_in__payload", beat)]
+        )
         files = {f"{module}.v": self.alter(module, text)}
         return self._circuit(
             name, "Gate", outputs, wires, [instance], files, memory=memory, drops=policy == "drop"

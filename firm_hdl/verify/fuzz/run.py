@@ -16,7 +16,7 @@ from firm_hdl.verify.fuzz.circuits import CIRCUITS, Alter, CircuitName, circuits
 from firm_hdl.verify.fuzz.table import Table, table_of
 from firm_hdl.verify.fuzz.types import message_of
 
-__all__ = ["Failure", "FuzzTask", "Outcome", "run_task"]
+__all__ = ["Failure", "FuzzTask", "Outcome", "judged", "run_task"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -141,10 +141,10 @@ def run_task(
             )
     except ToolError as error:
         return replace(outcome, failures=(Failure(rule=f"a tool failed: {error}"),))
-    return _judged(outcome, said)
+    return judged(outcome, said)
 
 
-def _judged(outcome: Outcome, said: list[dict[str, Any]]) -> Outcome:
+def judged(outcome: Outcome, said: list[dict[str, Any]]) -> Outcome:
     """Add up what the program said of the circuits."""
     statuses: Counter[str] = Counter()
     damages: Counter[str] = Counter()

@@ -117,7 +117,8 @@ FAULTS = [
             r"\.packets__ready\(s_axis_tready\)",
             ".packets__ready(is_free)",
             r"assign packets__ready = s_axis_tready;",
-            "wire is_free; assign s_axis_tready = is_free | (m_axis_status_tready & ~s_axis_tvalid);",
+            "wire is_free;"
+            "assign s_axis_tready = is_free | (m_axis_status_tready & ~s_axis_tvalid);",
             "ready of the input depends",
         ),
         (

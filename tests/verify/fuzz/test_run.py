@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl.verify.fuzz.circuits import CIRCUITS
 from firm_hdl.verify.fuzz.command import main
-from firm_hdl.verify.fuzz.run import FuzzTask, Outcome, _judged
+from firm_hdl.verify.fuzz.run import FuzzTask, Outcome, judged
 from tests.depth import by_depth
 from tests.verify.fuzz.samples import EMPTY, STRING, need_tools, run
 
@@ -109,5 +109,5 @@ SAID = {
 )
 def test_numbers_that_do_not_agree_are_a_failure(change, rule):
     task = FuzzTask(type=STRING, bus_bytes=4, room=300, seed=1, packets=200)
-    outcome = _judged(Outcome(task=task, wire="cdr"), [{**SAID, **change}])
+    outcome = judged(Outcome(task=task, wire="cdr"), [{**SAID, **change}])
     assert [failure.rule for failure in outcome.failures] == ([] if rule is None else [rule])

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import ast
+from pathlib import Path
+
 import pytest
 
+import firm_hdl.verify.fuzz.table
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.fuzz.command import main
 from firm_hdl.verify.fuzz.table import table_of
@@ -46,6 +50,13 @@ def test_leaves_and_limits_are_those_of_the_plan(name):
         if line.startswith(("run", "loop")) and line.split()[1] != "-1"
     }
     assert limits == {leaf: begin.limit for leaf, begin in plan.begins.items()}
+
+
+def test_the_table_is_made_from_the_model_alone():
+    text = Path(firm_hdl.verify.fuzz.table.__file__).read_text(encoding="utf-8")
+    imports = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ImportFrom)]
+    assert [node.module for node in imports if "firm_hdl" in str(node.module)] == ["firm_hdl.model"]
+    assert not any(isinstance(node, ast.Import) for node in ast.walk(ast.parse(text)))
 
 
 def test_the_standard_set_has_50_types_and_five_widths(capsys):

@@ -81,7 +81,8 @@ void Bench::make(Random& random, uint64_t number) {
         throw Broken("the writer and the judge of this fuzzer disagree", number, name_of(OK),
                      name_of(packet->expected.status) + std::string(" of ") + hex(packet->bytes));
     const size_t bus = circuit_.bus_bytes;
-    packet->beats = static_cast<uint32_t>(std::max<size_t>(1, (packet->bytes.size() + bus - 1) / bus));
+    const size_t beats = std::max<size_t>(1, (packet->bytes.size() + bus - 1) / bus);
+    packet->beats = static_cast<uint32_t>(beats);
     counts.bad += packet->expected.status != OK;
     ++counts.packets;
     sent_.push_back(std::move(packet));
@@ -101,10 +102,10 @@ void Bench::reset(Random& random, bool is_start) {
     std::fill(held_.begin(), held_.end(), 0);
     for (uint32_t left = 1 + random.below(3); left; --left) {
         // Whatever is offered in a reset is lost.
-        const uint32_t word = static_cast<uint32_t>(random.next());
+        const uint32_t word = random.word();
         *circuit_.control = word & (Circuit::VALID | Circuit::LAST);
         for (size_t n = 0; n < valid_.size(); ++n)
-            circuit_.ready[n] = static_cast<uint32_t>(random.next());
+            circuit_.ready[n] = random.word();
         step();
         for (size_t n = 0; n < valid_.size(); ++n)
             if (circuit_.valid[n])
@@ -118,11 +119,12 @@ void Bench::reset(Random& random, bool is_start) {
 void Bench::offer(Random& random) {
     const size_t bus = circuit_.bus_bytes;
     const size_t words = (bus + 3) / 4;
-    for (size_t n = 0; n < words; ++n) circuit_.data[n] = static_cast<uint32_t>(random.next());
-    for (size_t n = 0; n < (bus + 31) / 32; ++n) circuit_.keep[n] = static_cast<uint32_t>(random.next());
+    for (size_t n = 0; n < words; ++n) circuit_.data[n] = random.word();
+    for (size_t n = 0; n < (bus + 31) / 32; ++n) circuit_.keep[n] = random.word();
     if (circuit_.counts_lanes) *circuit_.keep %= static_cast<uint32_t>(bus) + 1;
     *circuit_.control = Circuit::RUN | (random.one_in(2) ? Circuit::LAST : 0);
-    is_offering_ = next_ < sent_.size() && (beat_ || checker_->may_send()) && stalls_.offers(random);
+    const bool may_send = next_ < sent_.size() && (beat_ || checker_->may_send());
+    is_offering_ = may_send && stalls_.offers(random);
     if (!is_offering_) return;
     const Sent& packet = *sent_[next_];
     if (beat_ == 0) checker_->sent(sent_[next_]);
@@ -131,7 +133,8 @@ void Bench::offer(Random& random) {
     for (size_t lane = 0; lane < valid; ++lane) {
         uint32_t& word = circuit_.data[lane / 4];
         const int shift = 8 * (lane % 4);
-        word = (word & ~(255u << shift)) | static_cast<uint32_t>(packet.bytes[first + lane]) << shift;
+        const uint32_t byte = packet.bytes[first + lane];
+        word = (word & ~(255u << shift)) | byte << shift;
     }
     const bool is_last = beat_ + 1 == packet.beats;
     *circuit_.control = Circuit::RUN | Circuit::VALID | (is_last ? Circuit::LAST : 0);

@@ -23,7 +23,7 @@ struct Counts {
 
 class Bench {
 public:
-    // Packets between two resets, whose numbers, values and stalls follow from the episode's number.
+    // Packets of an episode, which begins with a reset and follows from its number alone.
     static constexpr uint64_t EPISODE = 256;
 
     Bench(Circuit& circuit, const Table& table, uint64_t seed);

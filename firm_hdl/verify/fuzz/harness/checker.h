@@ -13,6 +13,9 @@
 #include "judge.h"
 #include "packets.h"
 
+// Cycles that any circuit may take besides those for its work.
+constexpr uint64_t SLACK_CYCLES = 64;
+
 // A rule was broken.
 struct Broken : std::runtime_error {
     Broken(const std::string& rule, uint64_t packet, const std::string& expected,
@@ -67,6 +70,8 @@ public:
 };
 
 std::unique_ptr<Checker> make_checker(const Circuit& circuit, const Table& table);
+std::unique_ptr<Checker> make_gate_checker(const Circuit& circuit);
 
 std::string hex(const uint32_t* words, size_t count);
 std::string hex(const Bytes& bytes);
+inline std::string number(uint64_t value) { return std::to_string(value); }

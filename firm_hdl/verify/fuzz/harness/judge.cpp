@@ -145,7 +145,8 @@ void Judge::send_items(const Node& node, uint32_t count) {
             write(value, node.bytes);
             const uint32_t bit = lane * leaf.bits;
             out_->words[at + bit / 32] |= static_cast<uint32_t>(value << bit % 32);
-            if (leaf.bits == 64) out_->words[at + bit / 32 + 1] = static_cast<uint32_t>(value >> 32);
+            if (leaf.bits == 64)
+                out_->words[at + bit / 32 + 1] = static_cast<uint32_t>(value >> 32);
         }
         out_->transfers.push_back({node.leaf, first + leaf.lanes >= count, at});
     }

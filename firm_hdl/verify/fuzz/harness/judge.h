@@ -8,7 +8,10 @@
 
 #include "table.h"
 
-enum Status { OK, TRUNCATED, TRAILING, LENGTH, ENCAPSULATION, STRING, ITEMS, FULL = 8, LARGE, OVERRUN };
+enum Status {
+    OK, TRUNCATED, TRAILING, LENGTH, ENCAPSULATION, STRING, ITEMS,
+    FULL = 8, LARGE, OVERRUN,  // of a gate
+};
 
 const char* name_of(int status);
 

@@ -100,7 +100,8 @@ Bytes Damager::damaged(Random& random, Damage& kind) {
     static constexpr Damage KINDS[] = {
         Damage::CutAnywhere, Damage::CutAnywhere, Damage::Splice,   Damage::Flip,   Damage::Flip,
         Damage::Length,      Damage::Length,      Damage::Length,   Damage::Header, Damage::Insert,
-        Damage::Erase,       Damage::Trailing,    Damage::Trailing, Damage::Empty,  Damage::Rubbish};
+        Damage::Erase,       Damage::Trailing,    Damage::Trailing, Damage::Empty,
+        Damage::Rubbish};
     kind = KINDS[random.below(sizeof KINDS / sizeof KINDS[0])];
     Written packet = writer_.write(random);
     // Not every packet has a header, or a length.
@@ -176,7 +177,8 @@ bool Damager::damage(Random& random, Damage kind, Written& packet) {
 // Replace a length by a number that is next to something. The packet's bytes stay, or are cut, too.
 bool Damager::play_with_length(Random& random, Written& packet) {
     if (packet.lengths.empty()) return false;
-    const LengthAt& length = packet.lengths[random.below(static_cast<uint32_t>(packet.lengths.size()))];
+    const uint32_t lengths = static_cast<uint32_t>(packet.lengths.size());
+    const LengthAt& length = packet.lengths[random.below(lengths)];
     const uint32_t limit = length.node->limit + length.node->is_terminated;
     const uint32_t bound = length.node->bound + length.node->is_terminated;
     const uint32_t numbers[] = {0,     1,         bound,       bound + 1,        limit,
@@ -185,7 +187,8 @@ bool Damager::play_with_length(Random& random, Written& packet) {
     put_at(packet.bytes, length.at, numbers[random.below(sizeof numbers / sizeof numbers[0])]);
     if (random.one_in(8)) {
         const size_t least = length.at + 4;
-        packet.bytes.resize(least + random.below(static_cast<uint32_t>(packet.bytes.size() - least) + 1));
+        const uint32_t rest = static_cast<uint32_t>(packet.bytes.size() - least);
+        packet.bytes.resize(least + random.below(rest + 1));
     }
     return true;
 }

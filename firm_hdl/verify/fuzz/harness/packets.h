@@ -44,7 +44,9 @@ private:
     int depth_ = 0;
 };
 
-enum class Damage { Cut, CutAnywhere, Splice, Flip, Length, Header, Trailing, Empty, Insert, Erase, Rubbish };
+enum class Damage {
+    Cut, CutAnywhere, Splice, Flip, Length, Header, Trailing, Empty, Insert, Erase, Rubbish,
+};
 
 constexpr std::array<const char*, 11> DAMAGE_NAMES = {
     "cut", "cut anywhere", "splice", "flip", "length", "header",

@@ -29,6 +29,8 @@ public:
     // True once in `n` times.
     bool one_in(uint32_t n) { return below(n) == 0; }
 
+    uint32_t word() { return static_cast<uint32_t>(next()); }
+
     uint8_t byte() { return static_cast<uint8_t>(next() >> 56); }
 
 private:

@@ -51,7 +51,8 @@ void Stalls::take(Random& random, const uint32_t* valid, uint32_t* ready) {
     }
     for (size_t n = 0; n < words_; ++n) {
         ready[n] = mask(random, one_);
-        if (other_ != one_) ready[n] = (ready[n] & ~others_[n]) | (mask(random, other_) & others_[n]);
+        if (other_ != one_)
+            ready[n] = (ready[n] & ~others_[n]) | (mask(random, other_) & others_[n]);
     }
     for (Long& each : longs_) {
         if (--each.left == 0) {
