@@ -8,6 +8,9 @@ constexpr int HEADER_BYTES = 4;
 // Packets are short, so that many fit into a second; some are longer.
 constexpr uint32_t USUAL_ROOM = 96;
 constexpr uint32_t LARGE_ROOM = 600;
+// Items, for packets that are larger than a gate's memory.
+constexpr uint32_t MANY = 400;
+constexpr uint32_t MOST_ITEMS = 1000;
 constexpr uint32_t LONGEST_RUBBISH = 80;
 
 void put_at(Bytes& bytes, size_t at, uint32_t value) {
@@ -21,7 +24,7 @@ Written Writer::write(Random& random) {
     out_ = {};
     depth_ = 0;
     room_ = random.below(random.one_in(16) ? LARGE_ROOM : USUAL_ROOM);
-    most_ = random.one_in(4) ? 2 : random.one_in(8) ? 200 : 2 * table_.bus_bytes + 3;
+    most_ = random.one_in(4) ? 2 : random.one_in(8) ? MANY : 2 * table_.bus_bytes + 3;
     if (table_.is_cdr) {
         put(0x0100, 2);
         // Options, which a receiver ignores.
@@ -60,6 +63,8 @@ uint32_t Writer::length(const Node& node) {
     // The declared bound itself, if it is small.
     if (node.bound && node.bound == node.limit && node.bound <= 64 && random_->one_in(4))
         count = node.bound;
+    // Or the limit.
+    if (!depth_ && node.limit <= MOST_ITEMS && random_->one_in(64)) count = node.limit;
     align(4);
     uint32_t wire = count;
     // An empty string of CDR has a NUL or not.
