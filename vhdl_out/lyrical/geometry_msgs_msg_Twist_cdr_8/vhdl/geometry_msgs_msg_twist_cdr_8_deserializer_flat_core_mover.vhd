@@ -67,7 +67,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal items_good                  : unsigned(7 downto 0) := (others => '0');
   signal map_word                    : unsigned(63 downto 0) := (others => '0');
   signal map_good                    : unsigned(7 downto 0) := (others => '0');
-  signal counted_now                 : std_logic := '0';
+  signal length_good_now             : std_logic := '0';
   signal last_now                    : std_logic := '0';
   signal final_now                   : std_logic := '0';
   signal active_0                    : std_logic := '0';
@@ -364,7 +364,7 @@ begin
         message_angular_y_valid_q <= '0';
         message_angular_z_valid_q <= '0';
         status_valid_q <= '0';
-        counted_now <= '0';
+        length_good_now <= '0';
         last_now <= '0';
         final_now <= '0';
         active_0 <= '0';
@@ -427,7 +427,7 @@ begin
             status_valid_q <= '1';
             status_payload_q <= status_now;
           end if;
-          counted_now <= orders_payload(32);
+          length_good_now <= orders_payload(32);
           last_now <= orders_payload(31);
           final_now <= orders_payload(33);
           status_now <= orders_payload(41 downto 39);
