@@ -9,7 +9,7 @@ VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test test-thorough lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
-  verify-corpus verify-languages report prove oracles oracles-ros2 fuzz mutate bench examples tools \
+  verify-corpus verify-languages report prove oracles oracles-ros2 fuzz fuzz-hardware mutate bench examples tools \
   ghdl verilog clean
 
 help: ## list the targets
@@ -107,6 +107,10 @@ prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types w
 
 fuzz: $(VENV)/.installed-dev ## a million damaged definitions through the front end; FUZZ_ARGS='-n 1000'
 	$(BIN)/python -m tests.fuzz_frontend --jobs $(JOBS) $(FUZZ_ARGS)
+
+# FUZZ_HARDWARE_ARGS='--types sensor_msgs/msg/Imu --bus-bytes 8 --packets 1000000' takes one type.
+fuzz-hardware: $(VENV)/.installed-dev verilog ## ten million packets, many of them bad, through exported Verilog in Verilator (hours)
+	$(BIN)/python -m firm_hdl.verify.fuzz --jobs $(JOBS) --results $(VERIFY_OUT)/fuzz.jsonl $(FUZZ_HARDWARE_ARGS)
 
 mutate: $(VENV)/.compiled tools ## faults in the program, and which tests notice (hours); MUTATE_ARGS='--count 24'
 	$(BIN)/python -m tools.mutation --first --jobs $(JOBS) --each 1 --most 90 $(MUTATE_ARGS)

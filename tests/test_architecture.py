@@ -79,6 +79,7 @@ VERIFY_MAY_IMPORT = {
     "references": {"results", "ros2_wheels", "ros_python"},
     "cases": {"references", "results"},
     "simulators": {"results"},
+    "fuzz": {"simulators"},
     "systems": {"choices", "references", "results"},
     "clients": {"cases", "references", "results", "systems"},
     "ts1": {"results", "ros2_wheels", "ros_python", "systems"},

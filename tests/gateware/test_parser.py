@@ -96,6 +96,17 @@ def run(parser, packets, **options):
     return seen
 
 
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+def test_a_wrong_header_is_found_when_its_packet_has_filled_the_ring(bus_bytes):
+    # The end of the third packet waits for a status to be taken. Meanwhile, the fourth one fills
+    # the ring; what it has there is as much as the ring can hold.
+    parser = Parser(load_message(HEADER), bus_bytes=bus_bytes)
+    good, bad = bytes([0, 1]) + bytes(14), bytes([0xFF]) + bytes(63 * bus_bytes)
+    packets = [good, good, good, bad, good]
+    seen = run(parser, packets, stalls={"status": Stalls.bits("0" * 600 + "1" * 100)})
+    assert seen.statuses == [Status.OK] * 3 + [Status.ENCAPSULATION, Status.OK]
+
+
 def agree(plan, packets, seen):
     """Check statuses and trailing bytes against the interpreter of a converter's plan."""
     decoded = [decode(plan, packet) for packet in packets]

@@ -45,46 +45,45 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_
   signal last_at    : unsigned(6 downto 0) := "0000111";
 
   -- Combinational signals.
-  signal mismatch_34   : std_logic;
-  signal step_end      : unsigned(6 downto 0);
-  signal left          : unsigned(6 downto 0);
-  signal present       : std_logic;
-  signal exits_always  : std_logic;
-  signal done          : std_logic;
-  signal ends_message  : std_logic;
-  signal ends_packet   : std_logic;
-  signal map_at        : unsigned(6 downto 0);
-  signal items_at      : unsigned(6 downto 0);
-  signal trailing_31   : std_logic;
-  signal header_within : unsigned(6 downto 0);
-  signal mismatch      : std_logic;
-  signal good          : std_logic;
-  signal cut           : std_logic;
-  signal begins        : std_logic;
-  signal sub_43        : unsigned(5 downto 0);
-  signal or_87         : unsigned(5 downto 0);
-  signal map_left      : unsigned(6 downto 0);
-  signal drains        : std_logic;
-  signal allowed       : std_logic;
-  signal issue         : std_logic;
-  signal items_wanted  : unsigned(3 downto 0);
-  signal mux_151       : unsigned(33 downto 0);
-  signal next_state    : unsigned(33 downto 0);
-  signal step_to_exit  : std_logic;
-  signal step_to_body  : std_logic;
-  signal exit_amount   : unsigned(5 downto 0);
-  signal exit_sum      : unsigned(6 downto 0);
-  signal mux_174       : unsigned(6 downto 0);
-  signal early_last    : unsigned(6 downto 0);
-  signal mux_215       : unsigned(2 downto 0);
-  signal and_216       : std_logic;
-  signal sub_221       : unsigned(6 downto 0);
-  signal mux_226       : unsigned(3 downto 0);
-  signal mux_230       : unsigned(3 downto 0);
-  signal mux_231       : unsigned(3 downto 0);
-  signal mux_236       : unsigned(3 downto 0);
-  signal mux_243       : unsigned(3 downto 0);
-  signal mux_285       : unsigned(6 downto 0);
+  signal mismatch_33  : std_logic;
+  signal step_end     : unsigned(6 downto 0);
+  signal left         : unsigned(6 downto 0);
+  signal present      : std_logic;
+  signal exits_always : std_logic;
+  signal done         : std_logic;
+  signal ends_message : std_logic;
+  signal ends_packet  : std_logic;
+  signal map_at       : unsigned(6 downto 0);
+  signal items_at     : unsigned(6 downto 0);
+  signal trailing_31  : std_logic;
+  signal mismatch     : std_logic;
+  signal good         : std_logic;
+  signal cut          : std_logic;
+  signal begins       : std_logic;
+  signal sub_40       : unsigned(5 downto 0);
+  signal or_84        : unsigned(5 downto 0);
+  signal map_left     : unsigned(6 downto 0);
+  signal drains       : std_logic;
+  signal allowed      : std_logic;
+  signal issue        : std_logic;
+  signal items_wanted : unsigned(3 downto 0);
+  signal mux_148      : unsigned(33 downto 0);
+  signal next_state   : unsigned(33 downto 0);
+  signal step_to_exit : std_logic;
+  signal step_to_body : std_logic;
+  signal exit_amount  : unsigned(5 downto 0);
+  signal exit_sum     : unsigned(6 downto 0);
+  signal mux_171      : unsigned(6 downto 0);
+  signal early_last   : unsigned(6 downto 0);
+  signal mux_212      : unsigned(2 downto 0);
+  signal and_213      : std_logic;
+  signal sub_218      : unsigned(6 downto 0);
+  signal mux_223      : unsigned(3 downto 0);
+  signal mux_227      : unsigned(3 downto 0);
+  signal mux_228      : unsigned(3 downto 0);
+  signal mux_233      : unsigned(3 downto 0);
+  signal mux_240      : unsigned(3 downto 0);
+  signal mux_282      : unsigned(6 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal default_0     : std_logic;
@@ -122,7 +121,7 @@ begin
     port map (
       aclk      => aclk,
       rst       => rst,
-      mismatch  => mismatch_34,
+      mismatch  => mismatch_33,
       beat      => beat,
       header_at => first_at(6 downto 3)
     );
@@ -138,17 +137,16 @@ begin
   items_at <= first_at when state(16) = '1' else (map_at(6 downto 3) - state(17)) &
       map_at(2 downto 0);
   trailing_31 <= present and (or left(5 downto 2));
-  header_within <= limit_sig - first_at;
-  mismatch <= state(0) and mismatch_34 and not header_within(6) and (or header_within);
-  good <= present and not (state(0) and mismatch_34);
+  mismatch <= '1' when state(0) = '1' and mismatch_33 = '1' and limit_sig /= first_at else '0';
+  good <= present and not (state(0) and mismatch_33);
   cut <= ended and not present;
   begins <= issue and (state(12) or state(13));
-  sub_43 <= unsigned'("000001") - sign_extend(state(11 downto 7), 6);
-  or_87 <= (limit_sig(5 downto 0) and not last_at(5 downto 0)) or (limit_sig(5 downto 0) and
+  sub_40 <= unsigned'("000001") - sign_extend(state(11 downto 7), 6);
+  or_84 <= (limit_sig(5 downto 0) and not last_at(5 downto 0)) or (limit_sig(5 downto 0) and
       unsigned'("000001") - sign_extend(state(11 downto 7), 6)) or (not last_at(5 downto 0) and
       unsigned'("000001") - sign_extend(state(11 downto 7), 6));
-  map_left <= (limit_sig xor not last_at xor unsigned'(sub_43(5) &
-      (unsigned'("000001") - sign_extend(state(11 downto 7), 6)))) + unsigned'(or_87 & '0');
+  map_left <= (limit_sig xor not last_at xor unsigned'(sub_40(5) &
+      (unsigned'("000001") - sign_extend(state(11 downto 7), 6)))) + unsigned'(or_84 & '0');
   drains <= bad and not new_error and (not state(19) or ended);
   allowed <= not bad and (not ends_message or ended);
   orders_valid <= drains or (allowed and good);
@@ -156,32 +154,32 @@ begin
   next_sig <= (drains and orders_ready and ends_packet) or (allowed and orders_ready and
       ends_packet and good);
   items_wanted <= (others => '0') when state(16) = '1' else "1000";
-  mux_151 <= (or state(4 downto 0)) & 9x"000" & (or state(3 downto 0)) & state(3) & "00" &
+  mux_148 <= (or state(4 downto 0)) & 9x"000" & (or state(3 downto 0)) & state(3) & "00" &
       state(5) & (or state(4 downto 0)) & state(4) & "00000" & (or state(4 downto 0)) &
       (or state(4 downto 0)) & state(4) & '0' & (or state(5 downto 0)) & state(5 downto 0) &
       '0' when done = '1' else (others => '0');
-  next_state <= 34x"200840C81" when ends_packet = '1' else mux_151;
+  next_state <= 34x"200840C81" when ends_packet = '1' else mux_148;
   step_to_exit <= issue and not ends_packet and done;
   step_to_body <= issue and not ends_packet and not done;
   exit_amount <= (others => '0') when state(32) = '1' else state(25 downto 20);
   exit_sum <= last_at + exit_amount;
-  mux_174 <= (exit_sum and not resize(state(28 downto 26), 7)) or resize(state(31 downto 29),
+  mux_171 <= (exit_sum and not resize(state(28 downto 26), 7)) or resize(state(31 downto 29),
       7) when exits_always = '1' else last_at;
-  early_last <= unsigned'(following & "000") + 7 when ends_packet = '1' else mux_174;
-  mux_215 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends_message, "010", "011"));
-  and_216 <= drains and orders_ready;
-  sub_221 <= limit_sig - first_at;
-  mux_226 <= (others => '0') when sub_221(6) = '1' else mux(to_std_logic(limit_sig - first_at >= 8),
+  early_last <= unsigned'(following & "000") + 7 when ends_packet = '1' else mux_171;
+  mux_212 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends_message, "010", "011"));
+  and_213 <= drains and orders_ready;
+  sub_218 <= limit_sig - first_at;
+  mux_223 <= (others => '0') when sub_218(6) = '1' else mux(to_std_logic(limit_sig - first_at >= 8),
       "1000", limit_sig(3 downto 0) - first_at(3 downto 0));
-  mux_230 <= mux_226 when state(16) = '1' else mux(map_left(6), "0000",
+  mux_227 <= mux_223 when state(16) = '1' else mux(map_left(6), "0000",
       mux(to_std_logic(map_left >= 8), "1000", map_left(3 downto 0)));
-  mux_231 <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0), "000"), 4),
-      "1000") when state(17) = '1' else mux_230;
-  mux_236 <= mux_231 when code = 1 else mux(to_std_logic(code = 2) or to_std_logic(code = 5),
+  mux_228 <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0), "000"), 4),
+      "1000") when state(17) = '1' else mux_227;
+  mux_233 <= mux_228 when code = 1 else mux(to_std_logic(code = 2) or to_std_logic(code = 5),
       "1000", "0000");
-  mux_243 <= mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8), "1000",
+  mux_240 <= mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8), "1000",
       map_left(3 downto 0))) when code = 1 else mux(to_std_logic(code = 2), "1000", "0000");
-  mux_285 <= following & "000" when ends_packet = '1' else mux(bad, mux(state(19), limit_sig,
+  mux_282 <= following & "000" when ends_packet = '1' else mux(bad, mux(state(19), limit_sig,
       first_at), step_end);
 
   p_aclk : process (aclk)
@@ -208,14 +206,14 @@ begin
         end if;
         if bad = '0' then
           new_error <= mismatch or cut or (ends_message and not ended and trailing_31);
-          code <= mux_215;
+          code <= mux_212;
         end if;
         if bad = '1' then
           new_error <= '0';
           if new_error = '1' then
-            items_room <= mux_236;
-            map_room <= mux_243;
-          elsif and_216 = '1' then
+            items_room <= mux_233;
+            map_room <= mux_240;
+          elsif and_213 = '1' then
             items_room <= (others => '0');
             map_room <= (others => '0');
           end if;
@@ -236,7 +234,7 @@ begin
           last_at <= early_last;
         end if;
         if issue = '1' or (bad = '1' and state(19) = '1') then
-          first_at <= mux_285;
+          first_at <= mux_282;
         end if;
       end if;
     end if;

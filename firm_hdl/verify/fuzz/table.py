@@ -1,0 +1,168 @@
+"""The table of a type: what the reference decoder of the fuzzer knows of it.
+
+It is made from the message model alone, by the rules of ``docs/interface.md``. It shares no code
+with the layout, the plan and the circuits: it has its own walk over the fields, its own names of
+leaves, and its own limits of lengths.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String, Wire
+
+__all__ = ["Table", "TableLeaf", "table_of"]
+
+_LENGTH_BYTES = 4
+_HEADER_BYTES = 4
+_EMPTY = "structure_needs_at_least_one_member"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TableLeaf:
+    """A stream of the message side.
+
+    Attributes
+    ----------
+    path : tuple of str
+    bits : int
+        Bits of the scalar, or of an item.
+    lanes : int
+        Items of a transfer.
+    has_last : bool
+        Whether it has items, and so a `last`.
+    """
+
+    path: tuple[str, ...]
+    bits: int
+    lanes: int = 1
+    has_last: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Table:
+    """The leaves of a type in wire order, and its fields as lines of text for the decoder.
+
+    Attributes
+    ----------
+    least_bytes : int
+        Size of the shortest packet, without padding.
+    """
+
+    wire: Wire
+    bus_bytes: int
+    least_bytes: int
+    leaves: tuple[TableLeaf, ...]
+    lines: tuple[str, ...]
+
+    def text(self) -> str:
+        """Return what the harness reads."""
+        head = f"table {int(self.wire == 'cdr')} {self.bus_bytes} {len(self.leaves)}"
+        leaves = (f"{'.'.join(leaf.path)} {leaf.bits} {leaf.lanes}" for leaf in self.leaves)
+        return "".join(f"{line}\n" for line in (head, *leaves, *self.lines))
+
+
+def table_of(message: Message, *, wire: Wire, bus_bytes: int, max_message_bytes: int) -> Table:
+    """Make the table of a type."""
+    walk = _Walk(wire, bus_bytes)
+    least = _HEADER_BYTES * walk.is_cdr + walk.least_bytes(message)
+    walk.room = max_message_bytes - least
+    lines = tuple(walk.message(message, ()))
+    leaves = tuple(walk.leaves)
+    return Table(wire=wire, bus_bytes=bus_bytes, least_bytes=least, leaves=leaves, lines=lines)
+
+
+@dataclass
+class _Walk:
+    """The walk over the fields of a type.
+
+    Attributes
+    ----------
+    room : int
+        Bytes that the shortest packet leaves of `max_message_bytes`.
+    leaves : list of TableLeaf
+    """
+
+    wire: Wire
+    bus_bytes: int
+    room: int = 0
+    leaves: list[TableLeaf] = field(default_factory=list)
+
+    @property
+    def is_cdr(self) -> bool:
+        return self.wire == "cdr"
+
+    def least_bytes(self, kind: FieldType) -> int:
+        """Return the size of the shortest value, without padding."""
+        match kind:
+            case Primitive():
+                return kind.bytes
+            case String() | Sequence():
+                return _LENGTH_BYTES
+            case Array():
+                return kind.count * self.least_bytes(kind.element)
+            case Message(fields=()):
+                return int(self.is_cdr)
+            case Message():
+                return sum(self.least_bytes(item.type) for item in kind.fields)
+
+    def limit(self, item_bytes: int, bound: int | None, nul_bytes: int = 0) -> str:
+        """Return the declared bound (0: none), and the largest length that is no error."""
+        # An element without bytes still has a transfer, and counts as one byte.
+        most = max(0, (self.room - nul_bytes) // max(1, item_bytes))
+        return f"{bound or 0} {most if bound is None else min(bound, most)}"
+
+    def leaf(self, *path: str, bits: int, lanes: int = 1, has_last: bool = False) -> int:
+        self.leaves.append(TableLeaf(path=path, bits=bits, lanes=lanes, has_last=has_last))
+        return len(self.leaves) - 1
+
+    def message(self, message: Message, path: tuple[str, ...]) -> Iterator[str]:
+        if not message.fields and self.is_cdr:
+            yield f"scalar {self.leaf(*path, _EMPTY, bits=8)} 1 0"
+        elif not message.fields:
+            yield f"trigger {self.leaf(*path, 'trigger', bits=1)}"
+        for item in message.fields:
+            yield from self.value(item.type, (*path, item.name))
+
+    def value(self, kind: FieldType, path: tuple[str, ...]) -> Iterator[str]:
+        match kind:
+            case Primitive():
+                is_bool = kind.kind == "bool"
+                leaf = self.leaf(*path, bits=1 if is_bool else 8 * kind.bytes)
+                yield f"scalar {leaf} {kind.bytes} {int(is_bool)}"
+            case Message():
+                yield from self.message(kind, path)
+            case String(bound=bound, wide=wide):
+                has_nul = self.is_cdr and not wide
+                limit = self.limit(4 if wide else 1, bound, int(has_nul))
+                length = self.leaf(*path, "length", bits=32)
+                yield self.run(path, length, 4 if wide else 1, False, f"{int(has_nul)} 0 {limit}")
+            case Array(element=element, count=count):
+                yield from self.elements(element, path, -1, f"{count} 0 0")
+            case Sequence(element=element, bound=bound):
+                length = self.leaf(*path, "length", bits=32)
+                limit = self.limit(self.least_bytes(element), bound)
+                yield from self.elements(element, path, length, f"0 {limit}")
+
+    def elements(
+        self, element: FieldType, path: tuple[str, ...], length: int, counts: str
+    ) -> Iterator[str]:
+        if isinstance(element, Primitive):
+            yield self.run(path, length, element.bytes, element.kind == "bool", f"0 {counts}")
+            return
+        yield f"loop {length} {counts}"
+        yield from self.value(element, (*path, "item"))
+        yield "end"
+
+    def run(
+        self, path: tuple[str, ...], length: int, item_bytes: int, is_bool: bool, rest: str
+    ) -> str:
+        leaf = self.leaf(
+            *path,
+            "items",
+            bits=1 if is_bool else 8 * item_bytes,
+            lanes=max(1, self.bus_bytes // item_bytes),
+            has_last=True,
+        )
+        return f"run {length} {leaf} {item_bytes} {int(is_bool)} {rest}"

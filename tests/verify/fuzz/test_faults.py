@@ -1,0 +1,58 @@
+"""Twins: faults in the exported Verilog, and in what the decoder knows, are found."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from tests.depth import by_depth
+from tests.verify.fuzz.faults import FAULTS
+from tests.verify.fuzz.samples import STRING, found, need_tools, run
+
+pytestmark = pytest.mark.usefixtures("tools")
+
+
+@pytest.fixture
+def tools() -> None:
+    need_tools()
+
+
+@pytest.mark.parametrize("fault", by_depth(FAULTS[3:4], FAULTS), ids=lambda fault: fault.name)
+def test_a_fault_in_the_circuit_is_found(fault):
+    outcome = run(STRING, fault.circuit, alter=fault.alter)
+    failure = found(outcome)
+    assert re.search(fault.rule, failure.rule), failure
+    assert failure.circuit == fault.circuit
+    assert failure.packet is not None and failure.cycle is not None
+
+
+# The table of a string: "run LENGTH ITEMS BYTES BOOL NUL COUNT BOUND LIMIT".
+RUN = "run 0 1 1 0 1 0 0 299"
+WRONG_TABLES = {
+    "a limit that is too small": "run 0 1 1 0 1 0 0 298",
+    "a limit that is too large": "run 0 1 1 0 1 0 0 300",
+    "no terminator": "run 0 1 1 0 0 0 0 299",
+    "bools": "run 0 1 1 1 1 0 0 299",
+    "items of two bytes": "run 0 1 2 0 1 0 0 299",
+}
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("line", WRONG_TABLES.values(), ids=WRONG_TABLES)
+def test_a_fault_in_the_decoders_table_is_found(line):
+    def alter(table):
+        assert table.lines == (RUN,)
+        return replace(table, lines=(line,))
+
+    # Cuts, lengths and items all differ; which is first depends on the packets.
+    assert found(run(STRING, "deserializer", alter_table=alter)).rule
+
+
+@pytest.mark.thorough
+def test_a_failure_is_repeated_by_its_packet_alone():
+    fault = FAULTS[3]
+    failure = found(run(STRING, fault.circuit, alter=fault.alter))
+    again = found(run(STRING, fault.circuit, alter=fault.alter, packets=1, first=failure.packet))
+    assert again == failure
