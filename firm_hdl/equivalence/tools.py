@@ -84,8 +84,13 @@ def answer_of(tool: str, file: Path) -> str:
 
 
 @cache
-def find_tools() -> Tools:
+def find_tools(*, ghdl: bool = True) -> Tools:
     """Find GHDL as `verify` does, and Yosys in the environment or on the PATH, ready to run.
+
+    Parameters
+    ----------
+    ghdl : bool
+        If not, `Tools.ghdl` is empty.
 
     Raises
     ------
@@ -95,9 +100,9 @@ def find_tools() -> Tools:
         If a tool is missing; the text says how to install it.
     """
     missing = []
-    ghdl = ""
+    found: tuple[str, ...] = ()
     try:
-        ghdl = find_ghdl()
+        found = (find_ghdl(),) if ghdl else ()
     except ProgramMissingError as error:
         missing.append(str(error))
     yosys = _yosys()
@@ -109,7 +114,7 @@ def find_tools() -> Tools:
         )
     if missing or yosys is None:
         raise MissingToolError("; ".join(missing))
-    return Tools(ghdl=(ghdl,), yosys=yosys)
+    return Tools(ghdl=found, yosys=yosys)
 
 
 def _yosys() -> tuple[str, ...] | None:
