@@ -25,7 +25,7 @@ class Claim:
     depth : int
         Cycles of `BMC`.
     found_within : int
-        Cycles in which the bug has to be found.
+        Cycles in which the bug has to be found, if the method is "PDR"; else it is `depth`.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""``python -m firm_hdl.formal``: run proofs, with a line for each, and the exit status 1 if one fails."""
+"""``python -m firm_hdl.formal``: run proofs, with a line for each as it ends."""
 
 from __future__ import annotations
 
@@ -59,7 +59,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("names", nargs="*", help="such as 'slice/*'; default: all")
     parser.add_argument("--list", action="store_true", help="list the proofs")
     parser.add_argument(
-        "--twins", action="store_true", help="then put a bug into each block; its claim must find it"
+        "--twins",
+        action="store_true",
+        help="then put a bug into each block; its claim must find it",
     )
     parser.add_argument("--only-twins", action="store_true", help="the same, without the proofs")
     parser.add_argument("--jobs", type=positive, default=2, help="processes; default: %(default)s")

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -25,7 +23,13 @@ TIMEOUT = 900.0
 @cache
 def all_proofs() -> dict[str, Proof]:
     """Return all proofs by their keys."""
-    studies = [*slices.studies(), *fifos.studies(), *converters.studies(), *serializers.studies(), *judges.studies()]
+    studies = [
+        *slices.studies(),
+        *fifos.studies(),
+        *converters.studies(),
+        *serializers.studies(),
+        *judges.studies(),
+    ]
     proofs = [Proof(study, claim) for study in studies for claim in study.claims]
     return {proof.key: proof for proof in proofs}
 
@@ -40,8 +44,10 @@ def prove(key: str, timeout: float = TIMEOUT) -> Answer:
 def refute(key: str, timeout: float = TIMEOUT) -> Answer:
     """Look for a counterexample to the same claim, with its bug in the block."""
     proof = all_proofs()[key]
-    with seeded([proof.claim.bug]):
-        return _decide(proof, timeout, method="BMC", depth=proof.claim.found_within)
+    claim = proof.claim
+    depth = claim.depth if claim.method == "BMC" else claim.found_within
+    with seeded([claim.bug]):
+        return _decide(proof, timeout, method="BMC", depth=depth)
 
 
 def _decide(proof: Proof, timeout: float, **how: object) -> Answer:

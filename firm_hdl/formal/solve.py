@@ -78,7 +78,7 @@ def decide(
     found, frames = words[0], int(words[1])
     if found == "snl_SAT" and frames >= 0:
         inputs = _inputs(answer_of("ABC", folder / f"{name}.cex"))
-        return Answer(result="broken", cycles=frames + 1, inputs=inputs, seconds=seconds)
+        return Answer(result="broken", cycles=int(words[4]) + 1, inputs=inputs, seconds=seconds)
     proved = found == "snl_UNSAT" if method == "PDR" else frames + 1 >= depth
     return Answer(result="proved" if proved else "undecided", cycles=frames, seconds=seconds)
 

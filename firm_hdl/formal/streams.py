@@ -14,7 +14,16 @@ from amaranth.lib import stream
 
 from firm_hdl.formal.scene import Scene
 
-__all__ = ["fires", "packet_rules", "packet_source", "progress", "rules", "sink", "source", "starts_of"]
+__all__ = [
+    "fires",
+    "packet_rules",
+    "packet_source",
+    "progress",
+    "rules",
+    "sink",
+    "source",
+    "starts_of",
+]
 
 
 def fires(port: Any) -> Value:

@@ -130,7 +130,6 @@ class Tracker:
         self.scene.claim("nothing extra", self.inside <= self.most)
 
 
-
 class BeatTracker:
     """The same claims about a block that leaves beats as they are: the unit is a beat.
 

@@ -26,7 +26,10 @@ from firm_hdl.gateware.parse.buffer import Buffer
 from firm_hdl.gateware.parse.judge import Judge
 from firm_hdl.gateware.signatures import Status, leaf_streams
 
-__all__ = ["FixedType", "status_of", "studies"]
+__all__ = ["BITS", "BOOL", "DATA_DEPTH", "JOY", "JOY_CDR", "FixedType", "status_of", "studies"]
+
+DATA_DEPTH = 12
+"""Cycles of claims that compare data, which take longest."""
 
 BITS = 7
 """Bits of counts of packets and bytes; more than any of the converters holds."""
@@ -117,7 +120,7 @@ class PacketNotes:
             with m.If(self.size < (1 << BITS) - 2 * lanes):
                 m.d.sync += self.size.eq(self.size + beat.count)
             for lane in range(lanes):
-                at, valid = self.size + lane, beat.count > lane
+                at, valid = self.size + Const(lane, BITS), beat.count > Const(lane, BITS)
                 with m.If(valid & (at == place)):
                     m.d.sync += self.byte.eq(beat.data[lane])
                 if header:
@@ -128,6 +131,7 @@ class PacketNotes:
                         m.d.sync += self.wrong_header.eq(1)
 
 
+_DATA = ("one each", "statuses", "values", "wire order")
 _DESERIALIZER_BUGS = {
     "valid stays": Bug(_Move.__init__, "with m.If(port.ready):", "with m.If(1):"),
     "payload stays": Bug(_Move.__init__, "m.If(writer.go)", "m.If(writer.active)"),
@@ -158,7 +162,7 @@ def _deserializer(kind: FixedType, bus_bytes: int, depth: int) -> Study:
         f"`Deserializer` of {kind.name} ({kind.distro}), {bus_bytes} bytes",
         build,
         tuple(
-            Claim(claim, bug, "BMC", depth)
+            Claim(claim, bug, "BMC", DATA_DEPTH if claim in _DATA else depth)
             for claim, bug in _DESERIALIZER_BUGS.items()
             if claim != "wire order" or len(kind.fields) > 1
         ),
@@ -240,6 +244,8 @@ def _check_liveness(scene: Scene, block: Deserializer, ready: Value) -> None:
 def studies() -> list[Study]:
     """Return the studies of converters."""
     return [
-        _deserializer(BOOL, 1, 16),
-        _deserializer(JOY, 1, 20),
+        _deserializer(BOOL, 1, 15),
+        _deserializer(JOY, 1, 18),
+        _deserializer(JOY_CDR, 4, 18),
+        _deserializer(TIME_CDR, 8, 16),
     ]

@@ -10,6 +10,7 @@ from typing import Any
 
 from amaranth.hdl import Cat, Mux, Signal, Value
 
+from firm_hdl.formal.blocks.converters import DATA_DEPTH
 from firm_hdl.formal.bugs import Bug
 from firm_hdl.formal.catalog import Claim, Study
 from firm_hdl.formal.scene import Scene
@@ -20,7 +21,6 @@ from firm_hdl.formal.streams import (
     progress,
     rules,
     sink,
-    starts_of,
 )
 from firm_hdl.formal.tracking import BeatTracker
 from firm_hdl.frontend import load_message
@@ -34,6 +34,8 @@ from firm_hdl.gateware.parser import PacketSizes, Parser
 from firm_hdl.gateware.signatures import Status
 
 __all__ = ["studies"]
+
+_DATA = ("count", "one status", "statuses", "sizes", "order", "nothing extra")
 
 BITS = 6
 MOST_MESSAGE = 7
@@ -108,9 +110,13 @@ def _parser(name: str, depth: int) -> Study:
         progress(scene, "input moves", ready & block.packets.valid & ~block.packets.ready, 12)
 
     bugs = {
-        "valid stays": Bug(Parser.elaborate, "takes.eq(~self.status.valid | self", "takes.eq(1 | self"),
+        "valid stays": Bug(
+            Parser.elaborate, "takes.eq(~self.status.valid | self", "takes.eq(1 | self"
+        ),
         "payload stays": Bug(
-            Parser.elaborate, "with m.If(~has_second):", "m.d.sync += self.sizes.packet.eq(sizes.bytes)\n    with m.If(~has_second):"
+            Parser.elaborate,
+            "with m.If(~has_second):",
+            "m.d.sync += self.sizes.packet.eq(sizes.bytes)\n    with m.If(~has_second):",
         ),
         "one status": Bug(Parser.elaborate, "eq(has_second | sequencer.next)", "eq(1)"),
         "statuses": Bug(Judge._judge, "cut, Status.TRUNCATED", "cut, Status.LENGTH"),
@@ -122,7 +128,10 @@ def _parser(name: str, depth: int) -> Study:
         f"parser-{name.split('/')[-1].lower()}",
         f"`Parser` of {name}, 1 byte",
         build,
-        tuple(Claim(claim, bug, "BMC", depth) for claim, bug in bugs.items()),
+        tuple(
+            Claim(claim, bug, "BMC", DATA_DEPTH if claim in _DATA else depth)
+            for claim, bug in bugs.items()
+        ),
     )
 
 
@@ -151,7 +160,6 @@ def _gate(name: str, depth: int, beats: int) -> Study:
         beat, gone = Value.cast(came.payload), Value.cast(out.payload)
         tracker.enter(fires(came), beat, decides=came.payload.last, keeps=final == 0)
         tracker.leave(fires(out), gone)
-        starts_of(scene.m, out, "out")
         waits = takes & ready
         progress(scene, "status in time", waits & (status.due != 0) & ~block.status.valid, 16)
         progress(scene, "output moves", waits & (tracker.inside > 0) & ~out.valid, 16)
@@ -161,7 +169,9 @@ def _gate(name: str, depth: int, beats: int) -> Study:
     bugs = {
         "valid stays": Bug(read, "leaves.eq(~packets.valid | packets.ready)", "leaves.eq(1)"),
         "payload stays": Bug(read, "with m.If(self.begins):", "with m.If(starts):"),
-        "count": Bug(read, "packets.payload.eq(self.word)", "packets.payload.eq(~self.word.as_value())"),
+        "count": Bug(
+            read, "packets.payload.eq(self.word)", "packets.payload.eq(~self.word.as_value())"
+        ),
         "one status": Bug(_Verdicts.give_statuses, "is_due.eq(enters)", "is_due.eq(1)"),
         "statuses": Bug(_Verdicts._store, "status.ready.eq(self.ends)", "status.ready.eq(1)"),
         "order": Bug(write, "Mux(self.rewinds, self.kept, at + 1)", "at + 1"),
@@ -174,14 +184,17 @@ def _gate(name: str, depth: int, beats: int) -> Study:
         f"gate-{name.split('/')[-1].lower()}",
         f"`PacketGate` of {name}, 1 byte, memory of {beats} bytes",
         build,
-        tuple(Claim(claim, bug, "BMC", depth) for claim, bug in bugs.items()),
+        tuple(
+            Claim(claim, bug, "BMC", DATA_DEPTH if claim in _DATA else depth)
+            for claim, bug in bugs.items()
+        ),
     )
 
 
 def studies() -> list[Study]:
     """Return the studies of parsers and gates."""
     return [
-        _parser("std_msgs/Bool", 14),
-        _parser("std_msgs/String", 14),
-        _gate("std_msgs/Bool", 14, 2),
+        _parser("std_msgs/Bool", 16),
+        _parser("std_msgs/String", 18),
+        _gate("std_msgs/Bool", 20, 2),
     ]

@@ -6,7 +6,14 @@ from typing import Any
 
 from amaranth.hdl import Array, Cat, Const, Mux, Signal, Value
 
-from firm_hdl.formal.blocks.converters import BITS, BOOL, JOY, JOY_CDR, FixedType
+from firm_hdl.formal.blocks.converters import (
+    BITS,
+    BOOL,
+    DATA_DEPTH,
+    JOY,
+    JOY_CDR,
+    FixedType,
+)
 from firm_hdl.formal.bugs import Bug
 from firm_hdl.formal.catalog import Claim, Study
 from firm_hdl.formal.scene import Scene
@@ -44,7 +51,7 @@ def _serializer(kind: FixedType, bus_bytes: int, depth: int) -> Study:
         f"`Serializer` of {kind.name} ({kind.distro}), {bus_bytes} bytes",
         build,
         tuple(
-            Claim(claim, bug, "BMC", depth)
+            Claim(claim, bug, "BMC", DATA_DEPTH if claim == "values" else depth)
             for claim, bug in _BUGS.items()
             if claim != "wire order" or len(kind.fields) > 1
         ),
@@ -56,8 +63,8 @@ _BUGS = {
     "payload stays": Bug(_Pack._send, "(~packets.valid | packets.ready)", "1"),
     "layout": Bug(_Pack._send, "payload.last.eq(is_last)", "payload.last.eq(~is_last)"),
     "values": Bug(_Pack._send, "Value.cast(payload.data).eq(beat)", "payload.data.eq(~beat)"),
-    "statuses": Bug(_Collect._decide, "progress.ends.eq(progress.done &", "progress.ends.eq(1 |"),
-    "wire order": Bug(_Collect._decide, "progress.ends.eq(progress.done &", "progress.ends.eq(1 |"),
+    "statuses": Bug(_Collect._judge, "c.status.valid.eq(1)", "c.status.valid.eq(c.status.valid)"),
+    "wire order": Bug(_Collect._serve, "progress.free & ~any_of(missing) &", "progress.free &"),
     "packets move": Bug(_Pack._send, "self.complete.eq(self.complete_next)", "self.complete.eq(0)"),
 }
 
@@ -76,7 +83,9 @@ def _check_layout(scene: Scene, kind: FixedType, packets: Any) -> Signal:
     for place in sorted(set(range(kind.bytes)) - taken):
         fixed = kind.header[place] if place < len(kind.header) else 0
         for lane in range(len(beat.data)):
-            here = packets.valid & (at + lane == place) & (beat.count > lane)
+            here = (
+                packets.valid & (at + Const(lane, BITS) == place) & (beat.count > Const(lane, BITS))
+            )
             scene.claim("layout", ~here | (beat.data[lane] == fixed))
     return at
 
@@ -111,7 +120,13 @@ def _check_values(
     with m.Elif(ends & waits):
         m.d.sync += [before.eq(before - 1), waits.eq(before != 0)]
     for lane in range(len(beat.data)):
-        hits = packets.valid & waits & (before == 0) & (at + lane == place) & (beat.count > lane)
+        hits = (
+            packets.valid
+            & waits
+            & (before == 0)
+            & (at + Const(lane, BITS) == place)
+            & (beat.count > Const(lane, BITS))
+        )
         scene.claim("values", ~hits | (beat.data[lane] == byte))
     scene.claim("values", ~(packets.valid & beat.last) | (inside != 0))
     if count == 1:
@@ -128,10 +143,14 @@ def _check_statuses(scene: Scene, leaves: list[Any], block: Serializer) -> None:
     """Claim that each message has one status, and that it is `OK`."""
     m, due = scene.m, Signal(BITS, name="statuses_due")
     m.d.sync += due.eq(due + fires(leaves[-1]) - fires(block.status))
-    scene.claim("statuses", ~block.status.valid | ((due != 0) & (block.status.payload == Status.OK)))
+    scene.claim(
+        "statuses", ~block.status.valid | ((due != 0) & (block.status.payload == Status.OK))
+    )
     scene.claim("statuses", ~(block.packets.valid & block.packet_error))
+    # One is offered, one message has been taken, and the next one is not yet.
+    scene.claim("statuses", due <= 3)
 
 
 def studies() -> list[Study]:
     """Return the studies of serializers."""
-    return [_serializer(BOOL, 1, 20), _serializer(JOY, 2, 20), _serializer(JOY_CDR, 8, 20)]
+    return [_serializer(BOOL, 1, 15), _serializer(JOY, 2, 14), _serializer(JOY_CDR, 8, 16)]

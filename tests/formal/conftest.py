@@ -1,0 +1,17 @@
+"""What proofs need from outside."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.equivalence.tools import MissingToolError, find_tools
+from tests.tools import need
+
+
+@pytest.fixture(autouse=True)
+def yosys() -> None:
+    """Yosys with ABC."""
+    try:
+        find_tools(ghdl=False)
+    except MissingToolError as error:
+        need(str(error), None)
