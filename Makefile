@@ -9,7 +9,8 @@ VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test test-thorough lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
-  verify-corpus verify-languages report prove oracles oracles-ros2 fuzz fuzz-hardware mutate bench examples tools \
+  verify-corpus verify-languages report prove formal oracles oracles-ros2 fuzz fuzz-hardware mutate bench \
+  examples tools \
   ghdl verilog clean
 
 help: ## list the targets
@@ -104,6 +105,9 @@ verify-languages: $(VENV)/.installed-dev verilog ## Verilog of four types, in ev
 
 prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types with all constructs
 	$(BIN)/python -m firm_hdl.equivalence --jobs $(JOBS) $(PROVE_ARGS)
+
+formal: $(VENV)/.compiled ## proofs of blocks and small converters for every input (docs/formal.md), and their twins
+	$(BIN)/python -m firm_hdl.formal --twins --jobs $(JOBS) $(FORMAL_ARGS)
 
 fuzz: $(VENV)/.installed-dev ## a million damaged definitions through the front end; FUZZ_ARGS='-n 1000'
 	$(BIN)/python -m tests.fuzz_frontend --jobs $(JOBS) $(FUZZ_ARGS)

@@ -56,6 +56,9 @@ MAY_IMPORT["equivalence"] = {
     *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
+MAY_IMPORT["formal"] = {
+    *("arguments", "equivalence", "frontend", "gateware", "jobs", "terminal"),
+}
 MAY_IMPORT["bench"] = {
     *("arguments", "drawing", "errors", "files", "jobs", "terminal"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware", "sim", "export"),

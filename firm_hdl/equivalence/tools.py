@@ -58,8 +58,13 @@ def answer_of(tool: str, file: Path) -> str:
 
 
 @cache
-def find_tools() -> Tools:
+def find_tools(*, ghdl: bool = True) -> Tools:
     """Find GHDL as `verify` does, and Yosys in the environment or on the PATH, ready to run.
+
+    Parameters
+    ----------
+    ghdl : bool
+        If not, `Tools.ghdl` is empty.
 
     Raises
     ------
@@ -69,9 +74,10 @@ def find_tools() -> Tools:
         If a tool is missing; the text says how to install it.
     """
     missing = []
-    ghdl, yosys = "", None
+    found: tuple[str, ...] = ()
+    yosys = None
     try:
-        ghdl = find_ghdl()
+        found = (find_ghdl(),) if ghdl else ()
     except ProgramMissingError as error:
         missing.append(str(error))
     try:
@@ -83,7 +89,7 @@ def find_tools() -> Tools:
         raise _failed("Yosys", str(error), is_packaged=True) from None
     if missing or yosys is None:
         raise ProgramMissingError("; ".join(missing))
-    return Tools(ghdl=(ghdl,), yosys=yosys.command)
+    return Tools(ghdl=found, yosys=yosys.command)
 
 
 def _run(command: Sequence[str], folder: Path, name: str, timeout: float | None) -> str:

@@ -1,0 +1,61 @@
+"""Run proofs and twins, each in a process of its own."""
+
+from __future__ import annotations
+
+import tempfile
+from functools import cache
+from pathlib import Path
+
+from firm_hdl.equivalence.tools import find_tools
+from firm_hdl.formal.blocks import converters, fifos, judges, serializers, slices
+from firm_hdl.formal.bugs import seeded
+from firm_hdl.formal.catalog import Proof
+from firm_hdl.formal.netlist import write_aiger
+from firm_hdl.formal.scene import Scene
+from firm_hdl.formal.solve import Answer, decide
+
+__all__ = ["all_proofs", "prove", "refute"]
+
+TIMEOUT = 900.0
+"""Seconds for each proof."""
+
+
+@cache
+def all_proofs() -> dict[str, Proof]:
+    """Return all proofs by their keys."""
+    studies = [
+        *slices.studies(),
+        *fifos.studies(),
+        *converters.studies(),
+        *serializers.studies(),
+        *judges.studies(),
+    ]
+    proofs = [Proof(study, claim) for study in studies for claim in study.claims]
+    return {proof.key: proof for proof in proofs}
+
+
+def prove(key: str, timeout: float = TIMEOUT) -> Answer:
+    """Prove a claim."""
+    proof = all_proofs()[key]
+    claim = proof.claim
+    return _decide(proof, timeout, method=claim.method, depth=claim.depth)
+
+
+def refute(key: str, timeout: float = TIMEOUT) -> Answer:
+    """Look for a counterexample to the same claim, with its bug in the block."""
+    proof = all_proofs()[key]
+    claim = proof.claim
+    depth = claim.depth if claim.method == "BMC" else claim.found_within
+    with seeded([claim.bug]):
+        return _decide(proof, timeout, method="BMC", depth=depth)
+
+
+def _decide(proof: Proof, timeout: float, **how: object) -> Answer:
+    scene = Scene(proof.study.build)
+    named = {claim.name for claim in proof.study.claims}
+    if named != set(scene.claims):
+        raise ValueError(f"{proof.study.name}: claims differ: {named ^ set(scene.claims)}")
+    output = list(scene.claims).index(proof.claim.name)
+    with tempfile.TemporaryDirectory(prefix="firm-hdl-formal-") as folder:
+        aiger = write_aiger(scene, Path(folder), find_tools(ghdl=False))
+        return decide(aiger, output, find_tools(ghdl=False), timeout=timeout, **how)  # type: ignore[arg-type]

@@ -1,0 +1,92 @@
+"""Proofs, and their twins with a bug: a fast subset of `make formal`."""
+
+from __future__ import annotations
+
+import pytest
+from amaranth.hdl import Signal
+
+from firm_hdl.formal import run
+from firm_hdl.formal.bugs import Bug, seeded
+from firm_hdl.formal.catalog import Claim, Study
+from firm_hdl.formal.command import main
+from firm_hdl.formal.run import all_proofs, prove, refute
+from firm_hdl.gateware.packets.slice import StreamSlice
+
+FAST = [
+    *("slice/valid-stays", "slice/order", "arbiter/whole-packets", "arbiter/turns"),
+    *("router/order", "router/counters", "fifo-wait-1/one-outcome", "width-1-4/count"),
+    *("gate-bool/input-moves", "parser-string/one-status"),
+]
+
+
+@pytest.mark.parametrize("key", FAST)
+def test_claim_holds(key):
+    assert prove(key).result == "proved"
+
+
+@pytest.mark.parametrize("key", FAST)
+def test_twin_is_found(key):
+    answer = refute(key)
+    assert answer.result == "broken"
+    assert answer.cycles > 0 and answer.inputs
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("key", all_proofs())
+def test_every_twin_is_found(key):
+    assert refute(key).result == "broken"
+
+
+def test_every_proof_of_bounded_depth_says_its_depth():
+    for proof in all_proofs().values():
+        assert proof.claim.reach == "unbounded" or int(proof.claim.reach) > 0
+
+
+def counting(scene):
+    """A counter that reaches 5 after 5 cycles in which `go` is high."""
+    go, value = scene.free(1, "go"), Signal(4)
+    with scene.m.If(go):
+        scene.m.d.sync += value.eq(value + 1)
+    scene.claim("less than five", value < 5)
+
+
+NO_BUG = Bug(StreamSlice.elaborate, "ready.eq(1)", "ready.eq(1)")
+
+
+@pytest.mark.parametrize(
+    "method, depth, result",
+    [("PDR", 0, "broken"), ("BMC", 5, "proved"), ("BMC", 6, "broken")],
+)
+def test_answers_count_cycles(monkeypatch, method, depth, result):
+    study = Study("count", "", counting, (Claim("less than five", NO_BUG, method, depth),))
+    proofs = {"count": run.Proof(study, study.claims[0])}
+    monkeypatch.setattr(run, "all_proofs", lambda: proofs)
+    answer = prove("count")
+    assert answer.result == result
+    if result == "broken":
+        assert answer.cycles == 6
+        assert answer.inputs.split()[0] == "go@0"
+
+
+def test_bug_goes_away_again():
+    code = StreamSlice.elaborate.__code__
+    with seeded([Bug(StreamSlice.elaborate, "ready.eq(1)", "ready.eq(0)")]):
+        assert StreamSlice.elaborate.__code__ is not code
+    assert StreamSlice.elaborate.__code__ is code
+
+
+def test_bug_that_is_nowhere_is_refused():
+    with (
+        pytest.raises(
+            ValueError, match=r"^StreamSlice.elaborate: no such text -> yes: .* 0 times$"
+        ),
+        seeded([Bug(StreamSlice.elaborate, "no such text", "yes")]),
+    ):
+        pass
+
+
+def test_command_says_what_it_found(capsys):
+    assert main(["slice/order", "--jobs", "1", "--timeout", "1", "--only-twins"]) == 0
+    assert "broken" in capsys.readouterr().out
+    assert main(["no-such-block/*"]) == 1
+    assert "no proof is called no-such-block/*" in capsys.readouterr().err

@@ -1,0 +1,40 @@
+"""The table in docs/formal.md."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.formal.run import all_proofs
+from firm_hdl.formal.solve import Answer
+from firm_hdl.formal.table import replace_table, table
+
+PAGE = Path(__file__).parents[2] / "docs/formal.md"
+
+
+def test_only_what_is_proved_has_a_row():
+    proofs = all_proofs()
+    keys = list(proofs)
+    answers = {
+        keys[0]: Answer(result="proved", seconds=1.25),
+        keys[1]: Answer(result="undecided", seconds=2.0),
+    }
+    rows = table(proofs, answers).splitlines()
+    assert len(rows) == 3
+    assert "| PDR | unbounded | 1.2 |" in rows[2]
+
+
+def test_page_has_a_row_for_each_proof():
+    text = PAGE.read_text(encoding="utf-8")
+    for proof in all_proofs().values():
+        claim = proof.claim
+        row = f"| {proof.study.block} | {claim.name} | {claim.method} | {claim.reach} |"
+        assert row in text, f"{row}: python -m firm_hdl.formal --write docs/formal.md"
+
+
+def test_page_without_a_place_is_refused(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("nothing")
+    with pytest.raises(ValueError, match="has no lines"):
+        replace_table(page, "")
