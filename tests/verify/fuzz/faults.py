@@ -74,7 +74,7 @@ FAULTS = [
             "a dropped status",
             r"status__valid <= (\S+) ;",
             r"status__valid <= \1 & (status_now != 3'h2);",
-            "no status in time|a wrong value on status|wire order",
+            "no status in time|a wrong value on status|wire order|withdrawn",
         ),
         (
             "an error that is forgotten",
