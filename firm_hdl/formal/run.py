@@ -6,7 +6,7 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from firm_hdl.equivalence.tools import find_tools
+from firm_hdl.equivalence.tools import ToolError, find_tools
 from firm_hdl.formal.blocks import converters, fifos, judges, serializers, slices
 from firm_hdl.formal.bugs import seeded
 from firm_hdl.formal.catalog import Proof
@@ -56,6 +56,10 @@ def _decide(proof: Proof, timeout: float, **how: object) -> Answer:
     if named != set(scene.claims):
         raise ValueError(f"{proof.study.name}: claims differ: {named ^ set(scene.claims)}")
     output = list(scene.claims).index(proof.claim.name)
+    tools = find_tools(ghdl=False)
     with tempfile.TemporaryDirectory(prefix="firm-hdl-formal-") as folder:
-        aiger = write_aiger(scene, Path(folder), find_tools(ghdl=False))
-        return decide(aiger, output, find_tools(ghdl=False), timeout=timeout, **how)  # type: ignore[arg-type]
+        try:
+            aiger = write_aiger(scene, Path(folder), tools)
+            return decide(aiger, output, tools, timeout=timeout, **how)  # type: ignore[arg-type]
+        except ToolError as error:
+            return Answer(result="undecided", inputs=str(error))

@@ -11,7 +11,6 @@ from firm_hdl.formal.blocks.converters import (
     BOOL,
     DATA_DEPTH,
     JOY,
-    JOY_CDR,
     FixedType,
 )
 from firm_hdl.formal.bugs import Bug
@@ -153,4 +152,4 @@ def _check_statuses(scene: Scene, leaves: list[Any], block: Serializer) -> None:
 
 def studies() -> list[Study]:
     """Return the studies of serializers."""
-    return [_serializer(BOOL, 1, 15), _serializer(JOY, 2, 14), _serializer(JOY_CDR, 8, 16)]
+    return [_serializer(BOOL, 1, 15), _serializer(JOY, 2, 14)]

@@ -86,7 +86,9 @@ def _width(in_bytes: int, out_bytes: int) -> Study:
     if in_bytes == out_bytes:
         order = _STALE
     # Only the sums of the narrowest bus are found by PDR.
-    how: tuple[Method, int] = ("PDR", 0) if (in_bytes, out_bytes) == (1, 4) else ("BMC", 11)
+    how: tuple[Method, int] = (
+        ("PDR", 0) if (in_bytes, out_bytes) == (1, 4) else ("BMC", 11 if in_bytes < 8 else 8)
+    )
     return Study(
         f"width-{in_bytes}-{out_bytes}",
         f"`PacketWidth({in_bytes}, {out_bytes})`",
