@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 from firm_hdl.equivalence.tools import ToolError, find_tools
-from firm_hdl.formal.blocks import converters, fifos, judges, serializers, slices
+from firm_hdl.formal.blocks import all_studies
 from firm_hdl.formal.bugs import seeded
 from firm_hdl.formal.catalog import Proof
 from firm_hdl.formal.netlist import write_aiger
@@ -23,14 +23,7 @@ TIMEOUT = 900.0
 @cache
 def all_proofs() -> dict[str, Proof]:
     """Return all proofs by their keys."""
-    studies = [
-        *slices.studies(),
-        *fifos.studies(),
-        *converters.studies(),
-        *serializers.studies(),
-        *judges.studies(),
-    ]
-    proofs = [Proof(study, claim) for study in studies for claim in study.claims]
+    proofs = [Proof(study, claim) for study in all_studies() for claim in study.claims]
     return {proof.key: proof for proof in proofs}
 
 

@@ -85,9 +85,10 @@ def _outcomes(scene: Scene, block: PacketFifo, beats: int) -> None:
     if block.when_full == "wait":
         right &= outcome != Outcome.FULL
     scene.claim("outcome", ~ended | right)
-    names = {"passed": "KEPT", "aborted": "ABORTED", "full": "FULL", "large": "LARGE"}
+    names = {"passed": Outcome.KEPT, "aborted": Outcome.ABORTED}
+    names |= {"full": Outcome.FULL, "large": Outcome.LARGE}
     expected = Signal.like(block.counters)
-    events = {name: ended & (outcome == Outcome[each]) for name, each in names.items()}
+    events = {name: ended & (outcome == each) for name, each in names.items()}
     add_counters(m, expected, events)
     scene.claim("counters", Value.cast(expected) == Value.cast(block.counters))
 

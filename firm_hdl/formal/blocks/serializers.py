@@ -74,12 +74,12 @@ def _check_layout(scene: Scene, kind: FixedType, packets: Any) -> Signal:
     at = Signal(BITS, name="place_of_beat")
     with m.If(fires(packets)):
         m.d.sync += at.eq(Mux(beat.last, 0, at + beat.count))
-    ends = at + beat.count == kind.bytes
+    ends = at + beat.count == kind.size
     scene.claim("layout", ~packets.valid | (beat.last == ends))
     full = beat.last | (beat.count == len(beat.data))
-    scene.claim("layout", ~packets.valid | (full & (at + beat.count <= kind.bytes)))
+    scene.claim("layout", ~packets.valid | (full & (at + beat.count <= kind.size)))
     taken = {place for start, size in kind.fields for place in range(start, start + size)}
-    for place in sorted(set(range(kind.bytes)) - taken):
+    for place in sorted(set(range(kind.size)) - taken):
         fixed = kind.header[place] if place < len(kind.header) else 0
         for lane in range(len(beat.data)):
             here = (
