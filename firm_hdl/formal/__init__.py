@@ -5,4 +5,6 @@
 
 from __future__ import annotations
 
-__all__: list[str] = []
+from firm_hdl.formal.run import all_proofs, prove, refute
+
+__all__ = ["all_proofs", "prove", "refute"]

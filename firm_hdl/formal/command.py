@@ -108,6 +108,6 @@ def _run(
             f"{answer.result:10} {what}  {key:34} {method}  {found:10} {answer.seconds:6.1f} s",
             flush=True,
         )
-        if answer.result == "broken" and work is prove:
-            print(f"  counterexample: {answer.inputs.strip()}", flush=True)
+        if answer.inputs and (work is prove or answer.result == "undecided"):
+            print(f"  {answer.inputs.strip()}", flush=True)
     return answers

@@ -6,8 +6,8 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from firm_hdl.equivalence.tools import find_tools
-from firm_hdl.formal.blocks import converters, fifos, judges, serializers, slices
+from firm_hdl.equivalence.tools import ToolError, find_tools
+from firm_hdl.formal.blocks import all_studies
 from firm_hdl.formal.bugs import seeded
 from firm_hdl.formal.catalog import Proof
 from firm_hdl.formal.netlist import write_aiger
@@ -23,14 +23,7 @@ TIMEOUT = 900.0
 @cache
 def all_proofs() -> dict[str, Proof]:
     """Return all proofs by their keys."""
-    studies = [
-        *slices.studies(),
-        *fifos.studies(),
-        *converters.studies(),
-        *serializers.studies(),
-        *judges.studies(),
-    ]
-    proofs = [Proof(study, claim) for study in studies for claim in study.claims]
+    proofs = [Proof(study, claim) for study in all_studies() for claim in study.claims]
     return {proof.key: proof for proof in proofs}
 
 
@@ -56,6 +49,10 @@ def _decide(proof: Proof, timeout: float, **how: object) -> Answer:
     if named != set(scene.claims):
         raise ValueError(f"{proof.study.name}: claims differ: {named ^ set(scene.claims)}")
     output = list(scene.claims).index(proof.claim.name)
+    tools = find_tools(ghdl=False)
     with tempfile.TemporaryDirectory(prefix="firm-hdl-formal-") as folder:
-        aiger = write_aiger(scene, Path(folder), find_tools(ghdl=False))
-        return decide(aiger, output, find_tools(ghdl=False), timeout=timeout, **how)  # type: ignore[arg-type]
+        try:
+            aiger = write_aiger(scene, Path(folder), tools)
+            return decide(aiger, output, tools, timeout=timeout, **how)  # type: ignore[arg-type]
+        except ToolError as error:
+            return Answer(result="undecided", inputs=str(error))

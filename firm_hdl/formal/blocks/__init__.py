@@ -2,4 +2,13 @@
 
 from __future__ import annotations
 
-__all__: list[str] = []
+from firm_hdl.formal.blocks import converters, fifos, judges, serializers, slices
+from firm_hdl.formal.catalog import Study
+
+__all__ = ["all_studies"]
+
+
+def all_studies() -> list[Study]:
+    """Return all studies, in the order of the table."""
+    modules = (slices, fifos, converters, serializers, judges)
+    return [study for module in modules for study in module.studies()]

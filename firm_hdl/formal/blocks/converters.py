@@ -44,7 +44,7 @@ class FixedType:
     name, distro : str
     fields : tuple of (int, int)
         Offset in the packet, and size, of each leaf.
-    bytes : int
+    size : int
         Size of a packet, without what may follow.
     header : bytes
         Encapsulation header.
@@ -55,21 +55,21 @@ class FixedType:
     name: str
     distro: str
     fields: tuple[tuple[int, int], ...]
-    bytes: int
+    size: int
     header: bytes = b""
     trailing: int = 0
 
 
 _CDR = b"\0\1\0\0"
-BOOL = FixedType(name="std_msgs/Bool", distro="noetic", fields=((0, 1),), bytes=1)
+BOOL = FixedType(name="std_msgs/Bool", distro="noetic", fields=((0, 1),), size=1)
 JOY = FixedType(
-    name="sensor_msgs/JoyFeedback", distro="noetic", fields=((0, 1), (1, 1), (2, 4)), bytes=6
+    name="sensor_msgs/JoyFeedback", distro="noetic", fields=((0, 1), (1, 1), (2, 4)), size=6
 )
 JOY_CDR = FixedType(
     name="sensor_msgs/msg/JoyFeedback",
     distro="lyrical",
     fields=((4, 1), (5, 1), (8, 4)),
-    bytes=12,
+    size=12,
     header=_CDR,
     trailing=3,
 )
@@ -77,7 +77,7 @@ TIME_CDR = FixedType(
     name="builtin_interfaces/msg/Time",
     distro="lyrical",
     fields=((4, 4), (8, 4)),
-    bytes=12,
+    size=12,
     header=_CDR,
     trailing=3,
 )
@@ -85,8 +85,8 @@ TIME_CDR = FixedType(
 
 def status_of(kind: FixedType, size: Value, wrong_header: Value) -> Value:
     """Return the status that a packet has by its size and its header."""
-    long = Mux(size > kind.bytes + kind.trailing, Status.TRAILING, Status.OK)
-    code = Mux(size < kind.bytes, Status.TRUNCATED, long)
+    long = Mux(size > kind.size + kind.trailing, Status.TRAILING, Status.OK)
+    code = Mux(size < kind.size, Status.TRUNCATED, long)
     return Mux(wrong_header, Status.ENCAPSULATION, code)
 
 

@@ -11,7 +11,6 @@ from firm_hdl.formal.blocks.converters import (
     BOOL,
     DATA_DEPTH,
     JOY,
-    JOY_CDR,
     FixedType,
 )
 from firm_hdl.formal.bugs import Bug
@@ -75,12 +74,12 @@ def _check_layout(scene: Scene, kind: FixedType, packets: Any) -> Signal:
     at = Signal(BITS, name="place_of_beat")
     with m.If(fires(packets)):
         m.d.sync += at.eq(Mux(beat.last, 0, at + beat.count))
-    ends = at + beat.count == kind.bytes
+    ends = at + beat.count == kind.size
     scene.claim("layout", ~packets.valid | (beat.last == ends))
     full = beat.last | (beat.count == len(beat.data))
-    scene.claim("layout", ~packets.valid | (full & (at + beat.count <= kind.bytes)))
+    scene.claim("layout", ~packets.valid | (full & (at + beat.count <= kind.size)))
     taken = {place for start, size in kind.fields for place in range(start, start + size)}
-    for place in sorted(set(range(kind.bytes)) - taken):
+    for place in sorted(set(range(kind.size)) - taken):
         fixed = kind.header[place] if place < len(kind.header) else 0
         for lane in range(len(beat.data)):
             here = (
@@ -153,4 +152,4 @@ def _check_statuses(scene: Scene, leaves: list[Any], block: Serializer) -> None:
 
 def studies() -> list[Study]:
     """Return the studies of serializers."""
-    return [_serializer(BOOL, 1, 15), _serializer(JOY, 2, 14), _serializer(JOY_CDR, 8, 16)]
+    return [_serializer(BOOL, 1, 15), _serializer(JOY, 2, 14)]

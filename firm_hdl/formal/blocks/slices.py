@@ -86,7 +86,9 @@ def _width(in_bytes: int, out_bytes: int) -> Study:
     if in_bytes == out_bytes:
         order = _STALE
     # Only the sums of the narrowest bus are found by PDR.
-    how: tuple[Method, int] = ("PDR", 0) if (in_bytes, out_bytes) == (1, 4) else ("BMC", 11)
+    how: tuple[Method, int] = (
+        ("PDR", 0) if (in_bytes, out_bytes) == (1, 4) else ("BMC", 11 if in_bytes < 8 else 8)
+    )
     return Study(
         f"width-{in_bytes}-{out_bytes}",
         f"`PacketWidth({in_bytes}, {out_bytes})`",
@@ -191,90 +193,101 @@ def _router(scene: Scene) -> None:
     scene.claim("counters", Value.cast(expected) == Value.cast(block.counters))
 
 
+def _slice_study() -> Study:
+    """Return the study of a slice."""
+    return Study(
+        "slice",
+        "`StreamSlice`, packets of 2-byte beats",
+        _slice,
+        (
+            Claim("valid stays", _FALLS),
+            Claim("payload stays", _CHANGES),
+            Claim(
+                "count",
+                Bug(_SLICE, "out.eq(Mux(ready, come, second))", "out.eq(come & ~second)"),
+            ),
+            Claim("order", _STALE),
+            Claim("nothing extra", _TWICE),
+            Claim("input moves", _STUCK),
+            Claim("output moves", _LOST),
+        ),
+    )
+
+
+def _arbiter_study() -> Study:
+    """Return the study of an arbiter."""
+    return Study(
+        "arbiter",
+        "`PacketArbiter(1, 3)`, any input",
+        _arbiter,
+        (
+            Claim("valid stays", _FALLS),
+            Claim("payload stays", _CHANGES),
+            Claim("count", Bug(_SLICE, "out.eq(Mux(ready, come, second))", "out.eq(0)")),
+            Claim("order", Bug(_ARBITER, "payload.source.eq(turn)", "payload.source.eq(chosen)")),
+            Claim("nothing extra", Bug(_ARBITER, "out.i.valid.eq(valid)", "out.i.valid.eq(1)")),
+            Claim("whole packets", _HOPS),
+            Claim(
+                "turns",
+                Bug(
+                    PacketArbiter._choose,
+                    "other = (number + distance) % count",
+                    "other = distance % count",
+                ),
+            ),
+            Claim("input moves", Bug(_ARBITER, "(turn == number)", "(turn == number + 1)")),
+            Claim(
+                "output moves",
+                Bug(_ARBITER, "out.i.valid.eq(valid)", "out.i.valid.eq(fires & last)"),
+            ),
+        ),
+    )
+
+
+def _router_study() -> Study:
+    """Return the study of a router."""
+    return Study(
+        "router",
+        "`PacketRouter(1, 2)`, any topic of 4",
+        _router,
+        (
+            Claim("valid stays", _FALLS),
+            Claim("payload stays", _CHANGES),
+            Claim(
+                "count",
+                Bug(_ROUTER, "eq(packets.payload),", "eq(~packets.payload.as_value()),"),
+            ),
+            Claim("order", Bug(_ROUTER, "Mux(inside, begun, named)", "Mux(inside, named, named)")),
+            Claim(
+                "nothing extra",
+                Bug(_ROUTER, "out.o.valid & out.o.payload.to[number]", "out.o.valid"),
+            ),
+            Claim(
+                "input moves",
+                Bug(
+                    _ROUTER,
+                    "takes.append(port.ready & ",
+                    "takes.append(port.ready & port.valid[0] & ~",
+                ),
+            ),
+            Claim(
+                "output moves",
+                Bug(
+                    _ROUTER,
+                    "port.valid.eq(out.o.valid &",
+                    "port.valid.eq(out.o.valid & inside &",
+                ),
+            ),
+            Claim("counters", Bug(_ROUTER, '"routed": ends & to.any()', '"routed": ends')),
+        ),
+    )
+
+
 def studies() -> list[Study]:
     """Return the studies of these parts."""
     return [
-        Study(
-            "slice",
-            "`StreamSlice`, packets of 2-byte beats",
-            _slice,
-            (
-                Claim("valid stays", _FALLS),
-                Claim("payload stays", _CHANGES),
-                Claim(
-                    "count",
-                    Bug(_SLICE, "out.eq(Mux(ready, come, second))", "out.eq(come & ~second)"),
-                ),
-                Claim("order", _STALE),
-                Claim("nothing extra", _TWICE),
-                Claim("input moves", _STUCK),
-                Claim("output moves", _LOST),
-            ),
-        ),
+        _slice_study(),
         *(_width(a, b) for a, b in ((1, 4), (4, 1), (8, 2), (2, 2))),
-        Study(
-            "arbiter",
-            "`PacketArbiter(1, 3)`, any input",
-            _arbiter,
-            (
-                Claim("valid stays", _FALLS),
-                Claim("payload stays", _CHANGES),
-                Claim("count", Bug(_SLICE, "out.eq(Mux(ready, come, second))", "out.eq(0)")),
-                Claim(
-                    "order", Bug(_ARBITER, "payload.source.eq(turn)", "payload.source.eq(chosen)")
-                ),
-                Claim("nothing extra", Bug(_ARBITER, "out.i.valid.eq(valid)", "out.i.valid.eq(1)")),
-                Claim("whole packets", _HOPS),
-                Claim(
-                    "turns",
-                    Bug(
-                        PacketArbiter._choose,
-                        "other = (number + distance) % count",
-                        "other = distance % count",
-                    ),
-                ),
-                Claim("input moves", Bug(_ARBITER, "(turn == number)", "(turn == number + 1)")),
-                Claim(
-                    "output moves",
-                    Bug(_ARBITER, "out.i.valid.eq(valid)", "out.i.valid.eq(fires & last)"),
-                ),
-            ),
-        ),
-        Study(
-            "router",
-            "`PacketRouter(1, 2)`, any topic of 4",
-            _router,
-            (
-                Claim("valid stays", _FALLS),
-                Claim("payload stays", _CHANGES),
-                Claim(
-                    "count",
-                    Bug(_ROUTER, "eq(packets.payload),", "eq(~packets.payload.as_value()),"),
-                ),
-                Claim(
-                    "order", Bug(_ROUTER, "Mux(inside, begun, named)", "Mux(inside, named, named)")
-                ),
-                Claim(
-                    "nothing extra",
-                    Bug(_ROUTER, "out.o.valid & out.o.payload.to[number]", "out.o.valid"),
-                ),
-                Claim(
-                    "input moves",
-                    Bug(
-                        _ROUTER,
-                        "takes.append(port.ready & ",
-                        "takes.append(port.ready & port.valid[0] & ~",
-                    ),
-                ),
-                Claim(
-                    "output moves",
-                    Bug(
-                        _ROUTER,
-                        "port.valid.eq(out.o.valid &",
-                        "port.valid.eq(out.o.valid & inside &",
-                    ),
-                ),
-                Claim("counters", Bug(_ROUTER, '"routed": ends & to.any()', '"routed": ends')),
-            ),
-        ),
+        _arbiter_study(),
+        _router_study(),
     ]
