@@ -6,13 +6,14 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from firm_hdl.equivalence.tools import ToolError, find_tools
+from firm_hdl.equivalence.tools import find_tools
 from firm_hdl.formal.blocks import all_studies
 from firm_hdl.formal.bugs import seeded
 from firm_hdl.formal.catalog import Proof
 from firm_hdl.formal.netlist import write_aiger
 from firm_hdl.formal.scene import Scene
 from firm_hdl.formal.solve import Answer, decide
+from firm_hdl.jobs import ToolError
 
 __all__ = ["all_proofs", "prove", "refute"]
 
