@@ -37,6 +37,12 @@ def test_every_twin_is_found(key):
     assert refute(key).result == "broken"
 
 
+def test_every_bug_is_about_today_s_text():
+    for proof in all_proofs().values():
+        with seeded([proof.claim.bug]):
+            pass
+
+
 def test_every_proof_of_bounded_depth_says_its_depth():
     for proof in all_proofs().values():
         assert proof.claim.reach == "unbounded" or int(proof.claim.reach) > 0

@@ -121,7 +121,7 @@ def _parser(name: str, depth: int) -> Study:
         "one status": Bug(Parser.elaborate, "eq(has_second | sequencer.next)", "eq(1)"),
         "statuses": Bug(Judge._judge, "cut, Status.TRUNCATED", "cut, Status.LENGTH"),
         "sizes": Bug(PacketSizes.elaborate, "self.beats.eq(0), over", "self.beats.eq(1), over"),
-        "status in time": Bug(Judge._judge, "cut.eq(self.ended & ~now.present)", "cut.eq(0)"),
+        "status in time": Bug(Judge._judge, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
         "input moves": Bug(Buffer._receive, "room.eq(~used[-1]", "room.eq(used[-1]"),
     }
     return Study(
@@ -176,7 +176,7 @@ def _gate(name: str, depth: int, beats: int) -> Study:
         "statuses": Bug(_Verdicts._store, "status.ready.eq(self.ends)", "status.ready.eq(1)"),
         "order": Bug(write, "Mux(self.rewinds, self.kept, at + 1)", "at + 1"),
         "nothing extra": Bug(_Verdicts._store, "(status.payload != Status.OK)", "0"),
-        "status in time": Bug(Judge._judge, "cut.eq(self.ended & ~now.present)", "cut.eq(0)"),
+        "status in time": Bug(Judge._judge, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
         "output moves": Bug(read, "more.eq(self.at != self.kept)", "more.eq(0)"),
         "input moves": Bug(Buffer._receive, "room.eq(~used[-1]", "room.eq(used[-1]"),
     }

@@ -63,7 +63,7 @@ _BUGS = {
     "layout": Bug(_Pack._send, "payload.last.eq(is_last)", "payload.last.eq(~is_last)"),
     "values": Bug(_Pack._send, "Value.cast(payload.data).eq(beat)", "payload.data.eq(~beat)"),
     "statuses": Bug(_Collect._judge, "c.status.valid.eq(1)", "c.status.valid.eq(c.status.valid)"),
-    "wire order": Bug(_Collect._serve, "progress.free & ~any_of(missing) &", "progress.free &"),
+    "wire order": Bug(_Collect._serve, "state.free & ~any_of(missing) &", "state.free &"),
     "packets move": Bug(_Pack._send, "self.complete.eq(self.complete_next)", "self.complete.eq(0)"),
 }
 

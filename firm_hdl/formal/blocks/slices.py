@@ -32,9 +32,9 @@ _FALLS = Bug(_SLICE, "moves.eq(~self.o.valid | self.o.ready)", "moves.eq(1)")
 _CHANGES = Bug(
     _SLICE,
     "with m.If(ready):",
-    "m.d.sync += out.eq(Mux(ready, come, second))\n    with m.If(ready):",
+    "m.d.sync += out.eq(Mux(ready, incoming, second))\n    with m.If(ready):",
 )
-_STALE = Bug(_SLICE, "m.d.sync += second.eq(come)", "m.d.sync += second.eq(second)")
+_STALE = Bug(_SLICE, "m.d.sync += second.eq(incoming)", "m.d.sync += second.eq(second)")
 _TWICE = Bug(_SLICE, "self.o.valid.eq(self.i.valid | ~ready)", "self.o.valid.eq(1)")
 _LOST = Bug(_SLICE, "self.i.valid | ~ready", "self.i.valid & ready")
 _STUCK = Bug(_SLICE, "            ready.eq(1),\n", "")
@@ -79,7 +79,7 @@ def _width(in_bytes: int, out_bytes: int) -> Study:
         extra = Bug(elaborate, "beat.count == 0, 0, (beat", "beat.count == 0, 1, (beat")
         stuck = Bug(elaborate, "wide.o.ready.eq(out.i.ready & is_final)", "wide.o.ready.eq(0)")
     else:
-        order = Bug(elaborate, "Mux(is_here, came, kept)", "Mux(is_here, came, came)")
+        order = Bug(elaborate, "Mux(is_here, incoming, kept)", "Mux(is_here, incoming, incoming)")
         count = Bug(elaborate, "Mux(beat.last, beat.count, self.in_bytes)", "beat.count - 1")
         extra = Bug(elaborate, "packets.valid & completes", "completes")
         stuck = Bug(elaborate, "packets.ready.eq(out.i.ready)", "packets.ready.eq(0)")
@@ -204,7 +204,7 @@ def _slice_study() -> Study:
             Claim("payload stays", _CHANGES),
             Claim(
                 "count",
-                Bug(_SLICE, "out.eq(Mux(ready, come, second))", "out.eq(come & ~second)"),
+                Bug(_SLICE, "out.eq(Mux(ready, incoming, second))", "out.eq(incoming & ~second)"),
             ),
             Claim("order", _STALE),
             Claim("nothing extra", _TWICE),
@@ -223,7 +223,7 @@ def _arbiter_study() -> Study:
         (
             Claim("valid stays", _FALLS),
             Claim("payload stays", _CHANGES),
-            Claim("count", Bug(_SLICE, "out.eq(Mux(ready, come, second))", "out.eq(0)")),
+            Claim("count", Bug(_SLICE, "out.eq(Mux(ready, incoming, second))", "out.eq(0)")),
             Claim("order", Bug(_ARBITER, "payload.source.eq(turn)", "payload.source.eq(chosen)")),
             Claim("nothing extra", Bug(_ARBITER, "out.i.valid.eq(valid)", "out.i.valid.eq(1)")),
             Claim("whole packets", _HOPS),
