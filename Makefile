@@ -114,7 +114,7 @@ fuzz: $(VENV)/.installed-dev ## a million damaged definitions through the front 
 
 # FUZZ_HARDWARE_ARGS='--types sensor_msgs/msg/Imu --bus-bytes 8 --packets 1000000' takes one type.
 fuzz-hardware: $(VENV)/.installed-dev verilog ## ten million packets, many of them bad, through exported Verilog in Verilator (hours)
-	$(BIN)/python -m firm_hdl.verify.fuzz --jobs $(JOBS) --results $(VERIFY_OUT)/fuzz.jsonl $(FUZZ_HARDWARE_ARGS)
+	$(BIN)/python -m firm_hdl.fuzz --jobs $(JOBS) --results $(VERIFY_OUT)/fuzz.jsonl $(FUZZ_HARDWARE_ARGS)
 
 mutate: $(VENV)/.compiled tools ## faults in the program, and which tests notice (hours); MUTATE_ARGS='--count 24'
 	$(BIN)/python -m tools.mutation --first --jobs $(JOBS) --each 1 --most 90 $(MUTATE_ARGS)

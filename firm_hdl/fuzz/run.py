@@ -9,12 +9,12 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from firm_hdl.fuzz.build import build, find_tools
+from firm_hdl.fuzz.circuits import CIRCUITS, Alter, CircuitName, circuits_of, unaltered
+from firm_hdl.fuzz.table import Table, table_of
+from firm_hdl.fuzz.types import message_of
 from firm_hdl.jobs.processes import ToolError, cpu_seconds
 from firm_hdl.model import Wire
-from firm_hdl.verify.fuzz.build import build, find_tools
-from firm_hdl.verify.fuzz.circuits import CIRCUITS, Alter, CircuitName, circuits_of, unaltered
-from firm_hdl.verify.fuzz.table import Table, table_of
-from firm_hdl.verify.fuzz.types import message_of
 
 __all__ = ["Failure", "FuzzTask", "Outcome", "judged", "run_task"]
 
@@ -43,7 +43,7 @@ class FuzzTask:
 
     def command(self, failure: Failure) -> str:
         """Return the command that repeats a failure."""
-        command = f"python -m firm_hdl.verify.fuzz --types {self.type} --bus-bytes {self.bus_bytes}"
+        command = f"python -m firm_hdl.fuzz --types {self.type} --bus-bytes {self.bus_bytes}"
         command += f" --room {self.room} --seed {self.seed}"
         if failure.circuit:
             command += f" --circuits {failure.circuit}"

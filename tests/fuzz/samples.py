@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from firm_hdl.fuzz import Failure, FuzzTask, Outcome, run_task
+from firm_hdl.fuzz.build import find_tools
 from firm_hdl.jobs.programs import ProgramMissingError
-from firm_hdl.verify.fuzz import Failure, FuzzTask, Outcome, run_task
-from firm_hdl.verify.fuzz.build import find_tools
 from tests.tools import need
 
 STRING = "std_msgs/msg/String"

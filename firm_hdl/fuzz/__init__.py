@@ -3,12 +3,12 @@
 For each type and bus width, a program is compiled: Verilator's models of the circuits, and a
 harness in C++ that makes packets, damages them, stalls all streams, and checks every cycle. What
 must come is predicted by a decoder in `harness/judge.cpp`, which shares no code with plans and
-circuits. It is driven by a table of the type's fields, which :mod:`firm_hdl.verify.fuzz.table`
+circuits. It is driven by a table of the type's fields, which :mod:`firm_hdl.fuzz.table`
 makes from the message model alone.
 """
 
 from __future__ import annotations
 
-from firm_hdl.verify.fuzz.run import Failure, FuzzTask, Outcome, run_task
+from firm_hdl.fuzz.run import Failure, FuzzTask, Outcome, run_task
 
 __all__ = ["Failure", "FuzzTask", "Outcome", "run_task"]

@@ -14,16 +14,16 @@ from tqdm import tqdm
 
 from firm_hdl.arguments import add_jobs, number_between, positive
 from firm_hdl.errors import DefinitionError
+from firm_hdl.fuzz.build import find_tools
+from firm_hdl.fuzz.circuits import CIRCUITS
+from firm_hdl.fuzz.report import HEAD, failure_text, line, summary
+from firm_hdl.fuzz.run import Failure, FuzzTask, Outcome, run_task
+from firm_hdl.fuzz.types import BUS_BYTES as USUAL_BUS_BYTES
+from firm_hdl.fuzz.types import TYPES, message_of
 from firm_hdl.jobs.processes import in_processes, unwound_when_terminated
 from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.plan import BUS_BYTES
 from firm_hdl.terminal import printable_streams
-from firm_hdl.verify.fuzz.build import find_tools
-from firm_hdl.verify.fuzz.circuits import CIRCUITS
-from firm_hdl.verify.fuzz.report import HEAD, failure_text, line, summary
-from firm_hdl.verify.fuzz.run import Failure, FuzzTask, Outcome, run_task
-from firm_hdl.verify.fuzz.types import BUS_BYTES as USUAL_BUS_BYTES
-from firm_hdl.verify.fuzz.types import TYPES, message_of
 
 __all__ = ["main"]
 
@@ -107,7 +107,7 @@ def _tasks(given: argparse.Namespace) -> list[FuzzTask]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m firm_hdl.verify.fuzz", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m firm_hdl.fuzz", description=__doc__)
     parser.add_argument(
         "--types", nargs="+", metavar="TYPE", help=f"default: a standard set of {len(TYPES)}"
     )

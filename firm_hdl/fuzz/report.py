@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from firm_hdl.verify.fuzz.run import Failure, FuzzTask, Outcome
+from firm_hdl.fuzz.run import Failure, FuzzTask, Outcome
 
 __all__ = ["HEAD", "failure_text", "line", "summary"]
 

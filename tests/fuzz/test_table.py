@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-import firm_hdl.verify.fuzz.table
+import firm_hdl.fuzz.table
+from firm_hdl.fuzz.command import main
+from firm_hdl.fuzz.table import table_of
+from firm_hdl.fuzz.types import BUS_BYTES, TYPES, message_of
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.fuzz.command import main
-from firm_hdl.verify.fuzz.table import table_of
-from firm_hdl.verify.fuzz.types import BUS_BYTES, TYPES, message_of
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
@@ -53,7 +53,7 @@ def test_leaves_and_limits_are_those_of_the_plan(name):
 
 
 def test_the_table_is_made_from_the_model_alone():
-    text = Path(firm_hdl.verify.fuzz.table.__file__).read_text(encoding="utf-8")
+    text = Path(firm_hdl.fuzz.table.__file__).read_text(encoding="utf-8")
     imports = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ImportFrom)]
     assert [node.module for node in imports if "firm_hdl" in str(node.module)] == ["firm_hdl.model"]
     assert not any(isinstance(node, ast.Import) for node in ast.walk(ast.parse(text)))

@@ -6,11 +6,11 @@ import stat
 
 import pytest
 
-from firm_hdl.verify.fuzz.circuits import CIRCUITS
-from firm_hdl.verify.fuzz.command import main
-from firm_hdl.verify.fuzz.run import FuzzTask, Outcome, judged
+from firm_hdl.fuzz.circuits import CIRCUITS
+from firm_hdl.fuzz.command import main
+from firm_hdl.fuzz.run import FuzzTask, Outcome, judged
 from tests.depth import by_depth
-from tests.verify.fuzz.samples import EMPTY, STRING, need_tools, run
+from tests.fuzz.samples import EMPTY, STRING, need_tools, run
 
 
 @pytest.fixture

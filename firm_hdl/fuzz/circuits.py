@@ -16,12 +16,12 @@ from amaranth.back import rtlil
 
 from firm_hdl.export.top import Direction, Port, Top, leaf_names, ports_of
 from firm_hdl.export.verilog import to_verilog
+from firm_hdl.fuzz.table import Table
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.packets import PacketGate
 from firm_hdl.gateware.packets.memory import WhenFull
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
-from firm_hdl.verify.fuzz.table import Table
 
 __all__ = ["CIRCUITS", "Alter", "Circuit", "CircuitName", "circuits_of", "templates", "unaltered"]
 

@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 
 from tests.depth import by_depth
-from tests.verify.fuzz.faults import FAULTS
-from tests.verify.fuzz.samples import STRING, found, need_tools, run
+from tests.fuzz.faults import FAULTS
+from tests.fuzz.samples import STRING, found, need_tools, run
 
 pytestmark = pytest.mark.usefixtures("tools")
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from firm_hdl.fuzz.circuits import Circuit, templates
+from firm_hdl.fuzz.table import Table
 from firm_hdl.jobs.processes import ToolError, made_by, run_tool
-from firm_hdl.verify.fuzz.circuits import Circuit, templates
-from firm_hdl.verify.fuzz.table import Table
 from firm_hdl.verify.simulators.verilated import (
     find_compiler,
     find_verilator,
