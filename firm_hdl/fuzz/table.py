@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String, Wire
 
-__all__ = ["Table", "TableLeaf", "table_of"]
+__all__ = ["Table", "table_of"]
 
 _LENGTH_BYTES = 4
 _HEADER_BYTES = 4

@@ -26,7 +26,7 @@ from firm_hdl.gateware.parse.buffer import Buffer
 from firm_hdl.gateware.parse.judge import Judge
 from firm_hdl.gateware.signatures import Status, leaf_streams
 
-__all__ = ["BITS", "BOOL", "DATA_DEPTH", "JOY", "JOY_CDR", "FixedType", "status_of", "studies"]
+__all__ = ["BITS", "BOOL", "DATA_DEPTH", "JOY", "FixedType", "studies"]
 
 DATA_DEPTH = 12
 """Cycles of claims that compare data, which take longest."""

