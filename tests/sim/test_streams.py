@@ -134,6 +134,7 @@ def test_a_stream_has_the_stalls_of_its_name():
             await send_packets(ctx, dut.i, [bytes(40)], stalls=stall, name=name)
 
         async def sink(ctx, dut=dut, cycles=cycles):
+            ctx.set(dut.o.ready, 1)
             for _ in range(60):
                 _, _, valid = await ctx.tick().sample(dut.i.valid)
                 cycles.append(valid)
