@@ -237,7 +237,7 @@ CHANGES = {
         # shows is 0 at the end of a run.
         r"(?<== )rst(?= \? 4'h0 : \S+ \[3:0\])",
         "1'h0",
-        "hardware, nothing taken, cycle 7: stamp_sec_data of the deserializer is",
+        "hardware, nothing taken, cycle 6: stamp_sec_data of the deserializer is",
     ),
     # An output that has no meaning while `valid` is low.
     "payload": (
