@@ -29,6 +29,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not proofs:
         print(f"error: no proof is called {' or '.join(given.names)}", file=sys.stderr)
         return 1
+    if given.write is not None and (given.names or given.only_twins):
+        print(
+            "error: --write needs all proofs, because it replaces the whole table", file=sys.stderr
+        )
+        return 1
     if given.list:
         for key, proof in proofs.items():
             print(f"{key:34} {proof.claim.method} {proof.claim.reach:9} {proof.study.block}")
