@@ -16,6 +16,8 @@ __all__ = ["Table", "table_of"]
 
 _LENGTH_BYTES = 4
 _HEADER_BYTES = 4
+# A nested length that claims fewer bytes than a 16th of the largest packet is not counted.
+_LEAST_UNCOUNTED, _MOST_UNCOUNTED = 256, 4096
 _EMPTY = "structure_needs_at_least_one_member"
 
 
@@ -48,17 +50,24 @@ class Table:
     ----------
     least_bytes : int
         Size of the shortest packet, without padding.
+    room : int
+        Bytes that nested lengths may claim together.
+    claim_bytes : int
+        Least bytes that a nested length must claim to be counted.
     """
 
     wire: Wire
     bus_bytes: int
     least_bytes: int
+    room: int
+    claim_bytes: int
     leaves: tuple[TableLeaf, ...]
     lines: tuple[str, ...]
 
     def text(self) -> str:
         """Return what the harness reads."""
         head = f"table {int(self.wire == 'cdr')} {self.bus_bytes} {len(self.leaves)}"
+        head += f" {self.room} {self.claim_bytes}"
         leaves = (f"{'.'.join(leaf.path)} {leaf.bits} {leaf.lanes}" for leaf in self.leaves)
         return "".join(f"{line}\n" for line in (head, *leaves, *self.lines))
 
@@ -69,8 +78,15 @@ def table_of(message: Message, *, wire: Wire, bus_bytes: int, max_message_bytes:
     least = _HEADER_BYTES * walk.is_cdr + walk.least_bytes(message)
     walk.room = max_message_bytes - least
     lines = tuple(walk.message(message, ()))
-    leaves = tuple(walk.leaves)
-    return Table(wire=wire, bus_bytes=bus_bytes, least_bytes=least, leaves=leaves, lines=lines)
+    return Table(
+        wire=wire,
+        bus_bytes=bus_bytes,
+        least_bytes=least,
+        room=max(0, walk.room),
+        claim_bytes=min(_MOST_UNCOUNTED, max(_LEAST_UNCOUNTED, max_message_bytes // 16)),
+        leaves=tuple(walk.leaves),
+        lines=lines,
+    )
 
 
 @dataclass
@@ -142,8 +158,8 @@ class _Walk:
                 yield from self.elements(element, path, -1, f"{count} 0 0")
             case Sequence(element=element, bound=bound):
                 length = self.leaf(*path, "length", bits=32)
-                limit = self.limit(self.least_bytes(element), bound)
-                yield from self.elements(element, path, length, f"0 {limit}")
+                size = self.least_bytes(element)
+                yield from self.elements(element, path, length, f"0 {self.limit(size, bound)}")
 
     def elements(
         self, element: FieldType, path: tuple[str, ...], length: int, counts: str
@@ -151,7 +167,8 @@ class _Walk:
         if isinstance(element, Primitive):
             yield self.run(path, length, element.bytes, element.kind == "bool", f"0 {counts}")
             return
-        yield f"loop {length} {counts}"
+        # An element without bytes claims one.
+        yield f"loop {length} {max(1, self.least_bytes(element))} {counts}"
         yield from self.value(element, (*path, "item"))
         yield "end"
 

@@ -18,6 +18,7 @@ from firm_hdl.plan.ir import (
     Begin,
     BeginLoop,
     BeginRun,
+    Claim,
     Fixed,
     Jump,
     Leaf,
@@ -36,6 +37,7 @@ from firm_hdl.plan.limits import (
     DEFAULT_MAX_MESSAGE_BYTES,
     check_bus_bytes,
     check_max_message_bytes,
+    claims_of,
 )
 from firm_hdl.plan.link import END, NOWHERE, BodyEnd, BodyStart, Load, Mark, link
 from firm_hdl.wire import (
@@ -85,7 +87,8 @@ def build_plan(
         isinstance(node, RunNode | LoopNode) and isinstance(node.length, LengthField)
         for node in walk(layout.nodes)
     )
-    builder = _Builder(layout, bus_bytes, max_message_bytes, has_lengths)
+    claims = claims_of(layout, max_message_bytes)
+    builder = _Builder(layout, bus_bytes, max_message_bytes, has_lengths, claims)
     start, steps = builder.build()
     return Plan(
         message=layout.message.name,
@@ -104,10 +107,11 @@ def build_plan(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Count:
-    """A number of elements that a length decides: its leaf, and its largest legal value."""
+    """A number of elements that a length decides: its leaf, its largest legal value, its claim."""
 
     length: int
     limit: int
+    claim: Claim | None
 
 
 @dataclass(slots=True)
@@ -120,6 +124,8 @@ class _Builder:
         As for :func:`build_plan`.
     has_lengths : bool
         Whether the message has any length.
+    claims : dict of Path to Claim
+        What lengths claim, by the path of the string or sequence.
     leaves, runs : list
         In wire order.
     levels : int
@@ -140,6 +146,7 @@ class _Builder:
     bus_bytes: int
     max_message_bytes: int
     has_lengths: bool
+    claims: dict[Path, Claim]
     leaves: list[Leaf] = field(default_factory=list)
     runs: list[Run] = field(default_factory=list)
     levels: int = 0
@@ -219,7 +226,8 @@ class _Builder:
         self.gap(length.gap)
         leaf = self.leaf(path, "length", LENGTH)
         self.value(leaf, LENGTH.bytes)
-        return _Count(length=leaf, limit=self.limit(length.bound, item_bytes, end_bytes))
+        limit = self.limit(length.bound, item_bytes, end_bytes)
+        return _Count(length=leaf, limit=limit, claim=self.claims.get(path))
 
     def counted_run(self, node: RunNode, length: LengthField) -> None:
         """Plan a string or a sequence of primitives: a length, then a run or a loop."""
@@ -230,8 +238,9 @@ class _Builder:
         else:
             run = self.new_run(items, terminated=node.terminated)
             align = node.item_gap.align if node.item_gap.bytes != 0 else 1
+            leaf, limit, claim = count.length, count.limit, count.claim
             self.flush(
-                BeginRun(length=count.length, limit=count.limit, run=run, align=align, body=END)
+                BeginRun(length=leaf, limit=limit, run=run, align=align, claim=claim, body=END)
             )
             self.program.append(RunStep(run=run, exits=NOWHERE))
             self.rest = run
@@ -297,8 +306,8 @@ class _Builder:
             self.flush_rest()
             self.program.append(Load(counter=level, count=count))
         else:
-            length, limit = count.length, count.limit
-            self.flush(BeginLoop(length=length, limit=limit, level=level, body=END))
+            leaf, limit, claim = count.length, count.limit, count.claim
+            self.flush(BeginLoop(length=leaf, limit=limit, level=level, claim=claim, body=END))
         self.program.append(BodyStart(level=level))
         return level
 

@@ -78,16 +78,21 @@ class OrderQueue(wiring.Component):
         The first beat that the sequencer still needs.
     freed : Out(beat)
         The first beat that any order or the sequencer still needs.
+    holds, refuses : In(1)
+        As of :class:`Sequencer`; only if the plan has claims. No order comes while `holds` is high.
     """
 
     def __init__(self, plan: Plan):
         layout, beat = order_layout(plan), Ring(plan).beat_bits
+        self.checks = plan.has_claims
+        checks = {"holds": In(1), "refuses": In(1)} if self.checks else {}
         super().__init__(
             {
                 "i": In(stream.Signature(layout)),
                 "o": Out(stream.Signature(layout)),
                 "oldest": In(beat),
                 "freed": Out(beat),
+                **checks,
             }
         )
 
@@ -96,16 +101,22 @@ class OrderQueue(wiring.Component):
         # The order that came while `o` was waiting.
         second = Signal(self.i.payload.shape(), reset_less=True)
         has_second = Signal()
+        valid, ready = self.o.valid, self.o.ready
+        if self.checks:
+            # The newest order waits for the check of its length.
+            valid, waits = Signal(name="has_first"), Signal(name="waits")
+            m.d.comb += [waits.eq(self.holds & ~has_second), self.o.valid.eq(valid & ~waits)]
+            ready = ready & ~waits
         m.d.comb += [
             self.i.ready.eq(~has_second),
             self.freed.eq(
-                Mux(self.o.valid, self.o.payload.first, Mux(has_second, second.first, self.oldest))
+                Mux(valid, self.o.payload.first, Mux(has_second, second.first, self.oldest))
             ),
         ]
         # `o` waits for `ready` even if it has no order: so `ready` alone enables its registers.
-        with m.If(self.o.ready):
+        with m.If(ready):
             m.d.sync += [
-                self.o.valid.eq(self.i.valid | has_second),
+                valid.eq(self.i.valid | has_second),
                 self.o.payload.eq(Mux(has_second, Value.cast(second), Value.cast(self.i.payload))),
                 has_second.eq(0),
             ]
@@ -113,4 +124,12 @@ class OrderQueue(wiring.Component):
             m.d.sync += has_second.eq(1)
         with m.If(~has_second):
             m.d.sync += second.eq(self.i.payload)
+        if self.checks:
+            with m.If(self.refuses):
+                with m.If(has_second):
+                    m.d.sync += second.length_good.eq(0)
+                    with m.If(ready):
+                        m.d.sync += self.o.payload.length_good.eq(0)
+                with m.Else():
+                    m.d.sync += self.o.payload.length_good.eq(0)
         return m
