@@ -1,0 +1,137 @@
+"""Bounds of the time of recovery, compared with packets that claim as much as they can."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+
+import pytest
+
+from firm_hdl import load_message
+from firm_hdl.plan import Fixed, build_plan, decode
+from firm_hdl.plan.recovery import Recovery, recovery
+from firm_hdl.wire import lay_out
+from tests.depth import by_depth
+from tests.strategies import make
+
+AFTER = 4
+"""Cycles of an error and of the end, beside those of steps."""
+
+
+def bomb(plan, wanted):
+    """Return a short packet in which lengths, in wire order, have wanted values as they are legal.
+
+    Each value is put where the interpreter finds the next length, and the packet ends behind it.
+    """
+    packet = b"".join(s.data for step in plan.steps for s in step.slices if isinstance(s, Fixed))
+    for number in wanted:
+        place = next(
+            (
+                (visit.end - 4, plan.steps[visit.step].begin)
+                for visit in decode(plan, packet).steps
+                if plan.steps[visit.step].begin is not None and visit.end > len(packet)
+            ),
+            None,
+        )
+        if place is None:
+            break
+        at, begin = place
+        value = min(number, plan.max_count(begin))
+        packet = packet.ljust(at, b"\0") + value.to_bytes(4, "little")
+    return packet
+
+
+def steps_after(plan, packet):
+    """Return the steps of a packet after its own bytes, held ones included."""
+    return sum(1 + visit.held for visit in decode(plan, packet).steps if visit.end > len(packet))
+
+
+@pytest.mark.parametrize(
+    ("distro", "name"),
+    [
+        ("lyrical", "diagnostic_msgs/msg/DiagnosticArray"),
+        ("noetic", "diagnostic_msgs/DiagnosticArray"),
+        ("lyrical", "trajectory_msgs/msg/JointTrajectory"),
+        ("lyrical", "visualization_msgs/msg/InteractiveMarkerUpdate"),
+        ("lyrical", "rcl_interfaces/msg/ParameterEvent"),
+        ("lyrical", "sensor_msgs/msg/JointState"),
+        ("lyrical", "std_msgs/msg/Float64MultiArray"),
+    ],
+)
+@pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 8, 64]))
+def test_no_packet_takes_longer_than_the_bound(distro, name, bus_bytes):
+    most = 8192
+    layout = lay_out(load_message(name, distro=distro))
+    plan = build_plan(layout, bus_bytes=bus_bytes, max_message_bytes=most)
+    bound = recovery(plan, 1).cycles
+    rng = random.Random(name)
+    for _ in range(by_depth(12, 100)):
+        values = [0, 0, 1, 1, 2, rng.randrange(most), rng.randrange(most // 8), most]
+        packet = bomb(plan, rng.choices(values, k=rng.randrange(1, 12)))
+        assert steps_after(plan, packet) + AFTER <= bound, packet.hex()
+
+
+def diagnostics(distro, most):
+    name = "diagnostic_msgs/msg/DiagnosticArray"
+    return build_plan(lay_out(load_message(name, distro=distro)), max_message_bytes=most)
+
+
+@pytest.mark.parametrize("distro", ["lyrical", "noetic"])
+@pytest.mark.parametrize("most", [by_depth(1 << 17, 1 << 24)])
+def test_the_bound_for_diagnostics_is_close(distro, most):
+    plan = diagnostics(distro, most)
+    bound = recovery(plan, 1).cycles
+    # `frame_id`, then as many statuses as the budget has.
+    taken = max(steps_after(plan, bomb(plan, [1, most])), steps_after(plan, bomb(plan, [0, most])))
+    assert 0.9 * bound <= taken + AFTER <= bound
+
+
+def test_without_a_budget_a_packet_takes_longer_than_the_bound():
+    # A twin: the largest claims of both levels, in a plan that does not check them together.
+    plan = diagnostics("lyrical", 1 << 14)
+    steps = tuple(
+        step if step.begin is None else replace(step, begin=replace(step.begin, claim=None))
+        for step in plan.steps
+    )
+    free = replace(plan, steps=steps)
+    packet = bomb(free, [0, 1 << 14, 0, 0, 0, 1 << 14])
+    bound = recovery(plan, 1).cycles
+    assert steps_after(free, packet) > 1.4 * bound
+    assert steps_after(free, packet) + AFTER <= recovery(free, 1).cycles
+    assert decode(plan, packet).status == "LENGTH"
+    assert steps_after(plan, packet) + AFTER <= bound
+
+
+def test_types_of_fixed_size_recover_at_once():
+    plan = build_plan(lay_out(load_message("geometry_msgs/msg/Twist")))
+    assert recovery(plan, 7) == Recovery(cycles=len(plan.steps) + AFTER, longest_packet=7)
+
+
+def test_a_string_takes_a_cycle_for_each_word():
+    plan = build_plan(lay_out(make("ros1", {"s": "string"})), max_message_bytes=804)
+    # 800 characters in 100 words, besides the steps of the length and of the rest.
+    assert recovery(plan, 2) == Recovery(cycles=2 + 100 + AFTER, longest_packet=102)
+
+
+def test_the_longest_packet_has_the_padding_of_its_elements():
+    element = make("ros2", {"a": "uint8", "s": "string"}, "Element")
+    plan = build_plan(lay_out(make("ros2", {"e": (element, "[]")})), max_message_bytes=8008)
+    # 8 bytes, and 8 for each element; a deserializer takes 2 steps for each.
+    assert recovery(plan, 2).longest_packet == pytest.approx(2 + 2 * 1000, abs=2)
+
+
+def test_elements_without_bytes_claim_one_byte_each():
+    empty = make("ros1", {}, "Empty")
+    plan = build_plan(lay_out(make("ros1", {"e": (empty, "[]")})), max_message_bytes=1004)
+    assert recovery(plan, 1).cycles == pytest.approx(1000, abs=9)
+    assert steps_after(plan, bomb(plan, [1000])) + AFTER <= recovery(plan, 1).cycles
+
+
+def test_arrays_of_constant_count_are_part_of_an_element():
+    inner = make("ros1", {"t": "string"}, "Inner")
+    outer = make("ros1", {"i": (inner, "[5]"), "x": "float64[40]"}, "Outer")
+    message = make("ros1", {"o": (outer, "[]"), "z": (inner, "[3]")})
+    plan = build_plan(lay_out(message), max_message_bytes=10_000)
+    for wanted in ([28], [10, 0, 5000], [1, 0, 0, 9000], [27, 1, 2, 3]):
+        packet = bomb(plan, wanted)
+        assert steps_after(plan, packet) + AFTER <= recovery(plan, 1).cycles
