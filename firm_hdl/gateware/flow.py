@@ -79,9 +79,6 @@ class Flow:
         Returns the traits of the step with an index; `None` is the end of the packet.
     has_end : bool
         The end of the packet is a state of its own.
-    refused : Value(1) or None
-        The step before this one began a loop or run with a length that was refused afterwards: the
-        exits are those of that step. `None`: this does not happen.
 
     Attributes
     ----------
@@ -112,12 +109,11 @@ class Flow:
         traits: Callable[[int | None], Mapping[str, int]],
         *,
         has_end: bool,
-        refused: Value | None = None,
     ):
         self.m, self.plan = m, plan
         steps = plan.steps
         self.layout = data.StructLayout({"step": len(steps) + has_end, **fields})
-        self._traits, self._has_end, self._refused = traits, has_end, refused
+        self._traits, self._has_end = traits, has_end
         self.start = self.encode(plan.start.step)
         init_bits = self.layout.from_bits(self.start)
         self.step_state = Signal(self.layout, init=init_bits, name="state")
@@ -175,25 +171,9 @@ class Flow:
         cases = [(any_of(on), rest << (unit.bit_length() - 1)) for unit, on in units.items()]
         return cases[0][1] if len(cases) == 1 else pick(cases, self.plan.bus_bytes.bit_length())
 
-    def _leaves(self, index: int) -> Value:
-        """Return, as one bit, whether the exits are those of a step."""
-        here: Value = self.step[index]
-        if self._refused is None:
-            return here
-        claims = {
-            i: step.begin.body.step
-            for i, step in enumerate(self.plan.steps)
-            if step.begin is not None and step.begin.claim is not None
-        }
-        if index in claims.values():
-            here = here & ~self._refused
-        if (body := claims.get(index)) is not None:
-            here = here | (self._refused & self.step[body])
-        return here
-
     def _exits(self) -> Iterator[Exit]:
         for i, s in enumerate(self.plan.steps):
-            no_repeat = self._leaves(i)
+            no_repeat: Value = self.step[i]
             for level, jump in s.exits.repeats:
                 again = Signal(name=f"again_{i}_{level}")
                 self.m.d.comb += again.eq(no_repeat & ~self.levels[level].last)

@@ -222,9 +222,11 @@ class _SequencerLogic:
         with m.If(state.issue):
             m.d.sync += Value.cast(flow.step_state).eq(next_state)
         if state.refused is not None and self.claims is not None:
-            # The step begins nothing; it is left at once.
+            # Back to the step of the length. It begins nothing, and is left at once.
+            back = {s.begin.body.step: i for i, s in enumerate(self.plan.steps) if s.begin}
+            bits = pick([(state.step[k], 1 << i) for k, i in back.items() if k], len(state.step))
             with m.If(self.claims.fails):
-                m.d.sync += state.traits.plain.eq(1)
+                m.d.sync += [state.traits.plain.eq(1), state.step.eq(bits)]
         with m.If(state.issue):
             with m.If(state.ends_packet):
                 m.d.sync += [state.rest.eq(0), state.has_nul.eq(0)]

@@ -50,8 +50,8 @@ class ParseState:
         Position after the packet's encapsulation header, modulo 8: an `int` on a bus of 8 bytes or
         more, and a signal on others if anything is aligned to it.
     refused : Signal(1) or None
-        A length claimed too much, and its loop or run has begun: the step is left at once, by an
-        exit of the length's step. A register. `None` without leaves, or if the plan has no claims.
+        A length claimed too much: `step` is the length's step again, and is left at once. The
+        traits are those of the step after it. `None` without leaves, or if the plan has no claims.
     bad : Signal(1)
         An error was found in the packet.
     new_error : Signal(1)
@@ -114,8 +114,7 @@ class ParseState:
         fields = {"back": plan.bus_bytes.bit_length() + 1} | dict.fromkeys(flags.split(), 1)
         # On a narrow bus, positions are short: their traits are not worth registers.
         fields |= place_fields(plan) if plan.bus_bytes >= 8 else {}
-        limit, refused = plan.max_count, self.refused
-        return Flow(self.m, plan, limit, fields, self._traits, has_end=True, refused=refused)
+        return Flow(self.m, plan, plan.max_count, fields, self._traits, has_end=True)
 
     def _traits(self, index: int | None) -> dict[str, int]:
         plan, bus = self.plan, self.plan.bus_bytes
