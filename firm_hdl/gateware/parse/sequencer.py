@@ -40,7 +40,8 @@ class Sequencer(wiring.Component):
 
     A length that shares a budget (:class:`Claims`) holds the sequencer before the next step. Its
     order must wait, too (`holds`). If the length claims too much, the order must transfer it as 0
-    (`refuses`), and the sequencer goes back to its step, and leaves it with an order that has no step.
+    (`refuses`), and the sequencer goes back to the length's step, and leaves it with an order that
+    has no step.
 
     Parameters
     ----------
