@@ -12,7 +12,7 @@ import pytest
 from amaranth.back import verilog
 from amaranth.hdl import Cat, Value
 from amaranth.sim import Simulator
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl import Parser, Status, load_message
@@ -26,6 +26,7 @@ from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, beats_of
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
+from tests.gateware.traffic import is_quick
 from tests.plan.test_random_messages import damaged, typed_values
 from tests.strategies import BUS_WIDTHS
 from tests.tools import need
@@ -129,6 +130,7 @@ def test_random_packets_get_the_status_of_the_interpreter(wire, data, case, bus_
     definition, value = case
     layout = lay_out(definition.message, wire)
     plan = build_plan(layout, bus_bytes=bus_bytes, max_message_bytes=100_000)
+    assume(is_quick(plan))
     good = encode(plan, to_transfers(plan, definition.message, value))[0]
     packets = [good]
     for packet in data.draw(st.lists(damaged(good), min_size=1, max_size=6)):

@@ -124,7 +124,7 @@ def blob(name, frame_id, size):
 @pytest.mark.parametrize(
     ("name", "extra", "size"),
     [
-        ("sensor_msgs/msg/Image", 12, by_depth(BLOB_BYTES // 2, BLOB_BYTES)),
+        ("sensor_msgs/msg/Image", 12, by_depth(BLOB_BYTES // 8, BLOB_BYTES)),
         ("sensor_msgs/msg/CompressedImage", 11, by_depth(BLOB_BYTES // 8, BLOB_BYTES)),
         ("sensor_msgs/msg/PointCloud2", 14, by_depth(BLOB_BYTES // 8, BLOB_BYTES)),
     ],
