@@ -41,7 +41,7 @@ LATENCY = 3
 ERROR = 4
 """Cycles from the last beat to the status, and the most cycles that an error adds."""
 
-SOME_WIDTHS = by_depth([1, 8, 64], [1, 2, 4, 8, 64])
+SOME_WIDTHS = by_depth([1, 8], [1, 2, 4, 8, 64])
 
 MOST = 10_000
 """Most bytes of a message: the interpreter completes what a damaged length claims."""
