@@ -40,11 +40,11 @@ coverage: $(VENV)/.compiled tools ## lines and branches of firm_hdl that the tes
 	$(BIN)/python -m coverage html --quiet
 	$(BIN)/python -m coverage report
 
-# Types that have every feature of all: what `make test` simulates in full depth, and what the two
+# Types that have every feature of all: what `make test` simulates, and what the two
 # targets below are about. COVER=--check compares the files with today's features instead.
 COVERING := tests/verify/covering
 COVER    ?= --out
-cover: $(VENV)/.installed ## choose the types that tests simulate in full depth (2 minutes)
+cover: $(VENV)/.installed ## choose the types that tests simulate (2 minutes)
 	$(BIN)/firm-hdl cover --distro lyrical --branches $(COVER) $(COVERING)/lyrical.txt
 	$(BIN)/firm-hdl cover --distro noetic --branches $(COVER) $(COVERING)/noetic.txt
 
