@@ -31,6 +31,9 @@ _REPEAT, _MOST_REPEATS = 0.1, 20
 _PATIENCE = 0.02
 # Seconds between ACKNACKs to a writer that has said nothing yet, at first; and their number.
 _GREETING, _MOST_GREETINGS = 0.25, 6
+# How GUID prefixes of Fast DDS and RTI begin. They answer a first ACKNACK at once only if its base is
+# 0. To base 1, which 8.3.5.5 asks for, Fast DDS answers with its next heartbeat, after 3 s.
+_GREETED_WITH_0 = (b"\x01\x0f", b"\x01\x01")
 # NACK_FRAGs in one answer.
 _MOST_PARTIAL = 4
 
@@ -208,10 +211,11 @@ class Reader:
 
     def _greet(self, proxy: _Proxy, now: float) -> None:
         """Ask a new writer for a heartbeat (8.4.2.3.4), some times and ever more seldom."""
-        self._post(proxy, (self._ack_nack(proxy, (), final=False),))
+        base = 0 if proxy.guid.prefix[:2] in _GREETED_WITH_0 else proxy.next
+        self._post(proxy, (self._ack_nack(proxy, NumberSet(base), final=False),))
         proxy.repeats += 1
         if proxy.repeats < _MOST_GREETINGS:
-            proxy.ask_at = now + _GREETING * 2**proxy.repeats
+            proxy.ask_at = now + _GREETING * 2 ** (proxy.repeats - 1)
 
     def _give_up(self, proxy: _Proxy, first: int) -> None:
         """Note that a writer no longer has what is below `first`. What came of it is delivered."""
@@ -255,7 +259,9 @@ class Reader:
         absent = [n for n in window if n not in proxy.early and n not in proxy.gaps]
         partial = [n for n in absent if n in proxy.fragments]
         whole = [n for n in absent if n not in proxy.fragments]
-        submessages: list[Submessage] = [self._ack_nack(proxy, whole, final=True)]
+        submessages: list[Submessage] = [
+            self._ack_nack(proxy, NumberSet.of(proxy.next, whole), final=True)
+        ]
         if absent:
             proxy.repeats += 1
             proxy.ask_at = now + _REPEAT
@@ -267,13 +273,11 @@ class Reader:
                 submessages.append(self._nack_frag(proxy, number, missing))
         self._post(proxy, tuple(submessages))
 
-    def _ack_nack(
-        self, proxy: _Proxy, missing: list[int] | tuple[int, ...], final: bool
-    ) -> AckNack:
+    def _ack_nack(self, proxy: _Proxy, missing: NumberSet, final: bool) -> AckNack:
         return AckNack(
             reader=self.guid.entity,
             writer=proxy.guid.entity,
-            missing=NumberSet.of(proxy.next, missing),
+            missing=missing,
             count=self._next_count(),
             final=final,
         )
