@@ -31,8 +31,8 @@ _REPEAT, _MOST_REPEATS = 0.1, 20
 _PATIENCE = 0.02
 # Seconds between ACKNACKs to a writer that has said nothing yet, at first; and their number.
 _GREETING, _MOST_GREETINGS = 0.25, 6
-# How GUID prefixes of Fast DDS and RTI begin. They answer a first ACKNACK at once only if its base is
-# 0. To base 1, which 8.3.5.5 asks for, Fast DDS answers with its next heartbeat, after 3 s.
+# How GUID prefixes of Fast DDS and RTI begin. They answer a first ACKNACK at once if its base is
+# 0 alone. To base 1, which 8.3.5.5 asks for, Fast DDS answers with its next heartbeat, after 3 s.
 _GREETED_WITH_0 = (b"\x01\x0f", b"\x01\x01")
 # NACK_FRAGs in one answer.
 _MOST_PARTIAL = 4

@@ -22,6 +22,9 @@ _MAX_PEERS = 256
 _QUICK, _QUICK_COUNT = 0.1, 5
 # A lease of days would keep a dead peer for days; one of microseconds would lose it at once.
 _LEASE_LIMITS = (1.0, 3600.0)
+# Seconds for which a participant that left is not found again: announcements may be overtaken by the
+# farewell.
+_GONE = 1.0
 # Seconds between directed answers to one peer, so that a flood of announcements makes no other.
 _ANSWER = 1.0
 
@@ -70,6 +73,7 @@ class Spdp:
         self._found = found
         self._lost = lost
         self._peers: dict[bytes, _Peer] = {}
+        self._left: dict[bytes, float] = {}
         self._announce_at = float("-inf")
         self._announced = 0
 
@@ -94,6 +98,8 @@ class Spdp:
         if data.payload is None or data.key:
             gone = key_of(data.payload, data.inline, Pid.PARTICIPANT_GUID)
             if gone is not None and gone.prefix == source:
+                if source in self._peers:
+                    self._left[source] = now
                 self._drop(source, expired=False)
             return
         peer = ParticipantData.decode(data.payload)
@@ -101,7 +107,7 @@ class Spdp:
         if peer.prefix != source or peer.domain not in (None, self._own.domain):
             return
         known = self._peers.get(source)
-        if known is None and len(self._peers) == _MAX_PEERS:
+        if known is None and (len(self._peers) == _MAX_PEERS or source in self._left):
             return
         if known is not None and known.data == peer:
             known.deadline = now + _lease(peer)
@@ -119,6 +125,7 @@ class Spdp:
             self._announce_at = now + (min(_QUICK, self._period) if quick else self._period)
             for target in self._targets:
                 self._send(Outgoing(target, UNKNOWN_PREFIX, (self._announcement(),)))
+        self._left = {prefix: at for prefix, at in self._left.items() if now < at + _GONE}
         for prefix in [p for p, peer in self._peers.items() if now >= peer.deadline]:
             self._drop(prefix, expired=True)
         return min([self._announce_at, *(peer.deadline for peer in self._peers.values())])
