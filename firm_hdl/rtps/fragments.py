@@ -7,9 +7,10 @@ incomplete sample.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import islice
 
+from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.samples import Data, DataFrag
 
 __all__ = ["Budget", "Reassembly", "fragment", "fragment_count"]
@@ -146,10 +147,15 @@ class Reassembly:
         for each in list(self._partial):
             self.drop(each)
 
-    def missing(self, number: int) -> Iterator[int]:
-        """Yield the numbers of the fragments that a begun sample misses, ascending."""
+    def missing(self, number: int, last: int | None = None) -> list[int]:
+        """Return the fragments that a begun sample misses, ascending, up to fragment `last`.
+
+        There are as many as one NACK_FRAG can name, at most.
+        """
         partial = self._partial[number]
-        yield from (each for each in range(1, partial.count + 1) if each not in partial.parts)
+        end = partial.count if last is None else min(last, partial.count)
+        missing = (each for each in range(1, end + 1) if each not in partial.parts)
+        return list(islice(missing, NumberSet.MAX_SIZE))
 
     def __contains__(self, number: int) -> bool:
         """Whether a sample is begun."""

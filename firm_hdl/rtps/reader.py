@@ -179,7 +179,7 @@ class Reader:
         proxy.fragment_count = heartbeat.count
         number = heartbeat.sequence_number
         if number >= proxy.next and number in proxy.fragments:
-            missing = [n for n in proxy.fragments.missing(number) if n <= heartbeat.last]
+            missing = proxy.fragments.missing(number, heartbeat.last)
             if missing:
                 self._post(proxy, (self._nack_frag(proxy, number, missing),))
 
@@ -269,7 +269,7 @@ class Reader:
             proxy.ask_at = now + _PATIENCE
         else:
             for number in partial[:_MOST_PARTIAL]:
-                missing = list(proxy.fragments.missing(number))
+                missing = proxy.fragments.missing(number)
                 submessages.append(self._nack_frag(proxy, number, missing))
         self._post(proxy, tuple(submessages))
 

@@ -22,8 +22,8 @@ _MAX_PEERS = 256
 _QUICK, _QUICK_COUNT = 0.1, 5
 # A lease of days would keep a dead peer for days; one of microseconds would lose it at once.
 _LEASE_LIMITS = (1.0, 3600.0)
-# Seconds for which a participant that left is not found again: announcements may be overtaken by the
-# farewell.
+# Seconds for which a participant that left is not found again: its farewell may have overtaken an
+# announcement.
 _GONE = 1.0
 # Seconds between directed answers to one peer, so that a flood of announcements makes no other.
 _ANSWER = 1.0

@@ -80,7 +80,7 @@ class Network:
         """Add a participant."""
         number = len(self.stations) + 1
         addresses = (Address(f"10.0.0.{number}", 7411),)
-        lease = float(options.pop("lease", 10.0))  # type: ignore[arg-type]
+        lease = float(options.pop("lease", 10.0))
         own = ParticipantData(
             prefix=prefix or b"\x01\xff" + bytes(9) + bytes([number]),
             discovery=(Address(f"10.0.0.{number}", 7410),),
@@ -88,7 +88,7 @@ class Network:
             lease=lease,
             domain=domain,
         )
-        settings = Settings(own=own, host=addresses[0].host, targets=(GROUP,), **options)  # type: ignore[arg-type]
+        settings = Settings(own=own, host=addresses[0].host, targets=(GROUP,), **options)
         station = Station(self, Core(settings))
         self.stations.append(station)
         return station

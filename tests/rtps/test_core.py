@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -289,6 +291,17 @@ def test_only_missing_fragments_are_sent_again():
     network.run(5)
     assert two.payloads == [bytes(128_000)]
     assert 100 < len(sent_to(two, DataFrag)) < 130
+
+
+def test_peers_of_the_other_byte_order(monkeypatch):
+    monkeypatch.setattr(message, "write", partial(message.write, little=False))
+    network = Network(seed=2, loss=0.1)
+    one, two, writer = pair(network)
+    sent = payloads([8, 5000, 100, 3000])
+    for each in sent:
+        one.write(writer, each)
+    assert network.run(20, lambda: two.payloads == sent)
+    assert not any(datagram[21] & 1 for datagram in network.sent)
 
 
 def test_memory_for_early_samples_is_limited():

@@ -1,3 +1,3 @@
 """Bytes of RTPS: datagrams, submessages, parameter lists, GUIDs and locators, as data."""
 
-__all__: list[str] = []
+__all__ = []
