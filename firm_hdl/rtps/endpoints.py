@@ -67,7 +67,10 @@ class Endpoint:
     def wait_for_match(self, count: int = 1, timeout: float = 10.0) -> bool:
         """Wait until it is matched with `count` endpoints, at most `timeout` seconds.
 
-        Not to be called in a callback.
+        Raises
+        ------
+        RuntimeError
+            The caller is a callback.
         """
         return self._participant.wait_until(lambda: len(self.matched) >= count, timeout)
 
@@ -100,7 +103,7 @@ class DataWriter(Endpoint):
         Raises
         ------
         HistoryFullError
-            There was no room in time. In a callback, this is not waited for.
+            There was no room in time.
         """
         return self._participant.write(self._writer, payload, related, timeout)
 

@@ -129,6 +129,9 @@ class Participant:
         self._wake_receiver, self._wake_sender = socket.socketpair()
         for each in (self._wake_receiver, self._wake_sender):
             each.setblocking(False)
+        self._selector = selectors.DefaultSelector()
+        for source in (*self._transport.sockets, self._wake_receiver):
+            self._selector.register(source, selectors.EVENT_READ)
         self._thread = threading.Thread(target=self._run, name=f"rtps {name}", daemon=True)
         self._thread.start()
 
@@ -239,17 +242,21 @@ class Participant:
     ) -> int:
         """Write a sample; see :meth:`DataWriter.write`."""
         deadline = time.monotonic() + timeout
-        with self._changed:
-            while True:
+        while True:
+            with self._changed:
                 now = time.monotonic()
                 try:
                     number = self._core.write(writer, payload, now, time.time_ns(), related)
                     self._flush()
                     return number
                 except HistoryFullError:
-                    if self._in_callback() or now >= deadline or self._closing:
+                    if now >= deadline or self._closing:
                         raise
-                    self._changed.wait(deadline - now)
+                    if not self._in_callback():
+                        self._changed.wait(deadline - now)
+                        continue
+            # Nobody else receives the acknowledgements that make room.
+            self._poll(min(deadline - now, _MOST_SLEEP))
 
     def wait_until(self, condition: Callable[[], bool], timeout: float) -> bool:
         """Wait for a condition that what comes from peers makes true.
@@ -258,8 +265,14 @@ class Participant:
         -------
         bool
             Whether it is true; `False` after `timeout` seconds.
+
+        Raises
+        ------
+        RuntimeError
+            The caller is a callback.
         """
-        assert not self._in_callback(), "a callback cannot wait for what comes after it"
+        if self._in_callback():
+            raise RuntimeError("a callback cannot wait for what comes after it")
         with self._changed:
             return self._changed.wait_for(lambda: self._closing or condition(), timeout) and (
                 condition()
@@ -305,37 +318,38 @@ class Participant:
         return _MOST_SLEEP
 
     def _run(self) -> None:
-        selector = selectors.DefaultSelector()
-        for each in self._transport.sockets:
-            selector.register(each, selectors.EVENT_READ)
-        selector.register(self._wake_receiver, selectors.EVENT_READ)
         sleep = 0.0
         while not self._closing:
-            for key, _ in selector.select(sleep):
-                assert isinstance(key.fileobj, socket.socket)
-                if key.fileobj is self._wake_receiver:
-                    self._wake_receiver.recv(4096)
-                else:
-                    self._receive(key.fileobj)
-            with self._lock:
-                now = time.monotonic()
-                due = self._core.tick(now)
-                sleep = max(0.0, min(due - now, self._flush(), _MOST_SLEEP))
+            sleep = self._poll(sleep)
             self._dispatch()
-        selector.close()
+        self._selector.close()
         self._transport.close()
         self._wake_receiver.close()
         self._wake_sender.close()
 
-    def _receive(self, source: socket.socket) -> None:
-        datagrams = list(self._transport.receive(source))
+    def _poll(self, sleep: float) -> float:
+        """Receive what comes within `sleep` seconds, and do what is due.
+
+        Returns
+        -------
+        float
+            Seconds until something is due again.
+        """
+        for key, _ in self._selector.select(sleep):
+            assert isinstance(key.fileobj, socket.socket)
+            if key.fileobj is self._wake_receiver:
+                self._wake_receiver.recv(4096)
+                continue
+            datagrams = list(self._transport.receive(key.fileobj))
+            with self._lock:
+                now = time.monotonic()
+                for each in datagrams:
+                    self._core.receive(each, now)
         with self._changed:
             now = time.monotonic()
-            for each in datagrams:
-                self._core.receive(each, now)
-            self._flush()
+            due = self._core.tick(now)
             self._changed.notify_all()
-        self._dispatch()
+            return max(0.0, min(due - now, self._flush(), _MOST_SLEEP))
 
     def _dispatch(self) -> None:
         """Call users back, without the lock, so that they may call in turn."""

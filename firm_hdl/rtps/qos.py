@@ -52,7 +52,9 @@ class Qos:
         Our endpoints are volatile or transient-local.
     depth : int
         How many samples a writer keeps for readers that miss them (KEEP_LAST), the newest. 0 keeps
-        all that a reliable reader has not acknowledged (KEEP_ALL), within the limit of the writer.
+        all that a reliable reader has not acknowledged (KEEP_ALL).
+    max_samples : int
+        Limit of what a writer keeps if the depth is 0 (RESOURCE_LIMITS).
     deadline, lease : float
         Seconds; of the policies DEADLINE and LIVELINESS. Ours are infinite, as in ROS 2 by default.
     liveliness : int
@@ -68,6 +70,7 @@ class Qos:
     reliability: Reliability = Reliability.RELIABLE
     durability: Durability = Durability.VOLATILE
     depth: int = 10
+    max_samples: int = 5000
     deadline: float = INFINITE
     liveliness: int = 0
     lease: float = INFINITE
@@ -78,6 +81,8 @@ class Qos:
     def __post_init__(self) -> None:
         if self.depth < 0:
             raise ValueError(f"Depth must be at least 0, not {self.depth}")
+        if self.max_samples < 1:
+            raise ValueError(f"Limit of samples must be at least 1, not {self.max_samples}")
 
     @property
     def reliable(self) -> bool:

@@ -86,8 +86,6 @@ class Writer:
         Takes its datagrams.
     fragment_bytes : int
         Samples with more bytes are sent in fragments of this size.
-    max_samples : int
-        Limit of the history if the depth of `qos` is 0.
     """
 
     def __init__(
@@ -96,13 +94,11 @@ class Writer:
         qos: Qos,
         send: Send,
         fragment_bytes: int = FRAGMENT_BYTES,
-        max_samples: int = 5000,
     ):
         self.guid = guid
         self.qos = qos
         self._send = send
         self._fragment_bytes = fragment_bytes
-        self._max_samples = max_samples
         self._changes: dict[int, _Change] = {}
         self._proxies: dict[Guid, _Proxy] = {}
         self._count = 0
@@ -248,8 +244,8 @@ class Writer:
     def _make_room(self) -> None:
         depth = self.qos.depth
         if not depth:
-            if len(self._changes) >= self._max_samples:
-                raise HistoryFullError(f"{self._max_samples} samples are not acknowledged")
+            if len(self._changes) >= self.qos.max_samples:
+                raise HistoryFullError(f"{self.qos.max_samples} samples are not acknowledged")
             return
         while len(self._changes) >= depth:
             del self._changes[next(iter(self._changes))]
@@ -279,7 +275,8 @@ class Writer:
         if not proxy.reliable:
             return ()
         large = len(change.data.payload or b"") > self._fragment_bytes
-        final = now - proxy.asked_at < _HEARTBEAT and not large
+        full = not self.qos.depth and 2 * len(self._changes) >= self.qos.max_samples
+        final = now - proxy.asked_at < _HEARTBEAT and not large and not full
         if not final:
             proxy.asked_at = now
         return (self._heartbeat(proxy, final),)

@@ -78,6 +78,33 @@ def test_a_callback_may_write_and_may_fail(pair, caplog):
     assert "an error of the user" in caplog.text
 
 
+def test_a_callback_waits_for_room(pair):
+    one, two = pair
+    back = []
+    keep = Qos(depth=0, max_samples=20)
+    answers = two.writer("rt/back", TYPE, keep)
+    two.reader(TOPIC, TYPE, lambda sample: answers.write(sample.payload, timeout=10), keep)
+    writer = one.writer(TOPIC, TYPE, keep)
+    one.reader("rt/back", TYPE, back.append, keep)
+    assert writer.wait_for_match() and answers.wait_for_match()
+    sent = [number.to_bytes(4, "big") for number in range(300)]
+    for each in sent:
+        writer.write(each, timeout=10)
+    assert wait(lambda: len(back) == 300)
+    assert [each.payload for each in back] == sent
+
+
+def test_a_callback_cannot_wait_for_what_comes_after_it(pair, caplog):
+    one, two = pair
+    writer = one.writer(TOPIC, TYPE)
+    reader = two.reader(TOPIC, TYPE, lambda sample: reader.wait_for_match(2))
+    assert writer.wait_for_match()
+    with caplog.at_level(logging.ERROR, "firm_hdl.rtps"):
+        writer.write(b"1234")
+        assert wait(lambda: caplog.records)
+    assert "a callback cannot wait for what comes after it" in caplog.text
+
+
 def test_writes_of_several_threads(pair):
     one, two = pair
     got = []
@@ -102,13 +129,13 @@ def test_writes_of_several_threads(pair):
 
 def test_a_full_history_is_reported_after_a_wait(pair):
     one, two = pair
-    writer = one.writer(TOPIC, TYPE, Qos(depth=0))
+    writer = one.writer(TOPIC, TYPE, Qos(depth=0, max_samples=100))
     stuck = threading.Event()
     two.reader(TOPIC, TYPE, lambda sample: stuck.wait(20), Qos(depth=0))
     assert writer.wait_for_match()
     try:
         with pytest.raises(HistoryFullError):
-            for _ in range(7000):
+            for _ in range(2000):
                 writer.write(bytes(8), timeout=0.01)
     finally:
         stuck.set()
