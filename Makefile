@@ -30,7 +30,7 @@ pytest: $(VENV)/.compiled tools ## tests only; PYTEST_ARGS=tests/export takes so
 test-thorough: $(VENV)/.compiled tools ## all tests in full depth (half an hour); PYTEST_ARGS=-mthorough takes some
 	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
-test-live: $(VENV)/.installed-dev $(LIVE_PEERS) ## our nodes with rclpy and Cyclone DDS, in a network of their own (5 minutes)
+test-live: $(VENV)/.installed-dev $(LIVE_PEERS) ## our nodes with rclpy and Cyclone DDS, in a network of their own (2 to 5 minutes)
 	FIRM_HDL_LIVE=1 $(BIN)/python -m pytest -n $(JOBS) $(or $(PYTEST_ARGS),tests/live)
 
 lint: $(VENV)/.installed-dev ## ruff and mypy only
@@ -169,7 +169,7 @@ $(VENV)/ros2/%/.installed: firm_hdl/verify/ros2_wheels/%.txt | $(VENV)/.created
 	  && touch $@; } >$(VENV)/ros2-$*.log 2>&1 \
 	  || echo "Failed: see $(VENV)/ros2-$*.log; going on without." >&2
 
-# Peers of `make test-live`, each in an environment of its own: 500 MB.
+# Peers of `make test-live`, each in an environment of its own: 600 MB.
 $(VENV)/live/%/.installed: tests/live/peers/%.txt | $(VENV)/.created
 	@echo "Installing the peer $* ..."
 	@mkdir -p $(VENV)/live

@@ -305,7 +305,7 @@ class Core:
         if data.payload is None or data.key:
             return
         try:
-            related = data.inline.related()
+            related = data.inline.related(writer.prefix[:2])
         except MalformedError:
             self.counters["malformed"] += 1
             related = None

@@ -9,6 +9,7 @@ from firm_hdl.rtps.discovery import EndpointData
 from firm_hdl.rtps.ros import names
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.locators import Address
+from firm_hdl.rtps.wire.parameters import ParameterList
 from firm_hdl.rtps.wire.samples import Data
 from tests.rtps.captures import CAPTURES, RECEIVER_OF, SEDP_CYCLONE, SEDP_FAST_DDS
 
@@ -48,7 +49,11 @@ def test_what_is_written_is_what_the_peer_wrote(name):
 def test_a_request_names_its_reader_of_replies():
     (data,) = CAPTURES["fast: DATA of a request, with the reader of replies in its inline QoS"][1]
     reader = Guid(bytes.fromhex("010f7f01377d00a600000000"), 0x1304)
-    assert data.inline.related() == SampleIdentity(reader, -1 << 32)
+    assert data.inline.related(b"\x01\x0f") == SampleIdentity(reader, -1 << 32)
+    # Releases that know the standard's identifier not yet write their own alone.
+    old = ParameterList(data.inline.items[1:])
+    assert old.related(b"\x01\x0f") == SampleIdentity(reader, -1 << 32)
+    assert old.related(b"\x01\x10") is None
 
 
 def test_sedp_of_fast_dds():

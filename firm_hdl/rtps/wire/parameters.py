@@ -6,7 +6,7 @@ import struct
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from firm_hdl.rtps.wire.guid import Guid, SampleIdentity
+from firm_hdl.rtps.wire.guid import VENDOR, Guid, SampleIdentity
 from firm_hdl.rtps.wire.octets import Cursor, MalformedError, padded
 
 __all__ = ["ParameterList", "Pid", "identity", "sequence_number_bytes", "string"]
@@ -17,6 +17,7 @@ _VENDOR, _MUST_UNDERSTAND = 0x8000, 0x4000
 # PL_CDR_BE and PL_CDR_LE: representation identifiers of 10.5, before the list of discovery data.
 _PL_CDR = {b"\x00\x02": False, b"\x00\x03": True}
 _MAX_PARAMETERS = 512
+_FAST_DDS = b"\x01\x0f"
 
 
 class Pid:
@@ -131,9 +132,16 @@ class ParameterList:
             raise MalformedError(f"encapsulation {payload[:2].hex()} is no parameter list")
         return cls.decode(Cursor(payload, little, 4))
 
-    def related(self) -> SampleIdentity | None:
-        """Return the sample that this one answers, by inline QoS (DDS-RPC 7.6.2)."""
-        for pid in (Pid.RELATED_SAMPLE_IDENTITY, Pid.FAST_DDS_SAMPLE_IDENTITY):
+    def related(self, vendor: bytes) -> SampleIdentity | None:
+        """Return the sample that this one answers, by inline QoS (DDS-RPC 7.6.2).
+
+        Parameters
+        ----------
+        vendor : bytes
+            Vendor of the writer. Only Fast DDS and we have an identifier of Fast DDS.
+        """
+        own = (Pid.FAST_DDS_SAMPLE_IDENTITY,) if vendor in (_FAST_DDS, VENDOR) else ()
+        for pid in (Pid.RELATED_SAMPLE_IDENTITY, *own):
             value = self.first(pid)
             if value is not None:
                 guid = Guid.parse(value.take(16))
