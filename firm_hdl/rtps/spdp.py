@@ -115,6 +115,9 @@ class Spdp:
         answered_at = float("-inf") if known is None else known.answered_at
         known = self._peers[source] = _Peer(peer, now + _lease(peer), answered_at)
         self._answer(known, now)
+        # A peer may announce itself before it listens.
+        self._announced = min(self._announced, _QUICK_COUNT - 2)
+        self._announce_at = min(self._announce_at, now + _QUICK)
         self._found(peer, now)
 
     def tick(self, now: float) -> float:
@@ -123,8 +126,7 @@ class Spdp:
             self._announced += 1
             quick = self._announced < _QUICK_COUNT
             self._announce_at = now + (min(_QUICK, self._period) if quick else self._period)
-            for target in self._targets:
-                self._send(Outgoing(target, UNKNOWN_PREFIX, (self._announcement(),)))
+            self._tell_all(self._announcement())
         self._left = {prefix: at for prefix, at in self._left.items() if now < at + _GONE}
         for prefix in [p for p, peer in self._peers.items() if now >= peer.deadline]:
             self._drop(prefix, expired=True)
@@ -142,9 +144,17 @@ class Spdp:
             key=True,
             inline=inline,
         )
+        self._tell_all(farewell)
+
+    def _tell_all(self, data: Data) -> None:
+        """Send to the targets, and to each peer: multicast does not reach all of them.
+
+        A peer of ROS 2 whose discovery is limited to its host joins no group.
+        """
         known = (nearest(peer.data.discovery, self._host) for peer in self._peers.values())
-        for target in {*self._targets, *(address for address in known if address)}:
-            self._send(Outgoing(target, UNKNOWN_PREFIX, (farewell,)))
+        # Without repetitions, in an order that does not depend on hashes.
+        for target in dict.fromkeys((*self._targets, *(each for each in known if each))):
+            self._send(Outgoing(target, UNKNOWN_PREFIX, (data,)))
 
     def _announcement(self) -> Data:
         # 8.5.3.3.1: a best-effort stateless writer sends its only sample again and again.

@@ -38,9 +38,18 @@ class Peer:
         The first argument of the script.
     options
         Options of the script. `domain` is that of the process, too.
+    variables : dict
+        Further variables of the environment.
     """
 
-    def __init__(self, environment: str, what: str, domain: int = 0, **options: Any):
+    def __init__(
+        self,
+        environment: str,
+        what: str,
+        domain: int = 0,
+        variables: dict[str, str] | None = None,
+        **options: Any,
+    ):
         script = "cyclone.py" if environment == "cyclone" else "ros.py"
         if environment == "cyclone":
             options["domain"] = domain
@@ -50,7 +59,12 @@ class Peer:
             [python_of(environment), str(_HERE / script), what, json.dumps(options)],
             stdout=subprocess.PIPE,
             text=True,
-            env={**inherited, "ROS_DOMAIN_ID": str(domain), "CYCLONEDDS_URI": _CYCLONE},
+            env={
+                **inherited,
+                "ROS_DOMAIN_ID": str(domain),
+                "CYCLONEDDS_URI": _CYCLONE,
+                **(variables or {}),
+            },
         )
         self._lines: queue.Queue[str] = queue.Queue()
         self._reader = threading.Thread(target=self._read, daemon=True)

@@ -298,6 +298,30 @@ def test_domains_are_apart(release, make_node):
         assert peer.result()["numbers"] == [7]
 
 
+@RELEASES
+@pytest.mark.parametrize("multicast", [True, False], ids=["multicast", "unicast"])
+@pytest.mark.parametrize("scope", ["LOCALHOST", "SUBNET"])
+def test_discovery_that_is_limited(release, scope, multicast, make_node):
+    lost = []
+    node = make_node(
+        multicast=multicast,
+        peers=() if multicast else ("127.0.0.1",),
+        on_event=lambda event: lost.append(type(event).__name__),
+        lease=2.0,
+    )
+    writer = node.publisher("/chatter", STRING)
+    variables = {"ROS_AUTOMATIC_DISCOVERY_RANGE": scope}
+    options = {"type": "string", "topic": "/chatter", "count": 2}
+    with Peer(release, "subscribe", variables=variables, **options) as peer:
+        assert writer.wait_for_match()
+        writer.write(samples.string("m0"))
+        # The peer keeps us for longer than our lease.
+        time.sleep(4)
+        writer.write(samples.string("m1"))
+        assert peer.result()["numbers"] == [0, 1]
+    assert "PeerLost" not in lost[:1]
+
+
 def test_a_peer_that_is_not_there_is_said_so():
     """The twin of all tests here: a peer that gets nothing says so."""
     with Peer("kilted", "subscribe", type="string", topic="/x", count=1, patience=1) as peer:

@@ -31,6 +31,8 @@ class Station:
     events: list[Event] = field(default_factory=list)
     # Taken off the network, without a farewell.
     dead: bool = False
+    # Not a member of the multicast group.
+    deaf: bool = False
 
     @property
     def samples(self) -> list[Sample]:
@@ -128,5 +130,6 @@ class Network:
     def _arrive(self, address: Address, datagram: bytes) -> None:
         for station in self.stations:
             own = station.core.settings.own
-            if not station.dead and address in (GROUP, *own.discovery, *own.user):
+            group = () if station.deaf else (GROUP,)
+            if not station.dead and address in (*group, *own.discovery, *own.user):
                 station.core.receive(datagram, self.now)

@@ -259,6 +259,45 @@ def test_endpoints_come_and_go():
     assert [each.topic for each in late.core.remotes(writers=True)] == []
 
 
+def test_a_peer_that_multicast_does_not_reach():
+    network = Network(seed=1)
+    one, two = network.station(lease=3.0), network.station()
+    two.deaf = True
+    network.loss = 0.3
+    assert network.run(10, lambda: len(two.core.peers) == len(one.core.peers) == 1)
+    network.loss = 0
+    network.run(20)
+    assert not two.named("PeerLost")
+    one.core.leave()
+    assert network.run(0.1, lambda: len(two.named("PeerLost")) == 1)
+
+
+def test_a_peer_that_did_not_listen_yet():
+    network = Network()
+    one, two = network.station(), network.station()
+    two.deaf = True
+    two.core.receive, listening = lambda datagram, now: None, two.core.receive
+    assert network.run(1, lambda: len(one.core.peers) == 1)
+    network.run(0.01)
+    two.core.receive = listening
+    assert network.run(0.2, lambda: len(two.core.peers) == 1)
+
+
+@pytest.mark.parametrize(("vendor", "base"), [("010f", 0), ("0101", 0), ("0110", 1), ("01ff", 1)])
+def test_the_first_acknack_is_one_that_the_vendor_answers(vendor, base):
+    network = Network()
+    one, two = network.station(bytes.fromhex(vendor) + bytes(10)), network.station()
+    one.writer()
+    two.reader()
+    assert network.run(5, lambda: bool(one.named("Matched")))
+    network.run(1)
+    firsts = {}
+    for each in sent_to(one, AckNack):
+        firsts.setdefault(each.writer, each)
+    assert len(firsts) == 3
+    assert {(each.missing, each.final) for each in firsts.values()} == {(NumberSet(base), False)}
+
+
 def test_participants_of_another_domain_are_none():
     network = Network()
     one, two = network.station(domain=0), network.station(domain=1)
