@@ -159,7 +159,10 @@ class Participant:
 
     @property
     def counters(self) -> Counter[str]:
-        """What came and went, as of :class:`firm_hdl.rtps.core.Core`, and ``sent``."""
+        """What came and went, as of :class:`firm_hdl.rtps.core.Core`, and ``sent``.
+
+        ``failed`` are datagrams that a fault of firm-hdl concerns, which is in the log.
+        """
         with self._lock:
             return Counter(self._core.counters)
 
@@ -344,12 +347,20 @@ class Participant:
             with self._lock:
                 now = time.monotonic()
                 for each in datagrams:
-                    self._core.receive(each, now)
+                    self._receive(each, now)
         with self._changed:
             now = time.monotonic()
             due = self._core.tick(now)
             self._changed.notify_all()
             return max(0.0, min(due - now, self._flush(), _MOST_SLEEP))
+
+    def _receive(self, datagram: bytes, now: float) -> None:
+        try:
+            self._core.receive(datagram, now)
+        except Exception:
+            # No datagram is known that gets here. One must not end the participant.
+            self._core.counters["failed"] += 1
+            _LOG.exception("a fault of firm-hdl, with the datagram %s", datagram.hex())
 
     def _dispatch(self) -> None:
         """Call users back, without the lock, so that they may call in turn."""

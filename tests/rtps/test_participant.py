@@ -155,6 +155,27 @@ def test_closing_twice_and_using_what_is_closed(pair):
     assert wait(lambda: "PeerLost" in lost)
 
 
+def test_a_fault_of_ours_does_not_end_the_participant(pair, caplog, monkeypatch):
+    one, two = pair
+    writer = one.writer(TOPIC, TYPE)
+    got = []
+    two.reader(TOPIC, TYPE, got.append)
+    assert writer.wait_for_match()
+    receive = two._core.receive
+
+    def fail_once(datagram, now):
+        monkeypatch.undo()
+        raise KeyError("a fault")
+
+    monkeypatch.setattr(two._core, "receive", fail_once)
+    with caplog.at_level(logging.ERROR, "firm_hdl.rtps"):
+        writer.write(b"1234")
+        assert wait(lambda: got)
+    assert two._core.receive == receive
+    assert two.counters["failed"] == 1
+    assert "a fault of firm-hdl, with the datagram 52545053" in caplog.text
+
+
 def test_an_address_of_another_host():
     with pytest.raises(TransportError, match=r"^no sockets on 203\.0\.113\.7: "):
         Participant(DOMAIN, interface="203.0.113.7")

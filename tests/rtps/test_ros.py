@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
@@ -66,10 +67,11 @@ def test_type_hashes():
         names.user_data("0f")
 
 
-def test_the_graph_is_what_rosbags_writes():
+@pytest.mark.parametrize("gid_bytes", [16, 24])
+def test_the_graph_is_what_rosbags_writes(gid_bytes):
     store = get_typestore(Stores.EMPTY)
     package = "rmw_dds_common/msg"
-    store.register(get_types_from_msg("uint8[16] data", f"{package}/Gid"))
+    store.register(get_types_from_msg(f"uint8[{gid_bytes}] data", f"{package}/Gid"))
     node = "string node_namespace\nstring node_name\nGid[] readers\nGid[] writers"
     store.register(get_types_from_msg(node, f"{package}/NodeEntitiesInfo"))
     whole = "Gid gid\nNodeEntitiesInfo[] nodes"
@@ -77,10 +79,9 @@ def test_the_graph_is_what_rosbags_writes():
     types = store.types
 
     def gids(guids):
-        import numpy as np
-
         made = types[f"{package}/Gid"]
-        return [made(data=np.frombuffer(bytes(each), np.uint8)) for each in guids]
+        padded = (bytes(each).ljust(gid_bytes, b"\0") for each in guids)
+        return [made(data=np.frombuffer(each, np.uint8)) for each in padded]
 
     message = types[f"{package}/ParticipantEntitiesInfo"](
         gid=gids([INFO.participant])[0],
@@ -99,10 +100,14 @@ def test_the_graph_is_what_rosbags_writes():
         theirs = bytes(store.serialize_cdr(message, name, little_endian=little))
         assert GraphInfo.decode(theirs) == INFO
         if little:
-            assert INFO.encode().rstrip(b"\0") == theirs.rstrip(b"\0")
+            assert INFO.encode(gid_bytes).rstrip(b"\0") == theirs.rstrip(b"\0")
     for size in range(len(theirs)):
-        with pytest.raises(MalformedError):
-            GraphInfo.decode(theirs[:size])
+        try:
+            part = GraphInfo.decode(theirs[:size])
+        except MalformedError:
+            continue
+        # Cut within the zeros of its first GID, a sample is one without nodes.
+        assert gid_bytes == 24 and size in range(24, 28) and part.nodes == ()
 
 
 def test_identities():

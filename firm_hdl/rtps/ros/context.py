@@ -26,6 +26,8 @@ class Context:
         The domain (``ROS_DOMAIN_ID``), from 0 to 232.
     enclave : str
         The enclave of its nodes.
+    gid_bytes : int
+        16, or 24 for peers of releases before Iron, which otherwise do not see the nodes by name.
     on_event : callable or None
         As of :class:`firm_hdl.rtps.participant.Participant`.
     options
@@ -41,9 +43,13 @@ class Context:
         self,
         domain: int = 0,
         enclave: str = "/",
+        gid_bytes: int = graph.GID_BYTES[0],
         on_event: OnEvent | None = None,
         **options: Any,
     ):
+        if gid_bytes not in graph.GID_BYTES:
+            raise ValueError(f"A GID has 16 or 24 bytes, not {gid_bytes}")
+        self._gid_bytes = gid_bytes
         # The order of locks is `_publishing`, the participant's, `_lock`.
         self._publishing = threading.Lock()
         self._lock = threading.Lock()
@@ -119,7 +125,7 @@ class Context:
         with self._publishing:
             with self._lock:
                 nodes = tuple(self._own.values())
-            self._writer.write(GraphInfo(participant=guid, nodes=nodes).encode())
+            self._writer.write(GraphInfo(participant=guid, nodes=nodes).encode(self._gid_bytes))
 
     def _on_graph(self, sample: Sample) -> None:
         try:

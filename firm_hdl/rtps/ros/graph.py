@@ -7,13 +7,14 @@ transient-local topic whenever its nodes change. `ros2 node list` reads these sa
 from __future__ import annotations
 
 import struct
+from contextlib import suppress
 from dataclasses import dataclass
 
 from firm_hdl.rtps.qos import Durability, Qos
 from firm_hdl.rtps.wire.guid import Guid
 from firm_hdl.rtps.wire.octets import Cursor, MalformedError
 
-__all__ = ["QOS", "TOPIC", "TYPE", "GraphInfo", "NodeInfo"]
+__all__ = ["GID_BYTES", "QOS", "TOPIC", "TYPE", "GraphInfo", "NodeInfo"]
 
 TOPIC = "ros_discovery_info"
 """The topic, which has no prefix."""
@@ -25,8 +26,9 @@ QOS = Qos(durability=Durability.TRANSIENT_LOCAL, depth=1)
 """Policies of its writers and readers."""
 
 _MAX_ENTRIES = 4096
-# Releases before Iron have 24, of which the last 8 are 0.
-GID_BYTES = 16
+
+GID_BYTES = (16, 24)
+"""Sizes of a GID: since Iron, and before, with zeros behind the GUID."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,9 +56,9 @@ class GraphInfo:
     participant: Guid
     nodes: tuple[NodeInfo, ...]
 
-    def encode(self) -> bytes:
-        """Return the sample, as CDR, little-endian."""
-        body = bytearray(bytes(self.participant))
+    def encode(self, gid_bytes: int = GID_BYTES[0]) -> bytes:
+        """Return the sample, as CDR, little-endian, with GIDs of a size."""
+        body = bytearray(bytes(self.participant).ljust(gid_bytes, b"\0"))
         body += struct.pack("<I", len(self.nodes))
         for node in self.nodes:
             for text in (node.namespace, node.name):
@@ -64,12 +66,12 @@ class GraphInfo:
                 body += bytes(-len(body) % 4) + struct.pack("<I", len(data)) + data
             for guids in (node.readers, node.writers):
                 body += bytes(-len(body) % 4) + struct.pack("<I", len(guids))
-                body += b"".join(map(bytes, guids))
+                body += b"".join(bytes(each).ljust(gid_bytes, b"\0") for each in guids)
         return b"\x00\x01\x00\x00" + bytes(body) + bytes(-len(body) % 4)
 
     @classmethod
     def decode(cls, payload: bytes) -> GraphInfo:
-        """Read a sample, of either byte order.
+        """Read a sample of either byte order, with GIDs of either size.
 
         Raises
         ------
@@ -78,24 +80,31 @@ class GraphInfo:
         """
         if payload[:2] not in (b"\x00\x00", b"\x00\x01"):
             raise MalformedError(f"encapsulation {payload[:2].hex()}")
-        cursor = Cursor(payload[4:], payload[1] == 1)
-        participant = Guid.parse(cursor.take(GID_BYTES))
-        nodes = []
-        for _ in range(_count(cursor)):
-            texts = []
-            for _ in range(2):
-                cursor.align(4)
-                texts.append(cursor.string())
-            readers, writers = _guids(cursor), _guids(cursor)
-            nodes.append(
-                NodeInfo(namespace=texts[0], name=texts[1], readers=readers, writers=writers)
-            )
-        return cls(participant=participant, nodes=tuple(nodes))
+        for gid_bytes in GID_BYTES:
+            cursor = Cursor(payload[4:], payload[1] == 1)
+            with suppress(MalformedError):
+                participant = Guid.parse(cursor.take(gid_bytes))
+                nodes = tuple(_node(cursor, gid_bytes) for _ in range(_count(cursor)))
+                # What is left of the right size is padding.
+                if cursor.left < 4:
+                    return cls(participant=participant, nodes=nodes)
+        raise MalformedError(f"no graph in {len(payload)} bytes")
 
 
-def _guids(cursor: Cursor) -> tuple[Guid, ...]:
+def _node(cursor: Cursor, gid_bytes: int) -> NodeInfo:
+    namespace, name = _string(cursor), _string(cursor)
+    readers, writers = _guids(cursor, gid_bytes), _guids(cursor, gid_bytes)
+    return NodeInfo(namespace=namespace, name=name, readers=readers, writers=writers)
+
+
+def _string(cursor: Cursor) -> str:
     cursor.align(4)
-    return tuple(Guid.parse(cursor.take(GID_BYTES)) for _ in range(_count(cursor)))
+    return cursor.string()
+
+
+def _guids(cursor: Cursor, gid_bytes: int) -> tuple[Guid, ...]:
+    cursor.align(4)
+    return tuple(Guid.parse(cursor.take(gid_bytes)) for _ in range(_count(cursor)))
 
 
 def _count(cursor: Cursor) -> int:

@@ -34,7 +34,8 @@ class Node:
     context : Context or None
         The participant, if several nodes share one. By default, the node has its own.
     options
-        Further parameters of :class:`firm_hdl.rtps.participant.Participant`, such as `interface`.
+        Further parameters of :class:`Context` and of
+        :class:`firm_hdl.rtps.participant.Participant`, such as `interface`.
 
     Raises
     ------
