@@ -123,8 +123,6 @@ class EndpointData:
         Where to send its samples or acknowledgements. None means where the participant says.
     user_data : bytes
         ROS 2 has its type hash here.
-    wants_inline_qos : bool
-        Whether a reader expects the policies of a writer in each sample (8.4.10.1).
     """
 
     guid: Guid
@@ -133,7 +131,6 @@ class EndpointData:
     qos: Qos
     addresses: tuple[Address, ...] = ()
     user_data: bytes = b""
-    wants_inline_qos: bool = False
 
     def encode(self) -> bytes:
         """Return the payload of its announcement, little-endian."""
@@ -158,7 +155,6 @@ class EndpointData:
             It is no parameter list, or has no GUID, topic or type.
         """
         parameters = ParameterList.decode_payload(payload)
-        inline = parameters.first(Pid.EXPECTS_INLINE_QOS)
         guid = _required(parameters, Pid.ENDPOINT_GUID, "an endpoint without GUID")
         topic = _required(parameters, Pid.TOPIC_NAME, "an endpoint without topic")
         type_name = _required(parameters, Pid.TYPE_NAME, "an endpoint without type")
@@ -169,7 +165,6 @@ class EndpointData:
             qos=Qos.decode(parameters, writer),
             addresses=locators.decode(parameters.every(Pid.UNICAST_LOCATOR)),
             user_data=_read_user_data(parameters),
-            wants_inline_qos=bool(inline and inline.u8()),
         )
 
 

@@ -59,7 +59,8 @@ class Participant:
     user_data : bytes
         What it announces in addition.
     peers : tuple of str
-        IPv4 addresses of hosts that multicast does not reach.
+        IPv4 addresses of hosts that multicast does not reach. On the loopback interface, which
+        may have no multicast, this host is one of them.
     multicast : bool
         Whether it announces itself by multicast. Announcements of others are received anyway.
     lease : float
@@ -111,7 +112,8 @@ class Participant:
         )
         group = (self._transport.group,) if multicast else ()
         numbers = range(_PARTICIPANTS_PER_HOST)
-        direct = (Address(each, Ports.of(domain, n).discovery) for each in peers for n in numbers)
+        hosts = dict.fromkeys((*([host] if host.startswith("127.") else []), *peers))
+        direct = (Address(each, Ports.of(domain, n).discovery) for each in hosts for n in numbers)
         self._core = Core(
             Settings(
                 own=own,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.rtps import Durability, HistoryFullError, Qos, Reliability, SampleIdentity
@@ -17,6 +17,9 @@ from firm_hdl.rtps.wire.reliability import AckNack, Gap
 from firm_hdl.rtps.wire.samples import Data, DataFrag
 from tests.depth import by_depth
 from tests.rtps.network import Network
+
+# A busy machine is no fault.
+SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
 KEEP_ALL = Qos(depth=0)
 BEST_EFFORT = Qos(reliability=Reliability.BEST_EFFORT)
@@ -50,7 +53,7 @@ def sent_to(station, kind):
     delay=st.sampled_from([1e-5, 0.01, 0.2]),
     sizes=SIZES,
 )
-@settings(max_examples=by_depth(25, 1000), deadline=None)
+@settings(max_examples=by_depth(25, 1000), deadline=None, suppress_health_check=SLOW)
 def test_reliable_samples_come_once_and_in_order(seed, loss, repeat, delay, sizes):
     network = Network(seed, loss, repeat, delay)
     one, two, writer = pair(network)
@@ -76,7 +79,7 @@ def test_that_losses_would_be_noticed(monkeypatch):
 
 
 @given(seed=st.integers(0, 2**32), sizes=SIZES)
-@settings(max_examples=by_depth(10, 300), deadline=None)
+@settings(max_examples=by_depth(10, 300), deadline=None, suppress_health_check=SLOW)
 def test_best_effort_samples_come_at_most_once_and_in_order(seed, sizes):
     network = Network(seed, 0, 0.3, 0.05)
     one, two, writer = pair(network, BEST_EFFORT, BEST_EFFORT)

@@ -6,7 +6,7 @@ import random
 import struct
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.rtps import Durability, Qos
@@ -19,6 +19,9 @@ from tests.depth import by_depth
 from tests.rtps.captures import CAPTURES, SEDP_CYCLONE, SEDP_FAST_DDS
 from tests.rtps.network import Network
 from tests.rtps.test_core import KEEP_ALL, pair
+
+# A busy machine is no fault.
+SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
 
 def conversation():
@@ -59,7 +62,7 @@ def damaged(datagram, random):
 
 
 @given(seed=st.integers(0, 2**64))
-@settings(max_examples=by_depth(60, 10_000), deadline=None)
+@settings(max_examples=by_depth(60, 10_000), deadline=None, suppress_health_check=SLOW)
 def test_damaged_datagrams_raise_nothing(seed):
     generator = random.Random(seed)
     for _ in range(40):
@@ -73,7 +76,7 @@ def test_damaged_datagrams_raise_nothing(seed):
 
 
 @given(st.binary(max_size=200))
-@settings(max_examples=by_depth(200, 20_000))
+@settings(max_examples=by_depth(200, 20_000), deadline=None, suppress_health_check=SLOW)
 def test_random_bytes_raise_nothing(data):
     for datagram in (data, b"RTPS\x02\x03\x01\x0f" + bytes(12) + data):
         TARGET.core.receive(datagram, TARGET.network.now)

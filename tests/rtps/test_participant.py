@@ -105,6 +105,12 @@ def test_a_callback_cannot_wait_for_what_comes_after_it(pair, caplog):
     assert "a callback cannot wait for what comes after it" in caplog.text
 
 
+def test_the_loopback_interface_needs_neither_multicast_nor_peers():
+    options = {"domain": DOMAIN, "interface": "lo", "multicast": False}
+    with Participant(**options) as one, Participant(**options) as two:
+        assert wait(lambda: len(one.peers) == len(two.peers) == 1)
+
+
 def test_writes_of_several_threads(pair):
     one, two = pair
     got = []
@@ -197,7 +203,7 @@ def test_participants_of_a_host_have_ports_of_their_own():
 def test_nodes_topics_and_services():
     got = []
     with Node("one", "/ns", **OPTIONS) as one, Node("two", **OPTIONS) as two:
-        one.publisher("chatter", STRING)
+        one.publisher("chatter", STRING, type_hash="RIHS01_12")
         two.subscription("/ns/chatter", STRING, got.append)
         two.service("/go", "std_srvs/srv/SetBool", lambda request: request + b"!")
         client = one.client("/go", "std_srvs/srv/SetBool")
@@ -208,6 +214,8 @@ def test_nodes_topics_and_services():
         nodes = {(each.namespace, each.name): each for each in two.context.nodes()}
         assert set(nodes) == {("/", "two"), ("/ns", "one")}
         assert wait(lambda: two.context.topics() == {"/ns/chatter": {STRING}})
+        assert two.context.type_hashes("/ns/chatter") == {"RIHS01_12"}
+        assert two.context.type_hashes("/chatter") == set()
         assert len(nodes["/ns", "one"].writers) == 2
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import socket
 
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.rtps import Durability, Qos, Reliability, TransportError
@@ -21,9 +21,13 @@ from firm_hdl.rtps.wire.octets import Cursor, MalformedError
 from firm_hdl.rtps.wire.parameters import ParameterList
 from firm_hdl.rtps.wire.samples import Data, DataFrag
 
+# A busy machine is no fault.
+SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
+
 GUID = Guid(bytes(range(12)), 0x103)
 
 
+@settings(deadline=None, suppress_health_check=SLOW)
 @given(payload=st.binary(min_size=1, max_size=500), size=st.integers(1, 64), random=st.randoms())
 def test_samples_are_put_together_in_any_order(payload, size, random):
     sample = Data(reader=1, writer=2, sequence_number=3, payload=payload)
@@ -85,6 +89,7 @@ def test_tables_of_policies():
         assert Qos(**asked).refused(Qos(**offered)) == expected, (offered, asked)
 
 
+@settings(deadline=None, suppress_health_check=SLOW)
 @given(
     qos=st.builds(
         Qos,
@@ -121,6 +126,7 @@ def test_defaults_of_policies_differ_for_writers_and_readers():
         EndpointData.decode(ParameterList(bare.items[:1]).encode_payload(), writer=True)
 
 
+@settings(deadline=None, suppress_health_check=SLOW)
 @given(
     domain=st.none() | st.integers(0, 232),
     name=st.text("abé", max_size=9),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.rtps.wire import message
@@ -17,6 +17,9 @@ from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFra
 from firm_hdl.rtps.wire.samples import Data, DataFrag
 from firm_hdl.rtps.wire.submessages import encode
 from tests.depth import by_depth
+
+# A busy machine is no fault.
+SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
 ME, OTHER = bytes(range(12)), bytes(range(12, 24))
 HEARTBEAT = Heartbeat(reader=1, writer=2, first=1, last=3, count=4)
@@ -105,7 +108,7 @@ def normal(submessage):
 
 
 @pytest.mark.parametrize("little", [True, False], ids=["little", "big"])
-@settings(max_examples=by_depth(60, 2000))
+@settings(max_examples=by_depth(60, 2000), deadline=None, suppress_health_check=SLOW)
 @given(data=st.data(), stamp=st.none() | st.integers(0, 2**32 * 10**9 - 1))
 def test_what_is_written_is_read_again(little, data, stamp):
     sent = data.draw(st.lists(submessages(little), max_size=5))

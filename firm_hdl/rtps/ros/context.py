@@ -110,6 +110,16 @@ class Context:
                     found.setdefault(name, set()).add(type_name)
         return found
 
+    def type_hashes(self, topic: str) -> set[str]:
+        """Return the type hashes that peers announce for a topic with its full name."""
+        return {
+            found
+            for writers in (True, False)
+            for endpoint in self.participant.remotes(writers)
+            if endpoint.topic == names.topic(topic)
+            and (found := names.type_hash_of(endpoint.user_data)) is not None
+        }
+
     def wait_for_node(self, name: str, timeout: float = 10.0) -> bool:
         """Wait until there is a node of this name, at most `timeout` seconds."""
         return self.participant.wait_until(

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from firm_hdl.rtps.wire.octets import MalformedError
 
 __all__ = [
-    "NO_ENTITY",
     "PARTICIPANT",
     "PUBLICATIONS_READER",
     "PUBLICATIONS_WRITER",
@@ -37,7 +36,6 @@ UNKNOWN_PREFIX = bytes(12)
 """GUIDPREFIX_UNKNOWN: as a destination, every participant (8.3.8.8)."""
 
 # Entity identifiers of 9.3.1.5, as the number of their four bytes in the order of the wire.
-NO_ENTITY = 0x0000_0000
 PARTICIPANT = 0x0000_01C1
 SPDP_WRITER = 0x0001_00C2
 SPDP_READER = 0x0001_00C7

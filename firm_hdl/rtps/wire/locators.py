@@ -17,7 +17,7 @@ MULTICAST_GROUP = "239.255.0.1"
 _UDP_V4 = 1
 # Parameters of 9.6.1.1: base, gain of the domain, gain of the participant, offsets.
 _PB, _DG, _PG, _D0, _D1, _D3 = 7400, 250, 2, 0, 10, 11
-MAX_DOMAIN = 232
+_MAX_DOMAIN = 232
 
 
 class Address(NamedTuple):
@@ -51,8 +51,8 @@ class Ports(NamedTuple):
         ValueError
             `domain` is not from 0 to 232, or the ports would be beyond 65,535.
         """
-        if not 0 <= domain <= MAX_DOMAIN:
-            raise ValueError(f"Domain must be from 0 to {MAX_DOMAIN}, not {domain}")
+        if not 0 <= domain <= _MAX_DOMAIN:
+            raise ValueError(f"Domain must be from 0 to {_MAX_DOMAIN}, not {domain}")
         base = _PB + _DG * domain
         ports = cls(base + _D0, base + _D1 + _PG * participant, base + _D3 + _PG * participant)
         if ports.user > 0xFFFF:

@@ -61,13 +61,9 @@ class Cursor:
         self.at = end
         return value
 
-    def align(self, alignment: int, origin: int = 0) -> None:
-        """Skip padding: the distance to `origin` becomes a multiple of `alignment` bytes."""
-        self.take(-(self.at - origin) % alignment)
-
-    def u8(self) -> int:
-        """Read an unsigned integer of 8 bits."""
-        return self.take(1)[0]
+    def align(self, alignment: int) -> None:
+        """Skip padding, up to a multiple of `alignment` bytes."""
+        self.take(-self.at % alignment)
 
     def u16(self) -> int:
         """Read an unsigned integer of 16 bits."""
