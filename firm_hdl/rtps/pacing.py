@@ -6,6 +6,8 @@ __all__ = ["Pacer"]
 
 # A socket of Linux holds 212,992 bytes by default, and counts a datagram of 1,400 bytes as 2,304.
 _BURST_BYTES = 64 << 10
+# After a pause, as much may be sent at once: a pause for each datagram would cost more than that.
+_CHUNK_BYTES = 16 << 10
 
 
 class Pacer:
@@ -23,6 +25,7 @@ class Pacer:
         self._rate = bytes_per_second
         self._tokens = float(_BURST_BYTES)
         self._at = 0.0
+        self._needed = 0.0
 
     def wait(self, now: float) -> float:
         """Return the seconds until the next datagram may be sent; 0 or less means now."""
@@ -30,7 +33,11 @@ class Pacer:
             self._tokens = min(_BURST_BYTES, self._tokens + (now - self._at) * self._rate)
             self._at = now
         # A datagram may be larger than what is left: the debt is paid before the next one.
-        return -self._tokens / self._rate if self._tokens <= 0 else 0.0
+        if self._tokens > self._needed:
+            self._needed = 0.0
+            return 0.0
+        self._needed = float(_CHUNK_BYTES)
+        return (self._needed - self._tokens) / self._rate
 
     def note(self, size: int) -> None:
         """Note that a datagram of `size` bytes was sent."""

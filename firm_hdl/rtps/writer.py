@@ -33,6 +33,8 @@ an Ethernet frame holds. So IP does not cut it, and boards without IP fragments 
 
 # Seconds between heartbeats while a reader has not acknowledged all: at first, and at most.
 _HEARTBEAT, _MAX_HEARTBEAT = 0.05, 1.0
+# Seconds between those that ask for an acknowledgement while half of a KEEP_ALL history is in use.
+_HEARTBEAT_WHEN_FULL = 0.002
 # Heartbeats to a reader that never answered.
 _MOST_UNANSWERED = 12
 # Seconds before a sample is sent once more: nackSuppressionDuration of 8.4.7.1.
@@ -276,7 +278,8 @@ class Writer:
             return ()
         large = len(change.data.payload or b"") > self._fragment_bytes
         full = not self.qos.depth and 2 * len(self._changes) >= self.qos.max_samples
-        final = now - proxy.asked_at < _HEARTBEAT and not large and not full
+        period = _HEARTBEAT_WHEN_FULL if full else _HEARTBEAT
+        final = now - proxy.asked_at < period and not large
         if not final:
             proxy.asked_at = now
         return (self._heartbeat(proxy, final),)
