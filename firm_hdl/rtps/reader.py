@@ -133,6 +133,7 @@ class Reader:
         proxy.fragments.drop(number)
         if number == proxy.next and proxy.synced:
             proxy.next += 1
+            proxy.repeats = 0
             self._deliver(writer, data, timestamp)
         elif self._budget.take(len(data.payload or b"")):
             proxy.early[number] = (data, timestamp)
@@ -164,7 +165,8 @@ class Reader:
         proxy.heartbeat_count = heartbeat.count
         if heartbeat.first > proxy.next:
             self._give_up(proxy, heartbeat.first)
-        proxy.synced = True
+        if not proxy.synced:
+            proxy.synced, proxy.ask_at = True, float("inf")
         proxy.last = max(proxy.last, heartbeat.last)
         proxy.repeats = 0
         self._progress(proxy, now)

@@ -8,8 +8,15 @@ import time
 
 import pytest
 
-from firm_hdl.rtps import HistoryFullError, Participant, Qos, TransportError
-from firm_hdl.rtps.ros import Context, Node
+from firm_hdl.rtps import (
+    HistoryFullError,
+    Participant,
+    Qos,
+    SampleIdentity,
+    TransportError,
+)
+from firm_hdl.rtps.ros import Context, Node, graph
+from firm_hdl.rtps.ros.graph import GraphInfo
 from firm_hdl.rtps.transport import Transport
 
 # A domain of its own, so that participants on this machine do not come in.
@@ -217,6 +224,39 @@ def test_nodes_topics_and_services():
         assert two.context.type_hashes("/ns/chatter") == {"RIHS01_12"}
         assert two.context.type_hashes("/chatter") == set()
         assert len(nodes["/ns", "one"].writers) == 2
+
+
+def test_what_a_node_announces():
+    with Node("one", **OPTIONS) as node, Participant(**OPTIONS) as other:
+        node.publisher("chatter", STRING)
+        assert wait(lambda: other.peers)
+        (peer,) = other.peers
+        assert (peer.user_data, peer.name) == (b"enclave=/;", "/")
+        # Announcements to a host go to the first five participants there.
+        ports = [address.port for address in other._core.settings.targets]
+        assert ports == [7410 + 250 * DOMAIN + 2 * number for number in range(5)]
+        # A late reader gets the newest description of the nodes alone.
+        got = []
+        reader = other.reader(graph.TOPIC, graph.TYPE, got.append, graph.QOS)
+        assert reader.wait_for_match()
+        assert wait(lambda: got)
+        time.sleep(0.2)
+        assert [len(GraphInfo.decode(each.payload).nodes[0].writers) for each in got] == [1]
+
+
+def test_a_client_that_names_no_reader_of_replies():
+    with Node("one", **OPTIONS) as node, Participant(**OPTIONS) as board:
+        node.service("/go", "std_srvs/srv/SetBool", lambda request: request + b"!")
+        got = []
+        kind = "std_srvs::srv::dds_::SetBool"
+        requests = board.writer("rq/goRequest", f"{kind}_Request_")
+        replies = board.reader("rr/goReply", f"{kind}_Response_", got.append)
+        assert requests.wait_for_match() and replies.wait_for_match()
+        assert wait(lambda: node._writers[0].matched)
+        number = requests.write(b"go")
+        assert wait(lambda: got)
+        assert got[0].payload == b"go!"
+        assert got[0].related == SampleIdentity(requests.guid, number)
 
 
 def test_calls_without_a_server():
