@@ -243,6 +243,25 @@ def test_a_reader_repeats_its_request_while_there_is_progress(reader, sent, got)
         now += 1
         reader.tick(now)
     assert len(sent.take(AckNack)) == 20
+    # The next heartbeat is a reason to go on.
+    reader.on_heartbeat(HERE, heartbeat(1, 60, count=3), now)
+    for _ in range(100):
+        now += 1
+        reader.tick(now)
+    assert len(sent.take(AckNack)) == 20
+
+
+def test_a_reader_is_called_again_for_each_of_its_writers(reader, sent):
+    other = Guid(bytes(11) + b"\1", 0x103)
+    reader.match(endpoint(other), ADDRESS, 1.0)
+    for writer, at in ((HERE, 1.0), (other, 1.5)):
+        reader.on_heartbeat(writer, heartbeat(1, 3, final=True), at)
+    assert len(sent.take(AckNack)) == 2
+    assert reader.tick(1.05) == pytest.approx(1.1)
+    assert reader.tick(1.55) == pytest.approx(1.6)
+    assert len(sent.take(AckNack, HERE.prefix)) == 1
+    reader.tick(1.6)
+    assert len(sent.take(AckNack, other.prefix)) == 1
 
 
 def test_a_gap_in_what_comes_is_asked_for_after_a_while(reader, sent):
@@ -265,9 +284,9 @@ def test_fragments_are_asked_for_when_no_more_come(reader, sent, got):
     reader.tick(1.03)
     (nack,) = sent.take(NackFrag)
     assert (nack.sequence_number, nack.missing) == (1, NumberSet(1, (1, 3)))
-    reader.on_heartbeat_frag(
-        HERE, HeartbeatFrag(reader=0, writer=0x103, sequence_number=1, last=2, count=1), 1.1
-    )
+    begun = HeartbeatFrag(reader=0, writer=0x103, sequence_number=1, last=2, count=1)
+    for _ in range(2):
+        reader.on_heartbeat_frag(HERE, begun, 1.1)
     assert [each.missing for each in sent.take(NackFrag)] == [NumberSet(1, (1,))]
     reader.on_data_frag(HERE, part(1, 1), None, 1.2)
     reader.on_data_frag(HERE, part(1, 3), None, 1.2)

@@ -99,6 +99,11 @@ def test_what_is_wrong_is_counted():
     for datagram in (b"", b"RTPS", message.write(bytes(12), []) + b"\7\1"):
         station.core.receive(datagram, 0.0)
     assert station.core.counters == {"received": 3, "malformed": 3, "unknown": 0}
+    # A datagram counts once, however many of its submessages are not known.
+    station.core.receive(message.write(bytes(12), []) + bytes.fromhex("80010000"), 0.0)
+    twice = bytes.fromhex("8001040000000000") * 2
+    station.core.receive(message.write(bytes(12), []) + twice, 0.0)
+    assert station.core.counters == {"received": 5, "malformed": 3, "unknown": 2}
 
 
 def test_a_huge_sample_takes_the_memory_of_what_came():

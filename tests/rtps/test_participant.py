@@ -12,6 +12,7 @@ from firm_hdl.rtps import (
     HistoryFullError,
     Participant,
     Qos,
+    Reliability,
     SampleIdentity,
     TransportError,
 )
@@ -153,6 +154,28 @@ def test_a_full_history_is_reported_after_a_wait(pair):
     finally:
         stuck.set()
     assert writer.wait_for_acknowledgments(20)
+
+
+def test_what_callbacks_are_told(pair):
+    one, two = pair
+    told = []
+
+    def callbacks(name):
+        return {
+            "on_match": lambda remote, came: told.append((name, remote.guid, came)),
+            "on_incompatible": lambda remote, names: told.append((name, remote.guid, names)),
+        }
+
+    best_effort = Qos(reliability=Reliability.BEST_EFFORT)
+    writer = one.writer(TOPIC, TYPE, best_effort, **callbacks("writer"))
+    reader = two.reader(TOPIC, TYPE, print, **callbacks("reader"))
+    assert wait(lambda: len(told) == 2)
+    refused = ("RELIABILITY",)
+    assert set(told) == {("writer", reader.guid, refused), ("reader", writer.guid, refused)}
+    told.clear()
+    fitting = two.reader(TOPIC, TYPE, print, best_effort, **callbacks("fitting"))
+    assert wait(lambda: len(told) == 2)
+    assert set(told) == {("writer", fitting.guid, True), ("fitting", writer.guid, True)}
 
 
 def test_closing_twice_and_using_what_is_closed(pair):

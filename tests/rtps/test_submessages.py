@@ -161,6 +161,16 @@ def test_a_size_of_0_means_to_the_end():
     assert content.unknown == 0
 
 
+def test_the_largest_size_that_a_header_can_say():
+    # 20 bytes of a DATA are before its payload.
+    for extra, size in ((-1, 0xFFFE), (0, 0xFFFF), (1, 0)):
+        whole = Data(reader=1, writer=2, sequence_number=7, payload=bytes(0xFFFF - 20 + extra))
+        written = encode(whole)
+        assert int.from_bytes(written[2:4], "little") == size
+        content = message.read(message.write(OTHER, []) + written, ME)
+        assert content.received[0].submessage == whole
+
+
 def test_a_receiver_interprets_submessages_in_order():
     other = Heartbeat(reader=1, writer=2, first=1, last=1, count=1)
     every = [
