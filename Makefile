@@ -8,7 +8,7 @@ JOBS   ?= 2
 VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-thorough lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
+.PHONY: help demo test test-thorough test-live lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
   verify-corpus verify-languages report prove formal oracles oracles-ros2 fuzz fuzz-hardware mutate bench \
   examples tools \
   ghdl verilog clean
@@ -19,6 +19,9 @@ help: ## list the targets
 demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
 	$(BIN)/python examples/demo.py
 
+LIVE_PEERS := $(patsubst tests/live/peers/%.txt,$(VENV)/live/%/.installed,\
+  $(wildcard tests/live/peers/*.txt))
+
 test: lint pytest ## linters, types and all tests
 
 pytest: $(VENV)/.compiled tools ## tests only; PYTEST_ARGS=tests/export takes some
@@ -26,6 +29,9 @@ pytest: $(VENV)/.compiled tools ## tests only; PYTEST_ARGS=tests/export takes so
 
 test-thorough: $(VENV)/.compiled tools ## all tests in full depth (half an hour); PYTEST_ARGS=-mthorough takes some
 	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
+
+test-live: $(VENV)/.installed-dev $(LIVE_PEERS) ## our nodes with rclpy and Cyclone DDS, in a network of their own (2 to 5 minutes)
+	FIRM_HDL_LIVE=1 $(BIN)/python -m pytest -n $(JOBS) $(or $(PYTEST_ARGS),tests/live)
 
 lint: $(VENV)/.installed-dev ## ruff and mypy only
 	$(BIN)/ruff check .
@@ -40,11 +46,11 @@ coverage: $(VENV)/.compiled tools ## lines and branches of firm_hdl that the tes
 	$(BIN)/python -m coverage html --quiet
 	$(BIN)/python -m coverage report
 
-# Types that have every feature of all: what `make test` simulates in full depth, and what the two
+# Types that have every feature of all: what `make test` simulates, and what the two
 # targets below are about. COVER=--check compares the files with today's features instead.
 COVERING := tests/verify/covering
 COVER    ?= --out
-cover: $(VENV)/.installed ## choose the types that tests simulate in full depth (2 minutes)
+cover: $(VENV)/.installed ## choose the types that tests simulate (2 minutes)
 	$(BIN)/firm-hdl cover --distro lyrical --branches $(COVER) $(COVERING)/lyrical.txt
 	$(BIN)/firm-hdl cover --distro noetic --branches $(COVER) $(COVERING)/noetic.txt
 
@@ -162,6 +168,15 @@ $(VENV)/ros2/%/.installed: firm_hdl/verify/ros2_wheels/%.txt | $(VENV)/.created
 	  && $(@D)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --requirement $< \
 	  && touch $@; } >$(VENV)/ros2-$*.log 2>&1 \
 	  || echo "Failed: see $(VENV)/ros2-$*.log; going on without." >&2
+
+# Peers of `make test-live`, each in an environment of its own: 600 MB.
+$(VENV)/live/%/.installed: tests/live/peers/%.txt | $(VENV)/.created
+	@echo "Installing the peer $* ..."
+	@mkdir -p $(VENV)/live
+	@{ $(BIN)/python -m venv --clear $(@D) \
+	  && $(@D)/bin/python -m pip install --quiet --disable-pip-version-check --requirement $< \
+	  && touch $@; } >$(VENV)/live-$*.log 2>&1 \
+	  || echo "Failed: see $(VENV)/live-$*.log; going on without." >&2
 
 # $(call need,packages,test that they are there)
 need = { $(2); } || { \

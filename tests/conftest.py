@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.depth import THOROUGH
+from tests.depth import LIVE, THOROUGH
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL
 
@@ -22,10 +22,9 @@ for _name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Deselect thorough tests, except in `make test-thorough`."""
-    if THOROUGH:
-        return
-    left_out = [item for item in items if item.get_closest_marker("thorough")]
+    """Deselect thorough tests, except in `make test-thorough`; live ones likewise."""
+    markers = [*([] if THOROUGH else ["thorough"]), *([] if LIVE else ["live"])]
+    left_out = [item for item in items if any(map(item.get_closest_marker, markers))]
     config.hook.pytest_deselected(items=left_out)
     items[:] = [item for item in items if item not in left_out]
 

@@ -28,6 +28,7 @@ MAY_IMPORT = {
     "names": set[str](),
     "rtlil": set[str](),
     "vhdl": {"names", "rtlil"},
+    "rtps": set[str](),
     # Know messages.
     "model": {"errors"},
     # `wire`: a type that no wire can carry is refused when it is loaded.

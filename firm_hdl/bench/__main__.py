@@ -25,6 +25,7 @@ from firm_hdl.bench.page import (
     path_list,
     write_page,
 )
+from firm_hdl.bench.parts import PART_DEVICE, PARTS, PartResult, part_table, parts_text, run_parts
 from firm_hdl.bench.plots import area_plot, beats_plot, clock_plot
 from firm_hdl.bench.results import Converted, Result, read_results, results_text
 from firm_hdl.bench.run import BenchTask, run_tasks
@@ -44,11 +45,14 @@ from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.plan import DIRECTIONS
 from firm_hdl.terminal import printable_streams
 
-PARTS = (*MEASURED, "beats", "software")
+GROUPS = (*MEASURED, "parts", "beats", "software")
 """Groups of figures, by their names on the command line."""
 
 KEPT = "performance.json"
-"""File of all measured figures, beside the page's plots."""
+"""File of all measured figures of converters, beside the page's plots."""
+
+KEPT_PARTS = "parts.json"
+"""File of the figures of packet parts."""
 
 
 @printable_streams()
@@ -68,7 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--group",
         action="append",
-        choices=PARTS,
+        choices=GROUPS,
         help="parts of the page to write; repeatable; default: all",
     )
     add_jobs(parser)
@@ -81,14 +85,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _measure_all(given: argparse.Namespace) -> int:
-    names = given.group or PARTS
+    names = given.group or GROUPS
     figures = Path(given.figures)
     groups = {name: group for name, group in MEASURED.items() if name in names}
-    for device in {device for group in groups.values() for device in group.devices}:
+    devices = {device for group in groups.values() for device in group.devices}
+    for device in devices | ({PART_DEVICE} if "parts" in names else set()):
         versions(DEVICES[device])
     if "software" in names:
         library_versions()
     results = {name: _run(name, group, given.jobs, given.cache) for name, group in groups.items()}
+    parts = _run_parts(given.jobs, given.cache) if "parts" in names else []
     sets = {}
     if "beats" in names:
         sets = {name: _run(name, group, given.jobs, None) for name, group in ALL_TYPES.items()}
@@ -100,11 +106,16 @@ def _measure_all(given: argparse.Namespace) -> int:
         for each in found
         if each.problem
     ]
-    if wrong:
-        print(*(f"{each.converter}: {each.problem}" for each in wrong), sep="\n", file=sys.stderr)
+    problems = [f"{each.converter}: {each.problem}" for each in wrong]
+    problems += [f"{each.part.name}: {each.problem}" for each in parts if each.problem]
+    if problems:
+        print(*problems, sep="\n", file=sys.stderr)
         return 1
     _write_plots(figures, results, sets)
     _write_parts(Path(given.page), results, sets, _compare_all(software))
+    if parts:
+        write_page(Path(given.page), {"parts": part_table(parts)})
+        (figures / KEPT_PARTS).write_text(parts_text(parts), encoding="utf-8")
     measured = [each for found in results.values() for each in found]
     if measured:
         _keep(figures / KEPT, Path(given.estimates), measured)
@@ -123,6 +134,16 @@ def _run(name: str, group: Group, jobs: int | None, cache: str | None) -> list[R
             found[_order(result)] = result
             progress.update()
     return [found[key] for key in sorted(found)]
+
+
+def _run_parts(jobs: int | None, cache: str | None) -> list[PartResult]:
+    """Measure the packet parts; return the results in the order of the page."""
+    found: dict[str, PartResult] = {}
+    with tqdm(total=len(PARTS), unit="part", desc="parts", disable=None) as progress:
+        for result in run_parts(cache=cache, jobs=jobs):
+            found[f"{result.part.name}, {result.part.parameters}"] = result
+            progress.update()
+    return [found[f"{part.name}, {part.parameters}"] for part in PARTS]
 
 
 def _order(result: Result) -> tuple[str, ...]:

@@ -39,6 +39,12 @@ R = TypeVar("R")
 
 _running: set[subprocess.Popen[str]] = set()
 
+REMOVAL_ATTEMPTS = 50
+"""How often a worker tries to remove the temporary files, at intervals of 0.1 s."""
+
+_starting = threading.Lock()
+"""Held while a program is started, and for ever by a process that is about to end."""
+
 
 def cpu_seconds() -> float:
     """Return the processor time of this thread, and of programs that it has waited for."""
@@ -106,18 +112,19 @@ def run_tool(
     ToolError
         If the program fails.
     """
-    process = subprocess.Popen(
-        command,
-        cwd=folder,
-        env={**os.environ, **(environment or {})},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT if with_errors else subprocess.PIPE,
-        text=True,
-        errors="replace",
-        start_new_session=True,
-    )
-    _running.add(process)
+    with _starting:
+        process = subprocess.Popen(
+            command,
+            cwd=folder,
+            env={**os.environ, **(environment or {})},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT if with_errors else subprocess.PIPE,
+            text=True,
+            errors="replace",
+            start_new_session=True,
+        )
+        _running.add(process)
     try:
         output, errors = process.communicate(timeout=timeout)
     except subprocess.TimeoutExpired:
@@ -227,9 +234,16 @@ def _end_with(parent: int, folder: str) -> None:
     forked_by = os.getppid()
     while os.getppid() == forked_by and _exists(parent):
         time.sleep(1)
+    # The main thread goes on. From here on, it cannot start a program. But it may begin another
+    # task, whose files can appear while the folder is being removed.
+    _starting.acquire()
     for process in list(_running):
         _kill(process)
-    shutil.rmtree(folder, ignore_errors=True)
+    for _ in range(REMOVAL_ATTEMPTS):
+        shutil.rmtree(folder, ignore_errors=True)
+        if not os.path.exists(folder):
+            break
+        time.sleep(0.1)
     os._exit(128 + signal.SIGKILL)
 
 

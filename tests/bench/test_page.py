@@ -21,6 +21,7 @@ from firm_hdl.bench.page import (
     path_list,
     write_page,
 )
+from firm_hdl.bench.parts import PARTS, PartResult
 from firm_hdl.bench.plots import area_plot, beats_plot, clock_plot
 from firm_hdl.bench.results import Result, read_results
 from firm_hdl.bench.run import BenchTask
@@ -153,7 +154,12 @@ def page_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
                 converter=task.converter,
             )
 
+    def run_parts(*, cache: str | None, jobs: int | None) -> Iterator[PartResult]:
+        assert jobs == 3
+        yield from (PartResult(part=part, measured=result().measured) for part in reversed(PARTS))
+
     monkeypatch.setattr(bench, "run_tasks", run)
+    monkeypatch.setattr(bench, "run_parts", run_parts)
     monkeypatch.setattr(bench, "versions", lambda device: {})
     monkeypatch.setattr(bench, "library_versions", lambda: {"rosbags": {"rosbags": "0.11"}})
     monkeypatch.setattr(bench, "compare_software", compare_libraries)
@@ -181,7 +187,7 @@ def test_all_parts_of_the_page_are_written(
 ) -> None:
     assert run_bench(page_folder) == 0
     text = (page_folder / "page.md").read_text()
-    for name in bench.PARTS:
+    for name in bench.GROUPS:
         assert len(text.split(f"<!-- {name} -->")[1].split("<!-- end")[0]) > 100
     assert "| sensor_msgs/msg/Imu | cdr | 8 | serializer | 100 | 50 |" in text
     assert "| sensor_msgs/Imu | ros1 | 100 | serializer | 50 (16.0) |  |  | 40 (7.50) |" in text
@@ -191,6 +197,7 @@ def test_all_parts_of_the_page_are_written(
         "bench_area.svg",
         "bench_beats.svg",
         "bench_clock.svg",
+        "parts.json",
         "performance.json",
     }
     # The plots that the page shows exist.
@@ -242,7 +249,7 @@ def test_a_missing_tool_is_an_error(
 
 def test_the_committed_page_has_all_parts_and_plots() -> None:
     text = (ROOT / "docs" / "performance.md").read_text()
-    for name in [*MEASURED, *(f"{name}: made with" for name in MEASURED), "beats"]:
+    for name in [*MEASURED, *(f"{name}: made with" for name in MEASURED), "beats", "parts"]:
         part = text.split(f"<!-- {name} -->\n")[1].split(f"<!-- end {name} -->")[0]
         assert part.count("\n| ") > 4 or part.count("\n* ") > 0, name
     plots = re.findall(r"\]\((figures/\w+\.svg)\)", text)

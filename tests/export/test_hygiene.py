@@ -15,6 +15,7 @@ import pytest
 from firm_hdl.export.backend import Options
 from firm_hdl.export.build import build
 from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
+from tests.depth import by_depth
 from tests.tools import need
 
 # Strings and nested sequences; a fixed size, so a record view; arrays in a record view.
@@ -30,7 +31,7 @@ def folders(tmp_path_factory) -> list[Path]:
     out = tmp_path_factory.mktemp("built")
     made = build(TYPES, out)
     # On a narrow bus, a string needs no alignment, but a sequence does.
-    for bus_bytes in (1, 4):
+    for bus_bytes in by_depth((4,), (1, 4)):
         options = Options(bus_bytes=bus_bytes)
         made += build(("std_msgs/msg/String", "sensor_msgs/msg/Joy"), out, options=options)
     return [each.folder for each in made]

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl import Deserializer, Serializer, Status
 from firm_hdl.plan import decode, encode
 from firm_hdl.sim import Harness, RunOptions, Stalls, to_transfers
 from firm_hdl.sim.transfers import join_transfers
+from tests.gateware.traffic import is_quick
 from tests.plan.test_random_messages import damaged, serialize, typed_values
 from tests.strategies import BUS_WIDTHS, make, values
 
@@ -47,6 +48,7 @@ def test_messages_come_through_byte_for_byte(wire, data, case, options, stalls):
     packets = [serialize(definition, item, wire)[1] for item in (value, *more)]
     rx = Deserializer(definition.message, wire=wire, **options)
     tx = Serializer(definition.message, wire=wire, **options)
+    assume(is_quick(rx.plan))
     seen = Harness(rx, tx, gated=stalls is not None).run_packets(packets, RunOptions(stalls=stalls))
     assert seen.packets == packets
     assert carried(seen.transfers) == expected(rx.plan, packets)[0]
@@ -83,14 +85,16 @@ def test_a_packet_may_end_with_a_length_or_a_step_without_bytes(end, bus_bytes):
         packets = [bytes(4) + count.to_bytes(4, "little") for count in (0, 1, 5)]
     packets *= 5
     messages = [decode(tx.plan, packet).streams for packet in packets]
+    both = Harness(rx, tx, gated=True)
     for stalls in (None, Stalls(probability=0.5, seed=1)):
-        seen = Harness(rx, tx, gated=True).run_packets(packets, RunOptions(stalls=stalls))
+        seen = both.run_packets(packets, RunOptions(stalls=stalls))
         assert seen.packets == packets
         assert carried(seen.transfers) == expected(rx.plan, packets)[0]
     # Beats leave at once, and must not overtake the end; or a status waits for long.
+    alone = Harness(None, tx)
     for stalled in ("message", "status"):
         slow = RunOptions(stalls={stalled: Stalls(probability=0.5, max_cycles=6)})
-        assert Harness(None, tx).run_messages(messages, slow).packets == packets
+        assert alone.run_messages(messages, slow).packets == packets
 
 
 @pytest.mark.parametrize("wire", WIRES)
@@ -99,6 +103,7 @@ def test_a_packet_may_end_with_a_length_or_a_step_without_bytes(end, bus_bytes):
 def test_bad_packets_are_reported_and_do_not_affect_the_next(wire, data, case, options, stalls):
     definition, value = case
     rx = Deserializer(definition.message, wire=wire, max_message_bytes=100_000, **options)
+    assume(is_quick(rx.plan))
     good = encode(rx.plan, to_transfers(rx.plan, definition.message, value))[0]
     packets = [good]
     for packet in data.draw(st.lists(damaged(good), min_size=1, max_size=6)):
@@ -115,6 +120,7 @@ def test_bad_packets_are_reported_and_do_not_affect_the_next(wire, data, case, o
 def test_wrong_streams_are_marked_and_do_not_affect_the_next(wire, data, case, options, stalls):
     definition, value = case
     tx = Serializer(definition.message, wire=wire, **options)
+    assume(is_quick(tx.plan))
     good = to_transfers(tx.plan, definition.message, value)
     lasts = [leaf for leaf, transfers in good.items() if tx.plan.leaves[leaf].kind == "items"]
     messages = [good]

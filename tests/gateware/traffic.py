@@ -5,8 +5,17 @@ from __future__ import annotations
 import random
 
 from firm_hdl.plan import Plan, encode
+from tests.depth import by_depth
 
-__all__ = ["random_packets"]
+__all__ = ["is_quick", "random_packets"]
+
+MOST_LANES = by_depth(400, 1 << 20)
+"""Limit on steps times bytes of the bus; larger circuits take seconds to generate, up to 15."""
+
+
+def is_quick(plan: Plan) -> bool:
+    """Return whether the circuits of a random plan are small enough for this depth of tests."""
+    return len(plan.steps) * plan.bus_bytes <= MOST_LANES
 
 
 def random_packets(plan: Plan, count: int, seed: int = 0) -> list[bytes]:

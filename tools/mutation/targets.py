@@ -28,6 +28,7 @@ TARGETS = {
     "export": ["firm_hdl/export/**/*.py", "firm_hdl/names/*.py"],
     "equivalence": ["firm_hdl/equivalence/*.py"],
     "metrics": ["firm_hdl/metrics/*.py"],
+    "rtps": ["firm_hdl/rtps/**/*.py"],
     "ts1": ["firm_hdl/verify/ts1/**/*.py"],
     "sut": ["firm_hdl/verify/clients/*.py", "firm_hdl/verify/references/*.py"],
     "report": ["firm_hdl/verify/report/*.py", "firm_hdl/drawing/*.py"],

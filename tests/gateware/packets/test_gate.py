@@ -13,6 +13,7 @@ from firm_hdl.gateware.packets.gate import _Verdicts
 from firm_hdl.model import PRIMITIVES, Field, Message, Sequence
 from firm_hdl.sim import DeadlineError, Harness, RunOptions, Stalls
 from firm_hdl.sim.payloads import beats_of
+from tests.depth import by_depth
 from tests.gateware.packets.bench import beats
 from tests.gateware.packets.gates import (
     BACKLOG,
@@ -125,7 +126,7 @@ def test_a_packet_per_cycle():
         assert run.left == run.times == list(range(first, first + 100))
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@pytest.mark.parametrize("bus_bytes", by_depth((1, 8, 64), BUS_WIDTHS))
 def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_few_cycles(bus_bytes):
     gate = PacketGate(load_message(DIAGNOSTICS), bus_bytes=bus_bytes, memory_bytes=256)
     packets = [BOMB, NO_BOMB, BOMB, BOMB, NO_BOMB]
@@ -144,7 +145,7 @@ def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_fe
     assert many.times[-1] <= 20 * max(own, steps) + next_own + LATENCY + ERROR
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 8, 64])
+@pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 8, 64]))
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
 def test_a_packet_as_large_as_the_memory_passes_and_a_larger_one_does_not(bus_bytes, when_full):
     fields = (Field(name="data", type=Sequence(element=PRIMITIVES["ros1"]["uint8"])),)

@@ -1,4 +1,4 @@
-"""TS3 in full depth, on a few types that have every feature; `make verify` runs all types.
+"""TS3 on a few types that have every feature; `make verify` runs all types, with all cases.
 
 The types are in ``covering/``. ``make cover`` selects them again after a change.
 """
@@ -16,7 +16,7 @@ from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 from firm_hdl.verify import Options, accept
-from tests.depth import THOROUGH
+from tests.depth import by_depth
 from tests.verify.judged import NAN_KEY, assert_passed
 
 FOLDER = Path(__file__).parents[1] / "covering"
@@ -24,17 +24,18 @@ DISTROS = ("lyrical", "noetic")
 KEPT = {distro: read_chosen(FOLDER / f"{distro}.txt") for distro in DISTROS}
 # The branches of the generator for all types take a minute; `make cover` checks them.
 STRIDE = 20
+MOST_CASES = by_depth(12, None)
 # All cases of these types take as long as those of all other types together.
 LARGE = ("InteractiveMarker", "InteractiveMarkerControl", "InteractiveMarkerInit")
-FEW_CASES = 4
+FEW_CASES = by_depth(4, None)
 KNOWN = {("lyrical", "sensor_msgs/msg/Joy"): (NAN_KEY,)}
 
 
 @pytest.mark.parametrize(
     ("distro", "name"), [(distro, name) for distro in DISTROS for name in KEPT[distro]]
 )
-def test_a_covering_type_passes_with_all_cases(distro, name):
-    most = FEW_CASES if name.rpartition("/")[2] in LARGE and not THOROUGH else None
+def test_a_covering_type_passes(distro, name):
+    most = FEW_CASES if name.rpartition("/")[2] in LARGE else MOST_CASES
     result = accept(distro, name, Options(bus_bytes=8, most_cases=most))
     known = KNOWN.get((distro, name), ())
     assert assert_passed(result, known) >= result.cases > 0

@@ -21,7 +21,7 @@ MOST_WORK = 5_000
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 # Shrinking would simulate for many minutes; the failure message has the command to repeat it.
 @settings(
-    max_examples=by_depth(8, 40),
+    max_examples=by_depth(6, 40),
     deadline=None,
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=list(HealthCheck),

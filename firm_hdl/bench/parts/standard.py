@@ -1,0 +1,124 @@
+"""The parts whose figures are in ``docs/performance.md``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from amaranth.hdl import DomainRenamer, Elaboratable
+
+from firm_hdl.frontend import open_library
+from firm_hdl.gateware.packets import (
+    PacketArbiter,
+    PacketCrossing,
+    PacketFifo,
+    PacketGate,
+    PacketRouter,
+    PacketWidth,
+)
+from firm_hdl.gateware.packets.memory import WhenFull
+from firm_hdl.gateware.parser import Parser
+from firm_hdl.model import Message
+
+__all__ = ["PARTS", "Part"]
+
+BUS_BYTES = 8
+MEMORY_BYTES = 1 << 16
+PACKETS = 64
+STREAMS = 8
+"""Streams of the arbiter, and topics of the router."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """A part of a design, with its parameters.
+
+    Attributes
+    ----------
+    name : str
+        The class, and the message type if the part has one.
+    parameters : str
+        As the page shows them.
+    make : callable
+        Returns the component. All of its logic is in the domain ``sync``.
+    """
+
+    name: str
+    parameters: str
+    make: Callable[[], Elaboratable]
+
+
+def _message(name: str) -> Message:
+    return open_library("lyrical", (), ()).message(name)
+
+
+def _parser(name: str) -> Part:
+    return Part(
+        name=f"`Parser` of `{name.rpartition('/')[2]}`",
+        parameters="",
+        make=lambda: Parser(_message(name), bus_bytes=BUS_BYTES),
+    )
+
+
+def _gate(name: str, when_full: WhenFull) -> Part:
+    return Part(
+        name=f"`PacketGate` of `{name.rpartition('/')[2]}`",
+        parameters=f'64 KiB, `"{when_full}"`',
+        make=lambda: PacketGate(
+            _message(name),
+            bus_bytes=BUS_BYTES,
+            memory_bytes=MEMORY_BYTES,
+            packets=PACKETS,
+            when_full=when_full,
+        ),
+    )
+
+
+def _fifo(when_full: WhenFull) -> Part:
+    return Part(
+        name="`PacketFifo`",
+        parameters=f'64 KiB, {PACKETS} packets, `"{when_full}"`',
+        make=lambda: PacketFifo(BUS_BYTES, MEMORY_BYTES, PACKETS, when_full=when_full),
+    )
+
+
+def _width(in_bytes: int, out_bytes: int) -> Part:
+    return Part(
+        name="`PacketWidth`",
+        parameters=f"{in_bytes} to {out_bytes} bytes",
+        make=lambda: PacketWidth(in_bytes, out_bytes),
+    )
+
+
+def _crossing() -> Elaboratable:
+    # Both sides get the same clock, because nextpnr has to report one rate.
+    one_clock = DomainRenamer({"write": "sync", "read": "sync"})
+    crossing: Elaboratable = one_clock(PacketCrossing(BUS_BYTES))
+    return crossing
+
+
+_CLOUD, _TWIST = "sensor_msgs/msg/PointCloud2", "geometry_msgs/msg/Twist"
+
+PARTS = (
+    _parser(_TWIST),
+    _parser(_CLOUD),
+    _gate(_TWIST, "wait"),
+    _gate(_CLOUD, "wait"),
+    _gate(_CLOUD, "drop"),
+    _fifo("wait"),
+    _fifo("drop"),
+    Part(
+        name="`PacketArbiter`",
+        parameters=f"{STREAMS} inputs",
+        make=lambda: PacketArbiter(BUS_BYTES, STREAMS),
+    ),
+    Part(
+        name="`PacketRouter`",
+        parameters=f"{STREAMS} topics",
+        make=lambda: PacketRouter(BUS_BYTES, STREAMS),
+    ),
+    _width(1, BUS_BYTES),
+    _width(BUS_BYTES, 1),
+    Part(name="`PacketCrossing`", parameters="16 beats, both sides at one clock", make=_crossing),
+)
+"""The parts, in the order of the page."""

@@ -1,0 +1,396 @@
+"""A participant on the network: sockets, a thread, and the endpoints that users have.
+
+One thread receives, keeps the time, and calls users back. Any thread may write. So a user who waits
+in a callback holds up what comes in, as does one who waits with a lock that a callback needs.
+"""
+
+from __future__ import annotations
+
+import logging
+import selectors
+import socket
+import threading
+import time
+from collections import Counter
+from collections.abc import Callable
+from types import TracebackType
+from typing import TypeAlias
+
+from firm_hdl.rtps.core import Core, Settings
+from firm_hdl.rtps.discovery import EndpointData, ParticipantData
+from firm_hdl.rtps.endpoints import (
+    DataReader,
+    DataWriter,
+    OnIncompatible,
+    OnMatch,
+    OnSample,
+)
+from firm_hdl.rtps.events import Arrived, Event, Incompatible, Matched, Unmatched
+from firm_hdl.rtps.pacing import Pacer
+from firm_hdl.rtps.qos import Qos
+from firm_hdl.rtps.transport import Transport, address_of
+from firm_hdl.rtps.wire.guid import Guid, SampleIdentity, new_prefix
+from firm_hdl.rtps.wire.locators import Address, Ports
+from firm_hdl.rtps.writer import FRAGMENT_BYTES, HistoryFullError, Writer
+
+__all__ = ["Participant"]
+
+_LOG = logging.getLogger("firm_hdl.rtps")
+# Seconds. A write in another thread may make a heartbeat due that soon.
+_MOST_SLEEP = 0.05
+# A peer with a fixed address has one of the first numbers of a participant on its host.
+_PARTICIPANTS_PER_HOST = 5
+
+OnEvent: TypeAlias = Callable[[Event], None]
+
+
+class Participant:
+    """A participant of a domain. It is also a context manager, which closes it.
+
+    Parameters
+    ----------
+    domain : int
+        The domain, from 0 to 232.
+    interface : str or None
+        An interface or its IPv4 address; `None` for the one that multicast goes to. All traffic
+        stays on it, so ``"lo"`` stays on the host.
+    name : str
+        Name of the participant, which tools show.
+    user_data : bytes
+        What it announces in addition.
+    peers : tuple of str
+        IPv4 addresses of hosts that multicast does not reach. On the loopback interface, which
+        may have no multicast, this host is one of them.
+    multicast : bool
+        Whether it announces itself by multicast. Announcements of others are received anyway.
+    lease : float
+        Seconds after which peers take this participant for gone if it is silent.
+    period : float
+        Seconds between announcements.
+    fragment_bytes : int
+        Larger samples are sent in fragments of this size.
+    bytes_per_second : float
+        How much is sent at most, so that receivers keep up; short bursts pass.
+    on_event : callable or None
+        Called with every event but arrived samples.
+
+    Raises
+    ------
+    TransportError
+        The interface has no address, or sockets cannot be opened.
+    ValueError
+        The domain is out of range.
+    """
+
+    def __init__(
+        self,
+        domain: int = 0,
+        *,
+        interface: str | None = None,
+        name: str = "firm-hdl",
+        user_data: bytes = b"",
+        peers: tuple[str, ...] = (),
+        multicast: bool = True,
+        lease: float = 20.0,
+        period: float = 1.0,
+        fragment_bytes: int = FRAGMENT_BYTES,
+        bytes_per_second: float = 40e6,
+        on_event: OnEvent | None = None,
+        transport: Transport | None = None,
+    ):
+        host = address_of(interface)
+        self._transport = transport or Transport(domain, host)
+        self._on_event = on_event
+        own = ParticipantData(
+            prefix=new_prefix(),
+            discovery=(self._transport.discovery,),
+            user=(self._transport.user,),
+            lease=lease,
+            user_data=user_data,
+            name=name,
+            domain=domain,
+        )
+        group = (self._transport.group,) if multicast else ()
+        numbers = range(_PARTICIPANTS_PER_HOST)
+        hosts = dict.fromkeys((*([host] if host.startswith("127.") else []), *peers))
+        direct = (Address(each, Ports.of(domain, n).discovery) for each in hosts for n in numbers)
+        self._core = Core(
+            Settings(
+                own=own,
+                host=host,
+                targets=(*group, *direct),
+                period=period,
+                fragment_bytes=fragment_bytes,
+            )
+        )
+        self._pacer = Pacer(bytes_per_second)
+        self._endpoints: dict[Guid, DataWriter | DataReader] = {}
+        self._lock = threading.RLock()
+        self._changed = threading.Condition(self._lock)
+        self._closing = False
+        self._wake_receiver, self._wake_sender = socket.socketpair()
+        for each in (self._wake_receiver, self._wake_sender):
+            each.setblocking(False)
+        self._selector = selectors.DefaultSelector()
+        for source in (*self._transport.sockets, self._wake_receiver):
+            self._selector.register(source, selectors.EVENT_READ)
+        self._thread = threading.Thread(target=self._run, name=f"rtps {name}", daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> Participant:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    @property
+    def prefix(self) -> bytes:
+        """GUID prefix of the participant."""
+        return self._core.prefix
+
+    @property
+    def peers(self) -> tuple[ParticipantData, ...]:
+        """The participants that are there."""
+        with self._lock:
+            return self._core.peers
+
+    @property
+    def counters(self) -> Counter[str]:
+        """What came and went, as of :class:`firm_hdl.rtps.core.Core`, and ``sent``.
+
+        ``failed`` are datagrams that a fault of firm-hdl concerns, which is in the log.
+        """
+        with self._lock:
+            return Counter(self._core.counters)
+
+    def remotes(self, writers: bool) -> tuple[EndpointData, ...]:
+        """Return the writers or the readers of all peers."""
+        with self._lock:
+            return tuple(self._core.remotes(writers))
+
+    def matched(self, guid: Guid) -> tuple[EndpointData, ...]:
+        """Return the endpoints of peers that an endpoint is matched with."""
+        with self._lock:
+            return self._core.matched(guid)
+
+    def writer(
+        self,
+        topic: str,
+        type_name: str,
+        qos: Qos | None = None,
+        *,
+        user_data: bytes = b"",
+        on_match: OnMatch | None = None,
+        on_incompatible: OnIncompatible | None = None,
+    ) -> DataWriter:
+        """Create a writer.
+
+        Parameters
+        ----------
+        topic, type_name : str
+            Names on the wire; those of ROS 2 are in :mod:`firm_hdl.rtps.ros.names`.
+        qos : Qos
+            Policies. By default, the writer is reliable and volatile, and keeps 10 samples.
+        user_data : bytes
+            What is announced in addition.
+        on_match, on_incompatible : callables
+            See :class:`firm_hdl.rtps.endpoints.Endpoint`.
+        """
+        with self._lock:
+            qos, now = qos or Qos(), time.monotonic()
+            made = self._core.add_writer(topic, type_name, qos, user_data, now)
+            writer = DataWriter(self, made, topic, type_name)
+            writer.on_match, writer.on_incompatible = on_match, on_incompatible
+            self._endpoints[made.guid] = writer
+            self._flush()
+            return writer
+
+    def reader(
+        self,
+        topic: str,
+        type_name: str,
+        on_sample: OnSample,
+        qos: Qos | None = None,
+        *,
+        user_data: bytes = b"",
+        on_match: OnMatch | None = None,
+        on_incompatible: OnIncompatible | None = None,
+    ) -> DataReader:
+        """Create a reader; the parameters are those of :meth:`writer`.
+
+        `on_sample` is called with each sample, in the thread of the participant.
+        """
+        with self._lock:
+            qos, now = qos or Qos(), time.monotonic()
+            made = self._core.add_reader(topic, type_name, qos, user_data, now)
+            reader = DataReader(self, made, topic, type_name, on_sample)
+            reader.on_match, reader.on_incompatible = on_match, on_incompatible
+            self._endpoints[made.guid] = reader
+            self._flush()
+            return reader
+
+    def remove(self, guid: Guid) -> None:
+        """Remove an endpoint, and tell peers."""
+        with self._lock:
+            if not self._closing:
+                self._core.remove(guid, time.monotonic())
+                self._flush()
+            self._endpoints.pop(guid, None)
+
+    def write(
+        self, writer: Writer, payload: bytes, related: SampleIdentity | None, timeout: float
+    ) -> int:
+        """Write a sample; see :meth:`DataWriter.write`."""
+        deadline = time.monotonic() + timeout
+        while True:
+            with self._changed:
+                now = time.monotonic()
+                try:
+                    number = self._core.write(writer, payload, now, time.time_ns(), related)
+                    self._flush()
+                    return number
+                except HistoryFullError:
+                    if now >= deadline or self._closing:
+                        raise
+                    if not self._in_callback():
+                        self._changed.wait(deadline - now)
+                        continue
+            # Nobody else receives the acknowledgements that make room.
+            self._poll(min(deadline - now, _MOST_SLEEP))
+
+    def wait_until(self, condition: Callable[[], bool], timeout: float) -> bool:
+        """Wait for a condition that what comes from peers makes true.
+
+        Returns
+        -------
+        bool
+            Whether it is true; `False` after `timeout` seconds.
+
+        Raises
+        ------
+        RuntimeError
+            The caller is a callback.
+        """
+        if self._in_callback():
+            raise RuntimeError("a callback cannot wait for what comes after it")
+        with self._changed:
+            return self._changed.wait_for(lambda: self._closing or condition(), timeout) and (
+                condition()
+            )
+
+    def close(self) -> None:
+        """Tell peers that this participant leaves, and close its sockets. Once is enough."""
+        with self._changed:
+            if self._closing:
+                return
+            self._core.leave()
+            self._flush(everything=True)
+            self._closing = True
+            self._changed.notify_all()
+        self._wake()
+        if not self._in_callback():
+            self._thread.join()
+
+    def _in_callback(self) -> bool:
+        return threading.current_thread() is self._thread
+
+    def _wake(self) -> None:
+        try:
+            self._wake_sender.send(b"\0")
+        except OSError:
+            # It is full of such bytes, or closed.
+            return
+
+    def _flush(self, everything: bool = False) -> float:
+        """Send what may be sent now. Return seconds until more may be."""
+        now = time.monotonic()
+        while self._core.outbox:
+            wait = 0.0 if everything else self._pacer.wait(now)
+            if wait > 0:
+                if not self._in_callback():
+                    self._wake()
+                return wait
+            address, datagram = self._core.pop()
+            self._pacer.note(len(datagram))
+            self._core.counters["sent"] += 1
+            if not self._transport.send(address, datagram):
+                self._core.counters["dropped"] += 1
+        return _MOST_SLEEP
+
+    def _run(self) -> None:
+        sleep = 0.0
+        while not self._closing:
+            sleep = self._poll(sleep)
+            self._dispatch()
+        self._selector.close()
+        self._transport.close()
+        self._wake_receiver.close()
+        self._wake_sender.close()
+
+    def _poll(self, sleep: float) -> float:
+        """Receive what comes within `sleep` seconds, and do what is due.
+
+        Returns
+        -------
+        float
+            Seconds until something is due again.
+        """
+        for key, _ in self._selector.select(sleep):
+            assert isinstance(key.fileobj, socket.socket)
+            if key.fileobj is self._wake_receiver:
+                self._wake_receiver.recv(4096)
+                continue
+            datagrams = list(self._transport.receive(key.fileobj))
+            with self._lock:
+                now = time.monotonic()
+                for each in datagrams:
+                    self._receive(each, now)
+        with self._changed:
+            now = time.monotonic()
+            due = self._core.tick(now)
+            self._changed.notify_all()
+            return max(0.0, min(due - now, self._flush(), _MOST_SLEEP))
+
+    def _receive(self, datagram: bytes, now: float) -> None:
+        try:
+            self._core.receive(datagram, now)
+        except Exception:
+            # No datagram is known that gets here. One must not end the participant.
+            self._core.counters["failed"] += 1
+            _LOG.exception("a fault of firm-hdl, with the datagram %s", datagram.hex())
+
+    def _dispatch(self) -> None:
+        """Call users back, without the lock, so that they may call in turn."""
+        while True:
+            with self._changed:
+                if not self._core.events:
+                    return
+                event = self._core.events.popleft()
+                self._changed.notify_all()
+            try:
+                self._call(event)
+            except Exception:
+                _LOG.exception("a callback of a participant failed")
+
+    def _call(self, event: Event) -> None:
+        match event:
+            case Arrived(reader, sample):
+                target = self._endpoints.get(reader)
+                if isinstance(target, DataReader):
+                    target.on_sample(sample)
+                return
+            case Matched(local, remote) | Unmatched(local, remote):
+                endpoint = self._endpoints.get(local)
+                if endpoint is not None and endpoint.on_match is not None:
+                    endpoint.on_match(remote, isinstance(event, Matched))
+            case Incompatible(local, remote, policies):
+                endpoint = self._endpoints.get(local)
+                if endpoint is not None and endpoint.on_incompatible is not None:
+                    endpoint.on_incompatible(remote, policies)
+        if self._on_event is not None:
+            self._on_event(event)

@@ -1,0 +1,184 @@
+"""UDP sockets of a participant: discovery by multicast and unicast, and user data (9.6.1)."""
+
+from __future__ import annotations
+
+import socket
+import struct
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
+
+from firm_hdl.rtps.wire.locators import MULTICAST_GROUP, Address, Ports
+
+__all__ = ["Transport", "TransportError", "address_of"]
+
+# Linux, <linux/in.h>: whether a socket gets multicast that other sockets have joined.
+_IP_MULTICAST_ALL = 49
+# Linux, <linux/sockios.h>: the IPv4 address of an interface.
+_SIOCGIFADDR = 0x8915
+_MAX_PARTICIPANTS = 120
+_RECEIVE_BUFFER_BYTES = 4 << 20
+
+
+class TransportError(Exception):
+    """Sockets cannot be opened, or an interface has no address."""
+
+
+def address_of(interface: str | None) -> str:
+    """Return the IPv4 address of an interface.
+
+    Parameters
+    ----------
+    interface : str or None
+        The name of an interface, such as ``"eth0"``; an IPv4 address, which is returned; or `None`
+        for the interface that multicast goes to by default, or else the loopback interface.
+
+    Raises
+    ------
+    TransportError
+        There is no such interface, or it has no IPv4 address.
+    """
+    if interface is None:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                # Nothing is sent; the system only chooses the way.
+                probe.connect((MULTICAST_GROUP, 7400))
+            except OSError:
+                return "127.0.0.1"
+            return str(probe.getsockname()[0])
+    with suppress(OSError):
+        return socket.inet_ntoa(socket.inet_pton(socket.AF_INET, interface))
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            # Only systems with interfaces of this kind have the module.
+            import fcntl
+
+            request = struct.pack("256s", interface.encode()[:15])
+            return socket.inet_ntoa(fcntl.ioctl(probe, _SIOCGIFADDR, request)[20:24])
+        except (OSError, ImportError) as problem:
+            raise TransportError(f"interface '{interface}' has no IPv4 address") from problem
+
+
+class Transport:
+    """The sockets of a participant.
+
+    Parameters
+    ----------
+    domain : int
+        The domain, from 0 to 232, which the ports follow from.
+    host : str
+        IPv4 address of the interface.
+
+    Attributes
+    ----------
+    participant : int
+        The number of the participant on this host: the lowest one whose ports are free.
+    discovery, user : Address
+        Where this participant is reached.
+
+    Raises
+    ------
+    TransportError
+        The address is not one of this host, or no ports are free.
+    """
+
+    def __init__(self, domain: int, host: str):
+        self.host = host
+        self.participant, self._unicast = _bind_unicast(domain, host)
+        ports = Ports.of(domain, self.participant)
+        self.discovery = Address(host, ports.discovery)
+        self.user = Address(host, ports.user)
+        self.group = Address(MULTICAST_GROUP, ports.discovery_multicast)
+        try:
+            self._multicast = _bind_multicast(self.group, host)
+        except OSError as problem:
+            for each in self._unicast:
+                each.close()
+            raise TransportError(f"no multicast on {host}: {problem}") from problem
+
+    @property
+    def sockets(self) -> tuple[socket.socket, ...]:
+        """All sockets, for a selector. None of them blocks."""
+        return (self._multicast, *self._unicast)
+
+    def send(self, address: Address, datagram: bytes) -> bool:
+        """Send a datagram. Return `False` if the system cannot take it now.
+
+        Other errors, such as an address without a way to it, are those of a lost datagram.
+        """
+        try:
+            self._unicast[0].sendto(datagram, address)
+        except BlockingIOError:
+            return False
+        except OSError:
+            return True
+        return True
+
+    def receive(self, source: socket.socket, limit: int = 64) -> Iterator[bytes]:
+        """Yield the datagrams that wait at a socket, at most `limit` of them."""
+        for _ in range(limit):
+            try:
+                yield source.recv(65536)
+            except BlockingIOError:
+                return
+            except OSError:
+                # Such as "connection refused", which is about a datagram that was sent.
+                continue
+
+    def close(self) -> None:
+        """Close all sockets."""
+        for each in self.sockets:
+            each.close()
+
+
+def _bind_unicast(domain: int, host: str) -> tuple[int, tuple[socket.socket, socket.socket]]:
+    """Return the lowest free number of a participant, and its sockets."""
+    for participant in range(_MAX_PARTICIPANTS):
+        ports = Ports.of(domain, participant)
+        discovery, user = _socket(), _socket()
+        try:
+            discovery.bind((host, ports.discovery))
+            user.bind((host, ports.user))
+            discovery.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(host))
+            discovery.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 1)
+            return participant, (discovery, user)
+        except OSError as problem:
+            discovery.close()
+            user.close()
+            if not _in_use(problem):
+                raise TransportError(f"no sockets on {host}: {problem}") from problem
+    raise TransportError(f"all {_MAX_PARTICIPANTS} participants of domain {domain} are there")
+
+
+def _bind_multicast(group: Address, host: str) -> socket.socket:
+    """Return a socket that receives the group's datagrams of one interface."""
+    multicast = _socket()
+    try:
+        # All participants of a host have this port. Some set the one option, some the other.
+        multicast.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        if hasattr(socket, "SO_REUSEPORT"):
+            multicast.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+        multicast.bind(("", group.port))
+        member = socket.inet_aton(group.host) + socket.inet_aton(host)
+        multicast.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, member)
+        if sys.platform == "linux":
+            multicast.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
+    except OSError:
+        multicast.close()
+        raise
+    return multicast
+
+
+def _socket() -> socket.socket:
+    made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    made.setblocking(False)
+    # The system takes less if this is more than it allows.
+    with suppress(OSError):
+        made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER_BYTES)
+    return made
+
+
+def _in_use(problem: OSError) -> bool:
+    import errno
+
+    return problem.errno == errno.EADDRINUSE

@@ -1,0 +1,3 @@
+"""Bytes of RTPS: datagrams, submessages, parameter lists, GUIDs and locators, as data."""
+
+__all__ = []

@@ -1,0 +1,133 @@
+"""RTPS messages: the content of one datagram, and the rules of its receiver (8.3.3, 8.3.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from firm_hdl.rtps.wire.guid import UNKNOWN_PREFIX, VENDOR
+from firm_hdl.rtps.wire.infos import InfoDestination, InfoSource, InfoTimestamp
+from firm_hdl.rtps.wire.octets import MalformedError
+from firm_hdl.rtps.wire.submessages import Submessage, decode, encode
+
+__all__ = ["Message", "Received", "read", "write"]
+
+_MAGIC = b"RTPS"
+# The version whose rules we keep to and the one that peers of today write: 2.3 of table 9.4.
+_VERSION = b"\x02\x03"
+_HEADER_BYTES = 20
+_PAD = 0x01
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Received:
+    """A submessage with what the submessages before it say of it.
+
+    Attributes
+    ----------
+    source : bytes
+        GUID prefix of the sender.
+    timestamp : int or None
+        Time of the sender in nanoseconds since 1970, where it gave one.
+    """
+
+    source: bytes
+    timestamp: int | None
+    submessage: Submessage
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Message:
+    """What a datagram has for one receiver.
+
+    Attributes
+    ----------
+    source : bytes
+        GUID prefix in the header.
+    received : tuple of Received
+        The submessages for this receiver, without those that only interpret others.
+    unknown : int
+        How many submessages have a kind that is not known.
+    error : str or None
+        Why the rest of the datagram was not read.
+    """
+
+    source: bytes
+    received: tuple[Received, ...]
+    unknown: int
+    error: str | None
+
+
+def write(prefix: bytes, submessages: Iterable[Submessage], little: bool = True) -> bytes:
+    """Return a datagram of the participant `prefix`."""
+    header = _MAGIC + _VERSION + VENDOR + prefix
+    return header + b"".join(encode(each, little) for each in submessages)
+
+
+def read(datagram: bytes, receiver: bytes) -> Message:
+    """Read a datagram that the participant with the GUID prefix `receiver` got.
+
+    A submessage that is not valid makes the rest of the datagram invalid; what comes before counts
+    (8.3.4.1). Nothing that a peer can send raises another error than the following.
+
+    Raises
+    ------
+    MalformedError
+        The datagram is none of RTPS, or of another major version.
+    """
+    if len(datagram) < _HEADER_BYTES or datagram[:4] != _MAGIC:
+        raise MalformedError("no RTPS message")
+    if datagram[4] != _VERSION[0]:
+        raise MalformedError(f"RTPS version {datagram[4]}.{datagram[5]}")
+    state = _Receiver(datagram[8:20], receiver)
+    error = None
+    try:
+        state.read(datagram)
+    except MalformedError as problem:
+        error = str(problem)
+    return Message(
+        source=datagram[8:20], received=tuple(state.received), unknown=state.unknown, error=error
+    )
+
+
+class _Receiver:
+    """The state of a receiver while it reads one datagram (8.3.4)."""
+
+    def __init__(self, source: bytes, receiver: bytes):
+        self.source = source
+        self.receiver = receiver
+        self.addressed = True
+        self.timestamp: int | None = None
+        self.received: list[Received] = []
+        self.unknown = 0
+
+    def read(self, datagram: bytes) -> None:
+        at = _HEADER_BYTES
+        while at < len(datagram):
+            if at + 4 > len(datagram):
+                raise MalformedError("part of a submessage's header")
+            kind, flags = datagram[at], datagram[at + 1]
+            size = int.from_bytes(datagram[at + 2 : at + 4], "little" if flags & 1 else "big")
+            at += 4
+            # 9.4.5.1.3: 0 means "to the end", except where a submessage may be empty.
+            if size == 0 and kind not in (_PAD, InfoTimestamp.KIND):
+                size = len(datagram) - at
+            if at + size > len(datagram):
+                raise MalformedError("a submessage that is longer than its datagram")
+            self._take(decode(kind, flags, datagram[at : at + size]), kind)
+            at += size
+
+    def _take(self, submessage: Submessage | None, kind: int) -> None:
+        match submessage:
+            case None:
+                self.unknown += kind != _PAD
+            case InfoDestination(prefix):
+                self.addressed = prefix in (self.receiver, UNKNOWN_PREFIX)
+            case InfoSource(prefix):
+                # 8.3.8.10: the time of the former source is not that of the new one.
+                self.source, self.timestamp = prefix, None
+            case InfoTimestamp(nanoseconds):
+                self.timestamp = nanoseconds
+            case _ if self.addressed:
+                each = Received(source=self.source, timestamp=self.timestamp, submessage=submessage)
+                self.received.append(each)

@@ -1,0 +1,117 @@
+"""Peers as processes: start one, wait until it is ready, get its results, or kill it."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+from tests.tools import need
+
+__all__ = ["Peer", "python_of"]
+
+_HERE = Path(__file__).parent / "peers"
+_FOLDER = "FIRM_HDL_LIVE_PEERS"
+
+
+def python_of(environment: str) -> str:
+    """Return the Python of an environment, such as ``kilted``; see `make test-live`."""
+    folder = Path(os.environ.get(_FOLDER) or Path(sys.prefix) / "live")
+    path = folder / environment / "bin" / "python"
+    found = str(path) if path.is_file() else None
+    return need(f"the peer '{environment}' (make test-live, or {_FOLDER}=DIR)", found)
+
+
+class Peer:
+    """A script of `peers` in a process; a context manager, which kills it.
+
+    Parameters
+    ----------
+    environment : str
+        The environment: ``kilted``, ``jazzy`` or ``cyclone``.
+    what : str
+        The first argument of the script.
+    options
+        Options of the script. `domain` is that of the process, too.
+    variables : dict
+        Further variables of the environment.
+    """
+
+    def __init__(
+        self,
+        environment: str,
+        what: str,
+        domain: int = 0,
+        variables: dict[str, str] | None = None,
+        **options: Any,
+    ):
+        script = "cyclone.py" if environment == "cyclone" else "ros.py"
+        if environment == "cyclone":
+            options["domain"] = domain
+        # Neither this repository nor a ROS workspace is the peer's business.
+        inherited = {k: v for k, v in os.environ.items() if k in ("PATH", "HOME", "LANG")}
+        self._process = subprocess.Popen(
+            [python_of(environment), str(_HERE / script), what, json.dumps(options)],
+            stdout=subprocess.PIPE,
+            text=True,
+            env={
+                **inherited,
+                "ROS_DOMAIN_ID": str(domain),
+                "CYCLONEDDS_URI": _CYCLONE,
+                **(variables or {}),
+            },
+        )
+        self._lines: queue.Queue[str] = queue.Queue()
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        try:
+            assert self.next() == {"ready": True}
+        except BaseException:
+            self.kill()
+            raise
+
+    def __enter__(self) -> Peer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.kill()
+
+    def next(self, timeout: float = 60) -> dict[str, Any]:
+        """Return the next line of output."""
+        line = self._lines.get(timeout=timeout)
+        assert line, "the peer has ended"
+        answer: dict[str, Any] = json.loads(line)
+        return answer
+
+    def result(self, timeout: float = 60) -> dict[str, Any]:
+        """Return the next line of output, after which the peer ends by itself."""
+        answer = self.next(timeout)
+        self._process.wait(timeout)
+        return answer
+
+    def kill(self) -> None:
+        """Kill the process (SIGKILL): its participant says no farewell."""
+        self._process.kill()
+        self._process.wait()
+        self._reader.join()
+        if self._process.stdout:
+            self._process.stdout.close()
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            self._lines.put(line)
+        self._lines.put("")
+
+
+# By default, Cyclone takes another interface than loopback where there is one.
+_CYCLONE = (
+    "<CycloneDDS><Domain><General><Interfaces>"
+    '<NetworkInterface name="lo" multicast="true"/>'
+    "</Interfaces></General></Domain></CycloneDDS>"
+)

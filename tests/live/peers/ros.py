@@ -1,0 +1,197 @@
+"""A peer in rclpy, run by the Python of an environment with a release of ROS 2.
+
+The first argument says what to do, the second is a JSON object of options. Output is a JSON object
+per line: ``{"ready": true}`` when endpoints exist, and one with the results at the end.
+"""
+
+import json
+import sys
+import time
+
+import rclpy
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import Imu
+from std_msgs.msg import String, UInt8MultiArray
+from std_srvs.srv import SetBool
+
+
+def say(**what):
+    print(json.dumps(what), flush=True)
+
+
+def qos_of(options):
+    depth = options.get("depth", 10)
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST if depth else HistoryPolicy.KEEP_ALL,
+        depth=depth or 1,
+        reliability=ReliabilityPolicy.BEST_EFFORT
+        if options.get("best_effort")
+        else ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL
+        if options.get("transient_local")
+        else DurabilityPolicy.VOLATILE,
+    )
+
+
+def imu(number):
+    message = Imu()
+    message.header.stamp.sec = number
+    message.header.frame_id = f"imu{number % 7}"
+    message.orientation.x = number * 0.5
+    message.angular_velocity_covariance[8] = number
+    message.linear_acceleration.z = -float(number)
+    return message
+
+
+def block(number, size):
+    return UInt8MultiArray(
+        data=bytes((number + i * 7) & 0xFF for i in range(251)) * (size // 251 & ~3)
+    )
+
+
+def message_of(options, number):
+    return {
+        "imu": lambda: imu(number),
+        "block": lambda: block(number, options.get("bytes", 0)),
+        "string": lambda: String(data=f"m{number}"),
+    }[options["type"]]()
+
+
+def number_of(options, message):
+    """Return the number of a message, or -1 if its content is not what that number's has to be."""
+    if options["type"] == "imu":
+        number = message.header.stamp.sec
+    elif options["type"] == "block":
+        number = message.data[0] if message.data else -1
+    else:
+        number = int(message.data[1:])
+    return number if message == message_of(options, number) else -1
+
+
+TYPES = {"imu": Imu, "block": UInt8MultiArray, "string": String}
+
+
+def publish(node, options):
+    publisher = node.create_publisher(TYPES[options["type"]], options["topic"], qos_of(options))
+    messages = [message_of(options, n) for n in range(options["count"])]
+    say(ready=True)
+    end = time.monotonic() + options.get("patience", 20)
+    while publisher.get_subscription_count() < options.get("wait", 1):
+        if time.monotonic() > end:
+            return say(sent=0)
+        rclpy.spin_once(node, timeout_sec=0.02)
+    time.sleep(options.get("settle", 0.3))
+    at = time.monotonic()
+    for message in messages:
+        publisher.publish(message)
+        at += options.get("period", 0)
+        time.sleep(max(0, at - time.monotonic()))
+    end = time.monotonic() + options.get("linger", 2)
+    while time.monotonic() < end:
+        rclpy.spin_once(node, timeout_sec=0.1)
+    return say(sent=len(messages))
+
+
+def subscribe(node, options):
+    numbers = []
+    node.create_subscription(
+        TYPES[options["type"]],
+        options["topic"],
+        lambda message: numbers.append(number_of(options, message)),
+        qos_of(options),
+    )
+    say(ready=True)
+    end = time.monotonic() + options.get("patience", 20)
+    while len(numbers) < options["count"] and time.monotonic() < end:
+        rclpy.spin_once(node, timeout_sec=0.1)
+    time.sleep(options.get("settle", 0))
+    rclpy.spin_once(node, timeout_sec=0.1)
+    say(numbers=numbers)
+
+
+def graph(node, options):
+    say(ready=True)
+    end = time.monotonic() + options.get("patience", 20)
+    name, namespace = options["node"], options["namespace"]
+    while time.monotonic() < end:
+        rclpy.spin_once(node, timeout_sec=0.05)
+        if (name, namespace) not in node.get_node_names_and_namespaces():
+            continue
+        publishers = node.get_publisher_names_and_types_by_node(name, namespace)
+        if len(publishers) >= options["publishers"]:
+            break
+    infos = [
+        info
+        for topic in options.get("topics", [])
+        for info in node.get_publishers_info_by_topic(topic)
+    ]
+    say(
+        nodes=node.get_node_names_and_namespaces(),
+        publishers=node.get_publisher_names_and_types_by_node(name, namespace),
+        subscriptions=node.get_subscriber_names_and_types_by_node(name, namespace),
+        services=node.get_service_names_and_types_by_node(name, namespace),
+        clients=node.get_client_names_and_types_by_node(name, namespace),
+        hashes=[str(info.topic_type_hash) for info in infos],
+        depths=[info.qos_profile.reliability.name for info in infos],
+    )
+
+
+def gone(node, options):
+    """Say when a node appears, and when it is gone."""
+    say(ready=True)
+    wanted = (options["node"], options["namespace"])
+    for there in (True, False):
+        end = time.monotonic() + options.get("patience", 20)
+        while (wanted in node.get_node_names_and_namespaces()) != there:
+            if time.monotonic() > end:
+                return say(failed=f"there: {not there}")
+            rclpy.spin_once(node, timeout_sec=0.05)
+        say(there=there)
+    return None
+
+
+def call(node, options):
+    client = node.create_client(SetBool, options["name"])
+    say(ready=True)
+    there = client.wait_for_service(timeout_sec=options.get("patience", 20))
+    answers = []
+    for number in range(options["count"] if there else 0):
+        future = client.call_async(SetBool.Request(data=bool(number & 1)))
+        rclpy.spin_until_future_complete(node, future, timeout_sec=5)
+        answer = future.result()
+        answers.append(None if answer is None else [answer.success, answer.message])
+    say(answers=answers)
+
+
+def serve(node, options):
+    served = []
+
+    def handle(request, response):
+        served.append(request.data)
+        response.success = request.data
+        response.message = f"{request.data} {len(served)}"
+        return response
+
+    node.create_service(SetBool, options["name"], handle)
+    say(ready=True)
+    end = time.monotonic() + options.get("patience", 20)
+    while len(served) < options["count"] and time.monotonic() < end:
+        rclpy.spin_once(node, timeout_sec=0.1)
+    rclpy.spin_once(node, timeout_sec=0.5)
+    say(served=len(served))
+
+
+if __name__ == "__main__":
+    what, options = sys.argv[1], json.loads(sys.argv[2])
+    rclpy.init()
+    node = rclpy.create_node(options.get("own", "peer"))
+    {
+        "publish": publish,
+        "subscribe": subscribe,
+        "graph": graph,
+        "gone": gone,
+        "call": call,
+        "serve": serve,
+    }[what](node, options)
+    node.destroy_node()
+    rclpy.shutdown()

@@ -1,0 +1,1 @@
+"""Tests of the participant: bytes, endpoints in a simulated network, sockets."""

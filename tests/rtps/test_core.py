@@ -1,0 +1,385 @@
+"""Participants in a simulated network: discovery, reliability, fragments, faults of peers."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from firm_hdl.rtps import Durability, HistoryFullError, Qos, Reliability, SampleIdentity
+from firm_hdl.rtps.reader import Reader
+from firm_hdl.rtps.wire import message
+from firm_hdl.rtps.wire.guid import Guid
+from firm_hdl.rtps.wire.numbers import NumberSet
+from firm_hdl.rtps.wire.reliability import AckNack, Gap
+from firm_hdl.rtps.wire.samples import Data, DataFrag
+from tests.depth import by_depth
+from tests.rtps.network import Network
+
+# A busy machine is no fault.
+SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
+
+KEEP_ALL = Qos(depth=0)
+BEST_EFFORT = Qos(reliability=Reliability.BEST_EFFORT)
+DURABLE = Qos(durability=Durability.TRANSIENT_LOCAL, depth=5)
+SIZES = st.lists(st.sampled_from([4, 100, 1280, 1281, 2560, 5000]), min_size=1, max_size=30)
+
+
+def pair(network, writer_qos=KEEP_ALL, reader_qos=KEEP_ALL):
+    """Return two stations that found each other, and the writer of the first."""
+    one, two = network.station(), network.station()
+    writer, _ = one.writer(writer_qos), two.reader(reader_qos)
+    assert network.run(60, lambda: one.named("Matched") and two.named("Matched"))
+    return one, two, writer
+
+
+def payloads(sizes):
+    return [number.to_bytes(4, "big") + bytes(size - 4) for number, size in enumerate(sizes)]
+
+
+def sent_to(station, kind):
+    """Return all submessages of a kind that were sent to a station."""
+    read = (message.read(each, station.core.prefix) for each in station.network.sent)
+    every = [each.submessage for content in read for each in content.received]
+    return [each for each in every if isinstance(each, kind)]
+
+
+@given(
+    seed=st.integers(0, 2**32),
+    loss=st.floats(0, 0.3),
+    repeat=st.floats(0, 0.3),
+    delay=st.sampled_from([1e-5, 0.01, 0.2]),
+    sizes=SIZES,
+)
+@settings(max_examples=by_depth(25, 1000), deadline=None, suppress_health_check=SLOW)
+def test_reliable_samples_come_once_and_in_order(seed, loss, repeat, delay, sizes):
+    network = Network(seed, loss, repeat, delay)
+    one, two, writer = pair(network)
+    sent = payloads(sizes)
+    for each in sent:
+        one.write(writer, each)
+        network.run(0.003)
+    assert network.run(120, lambda: len(two.payloads) >= len(sent) and writer.acknowledged)
+    assert two.payloads == sent
+    assert [each.sequence_number for each in two.samples] == list(range(1, len(sent) + 1))
+
+
+def test_that_losses_would_be_noticed(monkeypatch):
+    """The twin: without ACKNACKs, the same network loses samples."""
+    network = Network()
+    one, two, writer = pair(network)
+    monkeypatch.setattr(Reader, "_answer", lambda self, proxy, now: None)
+    network.loss = 0.3
+    for each in payloads([100] * 30):
+        one.write(writer, each)
+    assert not network.run(30, lambda: len(two.payloads) == 30)
+    assert not writer.acknowledged
+
+
+@given(seed=st.integers(0, 2**32), sizes=SIZES)
+@settings(max_examples=by_depth(10, 300), deadline=None, suppress_health_check=SLOW)
+def test_best_effort_samples_come_at_most_once_and_in_order(seed, sizes):
+    network = Network(seed, 0, 0.3, 0.05)
+    one, two, writer = pair(network, BEST_EFFORT, BEST_EFFORT)
+    network.loss = 0.2
+    sent = payloads(sizes)
+    for each in sent:
+        one.write(writer, each)
+        network.run(0.01)
+    network.run(5)
+    numbers = [each.sequence_number for each in two.samples]
+    assert numbers == sorted(set(numbers))
+    assert [sent[n - 1] for n in numbers] == two.payloads
+    assert not [each for each in sent_to(one, AckNack) if each.writer == writer.guid.entity]
+
+
+def test_timestamps_and_related_samples_arrive():
+    network = Network()
+    one, two, writer = pair(network)
+    related = SampleIdentity(Guid(bytes(range(12)), 0x1304), -1 << 32)
+    one.core.write(writer, bytes(8), network.now, 1_700_000_000_123_456_789, related)
+    one.core.write(writer, bytes(3000), network.now, None, related)
+    network.run(1)
+    first, second = two.samples
+    assert (first.source_timestamp, first.related) == (1_700_000_000_123_456_789, related)
+    assert (second.source_timestamp, second.related) == (None, related)
+    assert first.identity == SampleIdentity(writer.guid, 1)
+
+
+def test_a_volatile_writer_sends_nothing_old():
+    network = Network()
+    one, two, writer = pair(network)
+    for each in payloads([8] * 5):
+        one.write(writer, each)
+    network.run(1)
+    assert len(two.payloads) == 5
+    late = network.station()
+    late.reader(Qos(depth=0))
+    assert network.run(10, lambda: len(writer.matched) == 2)
+    network.run(3)
+    one.write(writer, b"new.")
+    network.run(1)
+    assert late.payloads == [b"new."]
+    assert two.payloads[5:] == [b"new."]
+
+
+def test_a_late_reader_gets_what_a_durable_writer_keeps():
+    network = Network(loss=0.2, seed=3)
+    one, two, writer = pair(network, DURABLE, DURABLE)
+    sent = payloads([8] * 12 + [4000])
+    for each in sent:
+        one.write(writer, each)
+        network.run(0.5)
+    network.run(5)
+    assert two.payloads == sent
+    late, volatile = network.station(), network.station()
+    late.reader(DURABLE)
+    volatile.reader()
+    assert network.run(60, lambda: len(late.payloads) >= 5)
+    network.run(5)
+    assert late.payloads == sent[-5:]
+    assert volatile.payloads == []
+
+
+def test_what_a_writer_no_longer_has_is_a_gap():
+    network = Network()
+    one, two, writer = pair(network, Qos(depth=2), Qos())
+    network.loss = 1
+    for each in payloads([8] * 10):
+        one.write(writer, each)
+    network.run(0.01)
+    network.loss = 0
+    network.run(5)
+    assert two.payloads == payloads([8] * 10)[-2:]
+    assert writer.acknowledged
+    writer.forget(9)
+    assert writer.last == 10
+
+
+def test_a_gap_is_sent_for_a_sample_that_is_asked_for_and_gone():
+    network = Network()
+    one, two, writer = pair(network)
+    network.loss = 1
+    for each in payloads([8] * 3):
+        one.write(writer, each)
+    network.run(0.001)
+    writer.forget(2)
+    network.loss = 0
+    network.run(5)
+    assert two.payloads == [payloads([8] * 3)[n] for n in (0, 2)]
+    gaps = {(each.start, each.numbers) for each in sent_to(two, Gap)}
+    assert gaps == {(2, NumberSet(3))}
+
+
+def test_a_writer_that_keeps_all_says_when_it_is_full():
+    network = Network()
+    one, two, writer = pair(network, Qos(depth=0, max_samples=50))
+    two.dead = True
+    for _ in range(50):
+        one.write(writer, bytes(4))
+    with pytest.raises(HistoryFullError, match=r"^50 samples are not acknowledged$"):
+        one.write(writer, bytes(4))
+    # The reader's participant is gone after its lease, and nobody else waits.
+    network.run(15)
+    one.write(writer, bytes(4))
+
+
+def test_policies_that_do_not_fit():
+    network = Network()
+    one, two = network.station(), network.station()
+    writer, reader = one.writer(BEST_EFFORT), two.reader(DURABLE)
+    network.run(5)
+    policies = ("RELIABILITY", "DURABILITY")
+    assert [(e.local, e.policies) for e in one.named("Incompatible")] == [(writer.guid, policies)]
+    assert [(e.local, e.policies) for e in two.named("Incompatible")] == [(reader.guid, policies)]
+    assert not one.named("Matched") and not writer.matched
+    # A reliable writer and a best-effort reader do fit.
+    two.reader(BEST_EFFORT)
+    assert network.run(5, lambda: bool(one.named("Matched")))
+
+
+@pytest.mark.parametrize(
+    "other", [{"topic": "rt/u"}, {"type_name": "p::msg::dds_::U_"}], ids=["topic", "type"]
+)
+def test_other_topics_and_types_do_not_match(other):
+    network = Network()
+    one, two = network.station(), network.station()
+    one.writer()
+    two.reader(**other)
+    network.run(5)
+    assert not one.named("Matched") and not one.named("Incompatible")
+
+
+def test_a_peer_that_leaves_and_one_that_is_silent():
+    network = Network()
+    one, two, _ = pair(network)
+    three = network.station(lease=2.0)
+    assert network.run(5, lambda: len(one.core.peers) == 2)
+    two.core.leave()
+    network.run(0.1)
+    assert [each.expired for each in one.named("PeerLost")] == [False]
+    assert len(one.named("Unmatched")) == 1
+    two.dead = three.dead = True
+    network.run(1.5)
+    assert len(one.named("PeerLost")) == 1
+    network.run(1)
+    assert [each.expired for each in one.named("PeerLost")] == [False, True]
+    assert one.core.peers == ()
+
+
+def test_a_peer_that_starts_again_is_a_new_one():
+    network = Network()
+    one, two, writer = pair(network)
+    one.write(writer, b"old.")
+    network.run(1)
+    two.dead = True
+    again = network.station()
+    again.reader(KEEP_ALL)
+    assert network.run(5, lambda: len(writer.matched) == 2)
+    one.write(writer, b"new.")
+    assert network.run(1, lambda: again.payloads == [b"new."])
+    # The dead one holds nothing up once its lease is over.
+    network.run(15)
+    assert writer.acknowledged and len(writer.matched) == 1
+
+
+def test_endpoints_come_and_go():
+    network = Network(seed=5, loss=0.2)
+    one, two, writer = pair(network)
+    first = two.reader()
+    assert network.run(20, lambda: len(writer.matched) == 2)
+    two.core.remove(first.guid, network.now)
+    assert network.run(20, lambda: len(writer.matched) == 1)
+    one.core.remove(writer.guid, network.now)
+    assert network.run(20, lambda: len(two.named("Unmatched")) == 2)
+    # The announcement of what is gone is not kept: a new station hears of nothing.
+    late = network.station()
+    late.reader()
+    network.run(5)
+    assert not late.named("Matched")
+    assert [each.topic for each in late.core.remotes(writers=True)] == []
+
+
+def test_a_peer_that_multicast_does_not_reach():
+    network = Network(seed=1)
+    one, two = network.station(lease=3.0), network.station()
+    two.deaf = True
+    network.loss = 0.3
+    assert network.run(10, lambda: len(two.core.peers) == len(one.core.peers) == 1)
+    network.loss = 0
+    network.run(20)
+    assert not two.named("PeerLost")
+    one.core.leave()
+    assert network.run(0.1, lambda: len(two.named("PeerLost")) == 1)
+
+
+def test_a_peer_that_did_not_listen_yet():
+    network = Network()
+    one, two = network.station(), network.station()
+    two.deaf = True
+    two.core.receive, listening = lambda datagram, now: None, two.core.receive
+    assert network.run(1, lambda: len(one.core.peers) == 1)
+    network.run(0.01)
+    two.core.receive = listening
+    assert network.run(0.2, lambda: len(two.core.peers) == 1)
+
+
+@pytest.mark.parametrize(("vendor", "base"), [("010f", 0), ("0101", 0), ("0110", 1), ("01ff", 1)])
+def test_the_first_acknack_is_one_that_the_vendor_answers(vendor, base):
+    network = Network()
+    one, two = network.station(bytes.fromhex(vendor) + bytes(10)), network.station()
+    one.writer()
+    two.reader()
+    assert network.run(5, lambda: bool(one.named("Matched")))
+    network.run(1)
+    firsts = {}
+    for each in sent_to(one, AckNack):
+        firsts.setdefault(each.writer, each)
+    assert len(firsts) == 3
+    assert {(each.missing, each.final) for each in firsts.values()} == {(NumberSet(base), False)}
+
+
+def test_participants_of_another_domain_are_none():
+    network = Network()
+    one, two = network.station(domain=0), network.station(domain=1)
+    network.run(3)
+    assert one.core.peers == two.core.peers == ()
+    # One that does not say its domain is taken for one of this domain: old versions do not say it.
+    network.station(domain=None)
+    network.run(3)
+    assert len(one.core.peers) == len(two.core.peers) == 1
+
+
+def test_samples_go_in_fragments_that_fit_an_ethernet_frame():
+    network = Network()
+    one, two, writer = pair(network)
+    related = SampleIdentity(Guid(bytes(12), 0x1304), 1)
+    one.core.write(writer, bytes(1_000_000), network.now, 1, related)
+    one.core.write(writer, bytes(1280), network.now, 1, related)
+    network.run(1)
+    assert [len(each) for each in two.payloads] == [1_000_000, 1280]
+    assert max(map(len, network.sent)) <= 1472
+
+
+def test_only_missing_fragments_are_sent_again():
+    network = Network(seed=1)
+    one, two, writer = pair(network)
+    network.loss = 0.1
+    one.write(writer, bytes(128_000))
+    network.run(0.01)
+    network.loss = 0
+    network.run(5)
+    assert two.payloads == [bytes(128_000)]
+    assert 100 < len(sent_to(two, DataFrag)) < 130
+
+
+def test_peers_of_the_other_byte_order(monkeypatch):
+    monkeypatch.setattr(message, "write", partial(message.write, little=False))
+    network = Network(seed=2, loss=0.1)
+    one, two, writer = pair(network)
+    sent = payloads([8, 5000, 100, 3000])
+    for each in sent:
+        one.write(writer, each)
+    assert network.run(20, lambda: two.payloads == sent)
+    assert not any(datagram[21] & 1 for datagram in network.sent)
+
+
+def test_memory_for_early_samples_is_limited():
+    network = Network()
+    one, two = network.station(), network.station(memory_bytes=20_000)
+    writer = one.writer(KEEP_ALL)
+    two.reader(KEEP_ALL)
+    assert network.run(5, lambda: bool(writer.matched) and bool(two.named("Matched")))
+    network.run(1)
+    sent = payloads([1000] * 100)
+    network.loss = 1
+    one.write(writer, sent[0])
+    network.run(0.0001)
+    network.loss = 0
+    for each in sent[1:]:
+        one.write(writer, each)
+    # What has no room is asked for again.
+    assert network.run(60, lambda: two.payloads == sent)
+
+
+@pytest.mark.parametrize("number", [2, 4096, 1 << 40, (1 << 62)])
+def test_sequence_numbers_far_ahead_take_no_memory_and_no_time(number):
+    network = Network()
+    _, two, writer = pair(network)
+    reader = next(iter(two.core.matched(next(iter(two.core._sedp.locals)))))
+    assert reader.guid == writer.guid
+    evil = [
+        Data(reader=0, writer=writer.guid.entity, sequence_number=number, payload=bytes(9)),
+        Gap(
+            reader=0,
+            writer=writer.guid.entity,
+            start=number,
+            numbers=NumberSet(number + (1 << 61), (number + (1 << 61) + 3,)),
+        ),
+    ]
+    two.core.receive(message.write(writer.guid.prefix, evil), network.now)
+    two.core.tick(network.now)
+    assert two.core._budget.used <= 400
+    assert two.core.counters["malformed"] == 0

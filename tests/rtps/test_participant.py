@@ -1,0 +1,329 @@
+"""Participants and nodes with sockets, on the loopback interface and without multicast."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+
+import pytest
+
+from firm_hdl.rtps import (
+    HistoryFullError,
+    Participant,
+    Qos,
+    Reliability,
+    SampleIdentity,
+    TransportError,
+)
+from firm_hdl.rtps.ros import Context, Node, graph
+from firm_hdl.rtps.ros.graph import GraphInfo
+from firm_hdl.rtps.transport import Transport
+
+# A domain of its own, so that participants on this machine do not come in.
+DOMAIN = 187
+OPTIONS = {"domain": DOMAIN, "interface": "127.0.0.1", "peers": ("127.0.0.1",), "multicast": False}
+TOPIC, TYPE = "rt/t", "p::msg::dds_::T_"
+STRING = "std_msgs/msg/String"
+
+
+@pytest.fixture
+def pair():
+    with Participant(**OPTIONS) as one, Participant(**OPTIONS) as two:
+        yield one, two
+
+
+def wait(condition):
+    end = time.monotonic() + 20
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.002)
+    return condition()
+
+
+def test_samples_between_two_participants(pair):
+    one, two = pair
+    got, matches = [], []
+    writer = one.writer(TOPIC, TYPE, Qos(depth=0), on_match=lambda *args: matches.append(args))
+    reader = two.reader(TOPIC, TYPE, got.append, Qos(depth=0))
+    assert writer.wait_for_match() and reader.wait_for_match()
+    sent = [number.to_bytes(4, "big") * size for number, size in enumerate((2, 400, 250_000, 2))]
+    before = time.time_ns()
+    assert [writer.write(each) for each in sent] == [1, 2, 3, 4]
+    assert writer.wait_for_acknowledgments()
+    assert wait(lambda: len(got) == 4)
+    assert [each.payload for each in got] == sent
+    assert {each.writer for each in got} == {writer.guid}
+    assert before <= got[0].source_timestamp <= time.time_ns()
+    assert reader.lost == 0
+    reader.close()
+    assert wait(lambda: len(matches) == 2)
+    assert [(remote.guid, came) for remote, came in matches] == [
+        (reader.guid, True),
+        (reader.guid, False),
+    ]
+    assert one.counters["malformed"] == two.counters["malformed"] == 0
+
+
+def test_a_callback_may_write_and_may_fail(pair, caplog):
+    one, two = pair
+    back = []
+
+    def answer(sample):
+        answers.write(sample.payload + b"!")
+        raise RuntimeError("an error of the user")
+
+    answers = two.writer("rt/back", TYPE)
+    two.reader(TOPIC, TYPE, answer)
+    writer = one.writer(TOPIC, TYPE)
+    one.reader("rt/back", TYPE, back.append)
+    assert writer.wait_for_match() and answers.wait_for_match()
+    with caplog.at_level(logging.ERROR, "firm_hdl.rtps"):
+        writer.write(b"one")
+        writer.write(b"two")
+        assert wait(lambda: len(back) == 2)
+        assert wait(lambda: len(caplog.records) == 2)
+    assert [each.payload for each in back] == [b"one!", b"two!"]
+    assert "an error of the user" in caplog.text
+
+
+def test_a_callback_waits_for_room(pair):
+    one, two = pair
+    back = []
+    keep = Qos(depth=0, max_samples=20)
+    answers = two.writer("rt/back", TYPE, keep)
+    two.reader(TOPIC, TYPE, lambda sample: answers.write(sample.payload, timeout=10), keep)
+    writer = one.writer(TOPIC, TYPE, keep)
+    one.reader("rt/back", TYPE, back.append, keep)
+    assert writer.wait_for_match() and answers.wait_for_match()
+    sent = [number.to_bytes(4, "big") for number in range(300)]
+    for each in sent:
+        writer.write(each, timeout=10)
+    assert wait(lambda: len(back) == 300)
+    assert [each.payload for each in back] == sent
+
+
+def test_a_callback_cannot_wait_for_what_comes_after_it(pair, caplog):
+    one, two = pair
+    writer = one.writer(TOPIC, TYPE)
+    reader = two.reader(TOPIC, TYPE, lambda sample: reader.wait_for_match(2))
+    assert writer.wait_for_match()
+    with caplog.at_level(logging.ERROR, "firm_hdl.rtps"):
+        writer.write(b"1234")
+        assert wait(lambda: caplog.records)
+    assert "a callback cannot wait for what comes after it" in caplog.text
+
+
+def test_the_loopback_interface_needs_neither_multicast_nor_peers():
+    options = {"domain": DOMAIN, "interface": "lo", "multicast": False}
+    with Participant(**options) as one, Participant(**options) as two:
+        assert wait(lambda: len(one.peers) == len(two.peers) == 1)
+
+
+def test_writes_of_several_threads(pair):
+    one, two = pair
+    got = []
+    writer = one.writer(TOPIC, TYPE, Qos(depth=0))
+    two.reader(TOPIC, TYPE, got.append, Qos(depth=0))
+    assert writer.wait_for_match()
+
+    def write(thread):
+        for number in range(100):
+            writer.write(bytes([thread, number]), timeout=10)
+
+    threads = [threading.Thread(target=write, args=(each,)) for each in range(4)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert wait(lambda: len(got) == 400)
+    for thread in range(4):
+        numbers = [each.payload[1] for each in got if each.payload[0] == thread]
+        assert numbers == list(range(100))
+
+
+def test_a_full_history_is_reported_after_a_wait(pair):
+    one, two = pair
+    writer = one.writer(TOPIC, TYPE, Qos(depth=0, max_samples=100))
+    stuck = threading.Event()
+    two.reader(TOPIC, TYPE, lambda sample: stuck.wait(20), Qos(depth=0))
+    assert writer.wait_for_match()
+    try:
+        with pytest.raises(HistoryFullError):
+            for _ in range(2000):
+                writer.write(bytes(8), timeout=0.01)
+    finally:
+        stuck.set()
+    assert writer.wait_for_acknowledgments(20)
+
+
+def test_what_callbacks_are_told(pair):
+    one, two = pair
+    told = []
+
+    def callbacks(name):
+        return {
+            "on_match": lambda remote, came: told.append((name, remote.guid, came)),
+            "on_incompatible": lambda remote, names: told.append((name, remote.guid, names)),
+        }
+
+    best_effort = Qos(reliability=Reliability.BEST_EFFORT)
+    writer = one.writer(TOPIC, TYPE, best_effort, **callbacks("writer"))
+    reader = two.reader(TOPIC, TYPE, print, **callbacks("reader"))
+    assert wait(lambda: len(told) == 2)
+    refused = ("RELIABILITY",)
+    assert set(told) == {("writer", reader.guid, refused), ("reader", writer.guid, refused)}
+    told.clear()
+    fitting = two.reader(TOPIC, TYPE, print, best_effort, **callbacks("fitting"))
+    assert wait(lambda: len(told) == 2)
+    assert set(told) == {("writer", fitting.guid, True), ("fitting", writer.guid, True)}
+
+
+def test_closing_twice_and_using_what_is_closed(pair):
+    one, two = pair
+    lost = []
+    two._on_event = lambda event: lost.append(type(event).__name__)
+    writer = one.writer(TOPIC, TYPE)
+    assert wait(lambda: two.peers)
+    one.close()
+    one.close()
+    writer.close()
+    assert not writer.wait_for_match(timeout=0.01)
+    assert wait(lambda: "PeerLost" in lost)
+
+
+def test_a_fault_of_ours_does_not_end_the_participant(pair, caplog, monkeypatch):
+    one, two = pair
+    writer = one.writer(TOPIC, TYPE)
+    got = []
+    two.reader(TOPIC, TYPE, got.append)
+    assert writer.wait_for_match()
+    receive = two._core.receive
+
+    def fail_once(datagram, now):
+        monkeypatch.undo()
+        raise KeyError("a fault")
+
+    monkeypatch.setattr(two._core, "receive", fail_once)
+    with caplog.at_level(logging.ERROR, "firm_hdl.rtps"):
+        writer.write(b"1234")
+        assert wait(lambda: got)
+    assert two._core.receive == receive
+    assert two.counters["failed"] == 1
+    assert "a fault of firm-hdl, with the datagram 52545053" in caplog.text
+
+
+def test_an_address_of_another_host():
+    with pytest.raises(TransportError, match=r"^no sockets on 203\.0\.113\.7: "):
+        Participant(DOMAIN, interface="203.0.113.7")
+    with pytest.raises(ValueError, match=r"^Domain must be from 0 to 232, not 233$"):
+        Participant(233, interface="127.0.0.1")
+
+
+def test_participants_of_a_host_have_ports_of_their_own():
+    transports = [Transport(DOMAIN, "127.0.0.1") for _ in range(3)]
+    try:
+        assert len({each.user for each in transports}) == 3
+        numbers = [each.participant for each in transports]
+        assert numbers == sorted(set(numbers))
+    finally:
+        for each in transports:
+            each.close()
+
+
+def test_nodes_topics_and_services():
+    got = []
+    with Node("one", "/ns", **OPTIONS) as one, Node("two", **OPTIONS) as two:
+        one.publisher("chatter", STRING, type_hash="RIHS01_12")
+        two.subscription("/ns/chatter", STRING, got.append)
+        two.service("/go", "std_srvs/srv/SetBool", lambda request: request + b"!")
+        client = one.client("/go", "std_srvs/srv/SetBool")
+        assert [client.call(bytes([n])) for n in range(20)] == [
+            bytes([n]) + b"!" for n in range(20)
+        ]
+        assert two.context.wait_for_node("one")
+        nodes = {(each.namespace, each.name): each for each in two.context.nodes()}
+        assert set(nodes) == {("/", "two"), ("/ns", "one")}
+        assert wait(lambda: two.context.topics() == {"/ns/chatter": {STRING}})
+        assert two.context.type_hashes("/ns/chatter") == {"RIHS01_12"}
+        assert two.context.type_hashes("/chatter") == set()
+        assert len(nodes["/ns", "one"].writers) == 2
+
+
+def test_what_a_node_announces():
+    with Node("one", **OPTIONS) as node, Participant(**OPTIONS) as other:
+        node.publisher("chatter", STRING)
+        assert wait(lambda: other.peers)
+        (peer,) = other.peers
+        assert (peer.user_data, peer.name) == (b"enclave=/;", "/")
+        # Announcements to a host go to the first five participants there.
+        ports = [address.port for address in other._core.settings.targets]
+        assert ports == [7410 + 250 * DOMAIN + 2 * number for number in range(5)]
+        # A late reader gets the newest description of the nodes alone.
+        got = []
+        reader = other.reader(graph.TOPIC, graph.TYPE, got.append, graph.QOS)
+        assert reader.wait_for_match()
+        assert wait(lambda: got)
+        time.sleep(0.2)
+        assert [len(GraphInfo.decode(each.payload).nodes[0].writers) for each in got] == [1]
+
+
+def test_a_client_that_names_no_reader_of_replies():
+    with Node("one", **OPTIONS) as node, Participant(**OPTIONS) as board:
+        node.service("/go", "std_srvs/srv/SetBool", lambda request: request + b"!")
+        got = []
+        kind = "std_srvs::srv::dds_::SetBool"
+        requests = board.writer("rq/goRequest", f"{kind}_Request_")
+        replies = board.reader("rr/goReply", f"{kind}_Response_", got.append)
+        assert requests.wait_for_match() and replies.wait_for_match()
+        assert wait(lambda: node._writers[0].matched)
+        number = requests.write(b"go")
+        assert wait(lambda: got)
+        assert got[0].payload == b"go!"
+        assert got[0].related == SampleIdentity(requests.guid, number)
+
+
+def test_calls_without_a_server():
+    with Node("one", **OPTIONS) as node:
+        client = node.client("/nobody", "std_srvs/srv/SetBool")
+        with pytest.raises(TimeoutError, match=r"^no server in 0\.05 s$"):
+            client.call(b"", timeout=0.05)
+
+
+def test_a_server_that_does_not_answer_in_time():
+    late = threading.Event()
+
+    def handle(request):
+        late.wait(20)
+        return request
+
+    with Node("one", **OPTIONS) as one, Node("two", **OPTIONS) as two:
+        two.service("/go", "std_srvs/srv/SetBool", handle)
+        client = one.client("/go", "std_srvs/srv/SetBool")
+        assert client.wait_for_service()
+        with pytest.raises(TimeoutError, match=r"^no reply in 0\.2 s$"):
+            client.call(b"late", timeout=0.2)
+        late.set()
+        # The late reply is for nobody.
+        assert client.call(b"next") == b"next"
+
+
+def test_nodes_that_share_a_participant():
+    with Context(**OPTIONS) as context, Node("watcher", **OPTIONS) as watcher:
+        first, second = Node("first", context=context), Node("second", context=context)
+        with pytest.raises(ValueError, match=r"^there is a node 'first' in '/' already$"):
+            Node("first", context=context)
+        assert watcher.context.wait_for_node("first") and watcher.context.wait_for_node("second")
+        first.close()
+        assert wait(
+            lambda: {each.name for each in watcher.context.nodes()} == {"second", "watcher"}
+        )
+        second.close()
+        Node("first", context=context)
+
+
+@pytest.mark.parametrize(
+    ("name", "namespace"), [("a b", "/"), ("", "/"), ("a", "/b__c"), ("a", "1")]
+)
+def test_names_of_nodes_that_are_none(name, namespace):
+    with pytest.raises(ValueError, match="is no name of a"):
+        Node(name, namespace, **OPTIONS)

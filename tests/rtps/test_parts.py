@@ -1,0 +1,233 @@
+"""Small parts: fragments, policies, ports and addresses, pacing."""
+
+from __future__ import annotations
+
+import socket
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from firm_hdl.rtps import Durability, Qos, Reliability, TransportError
+from firm_hdl.rtps.core import Settings
+from firm_hdl.rtps.discovery import EndpointData, ParticipantData
+from firm_hdl.rtps.fragments import Budget, Reassembly, fragment, fragment_count
+from firm_hdl.rtps.pacing import Pacer
+from firm_hdl.rtps.transport import address_of
+from firm_hdl.rtps.wire import locators
+from firm_hdl.rtps.wire.guid import Guid, new_prefix
+from firm_hdl.rtps.wire.locators import Address, Ports, nearest
+from firm_hdl.rtps.wire.octets import Cursor, MalformedError
+from firm_hdl.rtps.wire.parameters import ParameterList
+from firm_hdl.rtps.wire.samples import Data, DataFrag
+
+# A busy machine is no fault.
+SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
+
+GUID = Guid(bytes(range(12)), 0x103)
+
+
+@settings(deadline=None, suppress_health_check=SLOW)
+@given(payload=st.binary(min_size=1, max_size=500), size=st.integers(1, 64), random=st.randoms())
+def test_samples_are_put_together_in_any_order(payload, size, random):
+    sample = Data(reader=1, writer=2, sequence_number=3, payload=payload)
+    count = fragment_count(len(payload), size)
+    parts = [fragment(sample, number, size) for number in range(1, count + 1)]
+    random.shuffle(parts)
+    budget = Budget(1 << 20)
+    reassembly = Reassembly(budget)
+    done = [reassembly.add(each) for each in [*parts[:-1], *parts[:-1], parts[-1]]]
+    assert done[:-1] == [None] * (len(done) - 1)
+    assert done[-1] == sample
+    assert budget.used == 0
+
+
+def test_several_fragments_in_one_submessage():
+    new = {"reader": 1, "writer": 2, "sequence_number": 3, "fragment_bytes": 4, "sample_bytes": 10}
+    reassembly = Reassembly(Budget(1 << 20))
+    assert reassembly.add(DataFrag(first=2, count=2, payload=b"efghij", **new)) is None
+    assert reassembly.missing(3) == [1]
+    # Other sizes than before: not of this sample.
+    wrong = {**new, "fragment_bytes": 5}
+    assert reassembly.add(DataFrag(first=1, count=1, payload=b"abcde", **wrong)) is None
+    whole = reassembly.add(DataFrag(first=1, count=1, payload=b"abcd", **new))
+    assert whole is not None and whole.payload == b"abcdefghij"
+    assert 3 not in reassembly
+
+
+def test_the_oldest_incomplete_sample_makes_room():
+    budget = Budget(3000)
+    reassembly = Reassembly(budget)
+    for number in range(1, 6):
+        sample = Data(reader=1, writer=2, sequence_number=number, payload=bytes(2000))
+        assert reassembly.add(fragment(sample, 1, 1000)) is None
+    assert [number in reassembly for number in range(1, 6)] == [False, False, False, True, True]
+    reassembly.drop_all()
+    assert budget.used == 0
+
+
+def test_tables_of_policies():
+    """DDS table 2.2.3, by hand: which offers satisfy a request."""
+    best, reliable = Reliability
+    pairs = [
+        ({"reliability": best}, {"reliability": reliable}, "RELIABILITY"),
+        ({"reliability": reliable}, {"reliability": best}, None),
+        ({}, {"durability": Durability.TRANSIENT_LOCAL}, "DURABILITY"),
+        ({"durability": Durability.PERSISTENT}, {"durability": Durability.TRANSIENT}, None),
+        ({"deadline": 2.0}, {"deadline": 1.0}, "DEADLINE"),
+        ({"deadline": 1.0}, {"deadline": 2.0}, None),
+        ({"liveliness": 0}, {"liveliness": 2}, "LIVELINESS"),
+        ({"lease": 2.0}, {"lease": 1.0}, "LIVELINESS"),
+        ({"exclusive": True}, {}, "OWNERSHIP"),
+        ({"partitions": ("a",)}, {}, "PARTITION"),
+        ({"partitions": ("a", "b")}, {"partitions": ("b",)}, None),
+        ({"representations": (2,)}, {}, "DATA_REPRESENTATION"),
+        ({"representations": (0,)}, {"representations": (2, 0)}, None),
+    ]
+    for offered, asked, problem in pairs:
+        expected = () if problem is None else (problem,)
+        assert Qos(**asked).refused(Qos(**offered)) == expected, (offered, asked)
+
+
+@settings(deadline=None, suppress_health_check=SLOW)
+@given(
+    qos=st.builds(
+        Qos,
+        reliability=st.sampled_from(Reliability),
+        durability=st.sampled_from(Durability),
+        deadline=st.sampled_from([0.5, 3.0, float("inf")]),
+        liveliness=st.integers(0, 2),
+        lease=st.sampled_from([0.25, float("inf")]),
+        exclusive=st.booleans(),
+        partitions=st.lists(st.text("abc", min_size=1), max_size=3).map(tuple),
+        representations=st.just((0,)),
+    ),
+    writer=st.booleans(),
+    user=st.binary(max_size=40),
+)
+def test_endpoints_are_read_as_they_are_written(qos, writer, user):
+    data = EndpointData(
+        guid=GUID,
+        topic="rt/é",
+        type_name="T",
+        qos=qos,
+        addresses=(Address("10.1.2.3", 7411),),
+        user_data=user,
+    )
+    assert EndpointData.decode(data.encode(), writer) == data
+
+
+def test_defaults_of_policies_differ_for_writers_and_readers():
+    bare = ParameterList(((0x5A, bytes(GUID)), (0x05, b"\2\0\0\0t\0"), (0x07, b"\2\0\0\0T\0")))
+    written = EndpointData.decode(bare.encode_payload(), writer=True)
+    read = EndpointData.decode(bare.encode_payload(), writer=False)
+    assert (written.qos.reliable, read.qos.reliable) == (True, False)
+    with pytest.raises(MalformedError, match=r"^an endpoint without topic$"):
+        EndpointData.decode(ParameterList(bare.items[:1]).encode_payload(), writer=True)
+
+
+@settings(deadline=None, suppress_health_check=SLOW)
+@given(
+    domain=st.none() | st.integers(0, 232),
+    name=st.text("abé", max_size=9),
+    user=st.binary(max_size=9),
+)
+def test_participants_are_read_as_they_are_written(domain, name, user):
+    data = ParticipantData(
+        prefix=bytes(range(12)),
+        discovery=(Address("10.1.2.3", 7410), Address("127.0.0.1", 7410)),
+        user=(Address("10.1.2.3", 7411),),
+        lease=2.5,
+        user_data=user,
+        name=name,
+        domain=domain,
+    )
+    assert ParticipantData.decode(data.encode()) == data
+
+
+def test_participants_in_big_endian_by_hand():
+    payload = bytes.fromhex(
+        "00020000"
+        "00500010 000102030405060708090a0b 000001c1"
+        "00320018 00000001 00001cf2 000000000000000000000000 0a010203"
+        "00020008 00000014 80000000"
+        "00580004 0000003f"
+        "002c000c 00000008 656e636c6176653d"
+        "00010000"
+    )
+    read = ParticipantData.decode(payload)
+    assert read.prefix == bytes(range(12))
+    assert read.discovery == (Address("10.1.2.3", 7410),)
+    assert (read.lease, read.endpoints, read.user_data) == (20.5, 0x3F, b"enclave=")
+
+
+def test_ports_of_the_standard():
+    """9.6.1.1, by hand."""
+    assert Ports.of(0, 0) == (7400, 7410, 7411)
+    assert Ports.of(0, 3) == (7400, 7416, 7417)
+    assert Ports.of(42, 1) == (17900, 17912, 17913)
+    for domain, participant in ((-1, 0), (233, 0), (232, 200)):
+        with pytest.raises(ValueError, match=r"[Dd]omain"):
+            Ports.of(domain, participant)
+
+
+def test_the_nearest_of_several_addresses():
+    here, there, loop = (Address(each, 1) for each in ("10.1.2.3", "192.168.1.7", "127.0.0.1"))
+    assert nearest((there, here, loop), "10.1.2.9") == here
+    assert nearest((here, there, loop), "192.168.1.2") == there
+    assert nearest((here, there, loop), "127.0.0.1") == loop
+    assert nearest((), "127.0.0.1") is None
+
+
+def test_addresses_of_other_transports_are_left_out():
+    good = locators.encode(Address("10.0.0.1", 7410))
+    ipv6 = b"\2\0\0\0" + good[4:]
+    memory = b"\0\0\0\1" + good[4:]
+    group, none = (locators.encode(Address(h, 7410)) for h in ("239.255.0.1", "0.0.0.0"))
+    no_port = locators.encode(Address("10.0.0.1", 0))
+    values = [Cursor(each, True) for each in (ipv6, memory, group, none, no_port, good)]
+    assert locators.decode(values) == (Address("10.0.0.1", 7410),)
+
+
+def test_pacing():
+    pacer = Pacer(1e6)
+    assert pacer.wait(1.0) == 0
+    pacer.note((64 << 10) - 1)
+    assert pacer.wait(1.0) == 0
+    pacer.note(1001)
+    # 1,000 bytes of debt, and 16 KiB that are sent at once then.
+    assert pacer.wait(1.0) == pytest.approx(0.017384)
+    assert pacer.wait(1.01) == pytest.approx(0.007384)
+    assert pacer.wait(1.0174) == 0
+    pacer.note(16000)
+    assert pacer.wait(1.0174) == 0
+    pacer.note(1000)
+    assert pacer.wait(1.0174) > 0
+    # A pause gives no more than one burst.
+    assert pacer.wait(1000.0) == 0
+    pacer.note((64 << 10) + 500)
+    assert pacer.wait(1000.0) == pytest.approx(0.016884)
+    with pytest.raises(ValueError, match=r"^Rate must be positive, not 0$"):
+        Pacer(0)
+
+
+def test_addresses_of_interfaces():
+    assert address_of("10.1.2.3") == "10.1.2.3"
+    assert address_of("lo") == "127.0.0.1"
+    socket.inet_aton(address_of(None))
+    with pytest.raises(TransportError, match=r"^interface 'no such' has no IPv4 address$"):
+        address_of("no such")
+
+
+def test_prefixes_are_of_our_vendor_and_differ():
+    made = {new_prefix() for _ in range(100)}
+    assert len(made) == 100
+    assert {(len(each), each[:2]) for each in made} == {(12, b"\x01\xff")}
+
+
+def test_values_out_of_range():
+    with pytest.raises(ValueError, match=r"^Depth must be at least 0, not -1$"):
+        Qos(depth=-1)
+    own = ParticipantData(prefix=bytes(12), discovery=(), user=(), lease=1)
+    with pytest.raises(ValueError, match=r"^Fragments must have from 256 to 65000 bytes, not 9$"):
+        Settings(own=own, host="", targets=(), fragment_bytes=9)

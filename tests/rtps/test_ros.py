@@ -1,0 +1,115 @@
+"""Names, the graph and services of ROS 2."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from firm_hdl.rtps import Guid, Sample, SampleIdentity
+from firm_hdl.rtps.ros import names
+from firm_hdl.rtps.ros.graph import GraphInfo, NodeInfo
+from firm_hdl.rtps.wire.octets import MalformedError
+
+GUIDS = [Guid(bytes(range(12)), entity) for entity in (0x1C1, 0x103, 0x204, 0x304)]
+INFO = GraphInfo(
+    participant=GUIDS[0],
+    nodes=(
+        NodeInfo(name="talker", namespace="/", writers=(GUIDS[1],)),
+        NodeInfo(name="n", namespace="/robot/arm", readers=(GUIDS[2], GUIDS[3])),
+    ),
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "full"),
+    [
+        ("chatter", "/ns/chatter"),
+        ("/chatter", "/chatter"),
+        ("~/chatter", "/ns/node/chatter"),
+        ("~", "/ns/node"),
+        ("a/b_1", "/ns/a/b_1"),
+        ("_action/send_goal", "/ns/_action/send_goal"),
+    ],
+)
+def test_names_are_expanded(name, full):
+    assert names.expanded(name, "node", "/ns") == full
+
+
+@pytest.mark.parametrize("name", ["", "/", "a//b", "a/", "1a", "a b", "a__b", "a-b", "~a", "é"])
+def test_names_that_are_none(name):
+    with pytest.raises(ValueError, match=r"^'.*' is no name of a topic or service$"):
+        names.expanded(name, "node", "/")
+
+
+def test_names_on_the_wire():
+    assert names.topic("/ns/chatter") == "rt/ns/chatter"
+    assert names.request_topic("/ns/go") == "rq/ns/goRequest"
+    assert names.reply_topic("/ns/go") == "rr/ns/goReply"
+    assert names.type_name("std_msgs/msg/String") == "std_msgs::msg::dds_::String_"
+    assert names.type_name("a_b/srv/Go", "_Request") == "a_b::srv::dds_::Go_Request_"
+    assert names.demangled_type("std_msgs::msg::dds_::String_") == "std_msgs/msg/String"
+    assert names.demangled_type("std_msgs::String") is None
+    assert names.demangled_topic("rt/ns/chatter") == "/ns/chatter"
+    assert names.demangled_topic("rq/goRequest") is None
+    for bad in ("String", "std_msgs/String", "Std/msg/String", "std_msgs/msg/1s"):
+        with pytest.raises(ValueError, match="is no type of ROS 2"):
+            names.type_name(bad)
+
+
+def test_type_hashes():
+    data = names.user_data("RIHS01_00ff")
+    assert data == b"typehash=RIHS01_00ff;"
+    assert names.type_hash_of(b"a=b;" + data) == "RIHS01_00ff"
+    assert names.type_hash_of(b"nottypehash=1;") is None
+    assert names.user_data(None) == b""
+    with pytest.raises(ValueError, match=r"^'0f' is no type hash of ROS 2$"):
+        names.user_data("0f")
+
+
+@pytest.mark.parametrize("gid_bytes", [16, 24])
+def test_the_graph_is_what_rosbags_writes(gid_bytes):
+    store = get_typestore(Stores.EMPTY)
+    package = "rmw_dds_common/msg"
+    store.register(get_types_from_msg(f"uint8[{gid_bytes}] data", f"{package}/Gid"))
+    node = "string node_namespace\nstring node_name\nGid[] readers\nGid[] writers"
+    store.register(get_types_from_msg(node, f"{package}/NodeEntitiesInfo"))
+    whole = "Gid gid\nNodeEntitiesInfo[] nodes"
+    store.register(get_types_from_msg(whole, f"{package}/ParticipantEntitiesInfo"))
+    types = store.types
+
+    def gids(guids):
+        made = types[f"{package}/Gid"]
+        padded = (bytes(each).ljust(gid_bytes, b"\0") for each in guids)
+        return [made(data=np.frombuffer(each, np.uint8)) for each in padded]
+
+    message = types[f"{package}/ParticipantEntitiesInfo"](
+        gid=gids([INFO.participant])[0],
+        nodes=[
+            types[f"{package}/NodeEntitiesInfo"](
+                node_namespace=each.namespace,
+                node_name=each.name,
+                readers=gids(each.readers),
+                writers=gids(each.writers),
+            )
+            for each in INFO.nodes
+        ],
+    )
+    for little in (True, False):
+        name = f"{package}/ParticipantEntitiesInfo"
+        theirs = bytes(store.serialize_cdr(message, name, little_endian=little))
+        assert GraphInfo.decode(theirs) == INFO
+        if little:
+            assert INFO.encode(gid_bytes).rstrip(b"\0") == theirs.rstrip(b"\0")
+    for size in range(len(theirs)):
+        try:
+            part = GraphInfo.decode(theirs[:size])
+        except MalformedError:
+            continue
+        # Cut within the zeros of its first GID, a sample is one without nodes.
+        assert gid_bytes == 24 and size in range(24, 28) and part.nodes == ()
+
+
+def test_identities():
+    sample = Sample(payload=b"", writer=GUIDS[1], sequence_number=5)
+    assert sample.identity == SampleIdentity(GUIDS[1], 5)
