@@ -38,6 +38,7 @@ from firm_hdl.plan.limits import (
     check_bus_bytes,
     check_max_message_bytes,
     claims_of,
+    most_items,
 )
 from firm_hdl.plan.link import END, NOWHERE, BodyEnd, BodyStart, Load, Mark, link
 from firm_hdl.wire import (
@@ -209,29 +210,21 @@ class _Builder:
         at = self.segment_bytes
         self.segment.append(Part(at=at, bytes=size, leaf=leaf, first=0, size=size, end=end))
 
-    def limit(self, bound: int | None, item_bytes: int, end_bytes: int = 0) -> int:
-        """Return the largest count that a legal message can have."""
-        # An element without bytes still takes a transfer, so it counts as one byte.
-        available = self.max_message_bytes - self.layout.min_bytes - end_bytes
-        most = max(0, available // max(1, item_bytes))
-        return most if bound is None else min(bound, most)
-
     def lanes(self, item: Primitive) -> int:
         return max(1, self.bus_bytes // item.bytes)
 
-    def length(
-        self, path: Path, length: LengthField, item_bytes: int, end_bytes: int = 0
-    ) -> _Count:
-        """Add a length to the segment; return its leaf and limit."""
+    def length(self, node: RunNode | LoopNode, length: LengthField) -> _Count:
+        """Add a length to the segment; return its leaf, limit and claim."""
         self.gap(length.gap)
-        leaf = self.leaf(path, "length", LENGTH)
+        leaf = self.leaf(node.path, "length", LENGTH)
         self.value(leaf, LENGTH.bytes)
-        limit = self.limit(length.bound, item_bytes, end_bytes)
-        return _Count(length=leaf, limit=limit, claim=self.claims.get(path))
+        most = most_items(self.layout, node, self.max_message_bytes)
+        limit = most if length.bound is None else min(length.bound, most)
+        return _Count(length=leaf, limit=limit, claim=self.claims.get(node.path))
 
     def counted_run(self, node: RunNode, length: LengthField) -> None:
         """Plan a string or a sequence of primitives: a length, then a run or a loop."""
-        count = self.length(node.path, length, node.item.bytes, int(node.terminated))
+        count = self.length(node, length)
         items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
         if node.item.bytes > self.bus_bytes:
             self.item_loop(node, items, count)
@@ -290,7 +283,7 @@ class _Builder:
     def loop(self, node: LoopNode) -> None:
         match node.length:
             case LengthField() as length:
-                self.enter_loop(self.length(node.path, length, node.min_body_bytes))
+                self.enter_loop(self.length(node, length))
             case ConstantLength(count=count):
                 self.enter_loop(count)
         self.nodes(node.body)

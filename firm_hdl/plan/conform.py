@@ -8,6 +8,7 @@ from firm_hdl.plan.ir import RUN_COUNTER, BeginLoop, BeginRun, Claim, LoopEnd, P
 from firm_hdl.plan.limits import counted_from
 from firm_hdl.plan.offsets import loop_spans
 from firm_hdl.wire import (
+    RULES,
     ConstantLength,
     Layout,
     LengthField,
@@ -58,6 +59,9 @@ def check_claims(plan: Plan) -> Iterator[str]:
     least_bytes = counted_from(plan.max_message_bytes)
     outer = _outermost(plan)
     begins = {index: step.begin for index, step in enumerate(plan.steps) if step.begin is not None}
+    saved = {begin.claim.saved for begin in begins.values() if begin.claim}
+    if len(saved) > 1 or not saved <= {0, 2 * (RULES[plan.wire].max_align - 1)}:
+        yield f"lengths save {', '.join(map(str, sorted(saved)))} bytes"
     shared = {outer[index] for index, begin in begins.items() if begin.claim and index in outer}
     for index, begin in begins.items():
         claim, most = begin.claim, plan.max_count(begin)
@@ -77,7 +81,7 @@ def check_claims(plan: Plan) -> Iterator[str]:
             yield f"{where} has a budget, or renews it, at the wrong place"
         elif claim.total is not None:
             room = plan.max_message_bytes - plan.header_bytes
-            if not most * claim.bytes <= claim.total <= room:
+            if not most * claim.bytes - claim.saved <= claim.total <= room:
                 yield f"{where} has a budget of {claim.total} bytes"
 
 
@@ -99,24 +103,25 @@ def _claims(plan: Plan, layout: Layout) -> Iterator[str]:
         for node in walk(layout.nodes)
         if isinstance(node, RunNode | LoopNode) and isinstance(node.length, LengthField)
     }
-    loops = [path for path, node in nodes.items() if isinstance(node, LoopNode)]
+    loops = {path: node for path, node in nodes.items() if isinstance(node, LoopNode)}
+    is_padded = any(node.repeated_bytes > node.min_body_bytes for node in loops.values())
+    saved = 2 * (layout.rules.max_align - 1) if is_padded else 0
     least_bytes = counted_from(plan.max_message_bytes)
     wanted: dict[Path, Claim] = {}
     for leaf, begin in plan.begins.items():
         path = plan.leaves[leaf].path[:-1]
         node = nodes[path]
-        each = max(1, node.item.bytes if isinstance(node, RunNode) else node.min_body_bytes)
+        each = max(1, node.item.bytes if isinstance(node, RunNode) else node.repeated_bytes)
         around = [loop for loop in loops if loop == path[: len(loop)] and loop != path]
         least = -(-least_bytes // each)
         if not around or plan.max_count(begin) < least:
             continue
-        wanted[path] = Claim(bytes=each, least=least)
         outermost = min(around, key=len)
-        outer_node = nodes[outermost]
-        assert isinstance(outer_node, LoopNode)
-        each = max(1, outer_node.min_body_bytes)
+        wanted[path] = Claim(bytes=each, least=least, saved=saved)
+        each = max(1, loops[outermost].repeated_bytes)
         total = plan.max_message_bytes - layout.min_bytes
-        wanted[outermost] = Claim(bytes=each, least=-(-least_bytes // each), total=total)
+        least = -(-least_bytes // each)
+        wanted[outermost] = Claim(bytes=each, least=least, saved=saved, total=total)
     for leaf, begin in plan.begins.items():
         path = plan.leaves[leaf].path[:-1]
         if begin.claim != wanted.get(path):

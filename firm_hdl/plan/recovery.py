@@ -183,7 +183,7 @@ def _most_steps(chain: tuple[_Level, ...]) -> Fraction:
         if level.claim is None:
             steps += level.most * level.steps
         else:
-            budget = level.claim.total or budget
+            budget = (level.claim.total or budget) + level.claim.saved
             counted.append((level.steps / level.claim.bytes, level.most, level.claim, level))
     for rate, most, claim, level in sorted(counted, key=lambda each: -each[0]):
         taken = min(budget, most * claim.bytes)

@@ -49,8 +49,8 @@ LEGEND = """\
 #   next                the step in the next cycle; "loop 0 again" if that loop has elements left
 """
 CLAIMS_LEGEND = """\
-#   claims: 8 from 512  each item claims 8 bytes of a budget, if the length is 512 or more; "of 999"
-#                       renews the budget, with 999 bytes
+#   claims: 8 from 512  a length of 512 or more claims 8 bytes of a budget for each item; "less 14"
+#                       gives 14 bytes back; "of 999" renews the budget, with 999 bytes
 """
 COLUMNS = 100
 # Words that YAML 1.1 does not read as text.
@@ -209,6 +209,7 @@ def _jump(jump: Jump) -> str:
 
 def _claim(claim: Claim) -> str:
     text = f"{claim.bytes} from {claim.least}"
+    text = f"{text} less {claim.saved}" if claim.saved else text
     return text if claim.total is None else f"{text} of {claim.total}"
 
 

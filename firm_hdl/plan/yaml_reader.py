@@ -52,7 +52,7 @@ PART = re.compile(
     r"(?:(, last)(?: of loop (\d+))?)?"
 )
 JUMP = re.compile(r"(?:end|step (\d+))(?: with (.+))?")
-CLAIM = re.compile(r"(\d+) from (\d+)(?: of (\d+))?")
+CLAIM = re.compile(r"(\d+) from (\d+)(?: less (\d+))?(?: of (\d+))?")
 COUNTER = re.compile(r"(?:loop (\d+)|run) = (\d+)")
 
 
@@ -118,8 +118,13 @@ def _take(entries: Entries, key: str, read: Callable[[yaml.Node, str], T]) -> T 
 
 
 def _claim(node: yaml.Node, _: str) -> Claim:
-    each, least, total = _match(CLAIM, node, "what a length claims").groups()
-    return Claim(bytes=int(each), least=int(least), total=None if total is None else int(total))
+    each, least, saved, total = _match(CLAIM, node, "what a length claims").groups()
+    return Claim(
+        bytes=int(each),
+        least=int(least),
+        saved=int(saved or 0),
+        total=None if total is None else int(total),
+    )
 
 
 class _Reader:

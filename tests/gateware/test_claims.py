@@ -12,6 +12,7 @@ from firm_hdl import Deserializer, Parser, Serializer
 from firm_hdl.gateware.signatures import LATENCY_CYCLES
 from firm_hdl.plan import build_plan, decode
 from firm_hdl.plan.cycles import deserializer_cycles, packet_of
+from firm_hdl.plan.interpret.decode import CHECK_CYCLES
 from firm_hdl.plan.recovery import recovery
 from firm_hdl.sim import Harness, RunOptions, Stalls
 from firm_hdl.wire import lay_out
@@ -20,7 +21,7 @@ from tests.gateware import test_parser
 from tests.gateware.test_throughput import measure_deserializer
 from tests.strategies import make
 
-MOST = 4096
+MOST = 1024
 """Largest packet. Lengths that claim 256 bytes or more are counted."""
 
 # The shortest element has 4 + 4 + 4 bytes, the shortest inner element 5.
@@ -44,24 +45,24 @@ def bomb(elements, items=0, inner=0, letters=0):
 # Lengths, and the status: `LENGTH`, or what ends the packet.
 CASES = [
     # One counted length: its own limit is the budget.
-    ((340,), "TRUNCATED"),
-    ((341,), "LENGTH"),
-    # Elements and items: 300 * 12 + 491 bytes are all there are.
-    ((300, 491), "TRUNCATED"),
-    ((300, 492), "LENGTH"),
+    ((84,), "TRUNCATED"),
+    ((85,), "LENGTH"),
+    # Elements and items: 60 * 12 + 299 bytes are all there are.
+    ((60, 299), "TRUNCATED"),
+    ((60, 300), "LENGTH"),
     # What claims fewer than 256 bytes is not counted: 255 items, 21 elements.
-    ((335, 255), "TRUNCATED"),
-    ((335, 256), "LENGTH"),
+    ((80, 255), "TRUNCATED"),
+    ((80, 256), "LENGTH"),
     ((21, ROOM), "TRUNCATED"),
     ((22, ROOM), "LENGTH"),
-    # Three levels: 200 * 12 + 100 * 5 + 1191 bytes.
-    ((200, 0, 100, 1191), "TRUNCATED"),
-    ((200, 0, 100, 1192), "LENGTH"),
-    ((200, 0, 338, 0), "TRUNCATED"),
-    ((200, 0, 339), "LENGTH"),
+    # Three levels: 30 * 12 + 60 * 5 + 359 bytes.
+    ((30, 0, 60, 359), "TRUNCATED"),
+    ((30, 0, 60, 360), "LENGTH"),
+    ((30, 0, 131, 0), "TRUNCATED"),
+    ((30, 0, 132), "LENGTH"),
     # The inner elements are not counted, the letters are.
-    ((200, 0, 51, 1691), "TRUNCATED"),
-    ((200, 0, 51, 1692), "LENGTH"),
+    ((30, 0, 51, 659), "TRUNCATED"),
+    ((30, 0, 51, 660), "LENGTH"),
 ]
 
 
@@ -70,9 +71,9 @@ def bombs():
 
 
 def good(plan):
-    """Return a packet in which lengths are counted: 3 elements of 300 items each."""
+    """Return a packet in which two lengths are counted: 300 items, and 260 letters."""
     element = numbers(1, 300) + bytes(range(256)) + bytes(44) + numbers(1, 260) + bytes(261)
-    packet = numbers(3) + 3 * element + b"\5"
+    packet = numbers(1) + element + b"\5"
     assert decode(plan, packet).status == "OK"
     return packet
 
@@ -131,9 +132,9 @@ def test_a_deserializer_that_does_not_check_claims_is_found():
     )
     rx.plan = replace(plan, steps=steps)
     harness = Harness(rx, None)
-    seen = harness.run_packets([bomb(22, 4000)])
+    seen = harness.run_packets([bomb(22, 1000)])
     assert [status.name for status in seen.statuses] == ["TRUNCATED"]
-    assert decode(plan, bomb(22, 4000)).status == "LENGTH"
+    assert decode(plan, bomb(22, 1000)).status == "LENGTH"
 
 
 @pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 8, 64]))
@@ -145,18 +146,47 @@ def test_a_parser_gives_the_same_statuses(bus_bytes):
     assert [status.name for status in seen.statuses] == [status for _, status in rows]
 
 
+# Three lengths in a row, each in a step of its own.
+LINE = make("ros1", {"s": "string"}, "Line")
+PAGE = make("ros1", {"l": (LINE, "[]")}, "Page")
+BOOK = make("ros1", {"p": (PAGE, "[]")})
+# The shortest page and the shortest line have 4 bytes each; 1020 bytes are left for all.
+BOOK_CASES = [
+    ((100, 80, 300), "TRUNCATED"),
+    ((100, 80, 301), "LENGTH"),
+    ((100, 155, 0), "TRUNCATED"),
+    ((100, 156, 0), "LENGTH"),
+    ((100, 156, 5000), "LENGTH"),
+    ((255, 63, 255), "TRUNCATED"),
+    ((255, 64, 1), "LENGTH"),
+    ((256, 1, 1), "LENGTH"),
+]
+
+
+@pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 2, 4, 8, 16, 32, 64]))
+def test_a_parser_finds_late_that_lengths_in_a_row_claim_too_much(bus_bytes):
+    parser = Parser(BOOK, bus_bytes=bus_bytes, max_message_bytes=MOST)
+    # Short, cut inside a string, and followed by a good packet at once.
+    tails = (b"", b"\0" * 9, b"\0" * 90)
+    rows = [(numbers(*each) + tail, status) for each, status in BOOK_CASES for tail in tails]
+    rows = [each for row in rows for each in (row, (numbers(1, 1, 0), "OK"))]
+    for packet, status in rows:
+        assert decode(parser.plan, packet).status == status
+    seen = test_parser.run(parser, [packet for packet, _ in rows])
+    assert [status.name for status in seen.statuses] == [status for _, status in rows]
+
+
 @pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 2, 8, 64]))
 def test_counted_lengths_take_the_cycles_of_the_plan(bus_bytes):
     rx = Deserializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=MOST)
     packets = [good(rx.plan)] * 2 + [numbers(0) + b"\5", good(rx.plan)]
     traffic = [packet_of(rx.plan, packet) for packet in packets]
-    # 3 elements with two counted lengths each: one cycle to load, one for each bit of the factor.
-    assert sum(visit.held for visit in traffic[0].visits) == 3 * 2 * (1 + 1)
+    assert sum(visit.held for visit in traffic[0].visits) == 2 * CHECK_CYCLES
     want = [cycle + LATENCY_CYCLES["deserializer"] for cycle in deserializer_cycles(traffic)]
     assert measure_deserializer(rx, packets) == want
 
 
-@pytest.mark.parametrize("lengths", [(300, 491), (300, 492), (200, 0, 100, 1191)])
+@pytest.mark.parametrize("lengths", [(60, 299), (60, 300), (30, 0, 60, 359)])
 def test_recovery_takes_the_cycles_of_the_interpreter_and_at_most_the_bound(lengths):
     rx = Deserializer(MESSAGE, bus_bytes=8, max_message_bytes=MOST)
     packet = bomb(*lengths)

@@ -130,7 +130,7 @@ bool Judge::length(const Node& node, uint32_t& count) {
 bool Judge::may_claim(uint64_t bytes) {
     if (!depth_) claimed_ = 0;
     if (bytes < table_.claim_bytes) return true;
-    claimed_ += bytes;
+    claimed_ += bytes - table_.saved_bytes;
     return claimed_ <= table_.room;
 }
 

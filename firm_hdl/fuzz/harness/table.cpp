@@ -43,7 +43,8 @@ Table read_table(std::istream& text) {
     Table table;
     std::string word;
     size_t leaves = 0;
-    text >> word >> table.is_cdr >> table.bus_bytes >> leaves >> table.room >> table.claim_bytes;
+    text >> word >> table.is_cdr >> table.bus_bytes >> leaves;
+    text >> table.room >> table.claim_bytes >> table.saved_bytes;
     if (!text || word != "table") throw std::runtime_error("this is not a table");
     table.leaves.resize(leaves);
     for (Leaf& leaf : table.leaves) text >> leaf.name >> leaf.bits >> leaf.lanes;

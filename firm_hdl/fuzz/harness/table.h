@@ -37,7 +37,8 @@ struct Table {
     bool is_cdr = false;
     int bus_bytes = 0;
     uint64_t room = 0;         // bytes that nested lengths may claim together
-    uint64_t claim_bytes = 0;  // a length that claims fewer is not counted
+    uint64_t claim_bytes = 0;  // a length whose items have fewer is not counted
+    uint64_t saved_bytes = 0;  // of the items of a counted length that it does not claim
     std::vector<Leaf> leaves;
     std::vector<Node> nodes;
 

@@ -99,26 +99,25 @@ class Judge:
         overrun = state.ends_message & ~self.ended & self.has_trailing
         early = self.mismatch | missing_nul | cut | overrun
         claims = self.length.claims
-        if claims is not None:
+        if claims is not None and state.has_leaves:
             # The length before this step is not checked yet; its error would be the first one.
-            early = early & ~claims.holds
+            early = early & ~claims.pending
         # What is left if no other error is found: trailing bytes, or a length over its limit.
         code = Mux(state.ends_message, Status.TRAILING, Status.LENGTH)
         code = Mux(cut, Status.TRUNCATED, code)
         code = Mux(missing_nul, Status.STRING, code)
         code = Mux(self.mismatch, Status.ENCAPSULATION, code)
-        if claims is not None:
-            code = Mux(claims.fails, Status.LENGTH, code)
         with m.If(state.issue & state.ends_packet):
             m.d.sync += state.bad.eq(0)
         with m.Elif(~state.bad):
             # A length above its limit does not stop the step; the step takes the length as 0.
             m.d.sync += state.bad.eq(early | (begins & self.length.over))
-            if claims is not None:
-                with m.If(claims.fails):
-                    m.d.sync += state.bad.eq(1)
         with m.If(~state.bad):
             m.d.sync += [state.new_error.eq(early), self.code.eq(code)]
+        if claims is not None:
+            # An error that was found before is later in wire order. No packet ends in this cycle.
+            with m.If(claims.fails):
+                m.d.sync += [state.bad.eq(1), self.code.eq(Status.LENGTH)]
 
     def _keep_good(self, ready: Value) -> None:
         """After an error, compute how many bytes of the step's words are good."""

@@ -38,10 +38,10 @@ class Sequencer(wiring.Component):
     step transfers it as 0. All later steps are ordered without bytes and with lengths of 0, and the
     rest of the packet is dropped.
 
-    A length that shares a budget (:class:`Claims`) holds the sequencer before the next step. Its
-    order must wait, too (`holds`). If the length claims too much, the order must transfer it as 0
-    (`refuses`), and the sequencer goes back to the length's step, and leaves it with an order that
-    has no step.
+    A counted length (:class:`Claims`) holds the sequencer before the next step. Its order must
+    wait, too (`holds`). If the length claims too much, the order must transfer it as 0 (`refuses`),
+    and the sequencer goes back to the length's step, and leaves it with an order that has no step.
+    Without leaves, nothing is held but the end of the packet.
 
     Parameters
     ----------
@@ -67,7 +67,8 @@ class Sequencer(wiring.Component):
     oldest : Out(beat)
         The sequencer needs no beat before this one.
     holds : Out(1)
-        The newest order must wait: its length is not checked yet. Only if the plan has claims.
+        The newest order must wait: its length is not checked yet. Only if the plan has claims and
+        orders write leaves, as for `refuses`.
     refuses : Out(1)
         The newest order must transfer its length as 0. Only in the last cycle of `holds`.
     orders : Out(stream.Signature(order_layout(plan)))
@@ -77,7 +78,8 @@ class Sequencer(wiring.Component):
     def __init__(self, plan: Plan, *, has_leaves: bool = True):
         self.plan, self.has_leaves = plan, has_leaves
         ring = Ring(plan)
-        checks = {"holds": Out(1), "refuses": Out(1)} if plan.has_claims else {}
+        has_holds = plan.has_claims and has_leaves
+        checks = {"holds": Out(1), "refuses": Out(1)} if has_holds else {}
         super().__init__(
             {
                 "beat": In(beat_layout(plan)),
@@ -152,12 +154,19 @@ class _SequencerLogic:
         drains, allowed = state.drains, Signal(name="allowed")
         ready, good, ends = c.orders.ready, self.judge.good, state.ends_packet
         may_proceed = ~bad & (~state.ends_message | c.ended) & ~self._too_early()
+        may_drain = bad & ~state.new_error & (~traits.end | c.ended)
         blank = traits.end if state.refused is None else traits.end | state.refused
         if self.claims is not None:
-            may_proceed = may_proceed & ~self.claims.holds
-            m.d.comb += [c.holds.eq(self.claims.holds), c.refuses.eq(self.claims.fails)]
+            waits = self.claims.pending
+            if c.has_leaves:
+                may_proceed = may_proceed & ~waits
+                m.d.comb += [c.holds.eq(waits), c.refuses.eq(self.claims.fails)]
+            else:
+                # Only the end of the packet waits: the check may still find an error.
+                may_proceed = may_proceed & ~(waits & state.ends_message)
+                may_drain = may_drain & ~waits
         m.d.comb += [
-            drains.eq(bad & ~state.new_error & (~traits.end | c.ended)),
+            drains.eq(may_drain),
             allowed.eq(may_proceed),
             c.orders.valid.eq(drains | (allowed & good)),
             state.issue.eq((drains & ready) | (allowed & ready & good)),

@@ -28,6 +28,7 @@ class ParseState:
     ----------
     m : Module
     plan : Plan
+    has_leaves : bool
     ring : Ring
     meanings : dict of int to Meaning
         What the length of a step means, by the step's index.
@@ -80,7 +81,7 @@ class ParseState:
     """
 
     def __init__(self, m: Module, plan: Plan, *, has_leaves: bool):
-        self.m, self.plan = m, plan
+        self.m, self.plan, self.has_leaves = m, plan, has_leaves
         self.ring = ring = Ring(plan)
         self.meanings = meanings_of(plan, has_leaves=has_leaves)
         checks = has_leaves and plan.has_claims

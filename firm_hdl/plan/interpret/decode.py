@@ -17,6 +17,9 @@ from firm_hdl.plan.ir import (
 
 __all__ = ["DecodeStatus", "Decoded", "Transfer", "decode"]
 
+CHECK_CYCLES = 3
+"""Cycles for which a deserializer holds the next step, to check what a counted length claims."""
+
 REFUSAL_CYCLES = 2
 """Cycles in which a deserializer refuses a length that claims too much, and leaves its step."""
 
@@ -157,8 +160,8 @@ class _Reader(Machine):
             self.budget = claim.total
         if wire < claim.least:
             return True
-        self.budget -= wire * claim.bytes
-        self.held = claim.check_cycles + (REFUSAL_CYCLES if self.budget < 0 else 0)
+        self.budget -= wire * claim.bytes - claim.saved
+        self.held = CHECK_CYCLES + (REFUSAL_CYCLES if self.budget < 0 else 0)
         return self.budget >= 0
 
     def items(self, run: Run, count: int, last: bool) -> None:

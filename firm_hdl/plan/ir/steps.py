@@ -79,10 +79,12 @@ class Claim:
     Attributes
     ----------
     bytes : int
-        Bytes of the packet that each item or element claims; an element without bytes claims one.
-        The NUL of a string is an item.
+        Bytes of the packet that each item or element claims, padding between elements included; an
+        element without bytes claims one. The NUL of a string is an item.
     least : int
         Smallest count on the wire, a NUL included, that is counted.
+    saved : int
+        The length claims as many bytes less, because items may save padding in other places.
     total : int or None
         The budget in bytes, which the outermost sequence renews. `None`: the length is inside this
         sequence and uses its budget.
@@ -90,15 +92,8 @@ class Claim:
 
     bytes: int
     least: int
+    saved: int = 0
     total: int | None = None
-
-    @property
-    def check_cycles(self) -> int:
-        """Cycles for which a deserializer holds the next step, if the count is at least `least`.
-
-        One loads the count, and one follows for each bit of `bytes`.
-        """
-        return 1 + self.bytes.bit_length()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
