@@ -174,6 +174,24 @@ def test_a_parser_finds_late_that_lengths_in_a_row_claim_too_much(bus_bytes):
         assert decode(parser.plan, packet).status == status
     seen = test_parser.run(parser, [packet for packet, _ in rows])
     assert [status.name for status in seen.statuses] == [status for _, status in rows]
+    # A packet takes its beats or its steps up to the error, and at most 6 cycles.
+    most = 0
+    for packet, status in rows:
+        visits = decode(parser.plan, packet).steps
+        steps = 3 if status == "LENGTH" else 1 + sum(each.end <= len(packet) for each in visits)
+        most += max(-(-len(packet) // bus_bytes), steps) + 6 * (status != "OK")
+    assert seen.times[-1] <= most + test_parser.LATENCY
+
+
+def test_a_parser_with_a_larger_budget_is_found():
+    plan = Parser(BOOK, bus_bytes=8, max_message_bytes=MOST).plan
+    first = plan.steps[0]
+    claim = replace(first.begin.claim, total=first.begin.claim.total + 1)
+    step = replace(first, begin=replace(first.begin, claim=claim))
+    parser = Parser.of_plan(replace(plan, steps=(step, *plan.steps[1:])))
+    seen = test_parser.run(parser, [numbers(100, 80, 301), numbers(100, 80, 302)])
+    assert [status.name for status in seen.statuses] == ["TRUNCATED", "LENGTH"]
+    assert decode(plan, numbers(100, 80, 301)).status == "LENGTH"
 
 
 @pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 2, 8, 64]))

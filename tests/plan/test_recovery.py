@@ -86,6 +86,16 @@ def test_the_bound_for_diagnostics_is_close(distro, most):
     assert 0.9 * bound <= taken + AFTER <= bound
 
 
+@pytest.mark.parametrize(
+    "name", ["diagnostic_msgs/msg/DiagnosticArray", "visualization_msgs/msg/InteractiveMarkerInit"]
+)
+def test_a_bad_packet_costs_hardly_more_than_the_longest_legal_packet(name):
+    plan = build_plan(lay_out(load_message(name)))
+    found = recovery(plan, 1)
+    assert found.longest_packet > 2_500_000
+    assert found.cycles - found.longest_packet < 2000
+
+
 def test_without_a_budget_a_packet_takes_longer_than_the_bound():
     # A twin: the largest claims of both levels, in a plan that does not check them together.
     plan = diagnostics("lyrical", 1 << 14)

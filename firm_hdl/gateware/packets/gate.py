@@ -53,8 +53,8 @@ class PacketGate(wiring.Component):
     per cycle, without gaps between packets, as long as there are no more steps than beats.
 
     A bad packet occupies the gate for as many cycles as it has beats, or the parser has steps
-    before its first error, whichever is more, and at most 4 cycles more. What its lengths claim
-    does not count. Then its memory is free.
+    before its first error, whichever is more, and at most 4 cycles more: 6 if lengths claim too
+    much together. What they claim does not count. Then its memory is free.
 
     The policy is that of :class:`PacketFifo`. With `"wait"`, `packets_in.ready` is also low while
     the parser is behind, or while statuses wait: 8 statuses are stored, and the packets after them
