@@ -54,6 +54,10 @@ class _ClosedError(Exception):
     """The other side closed the socket."""
 
 
+def _nothing(ctx: SimulatorContext) -> None:
+    """Do no work."""
+
+
 @dataclass(slots=True)
 class _Stream:
     """A stream, as `Stream` of ``server.h``."""
@@ -95,8 +99,7 @@ class _Server:
         fragment = divided(top)
         check_domains(fragment)
         self.simulator = Simulator(fragment)
-        self.simulator.add_testbench(self._testbench)
-        self.work: Callable[[SimulatorContext], object] = lambda ctx: None
+        self.work: Callable[[SimulatorContext], object] = _nothing
         self.values = [0] * len(self.inputs)
         self.received = bytearray()
         self.conditions: list[list[int]] = []
@@ -124,6 +127,9 @@ class _Server:
     def serve(self) -> None:
         """Serve messages until the other side closes the socket."""
         try:
+            # Added only here, because Python warns of a testbench that never starts.
+            self.simulator.add_testbench(self._testbench)
+            self._do(_nothing)
             while True:
                 seconds: float | None = None
                 if self.live is not None:
@@ -182,6 +188,7 @@ class _Server:
                 self._send_done(Reason.HALTED)
             case Order.RESET:
                 self.simulator.reset()
+                self._do(_nothing)
                 self._start()
 
     def _run(self, cycles: int, quiet: int, conditions: list[tuple[int, int, int]]) -> None:

@@ -108,12 +108,20 @@ class FastSimulation:
         self._clear()
         self._channel = start(top, engine, options=options, cache=cache)
         self.engine: Literal["cxxrtl", "amaranth"] = self._channel.engine
+        try:
+            self._prepare(stalls)
+        except BaseException:
+            self.close()
+            raise
+
+    def _prepare(self, stalls: StallPlan) -> None:
         for port in self.ports.inputs:
             if port.init is not None:
                 self.set(port.name, port.init)
         for each in self.ports.streams:
             if pattern := stalls_of(stalls, each.name):
-                self.stall(each.name, islice(pattern.cycles(each.name), STALL_CYCLES))
+                cycles = len(pattern.pattern) or STALL_CYCLES
+                self.stall(each.name, islice(pattern.cycles(each.name), cycles))
 
     def __enter__(self) -> FastSimulation:
         return self
@@ -339,6 +347,8 @@ class FastSimulation:
         missing = {}
         for name, count in counts.items():
             self.ports.stream(name, is_input=False)
+            if name in self._ignored:
+                raise ValueError(f"Stream {name!r} is ignored")
             if (here := self._arrivals.count(name)) < count:
                 missing[name] = count - here
         return missing
