@@ -43,7 +43,14 @@ class Channel:
         ------
         SimulationError
         """
-        view = memoryview(data)
+        try:
+            self._send_all(memoryview(data))
+        except KeyboardInterrupt:
+            # Half a message: the engine would take the next one for its rest.
+            self.close()
+            raise
+
+    def _send_all(self, view: memoryview) -> None:
         while view:
             self._check()
             # The socket may be full because the engine waits until its own messages are read.

@@ -16,9 +16,9 @@ from firm_hdl.sim.bench import DeadlineError
 from firm_hdl.sim.fast import protocol
 from firm_hdl.sim.fast.arrivals import Arrivals
 from firm_hdl.sim.fast.compilers import COMPILER_OPTIONS
-from firm_hdl.sim.fast.engines import EngineName, start
+from firm_hdl.sim.fast.engines import EngineName, check_engine, start
 from firm_hdl.sim.fast.packing import Packet, Transfer, packed, packed_packets
-from firm_hdl.sim.fast.ports import StreamPort
+from firm_hdl.sim.fast.ports import StreamPort, ports_of
 from firm_hdl.sim.fast.protocol import Answer, Done, Order, Reason
 from firm_hdl.sim.fast.top import Top
 from firm_hdl.sim.stalls import StallPlan, stalls_of
@@ -98,15 +98,15 @@ class FastSimulation:
         cache: Path | None = None,
         ignored: Collection[str] = (),
     ):
-        top = Top(design)
-        self.ports = top.ports
+        check_engine(engine)
+        self.ports = ports_of(design)
         for name in ignored:
             self.ports.stream(name, is_input=False)
         self._ignored = frozenset(ignored)
         self.cycle = 0
         self.is_live = False
         self._clear()
-        self._channel = start(top, engine, options=options, cache=cache)
+        self._channel = start(Top(design, self.ports), engine, options=options, cache=cache)
         self.engine: Literal["cxxrtl", "amaranth"] = self._channel.engine
         try:
             self._prepare(stalls)
@@ -281,7 +281,7 @@ class FastSimulation:
         self._not_live()
         # An answer, so that nothing from before the reset can come later.
         self._channel.send(protocol.message(Order.RESET) + protocol.message(Order.HALT))
-        self._note(protocol.read_done(self._answer(Answer.DONE)))
+        self._done()
         self._clear()
 
     # Live simulation.
@@ -327,7 +327,7 @@ class FastSimulation:
     def halt(self) -> None:
         """End a live simulation between two cycles. What came can be received."""
         self._channel.send(protocol.message(Order.HALT))
-        self._note(protocol.read_done(self._answer(Answer.DONE)))
+        self._done()
         self.is_live = False
 
     # Inside.
@@ -361,12 +361,12 @@ class FastSimulation:
             bit = protocol.ALL_TRANSFERS if port.last_bit is None else port.last_bit
             conditions.append((port.number, bit, count))
         self._channel.send(protocol.run(cycles, quiet, conditions))
-        result = protocol.read_done(self._answer(Answer.DONE))
-        self._note(result)
-        return result
+        return self._done()
 
-    def _note(self, result: Done) -> None:
+    def _done(self) -> Done:
+        result = protocol.read_done(self._answer(Answer.DONE))
         self.cycle, self._queued = result.cycle, result.queued
+        return result
 
     def _not_live(self) -> None:
         if self.is_live:
@@ -379,9 +379,9 @@ class FastSimulation:
                 for index, (came, body) in enumerate(found):
                     if came == kind:
                         # An engine that is live may already have sent more.
-                        self._keep(found[index + 1 :])
+                        self._keep(found[:index] + found[index + 1 :])
                         return body
-                    self._keep([(came, body)])
+                self._keep(found)
         except KeyboardInterrupt:
             # The answer would be taken for that of the next call.
             self.close()

@@ -11,7 +11,7 @@ from amaranth.hdl._xfrm import DomainCollector
 from amaranth.lib import wiring
 
 from firm_hdl.errors import UserError
-from firm_hdl.sim.fast.ports import Ports, ports_of
+from firm_hdl.sim.fast.ports import Ports
 
 __all__ = ["ClockDomainError", "Top", "check_domains"]
 
@@ -23,6 +23,12 @@ class ClockDomainError(UserError):
 class Top(Elaboratable):
     """A component with flat ports, in the clock domain `sync`, whose reset is never high.
 
+    Parameters
+    ----------
+    component : wiring.Component
+    ports : Ports
+        Its ports.
+
     Attributes
     ----------
     clock : Signal
@@ -33,9 +39,8 @@ class Top(Elaboratable):
         For each plain port.
     """
 
-    def __init__(self, component: wiring.Component):
-        self.component = component
-        self.ports: Ports = ports_of(component)
+    def __init__(self, component: wiring.Component, ports: Ports):
+        self.component, self.ports = component, ports
         self.domain = ClockDomain("sync")
         self.clock = self.domain.clk
         streams = list(enumerate(self.ports.streams))

@@ -1,3 +1,4 @@
+# amaranth: UnusedElaboratable=no
 """The one program that `make test` compiles."""
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from firm_hdl.sim import StallPlan
 from firm_hdl.sim.fast import EngineName, FastSimulation
 from firm_hdl.sim.fast.compilers import program_of
 from firm_hdl.sim.fast.cxxrtl import cxxrtl_source
+from firm_hdl.sim.fast.ports import ports_of
 from firm_hdl.sim.fast.top import Top
 from tests.sim.fast.designs import Awkward
 
@@ -28,7 +30,9 @@ def programs(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
     folder.mkdir(exist_ok=True)
     with (folder.parent / "programs.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        program_of(cxxrtl_source(Top(Awkward())), options=OPTIONS, cache=folder)
+        design = Awkward()
+        source = cxxrtl_source(Top(design, ports_of(design)))
+        program_of(source, options=OPTIONS, cache=folder)
     return folder
 
 

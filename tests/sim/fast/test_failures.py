@@ -1,3 +1,4 @@
+# amaranth: UnusedElaboratable=no
 """What happens if a process dies, a pipe is cut, a compiler fails, or a name is wrong."""
 
 from __future__ import annotations
