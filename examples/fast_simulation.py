@@ -1,8 +1,8 @@
-"""A design of one's own in a fast simulation: a million cycles per second.
+"""A design of one's own in a fast simulation: up to a million cycles per second.
 
 The design reads Imu messages, counts the good ones, and writes them again. It runs in each engine
-of `firm_hdl.sim.fast`, and the example prints how fast. CXXRTL needs a C++ compiler, which takes some
-seconds in the first run. Run it with ``python examples/fast_simulation.py``.
+of `firm_hdl.sim.fast`, and the example prints how fast. CXXRTL needs a C++ compiler, which takes
+some seconds in the first run. Run it with ``python examples/fast_simulation.py``.
 """
 
 from __future__ import annotations

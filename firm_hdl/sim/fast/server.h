@@ -203,9 +203,10 @@ class Server {
     }
 
     void record(Stream& stream) {
-        put(stream.records, cycle);
-        const auto* from = reinterpret_cast<const uint8_t*>(stream.payload);
-        stream.records.insert(stream.records.end(), from, from + stream.bytes);
+        size_t at = stream.records.size();
+        stream.records.resize(at + sizeof cycle + stream.bytes);
+        std::memcpy(&stream.records[at], &cycle, sizeof cycle);
+        std::memcpy(&stream.records[at + sizeof cycle], stream.payload, stream.bytes);
         if (stream.records.size() >= FLUSH_BYTES) flush();
     }
 

@@ -33,7 +33,7 @@ _MOST_BYTES = 1 << 22
 
 
 class FastSimulation:
-    """A design that runs in an engine, a million cycles per second if it is CXXRTL.
+    """A design that runs in an engine: CXXRTL, up to a million cycles per second, or Amaranth's.
 
     The design is a component whose members are streams and plain values, in any nesting. A stream
     or value is named by the members on the way to it: ``"packets_in"``, ``"message.linear.x"``.
