@@ -82,7 +82,8 @@ class Loop(wiring.Component):
 
 
 def run(design, engine, packets, stalls, cache: Path) -> tuple[list[Packet], list[Transfer]]:
-    options = ["-O1"]
+    # What compiles fastest.
+    options = ["-O0"]
     simulated = FastSimulation(design, engine=engine, stalls=stalls, cache=cache, options=options)
     with simulated as simulation:
         simulation.send_packets("packets_in", packets)
