@@ -137,6 +137,7 @@ examples: $(VENV)/.installed-dev ghdl verilog ## designs that act on good packet
 	done
 	$(BIN)/python examples/range_filter.py
 	$(BIN)/python examples/half_speed.py
+	$(BIN)/python examples/fast_simulation.py
 
 tools: ghdl verilog oracles ## system packages that tests and the demo use
 

@@ -39,7 +39,8 @@ MAY_IMPORT = {
     "plan": {"model", "wire"},
     "estimates": {"plan"},
     "gateware": {"model", "wire", "plan"},
-    "sim": {"model", "wire", "plan", "gateware"},
+    # `jobs`: compilers.
+    "sim": {"errors", "jobs", "model", "wire", "plan", "gateware"},
 }
 MAY_IMPORT["export"] = {
     *("firm_hdl", "errors", "files", "jobs", "names", "vhdl"),

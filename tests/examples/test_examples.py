@@ -77,6 +77,9 @@ def test_examples_run(workdir, capsys, name):
     if name == "bench":
         # The other widths take as long as all other examples together.
         example.BUSES = by_depth((8,), (8, 64))
+    if name == "fast_simulation":
+        # Compiling takes long.
+        example.PACKETS = by_depth({"amaranth": 5}, {"cxxrtl": 1000, "amaranth": 5})
     assert example.main() == 0
     printed = capsys.readouterr().out
     if name == "demo":
