@@ -111,11 +111,13 @@ def add_info(command: argparse.ArgumentParser) -> None:
 def _info(args: argparse.Namespace) -> None:
     from firm_hdl.estimates import estimate_text
     from firm_hdl.frontend import load_all
-    from firm_hdl.plan.timing import describe, timing
+    from firm_hdl.plan.timing import describe, recovery_text, timing
 
     for message in load_all(library_of(args), args.types):
         plan = _planned(message, args)
-        print(describe(message.name, plan, timing(plan)))
+        figures = timing(plan)
+        print(describe(message.name, plan, figures))
+        print(recovery_text(figures))
         if estimate := estimate_text(plan):
             print(estimate)
 

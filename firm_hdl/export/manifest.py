@@ -110,6 +110,10 @@ def _timing(figures: Timing) -> dict[str, Any]:
         "latency_cycles": dict(LATENCY_CYCLES),
         "shortest_packet": _cost(figures.shortest),
         "hardest_packet_tried": _cost(figures.hardest),
+        "recovery": {
+            "most_cycles": figures.recovery.cycles,
+            "longest_packet_cycles": figures.recovery.longest_packet,
+        },
         "long_arrays_clock_mhz": _clocks(Cost(bytes=figures.bus_bytes, beats=1, steps=1, cycles=1)),
     }
 

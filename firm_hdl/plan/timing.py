@@ -13,12 +13,16 @@ from itertools import product
 
 from firm_hdl.plan import Payload, Plan, encode
 from firm_hdl.plan.cycles import cycles_between, packet_of
+from firm_hdl.plan.recovery import Recovery, recovery
 from firm_hdl.plan.yaml import counted
 
-__all__ = ["LINE_RATES", "Cost", "Timing", "clock_mhz", "describe", "timing"]
+__all__ = ["LINE_RATES", "Cost", "Timing", "clock_mhz", "describe", "recovery_text", "timing"]
 
 LINE_RATES = {"100 Mbit/s": 0.1e9, "1 Gbit/s": 1e9, "10 Gbit/s": 10e9}
 """Bits of packets per second, by the usual name of the rate."""
+
+RECOVERY_MHZ = 100
+"""The clock rate at which the time of recovery is printed."""
 
 MAX_ELEMENTS = {1: 16, 2: 4}
 """Largest number of elements per loop in the search, by levels of loops."""
@@ -57,12 +61,15 @@ class Timing:
         Cost of the packet with every length 0.
     hardest : Cost
         Cost of the packet with the most cycles per byte among those tried.
+    recovery : Recovery
+        How long a deserializer is busy with bad packets and with long ones.
     """
 
     bus_bytes: int
     steps: int
     shortest: Cost
     hardest: Cost
+    recovery: Recovery
 
 
 def timing(plan: Plan) -> Timing:
@@ -86,6 +93,7 @@ def timing(plan: Plan) -> Timing:
         steps=len(plan.steps),
         shortest=shortest,
         hardest=hardest,
+        recovery=recovery(plan, shortest.cycles),
     )
 
 
@@ -166,6 +174,17 @@ def describe(name: str, plan: Plan, figures: Timing) -> str:
         )
         lines.append(f"    clock for {what}: {clocks}")
     return "\n".join(lines)
+
+
+def recovery_text(figures: Timing) -> str:
+    """Describe in a line how long a bad packet keeps a deserializer busy."""
+    found = figures.recovery
+    micros = found.cycles / RECOVERY_MHZ
+    time = f"{micros:.2f} us" if micros < 1000 else f"{micros / 1000:.1f} ms"
+    return (
+        f"    recovery from a bad packet: at most {counted(found.cycles, 'cycle')} ({time} at "
+        f"{RECOVERY_MHZ} MHz); the longest legal packet takes {found.longest_packet}"
+    )
 
 
 def _has_long(plan: Plan) -> bool:

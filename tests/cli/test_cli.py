@@ -170,7 +170,11 @@ def test_build_prints_its_results(workdir, capsys):
     assert capsys.readouterr() == (f"current {folder}\n{figures}", "")
     assert main(["info", *arguments[1:2], "--bus-bytes", "4"]) == 0
     out, err = capsys.readouterr()
-    assert out.startswith(f"{figures}    estimate, ECP5 ") and out.count("\n") == 3
+    recovery = (
+        "    recovery from a bad packet: at most 16 cycles (0.16 us at 100 MHz); the longest legal "
+        "packet takes 13\n"
+    )
+    assert out.startswith(f"{figures}{recovery}    estimate, ECP5 ") and out.count("\n") == 4
     assert err == ""
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.plan import build_plan
+from firm_hdl.plan.recovery import Recovery
 from firm_hdl.plan.timing import Cost, Timing, clock_mhz, describe, timing
 from firm_hdl.wire import lay_out
 from tests.strategies import make
@@ -29,7 +30,8 @@ def test_figures_of_a_type_of_one_size():
     figures = timing(plan_of({"a": "uint32"}, 4, "ros2"))
     # Header and field are two words, which one step takes.
     only = cost(8, 2, 1)
-    assert figures == Timing(bus_bytes=4, steps=1, shortest=only, hardest=only)
+    found = Recovery(cycles=5, longest_packet=2)
+    assert figures == Timing(bus_bytes=4, steps=1, shortest=only, hardest=only, recovery=found)
 
 
 @pytest.mark.parametrize(
