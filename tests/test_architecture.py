@@ -42,6 +42,9 @@ MAY_IMPORT = {
     # `jobs`: compilers.
     "sim": {"errors", "jobs", "model", "wire", "plan", "gateware"},
 }
+MAY_IMPORT["node"] = {
+    *("errors", "files", "model", "frontend", "wire", "metrics", "plan"),
+}
 MAY_IMPORT["export"] = {
     *("firm_hdl", "errors", "files", "jobs", "names", "vhdl"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
