@@ -169,7 +169,7 @@ class Entry:
         return number
 
     def number(self, default: T, least: float, most: float) -> float | T:
-        """Read a number between limits: more than `least`, and at most `most`."""
+        """Read a number between limits, both included."""
         value = self.value
         kinds = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
         if not isinstance(value, yaml.ScalarNode) or value.tag not in kinds:
@@ -180,8 +180,8 @@ class Entry:
         except ValueError:
             self._wrong("a number")
             return default
-        if not least < number <= most:
-            self.error(f"'{self.name}' must be above {least:g} and at most {most:g}")
+        if not least <= number <= most:
+            self.error(f"'{self.name}' must be from {least:g} to {most:g}, not {number:g}")
             return default
         return number
 

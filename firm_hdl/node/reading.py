@@ -116,7 +116,7 @@ class _Reader:
             bus_bytes = self._bus_bytes(known["bus_bytes"])
         clock_hz = 100e6
         if "clock_mhz" in known:
-            clock_hz = 1e6 * known["clock_mhz"].number(100.0, 0.0, 1000.0)
+            clock_hz = 1e6 * known["clock_mhz"].number(100.0, 1.0, 1000.0)
         link = Link(kind="stream")
         if "link" in known:
             link = read_link(self.marked, known["link"], clock_hz)

@@ -109,7 +109,7 @@ class TopicReader:
             for direction, message in _directions(kind, interface)
             if (store := self._store(message, direction, kind, options)) is not None
         )
-        rate = options["rate_hz"].number(None, 0.0, 1e9) if "rate_hz" in options else None
+        rate = options["rate_hz"].number(None, 1e-3, 1e9) if "rate_hz" in options else None
         return Topic(
             id=number,
             kind=kind,

@@ -109,7 +109,7 @@ def test_names_are_completed_as_ros_does():
         ("node: a\nbus_bytes: 32", "2:12: error: 'bus_bytes' must be 1, 2, 4, 8 or 16, not 32"),
         ("node: a\nnode: b", "2:1: error: 'node' is already in line 1"),
         ("node: a\ndistro: humbel", "did you mean 'humble'?"),
-        ("node: a\nclock_mhz: 0", "2:12: error: 'clock_mhz' must be above 0 and at most 1000"),
+        ("node: a\nclock_mhz: 0", "2:12: error: 'clock_mhz' must be from 1 to 1000, not 0"),
         ("node: a\naccelerator: x.Y", "an accelerator is named as 'module:Class'"),
         ("node: a\nlink: tcp", "2:7: error: 'link' must be 'stream', 'udp' or 'uart', not 'tcp'"),
         ("node: a\nlink: {baud: 1}", "2:1: error: 'link' needs a 'kind': stream, udp, uart"),
