@@ -43,7 +43,7 @@ MAY_IMPORT = {
     "sim": {"errors", "jobs", "model", "wire", "plan", "gateware"},
 }
 MAY_IMPORT["node"] = {
-    *("errors", "files", "model", "frontend", "wire", "metrics", "plan"),
+    *("errors", "files", "model", "frontend", "wire", "metrics", "plan", "gateware"),
 }
 MAY_IMPORT["export"] = {
     *("firm_hdl", "errors", "files", "jobs", "names", "vhdl"),
