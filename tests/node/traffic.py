@@ -7,13 +7,24 @@ from types import SimpleNamespace
 
 from amaranth.hdl import Cat
 
-from firm_hdl.node.messages import NodeMessage
+from firm_hdl.node.messages import MessageReceiver, MessageSender, NodeMessage
 from firm_hdl.plan import build_plan
 from firm_hdl.sim.payloads import packet_beats
 from firm_hdl.wire import lay_out
 from tests.gateware.traffic import random_packets
 
-__all__ = ["link_beats", "link_output", "messages_of", "packets_of"]
+__all__ = [
+    "counters_of",
+    "frames_of",
+    "link_beats",
+    "link_output",
+    "messages_of",
+    "packets_of",
+    "received_by_host",
+    "some",
+]
+
+SIZES = (0, 1, 7, 8, 9, 15, 16, 17, 31, 32, 33, 48, 100)
 
 
 def packets_of(message, count, seed=0, most=10**9):
@@ -54,3 +65,34 @@ def messages_of(seen, name):
         tag = side >> 16 & 0xFFFF_FFFF
         messages.append(NodeMessage(topic=side & 0xFFFF, packet=packet, tag=tag))
     return messages
+
+
+def some(count, seed=0, sizes=SIZES):
+    """Return random messages."""
+    rng = random.Random(seed)
+    return [
+        NodeMessage(
+            topic=rng.getrandbits(16),
+            packet=rng.randbytes(rng.choice(sizes)),
+            tag=rng.getrandbits(32),
+        )
+        for _ in range(count)
+    ]
+
+
+def frames_of(messages, frame_bytes=None, sequence=0):
+    """Return the frames that the host sends."""
+    sender = MessageSender(frame_bytes, sequence=sequence)
+    return [frame for message in messages for frame in sender.frames(message)]
+
+
+def received_by_host(frames):
+    """Return the messages that the host makes of frames, and its counters."""
+    receiver = MessageReceiver()
+    out = [m for frame in frames if (m := receiver.take(frame)) is not None]
+    return out, receiver.counters
+
+
+def counters_of(bench):
+    """Return the counters of a `PacketBench` that are not 0."""
+    return {name: value for name, value in bench.state.items() if value}

@@ -81,7 +81,7 @@ class ControlUnit(wiring.Component):
         layout = data.StructLayout({"request": _layout(REQUEST), "is_whole": 1, "tag": TAG_BITS})
         m.submodules.waiting = waiting = SyncFIFO(width=layout.size, depth=REQUESTS)
         self._receive(m, waiting, layout)
-        self._answer(m, data.View(layout, waiting.r_data), waiting)
+        self._answer(m, layout, waiting)
         return m
 
     def _receive(self, m: Module, waiting: SyncFIFO, layout: data.StructLayout) -> None:
@@ -116,63 +116,77 @@ class ControlUnit(wiring.Component):
             {"control": ends & waiting.w_rdy, "control_full": ends & ~waiting.w_rdy},
         )
 
-    def _answer(self, m: Module, asked: data.View, waiting: SyncFIFO) -> None:
+    def _answer(self, m: Module, layout: data.StructLayout, waiting: SyncFIFO) -> None:
         """Do the oldest request, and send the response."""
-        response, tag = Signal(_layout(RESPONSE)), Signal(TAG_BITS)
-        cycles = Signal(range(READ_CYCLES + 1))
-        m.d.comb += self.tag_out.eq(tag)
+        asked, response = Signal(layout), Signal(_layout(RESPONSE))
+        cycles, is_known = Signal(range(READ_CYCLES + 1)), Signal()
+        m.d.comb += [
+            self.tag_out.eq(asked.tag),
+            self.to.sec.eq(asked.request.seconds),
+            self.to.nanosec.eq(asked.request.nanoseconds),
+            self.to_rate.eq(asked.request.argument),
+        ]
+        m.d.sync += [self.sets.eq(0), self.sets_rate.eq(0)]
         with m.FSM():
             with m.State("IDLE"):
-                m.d.sync += [
-                    cycles.eq(READ_CYCLES),
-                    response.operation.eq(asked.request.operation),
-                    response.value.eq(0),
-                    response.seconds.eq(self.time.sec),
-                    response.nanoseconds.eq(self.time.nanosec),
-                    tag.eq(asked.tag),
-                ]
+                # No logic follows the read of the FIFO in the same cycle.
+                m.d.comb += waiting.r_en.eq(1)
+                m.d.sync += Value.cast(asked).eq(waiting.r_data)
                 with m.If(waiting.r_rdy):
-                    self._do(m, asked, response)
+                    m.next = "CHECK"
+            with m.State("CHECK"):
+                self._check(m, asked, response, is_known)
+                m.next = "DO"
+            with m.State("DO"):
+                self._do(m, asked, response, is_known)
+                m.d.sync += cycles.eq(READ_CYCLES)
             with m.State("READ"):
                 m.d.sync += [cycles.eq(cycles - 1), response.value.eq(self.value)]
                 with m.If(cycles == 0):
-                    m.next = "DONE"
-            with m.State("DONE"):
-                m.d.comb += waiting.r_en.eq(1)
-                m.next = "SEND"
+                    m.next = "SEND"
             with m.State("SEND"):
                 self._send(m, response)
 
-    def _do(self, m: Module, asked: data.View, response: data.View) -> None:
-        """Do a request; go on to the state that follows."""
-        request = asked.request
-        argument, nanoseconds = request.argument, request.nanoseconds
-        is_first = argument < self.first
-        is_counter = (argument >= self.counters_from) & (argument < self.last)
-        skipped = self.counters_from - self.first
+    def _check(self, m: Module, asked: data.View, response: data.View, is_known: Signal) -> None:
+        """Compare the numbers of a request with their limits."""
+        request, argument = asked.request, asked.request.argument
+        is_first, is_counter = argument < self.first, Signal()
         reads = request.operation == Operation.READ
         sets = request.operation == Operation.SET_TIME
-        sets_rate = request.operation == Operation.SET_RATE
-        wrong = (reads & ~is_first & ~is_counter) | (sets & (nanoseconds >= 1_000_000_000))
-        is_known = asked.is_whole & (reads | sets | sets_rate)
-        does = is_known & ~wrong
-        m.d.comb += [
-            self.to.sec.eq(request.seconds),
-            self.to.nanosec.eq(nanoseconds),
-            self.to_rate.eq(argument),
-            self.sets.eq(does & sets),
-            self.sets_rate.eq(does & sets_rate),
-        ]
+        m.d.comb += is_counter.eq((argument >= self.counters_from) & (argument < self.last))
         m.d.sync += [
-            self.number.eq(Mux(is_first, argument, argument - skipped)),
+            self.number.eq(Mux(is_first, argument, argument - (self.counters_from - self.first))),
+            is_known.eq(
+                asked.is_whole & (reads | sets | (request.operation == Operation.SET_RATE))
+            ),
             response.result.eq(
-                Mux(is_known, Mux(wrong, Result.ARGUMENT, Result.OK), Result.OPERATION)
+                Mux(
+                    (reads & ~is_first & ~is_counter)
+                    | (sets & (request.nanoseconds >= 1_000_000_000)),
+                    Result.ARGUMENT,
+                    Result.OK,
+                )
             ),
         ]
-        with m.If(does & reads):
+
+    def _do(self, m: Module, asked: data.View, response: data.View, is_known: Signal) -> None:
+        """Do a request; go on to the state that follows."""
+        request, does = asked.request, Signal()
+        m.d.comb += does.eq(is_known & (response.result == Result.OK))
+        m.d.sync += [
+            self.sets.eq(does & (request.operation == Operation.SET_TIME)),
+            self.sets_rate.eq(does & (request.operation == Operation.SET_RATE)),
+            response.operation.eq(request.operation),
+            response.reserved.eq(0),
+            response.value.eq(0),
+            response.seconds.eq(self.time.sec),
+            response.nanoseconds.eq(self.time.nanosec),
+        ]
+        m.next = "SEND"
+        with m.If(~is_known):
+            m.d.sync += response.result.eq(Result.OPERATION)
+        with m.Elif(does & (request.operation == Operation.READ)):
             m.next = "READ"
-        with m.Else():
-            m.next = "DONE"
 
     def _send(self, m: Module, response: data.View) -> None:
         """Send the response, its first bytes first, and go back to the next request."""

@@ -29,6 +29,7 @@ from firm_hdl.node.gateware.streams import (
     TAG_BITS,
     LinkSignature,
     link_counters_layout,
+    passes,
     time_layout,
 )
 from firm_hdl.node.gateware.tagged_fifo import TaggedFifo
@@ -171,7 +172,7 @@ class NodeCore(wiring.Component):
         )
         m.d.comb += gate.status.ready.eq(1)
         out = getattr(self.subscribe, topic.port)
-        m.d.comb += _passes(gate.packets_out, out)
+        m.d.comb += passes(gate.packets_out, out)
         self._inputs[topic.id] = gate
         self._counted(m, f"subscribe_{topic.port}", gate, out)
 
@@ -185,7 +186,7 @@ class NodeCore(wiring.Component):
             when_full=store.when_full,
         )
         came = getattr(self.publish, topic.port)
-        m.d.comb += [*_passes(came.packets, fifo.packets_in), fifo.abort.eq(came.abort)]
+        m.d.comb += [*passes(came.packets, fifo.packets_in), fifo.abort.eq(came.abort)]
         self._outputs[topic.id] = (fifo, Const(0, TAG_BITS))
         self._counted(m, f"publish_{topic.port}", fifo, fifo.packets_out)
 
@@ -199,9 +200,9 @@ class NodeCore(wiring.Component):
         m.submodules[f"fifo_{topic.port}"] = fifo
         port = getattr(self.serve, topic.port)
         m.d.comb += [
-            *_passes(gate.packets_out, port.request.packets),
+            *passes(gate.packets_out, port.request.packets),
             port.request.tag.eq(gate.tag_out),
-            *_passes(port.response.packets, fifo.packets_in),
+            *passes(port.response.packets, fifo.packets_in),
             fifo.tag_in.eq(port.response.tag),
             fifo.abort.eq(port.response.abort),
         ]
@@ -243,7 +244,7 @@ class NodeCore(wiring.Component):
             router.side_in.eq(came.payload.tag),
         ]
         for port, part in zip(router.packets_out, inputs.values(), strict=True):
-            m.d.comb += _passes(port, part.packets_in)
+            m.d.comb += passes(port, part.packets_in)
             if hasattr(part, "tag_in"):
                 m.d.comb += part.tag_in.eq(router.side_out)
         self._events["node", "unknown"] = router.counters.unknown
@@ -259,7 +260,7 @@ class NodeCore(wiring.Component):
         for number, (part, tag, size) in enumerate(parts):
             length = Signal(LENGTH_BITS, name=f"length_{number}")
             m.d.comb += [
-                *_passes(part.packets_out, arbiter.packets_in[number]),
+                *passes(part.packets_out, arbiter.packets_in[number]),
                 length.eq(size),
                 arbiter.sides_in[number].eq(Cat(tag, length)),
             ]
@@ -304,12 +305,3 @@ class NodeCore(wiring.Component):
         }
         for name in IDENTITY:
             yield clock.rate if name == "rate" else Const(values[name], 32)
-
-
-def _passes(source: Any, target: Any) -> list[Any]:
-    """Connect two streams with the same payload."""
-    return [
-        target.payload.eq(source.payload),
-        target.valid.eq(source.valid),
-        source.ready.eq(target.ready),
-    ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from amaranth.lib import data, stream
 
 from firm_hdl.gateware.signatures import packet_layout
@@ -16,6 +18,7 @@ __all__ = [
     "header_layout",
     "link_counters_layout",
     "link_layout",
+    "passes",
     "time_layout",
 ]
 
@@ -63,3 +66,12 @@ def link_counters_layout() -> data.StructLayout:
 def time_layout() -> data.StructLayout:
     """Return a time as ROS has it: `sec` and `nanosec`, 32 bits each."""
     return data.StructLayout({"sec": 32, "nanosec": 32})
+
+
+def passes(source: Any, target: Any) -> list[Any]:
+    """Return the statements that connect two streams with the same payload."""
+    return [
+        target.payload.eq(source.payload),
+        target.valid.eq(source.valid),
+        source.ready.eq(target.ready),
+    ]
