@@ -28,28 +28,15 @@ from firm_hdl.node.gateware.streams import (
     LENGTH_BITS,
     TAG_BITS,
     LinkSignature,
+    RequestSignature,
+    ResponseSignature,
     link_counters_layout,
     passes,
     time_layout,
 )
 from firm_hdl.node.gateware.tagged_fifo import TaggedFifo
 
-__all__ = ["NodeCore", "RequestSignature", "ResponseSignature", "node_counters_layout"]
-
-
-def RequestSignature(bus_bytes: int) -> wiring.Signature:
-    """Return the requests of a service: `packets`, and `tag`, the same in all beats of a packet."""
-    return wiring.Signature({"packets": Out(PacketSignature(bus_bytes)), "tag": Out(TAG_BITS)})
-
-
-def ResponseSignature(bus_bytes: int) -> wiring.Signature:
-    """Return packets to the host: `packets`; `tag` of the request, and `abort`, with the last beat.
-
-    A publication has no use for `tag`.
-    """
-    return wiring.Signature(
-        {"packets": Out(PacketSignature(bus_bytes)), "tag": Out(TAG_BITS), "abort": Out(1)}
-    )
+__all__ = ["NodeCore", "node_counters_layout"]
 
 
 def node_counters_layout(description: Description) -> data.StructLayout:

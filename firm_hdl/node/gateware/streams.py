@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from amaranth.lib import data, stream
+from amaranth.lib import data, stream, wiring
+from amaranth.lib.wiring import Out
 
+from firm_hdl.gateware import PacketSignature
 from firm_hdl.gateware.signatures import packet_layout
 from firm_hdl.node.control import LINK_COUNTERS
 from firm_hdl.node.frame import HEADER
@@ -15,6 +17,8 @@ __all__ = [
     "TAG_BITS",
     "TOPIC_BITS",
     "LinkSignature",
+    "RequestSignature",
+    "ResponseSignature",
     "header_layout",
     "link_counters_layout",
     "link_layout",
@@ -56,6 +60,21 @@ def link_layout(bus_bytes: int) -> data.StructLayout:
 def LinkSignature(bus_bytes: int) -> stream.Signature:
     """Return the stream between core and link. See :func:`link_layout`."""
     return stream.Signature(link_layout(bus_bytes))
+
+
+def RequestSignature(bus_bytes: int) -> wiring.Signature:
+    """Return the requests of a service: `packets`, and `tag`, the same in all beats of a packet."""
+    return wiring.Signature({"packets": Out(PacketSignature(bus_bytes)), "tag": Out(TAG_BITS)})
+
+
+def ResponseSignature(bus_bytes: int) -> wiring.Signature:
+    """Return packets to the host: `packets`; `tag` of the request, and `abort`, with the last beat.
+
+    A publication has no use for `tag`.
+    """
+    return wiring.Signature(
+        {"packets": Out(PacketSignature(bus_bytes)), "tag": Out(TAG_BITS), "abort": Out(1)}
+    )
 
 
 def link_counters_layout() -> data.StructLayout:

@@ -9,7 +9,7 @@ from firm_hdl.node.links.bytestream import ByteLink, UartLink
 from firm_hdl.node.links.stream import StreamLink
 from firm_hdl.node.links.udp import UdpLink
 
-__all__ = ["ByteLink", "StreamLink", "UartLink", "UdpLink", "link_of"]
+__all__ = ["ByteLink", "StreamLink", "UartLink", "UdpLink", "link_of", "medium_of"]
 
 
 def link_of(description: Description) -> Any:
@@ -22,3 +22,15 @@ def link_of(description: Description) -> Any:
             return UdpLink(bus, link)
         case "uart":
             return UartLink(bus, link, description.clock_hz)
+
+
+def medium_of(description: Description) -> dict[str, Any]:
+    """Return the members of a description's link that face the medium, without making the link."""
+    link = description.link
+    match link.kind:
+        case "stream":
+            return StreamLink.medium(description.bus_bytes)
+        case "udp":
+            return UdpLink.medium(link)
+        case "uart":
+            return UartLink.medium()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from amaranth.hdl import Module, Mux, Signal
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
@@ -104,10 +106,14 @@ class UartLink(wiring.Component):
                 "received": Out(LinkSignature(bus_bytes)),
                 "sent": In(LinkSignature(bus_bytes)),
                 "counters": Out(link_counters_layout()),
-                "rx": In(1, init=1),
-                "tx": Out(1, init=1),
+                **self.medium(),
             }
         )
+
+    @staticmethod
+    def medium() -> dict[str, Any]:
+        """Return the members that face the medium."""
+        return {"rx": In(1, init=1), "tx": Out(1, init=1)}
 
     def elaborate(self, platform: object) -> Module:
         m = Module()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from amaranth.hdl import Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
@@ -52,11 +54,18 @@ class StreamLink(wiring.Component):
                 "received": Out(LinkSignature(bus_bytes)),
                 "sent": In(LinkSignature(bus_bytes)),
                 "counters": Out(link_counters_layout()),
-                "frames_in": In(PacketSignature(bus_bytes)),
-                "frames_out": Out(PacketSignature(bus_bytes)),
-                "dest": Out(TOPIC_BITS),
+                **self.medium(bus_bytes),
             }
         )
+
+    @staticmethod
+    def medium(bus_bytes: int) -> dict[str, Any]:
+        """Return the members that face the medium."""
+        return {
+            "frames_in": In(PacketSignature(bus_bytes)),
+            "frames_out": Out(PacketSignature(bus_bytes)),
+            "dest": Out(TOPIC_BITS),
+        }
 
     def elaborate(self, platform: object) -> Module:
         m = Module()

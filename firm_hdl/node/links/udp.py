@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ipaddress import IPv4Address
+from typing import Any
 
 from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import wiring
@@ -54,10 +55,17 @@ class UdpLink(wiring.Component):
                 "received": Out(LinkSignature(bus_bytes)),
                 "sent": In(LinkSignature(bus_bytes)),
                 "counters": Out(link_counters_layout()),
-                "datagrams_in": In(DatagramSignature(link.data_bytes)),
-                "datagrams_out": Out(DatagramSignature(link.data_bytes)),
+                **self.medium(link),
             }
         )
+
+    @staticmethod
+    def medium(link: Link) -> dict[str, Any]:
+        """Return the members that face the medium."""
+        return {
+            "datagrams_in": In(DatagramSignature(link.data_bytes)),
+            "datagrams_out": Out(DatagramSignature(link.data_bytes)),
+        }
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
