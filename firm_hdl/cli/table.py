@@ -50,6 +50,11 @@ COMMANDS: dict[str, Command] = {
         help="print how many cycles packets take, and which clock a line rate needs",
         module="building",
     ),
+    "node": Command(
+        help="write a design with several topics behind one link, or print its figures",
+        module="nodes",
+        has_origins=False,
+    ),
     "verify": Command(
         help="test converters against ROS's own libraries", module="testing", has_origins=False
     ),

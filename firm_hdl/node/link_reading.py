@@ -10,16 +10,17 @@ from firm_hdl.node.description import LINKS, Link, Topic
 from firm_hdl.node.marked_yaml import Entry, Marked
 from firm_hdl.plan import BUS_BYTES
 
-__all__ = ["NODE_BUS_BYTES", "read_link", "with_memory"]
+__all__ = ["LINK_OPTIONS", "NODE_BUS_BYTES", "read_link", "with_memory"]
 
 NODE_BUS_BYTES = tuple(width for width in BUS_BYTES if width <= 16)
 """Bus widths of a node: the header of a frame, 16 bytes, has to fill whole beats."""
 
-_KEYS: dict[str, tuple[str, ...]] = {
+LINK_OPTIONS: dict[str, tuple[str, ...]] = {
     "stream": (),
     "udp": ("memory_bytes", "packets", "datagram_bytes", "data_bytes", "port", "host", "host_port"),
     "uart": ("memory_bytes", "packets", "baud"),
 }
+"""The options of each kind of link."""
 
 _LIMITS: dict[str, tuple[int, int]] = {
     "memory_bytes": (64, 1 << 26),
@@ -50,7 +51,7 @@ def read_link(marked: Marked, entry: Entry, clock_hz: float) -> Link:
         kind = entries.pop("kind").choice(LINKS, None)
     if kind is None:
         return Link(kind="stream")
-    known = marked.known(entries, _KEYS[kind], f"a link of kind '{kind}'")
+    known = marked.known(entries, LINK_OPTIONS[kind], f"a link of kind '{kind}'")
     given: dict[str, Any] = {"kind": kind}
     for name, (least, most) in _LIMITS.items():
         if name in known:

@@ -25,6 +25,10 @@ DEFAULTS = {
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
     "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B"}),
     "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"]}),
+    "node": (
+        ["info", "n.yaml"],
+        {"action": "info", "file": "n.yaml", "path": [], "out": "node_out", "force": False},
+    ),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),
     "hash": ([], {**ORIGINS, "types": [], "all": False}),
     "proto": ([], {**ORIGINS, "types": [], "all": False, "no_quotes": False}),
