@@ -26,7 +26,7 @@ from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodeTop, node_ports
 from firm_hdl.vhdl.convert import convert
 
-__all__ = ["BuiltNode", "build_node"]
+__all__ = ["build_node"]
 
 SUMMARY = "summary.txt"
 
@@ -79,12 +79,12 @@ def build_node(
         ports = node_ports(node)
     except ValueError as error:
         raise UserError(str(error)) from None
+    if read_manifest(folder) is None and folder.exists() and not is_empty(folder):
+        raise UserError(f"'{folder}' is not a folder that firm-hdl made; move it away")
     design = rtlil.convert(NodeTop(node), name=name, emit_src=False)
     inputs = _inputs(description, design)
     try:
         clear_up(folder)
-        if read_manifest(folder) is None and folder.exists() and not is_empty(folder):
-            raise UserError(f"'{folder}' is not a folder that firm-hdl made; move it away")
         if not force and is_current(folder, inputs):
             return BuiltNode(folder=folder, was_current=True)
         files = _files(description, name, design)

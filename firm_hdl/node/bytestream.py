@@ -12,7 +12,7 @@ from __future__ import annotations
 import zlib
 from dataclasses import dataclass
 
-__all__ = ["CRC_BYTES", "ByteStreamCounters", "ByteStreamReader", "write_frame"]
+__all__ = ["CRC_BYTES", "ByteStreamReader", "write_frame"]
 
 CRC_BYTES = 4
 

@@ -19,7 +19,6 @@ __all__ = [
     "GATE_COUNTERS",
     "IDENTITY",
     "LINK_COUNTERS",
-    "NODE_COUNTERS",
     "RATE_FRACTION_BITS",
     "REQUEST",
     "RESPONSE",

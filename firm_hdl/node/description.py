@@ -16,13 +16,11 @@ from firm_hdl.model import Message, Wire
 
 __all__ = [
     "CONTROL_TOPIC",
-    "DATAGRAM_BYTES",
     "LINKS",
     "Description",
     "Direction",
     "Kind",
     "Link",
-    "LinkKind",
     "Qos",
     "Store",
     "Topic",

@@ -20,7 +20,6 @@ __all__ = [
     "VERSION",
     "FrameError",
     "Header",
-    "HeaderField",
     "decode_header",
     "encode_header",
     "header_table",

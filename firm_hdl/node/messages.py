@@ -18,7 +18,7 @@ from firm_hdl.node.frame import (
     encode_header,
 )
 
-__all__ = ["FrameCounters", "MessageReceiver", "MessageSender", "NodeMessage", "distance"]
+__all__ = ["MessageReceiver", "MessageSender", "NodeMessage", "distance"]
 
 _SEQUENCES = 1 << 16
 

@@ -14,7 +14,7 @@ from firm_hdl.export.top import MAX_INPUT_BITS
 from firm_hdl.names.identifiers import flat_names
 from firm_hdl.node.node import Node
 
-__all__ = ["NodePort", "NodeTop", "node_ports"]
+__all__ = ["NodeTop", "node_ports"]
 
 Path = tuple[str, ...]
 

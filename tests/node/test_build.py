@@ -88,10 +88,14 @@ def test_a_folder_that_is_current_stays(built):
     before = (built / "relay_verilog.v").stat().st_mtime_ns
     again = build_node(read(RELAY), built.parent)
     assert again.was_current and (built / "relay_verilog.v").stat().st_mtime_ns == before
-    (built / "mine.txt").write_text("kept")
-    changed = build_node(read(RELAY, clock_mhz="50"), built.parent)
-    assert not changed.was_current and (built / "mine.txt").read_text() == "kept"
-    build_node(read(RELAY), built.parent)
+
+
+@pytest.mark.thorough
+def test_a_folder_of_another_description_is_replaced_and_files_of_users_stay(tmp_path):
+    folder = build_node(read(RELAY), tmp_path).folder
+    (folder / "mine.txt").write_text("kept")
+    changed = build_node(read(RELAY, clock_mhz="50"), tmp_path)
+    assert not changed.was_current and (folder / "mine.txt").read_text() == "kept"
 
 
 def test_a_folder_of_others_is_left_alone(tmp_path):
@@ -164,15 +168,16 @@ def test_other_links_have_ports_of_their_own(link, port):
     assert names[port].direction == "in"
 
 
-def test_the_command_prints_and_writes(tmp_path, capsys, monkeypatch):
+def test_the_command_prints_and_writes(built, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "node.yaml").write_text(WHEELS)
     assert main(["node", "info", "node.yaml", "--path", str(PACKAGES)]) == 0
     assert capsys.readouterr().out.startswith("/robot/wheels: jazzy, cdr, 64-bit bus, 100 MHz\n")
     (tmp_path / "relay.yaml").write_text(RELAY)
-    assert main(["node", "build", "relay.yaml"]) == 0
-    assert capsys.readouterr().out.startswith("wrote   node_out/relay\n")
-    assert (tmp_path / "node_out" / "relay" / "relay.core").read_text().startswith("CAPI=2:\n")
+    out = ["--out", str(built.parent), "--path", str(PACKAGES)]
+    assert main(["node", "build", "relay.yaml", *out]) == 0
+    assert capsys.readouterr().out.startswith(f"current {built}\n/relay: jazzy")
+    assert (built / "relay.core").read_text().startswith("CAPI=2:\n")
     (tmp_path / "bad.yaml").write_text(WHEELS.replace("Twist", "Twits"))
     assert main(["node", "info", "bad.yaml", "--path", str(PACKAGES)]) == 1
     assert capsys.readouterr().err.startswith("bad.yaml:5:20: error: type 'Twits' is not defined")

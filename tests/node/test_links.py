@@ -251,7 +251,7 @@ def test_a_uart_link_talks_to_itself():
         {"a": a.sent, "b": b.sent},
         {"at": link_output(a.received, 8), "bt": link_output(b.received, 8)},
     )
-    there, back = some(2, 1, (5,)), some(2, 2, (0,))
+    there, back = some(1, 1, (5,)), some(1, 2, (0,))
     sources = {"a": link_beats(there, 8), "b": link_beats(back, 8)}
-    seen = bench.run(sources, {"at": 2, "bt": 2}, deadline=4000)
+    seen = bench.run(sources, {"at": 1, "bt": 1}, deadline=4000)
     assert messages_of(seen, "bt") == there and messages_of(seen, "at") == back
