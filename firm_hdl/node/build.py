@@ -1,3 +1,4 @@
+# amaranth: UnusedElaboratable=no
 """The files of a node: the design in each language, the manifest, and the summary."""
 
 from __future__ import annotations
@@ -72,15 +73,15 @@ def build_node(
     DefinitionError, UserError
         If the accelerator cannot be used, the node is too large, or the folder cannot be written.
     """
-    node = Node(description, accelerator)
     name = identifier(description.node)
     folder = Path(out, name)
+    if read_manifest(folder) is None and folder.exists() and not is_empty(folder):
+        raise UserError(f"'{folder}' is not a folder that firm-hdl made; move it away")
+    node = Node(description, accelerator)
     try:
         ports = node_ports(node)
     except ValueError as error:
         raise UserError(str(error)) from None
-    if read_manifest(folder) is None and folder.exists() and not is_empty(folder):
-        raise UserError(f"'{folder}' is not a folder that firm-hdl made; move it away")
     design = rtlil.convert(NodeTop(node), name=name, emit_src=False)
     inputs = _inputs(description, design)
     try:
