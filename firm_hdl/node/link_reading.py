@@ -37,6 +37,9 @@ _LIMITS: dict[str, tuple[int, int]] = {
 _LEAST_CYCLES = 4
 """Cycles per bit of a UART: fewer do not find the middle of a bit."""
 
+_MOST_DEVIATION = 0.02
+"""After 10 bits, both sides together may be half a bit off: 5 %. The other side needs a part."""
+
 
 def read_link(marked: Marked, entry: Entry, clock_hz: float) -> Link:
     """Read ``link``: the name of a kind, or a mapping with ``kind`` and its options."""
@@ -74,10 +77,22 @@ def _check(link: Link, known: dict[str, Entry], entry: Entry, clock_hz: float) -
     if link.datagram_bytes % 16:
         near = link.datagram_bytes // 16 * 16
         known["datagram_bytes"].error(f"'datagram_bytes' must be a multiple of 16, such as {near}")
-    if link.kind == "uart" and clock_hz < _LEAST_CYCLES * link.baud:
-        place = known.get("baud", entry)
-        mhz, cycles = clock_hz / 1e6, _LEAST_CYCLES
-        place.error(f"a bit takes {cycles} cycles at least, which a clock of {mhz:g} MHz has not")
+    if link.kind == "uart":
+        _check_baud(link, known.get("baud", entry), clock_hz)
+
+
+def _check_baud(link: Link, place: Entry, clock_hz: float) -> None:
+    """Check that a bit is a number of cycles, as nearly as a UART needs."""
+    mhz = clock_hz / 1e6
+    if clock_hz < _LEAST_CYCLES * link.baud:
+        place.error(f"a bit takes {_LEAST_CYCLES} cycles at least, which {mhz:g} MHz has not")
+        return
+    found = clock_hz / round(clock_hz / link.baud)
+    if abs(found / link.baud - 1) > _MOST_DEVIATION:
+        place.error(
+            f"a clock of {mhz:g} MHz gives {found:.0f} baud, which is more than "
+            f"{100 * _MOST_DEVIATION:g} % off"
+        )
 
 
 def with_memory(link: Link, topics: list[Topic], entry: Entry | None) -> Link:

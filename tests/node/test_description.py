@@ -118,6 +118,10 @@ def test_names_are_completed_as_ros_does():
         ("node: a\nlink: {kind: udp, host_port: 1}", "'host_port' counts only beside a 'host'"),
         ("node: a\nlink: {kind: udp, datagram_bytes: 1000}", "a multiple of 16, such as 992"),
         ("node: a\nlink: {kind: uart, baud: 90000000}", "a bit takes 4 cycles at least"),
+        (
+            "node: a\nlink: {kind: uart, baud: 12000000}",
+            "gives 12500000 baud, which is more than 2 %",
+        ),
         ("node: a\nremap: {/a//b: /b}", "2:9: error: the name of a topic has no '//'"),
         ("node: a\nsubscribe:", "'subscribe' must be a mapping of names to values, not empty"),
         (body(a=""), "3:3: error: 'a' has no 'type'"),
