@@ -19,7 +19,8 @@ def datagram_layout(data_bytes: int) -> data.StructLayout:
     last_be : unsigned(data_bytes)
         With `last`: a single 1 at the last byte. Only sent; what comes is counted by `length`.
     error : unsigned(1)
-        With `last`: the datagram is damaged. Only received.
+        With `last`: the datagram is damaged. Only received. LiteEth has a bit for each byte; any of
+        them counts.
     length : unsigned(16)
         Bytes of the datagram's payload; like all that follows, the same in all its words.
     ip_address : unsigned(32)
