@@ -32,8 +32,8 @@ step with these bytes.
 END_CYCLES = 1
 """Cycles after the last step, if the end of the packet is no part of it."""
 
-MANY = 16
-"""Elements of a packet from which the average size of an element is taken: padding recurs."""
+FEW = 2
+"""Elements after which each further one has as many bytes: it starts as the one before it."""
 
 MOST_STEPS = 1 << 14
 """Most steps of such a packet. Padding matters little in larger elements."""
@@ -91,7 +91,7 @@ def recovery(plan: Plan, shortest_cycles: int) -> Recovery:
     shortest = steps.of_region(0, len(plan.steps) - 1, 0)
     chains = list(steps.chains(0, len(plan.steps) - 1, 0, ()))
     worst = max((sum(each.most * each.steps for each in chain) for chain in chains), default=0)
-    longest = max((_longest(plan, shortest, chain) for chain in chains), default=0)
+    longest = max(map(_Longest(plan, shortest).cycles, chains), default=0)
     return Recovery(
         cycles=ERROR_CYCLES + shortest + ceil(worst) + END_CYCLES,
         longest_packet=shortest_cycles + longest,
@@ -170,39 +170,60 @@ class _Steps:
         return _Level(length=begin.length, most=most, steps=steps)
 
 
-def _longest(plan: Plan, shortest: int, chain: tuple[_Level, ...]) -> int:
-    """Return the cycles of a packet in which the last sequence of a chain is as long as possible.
+@dataclass(slots=True)
+class _Longest:
+    """The longest legal packets.
 
-    The sequences around it have one element each, and all other lengths are 0. The packet has
-    `max_message_bytes`, or the sequence its largest length. The steps of the shortest packet are
-    not counted.
+    Attributes
+    ----------
+    plan : Plan
+    shortest : int
+        Steps of the shortest packet.
+    starts : dict of int to bytes
+        A packet up to a length, by its leaf: the sequences around it have one element each, and all
+        other lengths are 0.
     """
-    level = chain[-1]
-    most = ceil(level.most * level.steps)
-    few = min(MANY // 2, level.most)
-    if few == level.most or shortest + MANY * level.steps > MOST_STEPS:
-        return most
-    size = _size(plan, chain, few)
-    each = Fraction(_size(plan, chain, 2 * few) - size, few)
-    if not each:
-        return most
-    count = min(level.most, few + int((plan.max_message_bytes - size) / each))
-    return ceil(count * max(level.steps, each / plan.bus_bytes))
+
+    plan: Plan
+    shortest: int
+    starts: dict[int, bytes] = field(default_factory=dict)
+
+    def cycles(self, chain: tuple[_Level, ...]) -> int:
+        """Return the cycles of a packet in which the last sequence of a chain is the longest.
+
+        The packet has `max_message_bytes`, or the sequence its largest length. The cycles of the
+        shortest packet are not counted. The chain around the sequence was asked for before.
+        """
+        level = chain[-1]
+        start = self.starts[level.length] = self._start(chain)
+        most = ceil(level.most * level.steps)
+        if level.most <= FEW or self.shortest + (FEW + 1) * level.steps > MOST_STEPS:
+            return most
+        size = self._size(start, FEW)
+        each = self._size(start, FEW + 1) - size
+        if not each:
+            return most
+        count = min(level.most, FEW + max(0, self.plan.max_message_bytes - size) // each)
+        return ceil(count * max(level.steps, Fraction(each, self.plan.bus_bytes)))
+
+    def _start(self, chain: tuple[_Level, ...]) -> bytes:
+        """Return a packet up to the length of the last sequence of a chain."""
+        if len(chain) > 1:
+            packet = self.starts[chain[-2].length] + _number(1)
+        else:
+            fixed = (item for step in self.plan.steps for item in step.slices)
+            packet = b"".join(item.data for item in fixed if isinstance(item, Fixed))
+        begin = self.plan.begins[chain[-1].length]
+        # The packet ends before the length, so the interpreter continues with lengths of 0. The
+        # length is the end of its step.
+        visits = decode(self.plan, packet).steps
+        end = next(visit.end for visit in visits if self.plan.steps[visit.step].begin is begin)
+        return packet.ljust(end - LENGTH.bytes, b"\0")
+
+    def _size(self, start: bytes, count: int) -> int:
+        """Return the bytes of a packet after whose start a length is `count`."""
+        return decode(self.plan, start + _number(count)).steps[-1].end
 
 
-def _size(plan: Plan, chain: tuple[_Level, ...], count: int) -> int:
-    """Return the bytes of a packet in which the last sequence of a chain has `count` elements."""
-    packet = b"".join(
-        item.data for step in plan.steps for item in step.slices if isinstance(item, Fixed)
-    )
-    for level in chain:
-        # The packet ends before the length, so the interpreter continues with lengths of 0.
-        visits = decode(plan, packet).steps
-        step = next(
-            n for n, s in enumerate(plan.steps) if s.begin and s.begin.length == level.length
-        )
-        # The length is the end of its step.
-        at = next(visit.end for visit in visits if visit.step == step) - LENGTH.bytes
-        number = count if level is chain[-1] else 1
-        packet = packet.ljust(at, b"\0") + number.to_bytes(LENGTH.bytes, "little")
-    return decode(plan, packet).steps[-1].end
+def _number(count: int) -> bytes:
+    return count.to_bytes(LENGTH.bytes, "little")
