@@ -41,6 +41,13 @@ def add_node(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--seconds", type=float, help="for run: end after so long (default: at Ctrl-C)"
     )
+    command.add_argument(
+        "--engine",
+        choices=["auto", "cxxrtl", "amaranth"],
+        default="auto",
+        help="for run --board sim: compiled by CXXRTL, or Amaranth's slow simulator (%(default)s: "
+        "the former if there is a C++ compiler)",
+    )
     command.add_argument("--quiet", action="store_true", help="for run: print no figures")
     command.set_defaults(run=_node)
 
@@ -63,6 +70,7 @@ def _node(args: argparse.Namespace) -> None:
             domain=args.domain,
             interface=args.interface,
             seconds=args.seconds,
+            engine=args.engine,
             quiet=args.quiet,
         )
         return

@@ -29,7 +29,7 @@ DEFAULTS = {
         ["info", "n.yaml"],
         {"action": "info", "file": "n.yaml", "path": [], "out": "node_out", "force": False}
         | {"board": "sim", "graph": None, "domain": None, "interface": None}
-        | {"seconds": None, "quiet": False},
+        | {"seconds": None, "engine": "auto", "quiet": False},
     ),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),
     "hash": ([], {**ORIGINS, "types": [], "all": False}),

@@ -27,6 +27,7 @@ def run_bridge(
     domain: int | None = None,
     interface: str | None = None,
     seconds: float | None = None,
+    engine: str = "auto",
     quiet: bool = False,
 ) -> None:
     """Run a bridge until Ctrl-C (SIGINT) or SIGTERM; print to standard error.
@@ -39,6 +40,8 @@ def run_bridge(
         See :func:`firm_hdl.node.graphs.graph_of`.
     seconds : float or None
         End after so long.
+    engine : str
+        Of a simulated board; see :class:`.SimulatedBoard`.
     quiet : bool
         Print no figures, only what happens.
 
@@ -50,7 +53,7 @@ def run_bridge(
     status = Status(sys.stderr, quiet=quiet)
     bridge = Bridge(
         description,
-        board_of(board, description),
+        board_of(board, description, engine=engine),
         graph_of(graph, description, domain=domain, interface=interface),
         report=status.report,
     )
