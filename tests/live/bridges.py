@@ -33,13 +33,15 @@ class BridgeProcess:
 
     def __init__(self, file, *arguments, python=sys.executable, variables=None):
         paths = [str(ROOT), *(path for path in sys.path if path.endswith("site-packages"))]
+        variables = dict(variables or {})
+        paths.append(variables.pop("PYTHONPATH", ""))
         command = [python, "-c", "import sys; from firm_hdl.cli import main; sys.exit(main())"]
         self.process = subprocess.Popen(
             [*command, "node", "run", str(file), *arguments],
             stderr=subprocess.PIPE,
             text=True,
             cwd=ROOT,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(paths), **(variables or {})},
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(paths), **variables},
         )
         self.lines = []
         self._new = queue.Queue()

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from amaranth.hdl import Module, Signal
 from amaranth.lib import wiring
 
 from firm_hdl.node import accelerator_signature
 
-__all__ = ["LOOP", "LOOP_ROS1", "Loop"]
+__all__ = ["LOOP", "LOOP_ROS1", "PACKAGES", "Loop"]
+
+PACKAGES = Path(__file__).parents[2] / "examples" / "nodes" / "packages"
 
 LOOP = """\
 node: loop
 namespace: /fpga
 distro: {distro}
+paths: {paths}
 accelerator: tests.live.nodes:Loop
 link: {link}
 subscribe:
@@ -29,15 +34,16 @@ LOOP_ROS1 = """\
 node: loop
 namespace: /fpga
 distro: noetic
+paths: {paths}
 accelerator: tests.live.nodes:Loop
 subscribe:
-  /imu_in: {type: sensor_msgs/Imu, depth: 1000}
-  /cloud_in: {type: sensor_msgs/PointCloud2, depth: 1000, memory_bytes: 65536}
+  /imu_in: {{type: sensor_msgs/Imu, depth: 1000}}
+  /cloud_in: {{type: sensor_msgs/PointCloud2, depth: 1000, memory_bytes: 65536}}
 publish:
-  /imu_out: {type: sensor_msgs/Imu, depth: 1000}
-  /cloud_out: {type: sensor_msgs/PointCloud2, depth: 1000, memory_bytes: 65536}
+  /imu_out: {{type: sensor_msgs/Imu, depth: 1000}}
+  /cloud_out: {{type: sensor_msgs/PointCloud2, depth: 1000, memory_bytes: 65536}}
 serve:
-  /mode: {type: std_srvs/SetBool, memory_bytes: 256}
+  /mode: {{type: std_srvs/SetBool, memory_bytes: 256}}
 """
 
 

@@ -11,7 +11,7 @@ import pytest
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.jobs.programs import find_compiler
 from tests.live.bridges import BridgeProcess
-from tests.live.nodes import LOOP
+from tests.live.nodes import LOOP, PACKAGES
 from tests.live.peer import Peer, python_of
 from tests.tools import need
 
@@ -37,7 +37,7 @@ def bridge(tmp_path):
 
     def start(release, graph="rtps", *arguments):
         file = tmp_path / "loop.yaml"
-        file.write_text(LOOP.format(distro=release, link="stream"))
+        file.write_text(LOOP.format(distro=release, paths=PACKAGES, link="stream"))
         options = [
             "--graph",
             graph,
