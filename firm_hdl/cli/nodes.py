@@ -39,7 +39,7 @@ def add_node(command: argparse.ArgumentParser) -> None:
     command.add_argument("--domain", type=_domain, help="for run: domain of ROS 2 (ROS_DOMAIN_ID)")
     command.add_argument("--interface", help="for run: network interface of rtps, such as lo")
     command.add_argument(
-        "--seconds", type=float, help="for run: end after so long (default: at Ctrl-C)"
+        "--seconds", type=_seconds, help="for run: end after so long (default: at Ctrl-C)"
     )
     command.add_argument(
         "--engine",
@@ -54,6 +54,16 @@ def add_node(command: argparse.ArgumentParser) -> None:
 
 def _domain(text: str) -> int:
     return number_between(text, 0, 232)
+
+
+def _seconds(text: str) -> float:
+    try:
+        found = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+    if not 0 < found < float("inf"):
+        raise argparse.ArgumentTypeError(f"must be above 0, not {text}")
+    return found
 
 
 def _node(args: argparse.Namespace) -> None:

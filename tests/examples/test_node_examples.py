@@ -43,7 +43,7 @@ def start(modules):
     started = []
 
     def start(name):
-        description = read_description(EXAMPLES / name / f"{name}.yaml")
+        description = read_description(EXAMPLES / name)
         board = SimulatedBoard(description, engine="amaranth")
         made, said = bridge_of(board, FakeGraph(), description)
         started.append(made)
@@ -70,7 +70,7 @@ def read(packets, name, kind):
 
 
 def test_wheels(start):
-    made, topics = start("wheels")
+    made, topics = start("wheels/wheels.yaml")
     graph = made.graph
     graph.say(topics["/cmd_vel"], twist(1.0, 0.0))
 
@@ -125,6 +125,38 @@ def check_odometry(messages):
             course = math.atan2(new.y - old.y, new.x - old.x)
             assert abs(math.remainder(course - yaws[n], 2 * math.pi)) < 0.05, n
     assert moved >= 3
+
+
+def test_filter(start):
+    made, topics = start("filter/near.yaml")
+    graph, new = made.graph, STORE.types
+    stamp = new["builtin_interfaces/msg/Time"](sec=1, nanosec=2)
+    header = new["std_msgs/msg/Header"](stamp=stamp, frame_id="laser")
+    ranges = [0.5, 2.5, 2.6, 1e9, -3.0, math.inf, 0.0, math.nan, 1.0]
+    for count in (9, 0, 1, 8):
+        scan = new["sensor_msgs/msg/LaserScan"](
+            header=header,
+            **dict.fromkeys(("angle_min", "angle_max", "angle_increment", "time_increment"), 0.25),
+            **dict.fromkeys(("scan_time", "range_min", "range_max"), 9.0),
+            ranges=np.array(ranges[:count], np.float32),
+            intensities=np.arange(count, dtype=np.float32),
+        )
+        graph.say(topics["/scan"], bytes(STORE.serialize_cdr(scan, "sensor_msgs/msg/LaserScan")))
+    assert run_until(made, lambda: len(graph.got) == 4, 60)
+    scans = read(graph.got, "/near", "sensor_msgs/msg/LaserScan")
+    for count, scan in zip((9, 0, 1, 8), scans, strict=True):
+        assert scan.header == header and scan.range_max == 9.0 and scan.angle_min == 0.25
+        assert list(scan.intensities) == list(range(count))
+        want = [0.5, 2.5, math.inf, math.inf, -3.0, math.inf, 0.0, math.inf, 1.0][:count]
+        assert list(scan.ranges) == want
+
+
+def test_echo_of_ros_1(start):
+    made, topics = start("echo_ros1/echo.yaml")
+    texts = [struct.pack("<I", size) + b"x" * size for size in (0, 1, 7, 8, 9, 40)]
+    made.graph.say(topics["/heard"], *texts)
+    assert run_until(made, lambda: len(made.graph.got) == len(texts), 60)
+    assert made.graph.got == [("/said", text) for text in texts]
 
 
 def floats(count):
