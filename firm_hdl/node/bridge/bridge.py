@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import select
 import socket
-import threading
 import time
-from collections import Counter, OrderedDict, deque
+from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 
 from firm_hdl.node.boards.board import Board, BoardError
 from firm_hdl.node.bridge.counters import BridgeCounters
 from firm_hdl.node.bridge.session import Session, SilentBoardError, WrongBoardError
+from firm_hdl.node.bridge.waiting import Call, Calls, MessageQueue, Waiting
 from firm_hdl.node.control import Register
 from firm_hdl.node.description import Description, Topic
 from firm_hdl.node.graphs.graph import Graph, GraphError
@@ -43,25 +42,6 @@ _MOST_CALLS = 1 << 16
 _MOST_AT_ONCE = 256
 _MOST_SLEEP = 0.5
 _LINGER_SECONDS = 1.0
-
-
-@dataclass(frozen=True, slots=True)
-class _Waiting:
-    """A message for the board, and when it came from the graph."""
-
-    topic: Topic
-    packet: bytes
-    caller: object
-    at: float
-
-
-@dataclass(frozen=True, slots=True)
-class _Call:
-    """A request at the board, and until when its response counts."""
-
-    topic: Topic
-    caller: object
-    until: float
 
 
 class Bridge:
@@ -100,11 +80,8 @@ class Bridge:
         self._topics = {topic.id: topic for topic in description.topics}
         self._past: Counter[str] = Counter()
         self._drops: list[tuple[Register, int]] = []
-        self._lock = threading.Lock()
-        self._queue: deque[_Waiting] = deque()
-        self._queued_bytes = 0
-        self._calls: OrderedDict[int, _Call] = OrderedDict()
-        self._tag = 0
+        self._queue = MessageQueue(_MOST_QUEUED_BYTES)
+        self._calls = Calls(_MOST_CALLS)
         self._stops = False
         self._has_graph = self._was_ready = False
         self._retry_board = self._retry_graph = 0.0
@@ -123,15 +100,10 @@ class Bridge:
 
     def on_message(self, topic: Topic, packet: bytes, caller: object) -> None:
         """Take a message of the graph; an `OnMessage`."""
-        with self._lock:
-            if self._queued_bytes + len(packet) > _MOST_QUEUED_BYTES:
-                self.counters.drop(topic.name, "queue full")
-                return
-            self._queue.append(_Waiting(topic, packet, caller, time.monotonic()))
-            self._queued_bytes += len(packet)
-            is_first = len(self._queue) == 1
-        if is_first:
+        if self._queue.put(Waiting(topic, packet, caller, time.monotonic())):
             self._wake()
+        else:
+            self.counters.drop(topic.name, "queue full")
 
     def _wake(self) -> None:
         # It is full of such bytes, or closed.
@@ -244,7 +216,7 @@ class Bridge:
             self._drops = self.session.drops()
             self.session = None
         self.board.close()
-        self._abandon_calls()
+        self._end_calls()
         if why is not None:
             self._restarts += 1
             self._retry_board = time.monotonic() + self._pause_board
@@ -275,7 +247,7 @@ class Bridge:
         messages = session.take(frame, time.monotonic(), time.time_ns())
         if session.restarts > restarts:
             self._report(f"board {self.board.name}: it has started again")
-            self._abandon_calls()
+            self._end_calls()
         if session.is_ready and not was_ready:
             self._was_ready = True
             self._pause_board = RETRY_SECONDS[0]
@@ -306,7 +278,7 @@ class Bridge:
         self._has_graph = False
         self.graph.close()
         # The callers are gone with it.
-        self._abandon_calls()
+        self._end_calls()
         self._retry_graph = time.monotonic() + self._pause_graph
         self._pause_graph = min(2 * self._pause_graph, RETRY_SECONDS[1])
         self._report(f"graph {self.graph.name}: {why}; trying again")
@@ -319,8 +291,8 @@ class Bridge:
             return
         call = None
         if topic.kind == "serve":
-            call = self._calls.pop(message.tag, None)
-            if call is None or call.topic is not topic:
+            call = self._calls.answered(message.tag, topic)
+            if call is None:
                 self.counters.drop(topic.name, "unknown call")
                 return
         if not self._has_graph:
@@ -345,13 +317,10 @@ class Bridge:
     def _to_board(self, now: float) -> None:
         """Send what waits; drop what has waited for too long."""
         for _ in range(_MOST_AT_ONCE):
-            with self._lock:
-                if not self._queue:
-                    return
-                if not self.is_ready and now - self._queue[0].at <= HOLD_SECONDS:
-                    return
-                waiting = self._queue.popleft()
-                self._queued_bytes -= len(waiting.packet)
+            old = now if self.is_ready else now - HOLD_SECONDS
+            waiting = self._queue.take(before=old)
+            if waiting is None:
+                return
             cause = self._send(waiting)
             if cause is None:
                 self.counters.to_board[waiting.topic.name] += 1
@@ -360,16 +329,16 @@ class Bridge:
             if waiting.topic.kind == "serve":
                 self.graph.abandon(waiting.topic, waiting.caller)
 
-    def _send(self, waiting: _Waiting) -> str | None:
+    def _send(self, waiting: Waiting) -> str | None:
         """Send a message to the board; return why it was dropped, or `None`."""
         topic, session = waiting.topic, self.session
         if session is None or not session.is_ready:
             return "no board"
         tag = 0
         if topic.kind == "serve":
-            if len(self._calls) >= _MOST_CALLS:
+            if self._calls.is_full:
                 return "queue full"
-            tag = self._tag = (self._tag + 1) & 0xFFFF_FFFF
+            tag = self._calls.next_tag()
         message = NodeMessage(topic=topic.id, packet=waiting.packet, tag=tag)
         try:
             if not self.board.send(session.frames(message)):
@@ -379,21 +348,14 @@ class Bridge:
             return "no board"
         if topic.kind == "serve":
             until = time.monotonic() + CALL_SECONDS
-            self._calls[tag] = _Call(topic, waiting.caller, until)
+            self._calls.add(tag, Call(topic, waiting.caller, until))
         return None
 
-    def _end_calls(self, now: float) -> None:
-        """Forget requests that were not answered in time."""
-        while self._calls and next(iter(self._calls.values())).until < now:
-            self._abandon(self._calls.popitem(last=False)[1])
-
-    def _abandon_calls(self) -> None:
-        while self._calls:
-            self._abandon(self._calls.popitem(last=False)[1])
-
-    def _abandon(self, call: _Call) -> None:
-        self.counters.drop(call.topic.name, "unanswered")
-        self.graph.abandon(call.topic, call.caller)
+    def _end_calls(self, now: float = float("inf")) -> None:
+        """Forget requests that were not answered in time; without a time, all."""
+        for call in self._calls.ended(now):
+            self.counters.drop(call.topic.name, "unanswered")
+            self.graph.abandon(call.topic, call.caller)
 
     # Waiting.
 
@@ -401,8 +363,8 @@ class Bridge:
         """Wait until the board or the graph has something, or something is due."""
         now = time.monotonic()
         until = min(now + _MOST_SLEEP, self._next_due(), end)
-        reads: list[object] = [self._wake_receiver]
-        writes: list[object] = []
+        reads: list[socket.socket | int] = [self._wake_receiver]
+        writes: list[int] = []
         if self.session is not None:
             try:
                 own = self.board.fileno()
@@ -411,9 +373,8 @@ class Bridge:
                 return
             reads.append(own)
             writes += [own] if self.board.waits_to_send else []
-        with self._lock:
-            # Without a board, what waits is looked at again when it is too old.
-            waits = bool(self._queue) and self.is_ready
+        # Without a board, what waits is looked at again when it is too old.
+        waits = self.is_ready and self._queue.oldest() is not None
         readable, _, _ = select.select(reads, writes, [], 0.0 if waits else max(0.0, until - now))
         if self._wake_receiver in readable:
             with suppress(BlockingIOError):
@@ -426,14 +387,11 @@ class Bridge:
             found = self._retry_board
         if self._was_ready and not self._has_graph:
             found = min(found, self._retry_graph)
-        with self._lock:
-            if self._queue and not self.is_ready:
-                found = min(found, self._queue[0].at + HOLD_SECONDS)
+        oldest = self._queue.oldest()
+        if oldest is not None and not self.is_ready:
+            found = min(found, oldest + HOLD_SECONDS)
         return found
 
     def _is_done(self) -> bool:
         """Whether nothing is under way from the graph to the board and back."""
-        with self._lock:
-            if self._queue:
-                return False
-        return not self._calls
+        return self._queue.oldest() is None and not self._calls

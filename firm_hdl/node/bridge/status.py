@@ -32,7 +32,7 @@ class Status:
         self._replaces = stream.isatty()
         self._width = 0
         self._before: tuple[float, int, int] | None = None
-        self._next = 0.0
+        self._next = 0.0 if self._replaces else time.monotonic() + _LOG_SECONDS
 
     def report(self, text: str) -> None:
         """Print a line that stays."""

@@ -196,7 +196,7 @@ def test_lost_frames_are_counted_and_nothing_wrong_is_passed(running, board, gra
 
 def test_memory_is_bounded(running, graph, monkeypatch):
     made, _ = running
-    monkeypatch.setattr(bridge, "_MOST_QUEUED_BYTES", 100)
+    monkeypatch.setattr(made._queue, "_max_bytes", 100)
     graph.say(HEARD, b"x" * 60, b"y" * 60, b"z" * 40)
     assert run_until(made, lambda: len(graph.got) == 2)
     assert made.counters.dropped == {("/heard", "queue full"): 1}
