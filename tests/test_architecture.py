@@ -47,8 +47,9 @@ MAY_IMPORT["export"] = {
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
-    *("firm_hdl", "errors", "files", "names", "vhdl"),
-    *("model", "frontend", "wire", "metrics", "plan", "estimates", "gateware", "export"),
+    *("firm_hdl", "errors", "files", "names", "vhdl", "rtps"),
+    *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
+    *("sim", "export"),
 }
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {

@@ -51,7 +51,8 @@ COMMANDS: dict[str, Command] = {
         module="building",
     ),
     "node": Command(
-        help="write a design with several topics behind one link, or print its figures",
+        help="write a design with several topics behind one link, print its figures, or run it "
+        "in a graph of ROS",
         module="nodes",
         has_origins=False,
     ),

@@ -27,7 +27,9 @@ DEFAULTS = {
     "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"]}),
     "node": (
         ["info", "n.yaml"],
-        {"action": "info", "file": "n.yaml", "path": [], "out": "node_out", "force": False},
+        {"action": "info", "file": "n.yaml", "path": [], "out": "node_out", "force": False}
+        | {"board": "sim", "graph": None, "domain": None, "interface": None}
+        | {"seconds": None, "engine": "auto", "quiet": False},
     ),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),
     "hash": ([], {**ORIGINS, "types": [], "all": False}),
