@@ -1,11 +1,10 @@
 """The time that a bad packet can cost a deserializer, found from the plan alone.
 
 After an error, a deserializer completes every sequence whose length it has already transferred, one
-step per cycle, and takes all further lengths as 0 (``docs/interface.md``). So what follows the
-error is at most the steps of a message in which every length is 0, and the steps that the open
-sequences have claimed: one sequence, one inside its element, and so on. Each length is limited
-alone. So the claims of the levels add up, and a bad packet can cost up to as many times the longest
-legal packet as it has levels.
+step per cycle (``docs/interface.md``). So what follows the error is at most the steps of a message
+in which every length is 0, and the steps of the elements that one sequence, and one sequence inside
+each of these elements, have claimed. :mod:`firm_hdl.plan.limits` tells how much lengths can claim
+together. The worst packet claims what has the most steps per byte.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from fractions import Fraction
 from math import ceil
 
 from firm_hdl.plan.interpret import decode
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginLoop, Fixed, Plan, RunStep
+from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginLoop, Claim, Fixed, Plan, RunStep
 from firm_hdl.plan.offsets import Span, loop_spans
 from firm_hdl.wire.alignment import LENGTH
 
@@ -71,11 +70,13 @@ class _Level:
         Largest legal count on the wire.
     steps : Fraction
         Steps of an element whose lengths are 0, or of an item.
+    claim : Claim or None
     """
 
     length: int
     most: int
     steps: Fraction
+    claim: Claim | None
 
 
 def recovery(plan: Plan, shortest_cycles: int) -> Recovery:
@@ -90,7 +91,7 @@ def recovery(plan: Plan, shortest_cycles: int) -> Recovery:
     steps = _Steps(plan)
     shortest = steps.of_region(0, len(plan.steps) - 1, 0)
     chains = list(steps.chains(0, len(plan.steps) - 1, 0, ()))
-    worst = max((sum(each.most * each.steps for each in chain) for chain in chains), default=0)
+    worst = max(map(_most_steps, chains), default=Fraction(0))
     longest = max(map(_Longest(plan, shortest).cycles, chains), default=0)
     return Recovery(
         cycles=ERROR_CYCLES + shortest + ceil(worst) + END_CYCLES,
@@ -167,7 +168,30 @@ class _Steps:
         else:
             steps = Fraction(1, self.plan.items_leaf(begin.run).lanes)
         most = self.plan.max_count(begin)
-        return _Level(length=begin.length, most=most, steps=steps)
+        return _Level(length=begin.length, most=most, steps=steps, claim=begin.claim)
+
+
+def _most_steps(chain: tuple[_Level, ...]) -> Fraction:
+    """Return the largest number of steps that sequences inside each other can have claimed.
+
+    Each sequence has either claimed too little to be counted, or a part of the budget; the bound is
+    the sum of both.
+    """
+    steps, budget = Fraction(0), 0
+    counted: list[tuple[Fraction, int, Claim, _Level]] = []
+    for level in chain:
+        if level.claim is None:
+            steps += level.most * level.steps
+        else:
+            budget = (level.claim.total or budget) + level.claim.saved
+            counted.append((level.steps / level.claim.bytes, level.most, level.claim, level))
+    for rate, most, claim, level in sorted(counted, key=lambda each: -each[0]):
+        taken = min(budget, most * claim.bytes)
+        budget -= taken
+        # All that the level may claim is taken, or it may also have claimed some bytes uncounted.
+        extra = min(claim.least - 1, most - taken // claim.bytes)
+        steps += taken * rate + extra * level.steps
+    return steps
 
 
 @dataclass(slots=True)
