@@ -137,6 +137,10 @@ examples: $(VENV)/.installed-dev ghdl verilog ## designs that act on good packet
 	done
 	$(BIN)/python examples/range_filter.py
 	$(BIN)/python examples/half_speed.py
+	$(BIN)/python examples/fast_simulation.py
+	for file in wheels/wheels filter/near echo_ros1/echo; do \
+	  $(BIN)/firm-hdl node run examples/nodes/$$file.yaml --graph none </dev/null || exit; \
+	done
 
 tools: ghdl verilog oracles ## system packages that tests and the demo use
 

@@ -39,11 +39,17 @@ MAY_IMPORT = {
     "plan": {"model", "wire"},
     "estimates": {"plan"},
     "gateware": {"model", "wire", "plan"},
-    "sim": {"model", "wire", "plan", "gateware"},
+    # `jobs`: compilers.
+    "sim": {"errors", "jobs", "model", "wire", "plan", "gateware"},
 }
 MAY_IMPORT["export"] = {
     *("firm_hdl", "errors", "files", "jobs", "names", "vhdl"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
+}
+MAY_IMPORT["node"] = {
+    *("firm_hdl", "errors", "files", "names", "vhdl", "rtps"),
+    *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
+    *("sim", "export"),
 }
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {
@@ -75,7 +81,7 @@ MAY_IMPORT["bench"] = {
 MAY_IMPORT["cli"] = {
     *("firm_hdl", "arguments", "errors", "terminal"),
     *("model", "frontend", "plan", "estimates", "export"),
-    *("identity", "metrics", "covering", "verify", "equivalence", "bench"),
+    *("identity", "metrics", "node", "covering", "verify", "equivalence", "bench"),
 }
 # The public interface of the package.
 MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}

@@ -50,6 +50,12 @@ COMMANDS: dict[str, Command] = {
         help="print how many cycles packets take, and which clock a line rate needs",
         module="building",
     ),
+    "node": Command(
+        help="write a design with several topics behind one link, print its figures, or run it "
+        "in a graph of ROS",
+        module="nodes",
+        has_origins=False,
+    ),
     "verify": Command(
         help="test converters against ROS's own libraries", module="testing", has_origins=False
     ),

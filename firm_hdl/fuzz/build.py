@@ -11,8 +11,8 @@ from typing import Any
 from firm_hdl.fuzz.circuits import Circuit, templates
 from firm_hdl.fuzz.table import Table
 from firm_hdl.jobs.processes import ToolError, made_by, run_tool
+from firm_hdl.jobs.programs import find_compiler
 from firm_hdl.verify.simulators.verilated import (
-    find_compiler,
     find_verilator,
     runtime_of,
     runtime_parts,
@@ -46,7 +46,7 @@ def find_tools() -> Tools:
     ------
     ProgramMissingError
     """
-    return Tools(verilator=find_verilator(), compiler=find_compiler())
+    return Tools(verilator=find_verilator(), compiler=find_compiler("Verilator"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import re
+import shlex
 import shutil
 import sys
 from collections.abc import Sequence
@@ -17,12 +18,14 @@ from firm_hdl.jobs.processes import ToolError, run_tool
 __all__ = [
     "Program",
     "ProgramMissingError",
+    "find_compiler",
     "find_ghdl",
     "find_packaged",
     "find_program",
     "find_yosys",
 ]
 
+COMPILERS = ("g++", "c++", "clang++")
 GHDL_NAMES = ("ghdl", "ghdl-mcode", "ghdl-llvm", "ghdl-gcc")
 
 OLDEST_YOSYS = (0, 40)
@@ -81,6 +84,37 @@ def find_program(title: str, variable: str, names: Sequence[str], package: str) 
             f"{title} is '{given}' in the environment, but there is no such command"
         )
     raise ProgramMissingError(f"{title} is not installed (Debian, Ubuntu: apt install {package})")
+
+
+def find_compiler(user: str, *, with_zig: bool = False) -> tuple[str, ...]:
+    """Return the command of a C++ compiler: the environment's ``CXX``, with its options.
+
+    Parameters
+    ----------
+    user : str
+        What needs the compiler, for the message.
+    with_zig : bool
+        If there is no other compiler, take that of the Python package `ziglang`.
+
+    Raises
+    ------
+    ProgramMissingError
+    """
+    given = shlex.split(os.environ.get("CXX", ""))
+    for name in given[:1] or COMPILERS:
+        if path := shutil.which(name):
+            return (path, *given[1:])
+    if given:
+        raise ProgramMissingError(
+            f"CXX is '{given[0]}' in the environment, but there is no such command"
+        )
+    if with_zig and importlib.util.find_spec("ziglang") is not None:
+        return (sys.executable, "-m", "ziglang", "c++")
+    other = ", or pip install ziglang" if with_zig else ""
+    raise ProgramMissingError(
+        f"{user} needs a C++ compiler, and none is installed "
+        f"(Debian, Ubuntu: apt install g++{other})"
+    )
 
 
 def find_ghdl() -> str:

@@ -25,6 +25,12 @@ DEFAULTS = {
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
     "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B"}),
     "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"]}),
+    "node": (
+        ["info", "n.yaml"],
+        {"action": "info", "file": "n.yaml", "path": [], "out": "node_out", "force": False}
+        | {"board": "sim", "graph": None, "domain": None, "interface": None}
+        | {"seconds": None, "engine": "auto", "quiet": False},
+    ),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),
     "hash": ([], {**ORIGINS, "types": [], "all": False}),
     "proto": ([], {**ORIGINS, "types": [], "all": False, "no_quotes": False}),

@@ -13,18 +13,44 @@ from typing import Any
 
 from tests.tools import need
 
-__all__ = ["Peer", "python_of"]
+__all__ = ["Peer", "python_of", "ros1_variables"]
 
 _HERE = Path(__file__).parent / "peers"
 _FOLDER = "FIRM_HDL_LIVE_PEERS"
+_SYSTEM_PYTHON = "/usr/bin/python3"
 
 
 def python_of(environment: str) -> str:
-    """Return the Python of an environment, such as ``kilted``; see `make test-live`."""
+    """Return the Python of an environment, such as ``kilted``; see `make test-live`.
+
+    That of ``ros1`` is the system's, with Debian's packages of ROS 1.
+    """
+    if environment == "ros1":
+        return need("ROS 1 (rospy, rosmaster, messages)", _ros1())
     folder = Path(os.environ.get(_FOLDER) or Path(sys.prefix) / "live")
     path = folder / environment / "bin" / "python"
     found = str(path) if path.is_file() else None
     return need(f"the peer '{environment}' (make test-live, or {_FOLDER}=DIR)", found)
+
+
+def _ros1() -> str | None:
+    """Return the Python of the system if it has ROS 1, perhaps from ``FIRM_HDL_ROS1``."""
+    modules = "import rospy, rosmaster, sensor_msgs.msg, std_srvs.srv"
+    tried = subprocess.run(
+        [_SYSTEM_PYTHON, "-c", modules], env=ros1_variables(), capture_output=True, check=False
+    )
+    return _SYSTEM_PYTHON if tried.returncode == 0 else None
+
+
+def ros1_variables() -> dict[str, str]:
+    """Return the variables of the environment of a process of ROS 1."""
+    return {
+        "PATH": os.environ.get("PATH", ""),
+        "HOME": os.environ.get("HOME", "/tmp"),
+        "PYTHONPATH": os.environ.get("FIRM_HDL_ROS1", ""),
+        "ROS_MASTER_URI": "http://127.0.0.1:11311",
+        "ROS_IP": "127.0.0.1",
+    }
 
 
 class Peer:
@@ -33,7 +59,7 @@ class Peer:
     Parameters
     ----------
     environment : str
-        The environment: ``kilted``, ``jazzy`` or ``cyclone``.
+        The environment: ``kilted``, ``jazzy``, ``cyclone`` or ``ros1``.
     what : str
         The first argument of the script.
     options
@@ -50,7 +76,7 @@ class Peer:
         variables: dict[str, str] | None = None,
         **options: Any,
     ):
-        script = "cyclone.py" if environment == "cyclone" else "ros.py"
+        script = {"cyclone": "cyclone.py", "ros1": "ros1.py"}.get(environment, "ros.py")
         if environment == "cyclone":
             options["domain"] = domain
         # Neither this repository nor a ROS workspace is the peer's business.
@@ -63,6 +89,7 @@ class Peer:
                 **inherited,
                 "ROS_DOMAIN_ID": str(domain),
                 "CYCLONEDDS_URI": _CYCLONE,
+                **(ros1_variables() if environment == "ros1" else {}),
                 **(variables or {}),
             },
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 import time
+from concurrent.futures import Future
 
 import pytest
 
@@ -305,6 +306,28 @@ def test_a_server_that_does_not_answer_in_time():
         late.set()
         # The late reply is for nobody.
         assert client.call(b"next") == b"next"
+
+
+def test_replies_that_come_later_from_another_thread():
+    waiting = []
+
+    def handle(request):
+        waiting.append((request, Future()))
+        return waiting[-1][1]
+
+    with Node("one", **OPTIONS) as one, Node("two", **OPTIONS) as two:
+        two.service("/go", "std_srvs/srv/SetBool", handle)
+        client = one.client("/go", "std_srvs/srv/SetBool")
+        assert client.wait_for_service()
+        calls = [client.call_async(bytes([n])) for n in range(4)]
+        assert wait(lambda: len(waiting) == 4)
+        # In any order; a request that is given up, or fails, gets none.
+        waiting[3][1].cancel()
+        waiting[2][1].set_exception(ValueError("broken"))
+        for request, future in reversed(waiting[:2]):
+            future.set_result(request + b"!")
+        assert [call.result(20) for call in calls[:2]] == [b"\0!", b"\1!"]
+        assert not calls[2].done() and not calls[3].done()
 
 
 def test_nodes_that_share_a_participant():

@@ -33,31 +33,45 @@ class PacketArbiter(wiring.Component):
         Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
     inputs : int
         Number of inputs, at least 1.
+    side_bits : int
+        Bits that travel beside each beat, such as the size of its packet. 0: there are none.
 
     Members
     -------
     packets_in : array(inputs) of In(PacketSignature(bus_bytes))
+    sides_in : array(inputs) of In(side_bits)
+        Only with `side_bits`. As stable as the payload of the input.
     packets_out : Out(PacketSignature(bus_bytes))
     source : Out(range(inputs))
         Number of the packet's input; valid with each beat of `packets_out`.
+    side_out : Out(side_bits)
+        Only with `side_bits`. What came beside the beat; valid with it.
     """
 
-    def __init__(self, bus_bytes: int, inputs: int):
+    def __init__(self, bus_bytes: int, inputs: int, *, side_bits: int = 0):
         if inputs < 1:
             raise ValueError(f"Number of inputs must be at least 1, not {inputs}")
-        self.bus_bytes, self.inputs = bus_bytes, inputs
+        self.bus_bytes, self.inputs, self.side_bits = bus_bytes, inputs, side_bits
+        sides = {"sides_in": In(side_bits).array(inputs), "side_out": Out(side_bits)}
         super().__init__(
             {
                 "packets_in": In(PacketSignature(bus_bytes)).array(inputs),
                 "packets_out": Out(PacketSignature(bus_bytes)),
                 "source": Out(range(inputs)),
+                **(sides if side_bits else {}),
             }
         )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
         turn, chosen = Signal(range(self.inputs)), Signal(range(self.inputs))
-        layout = data.StructLayout({"beat": packet_layout(self.bus_bytes), "source": turn.shape()})
+        layout = data.StructLayout(
+            {
+                "beat": packet_layout(self.bus_bytes),
+                "source": turn.shape(),
+                **({"side": self.side_bits} if self.side_bits else {}),
+            }
+        )
         m.submodules.slice = out = StreamSlice(layout)
         valid, last, fires = Signal(), Signal(), Signal()
         # A packet has begun and not ended.
@@ -75,6 +89,11 @@ class PacketArbiter(wiring.Component):
             self.source.eq(out.o.payload.source),
             out.o.ready.eq(self.packets_out.ready),
         ]
+        if self.side_bits:
+            m.d.comb += [
+                out.i.payload.side.eq(Array(self.sides_in)[turn]),
+                self.side_out.eq(out.o.payload.side),
+            ]
         for number, port in enumerate(self.packets_in):
             m.d.comb += port.ready.eq(out.i.ready & (turn == number))
         self._choose(m, turn, chosen)

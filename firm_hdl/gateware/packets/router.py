@@ -34,37 +34,51 @@ class PacketRouter(wiring.Component):
         Number of outputs, at least 1. A packet goes to the output with the number `topic`.
     topic_bits : int
         Bits of `topic`.
+    side_bits : int
+        Bits that travel beside each beat, such as a tag. 0: there are none.
 
     Members
     -------
     packets_in : In(PacketSignature(bus_bytes))
+    side_in : In(side_bits)
+        Only with `side_bits`. As stable as the payload.
     topic : In(topic_bits)
         Topic of the packet; has to be stable while a first beat is offered.
     packets_out : array(topics) of Out(PacketSignature(bus_bytes))
+    side_out : Out(side_bits)
+        Only with `side_bits`. What came beside the beat that an output offers; valid with it.
     counters : Out(counters_layout("routed", "unknown"))
         Packets that were sent to an output, and those that were dropped, each with 32 bits; a
         counter stops at its largest value. Counted 2 cycles after the last beat was taken.
     """
 
-    def __init__(self, bus_bytes: int, topics: int, *, topic_bits: int = 16):
+    def __init__(self, bus_bytes: int, topics: int, *, topic_bits: int = 16, side_bits: int = 0):
         if topics < 1:
             raise ValueError(f"Number of topics must be at least 1, not {topics}")
         if topics > 1 << topic_bits:
             raise ValueError(f"{topics} topics do not fit into {topic_bits} bits")
-        self.bus_bytes, self.topics = bus_bytes, topics
+        self.bus_bytes, self.topics, self.side_bits = bus_bytes, topics, side_bits
+        sides = {"side_in": In(side_bits), "side_out": Out(side_bits)}
         super().__init__(
             {
                 "packets_in": In(PacketSignature(bus_bytes)),
                 "topic": In(topic_bits),
                 "packets_out": Out(PacketSignature(bus_bytes)).array(topics),
                 "counters": Out(counters_layout("routed", "unknown")),
+                **(sides if side_bits else {}),
             }
         )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
         packets, count = self.packets_in, self.topics
-        layout = data.StructLayout({"beat": packet_layout(self.bus_bytes), "to": count})
+        layout = data.StructLayout(
+            {
+                "beat": packet_layout(self.bus_bytes),
+                "to": count,
+                **({"side": self.side_bits} if self.side_bits else {}),
+            }
+        )
         m.submodules.slice = out = StreamSlice(layout)
         # A bit for each output: that of the topic, that of the packet that has begun, and which of
         # both counts.
@@ -80,6 +94,11 @@ class PacketRouter(wiring.Component):
             packets.ready.eq(out.i.ready),
             ends.eq(packets.valid & packets.ready & packets.payload.last),
         ]
+        if self.side_bits:
+            m.d.comb += [
+                out.i.payload.side.eq(self.side_in),
+                self.side_out.eq(out.o.payload.side),
+            ]
         takes = []
         for number, port in enumerate(self.packets_out):
             m.d.comb += [

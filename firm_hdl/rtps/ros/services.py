@@ -33,8 +33,9 @@ _READER_BIT = 0x04
 # Seconds for which a reply waits for its reader, and how many replies may wait.
 _PATIENCE, _MOST_WAITING = 5.0, 256
 
-Handler: TypeAlias = Callable[[bytes], bytes]
-"""Takes the payload of a request, and returns that of the reply."""
+Handler: TypeAlias = Callable[[bytes], "bytes | Future[bytes]"]
+"""Takes the payload of a request, and returns that of the reply, or a future that will have it, in
+any thread. A request whose future is cancelled gets no reply."""
 
 
 class Service:
@@ -46,6 +47,8 @@ class Service:
         self._replies: DataWriter | None = None
         self._requests: DataReader | None = None
         self._early: list[Sample] = []
+        # Replies may come from any thread.
+        self._lock = threading.Lock()
         # Replies whose reader is not known yet: discovery may bring the request's writer first.
         self._waiting: OrderedDict[SampleIdentity, tuple[float, bytes]] = OrderedDict()
 
@@ -65,24 +68,48 @@ class Service:
         if request.related is not None and any(bytes(request.related.writer)):
             identity = SampleIdentity(request.related.writer, request.sequence_number)
         reply = self._handler(request.payload)
+        if isinstance(reply, bytes):
+            self._reply(identity, reply)
+            return
+        reply.add_done_callback(lambda done: self._reply_of(identity, done))
+
+    def _reply_of(self, identity: SampleIdentity, done: Future[bytes]) -> None:
+        if done.cancelled():
+            return
+        if (problem := done.exception()) is not None:
+            _LOG.error("a service failed", exc_info=problem)
+            return
+        self._reply(identity, done.result())
+
+    def _reply(self, identity: SampleIdentity, reply: bytes) -> None:
+        """Send a reply, or keep it until its reader is known."""
+        assert self._replies is not None
         is_reader = bool(identity.writer.entity & _READER_BIT)
         known = {each.guid for each in self._replies.matched}
         if not is_reader or identity.writer in known:
             self._replies.write(reply, identity)
             return
-        self._waiting[identity] = (time.monotonic() + _PATIENCE, reply)
-        while len(self._waiting) > _MOST_WAITING:
-            self._waiting.popitem(last=False)
+        with self._lock:
+            self._waiting[identity] = (time.monotonic() + _PATIENCE, reply)
+            while len(self._waiting) > _MOST_WAITING:
+                self._waiting.popitem(last=False)
+        # The reader may have come since.
+        for each in self._replies.matched:
+            self.on_match(each, True)
 
     def on_match(self, reader: EndpointData, came: bool) -> None:
         """Send the replies that wait for a reader."""
-        now = time.monotonic()
-        for identity, (deadline, reply) in list(self._waiting.items()):
-            if deadline < now:
-                del self._waiting[identity]
-            elif came and identity.writer == reader.guid and self._replies is not None:
-                del self._waiting[identity]
-                self._replies.write(reply, identity)
+        now, found = time.monotonic(), []
+        with self._lock:
+            for identity, (deadline, reply) in list(self._waiting.items()):
+                if deadline < now:
+                    del self._waiting[identity]
+                elif came and identity.writer == reader.guid and self._replies is not None:
+                    del self._waiting[identity]
+                    found.append((identity, reply))
+        for identity, reply in found:
+            assert self._replies is not None
+            self._replies.write(reply, identity)
 
     def close(self) -> None:
         """Remove the service."""

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import functools
-import os
 import re
-import shlex
-import shutil
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 from firm_hdl.jobs.processes import ToolError, run_tool
-from firm_hdl.jobs.programs import ProgramMissingError, find_program
+from firm_hdl.jobs.programs import find_program
 
-__all__ = ["find_compiler", "find_verilator", "runtime_of", "runtime_parts"]
+__all__ = ["find_verilator", "runtime_of", "runtime_parts"]
 
 PACKAGE = "verilator g++"
-COMPILERS = ("g++", "c++", "clang++")
 
 
 def find_verilator() -> str:
@@ -28,26 +24,6 @@ def find_verilator() -> str:
     ProgramMissingError
     """
     return find_program("Verilator", "VERILATOR", ["verilator"], PACKAGE)
-
-
-def find_compiler() -> tuple[str, ...]:
-    """Return the command of a C++ compiler: the environment's ``CXX``, with its options.
-
-    Raises
-    ------
-    ProgramMissingError
-    """
-    given = shlex.split(os.environ.get("CXX", ""))
-    for name in given[:1] or COMPILERS:
-        if path := shutil.which(name):
-            return (path, *given[1:])
-    if given:
-        raise ProgramMissingError(
-            f"CXX is '{given[0]}' in the environment, but there is no such command"
-        )
-    raise ProgramMissingError(
-        "Verilator needs a C++ compiler, and none is installed (Debian, Ubuntu: apt install g++)"
-    )
 
 
 class Runtime:

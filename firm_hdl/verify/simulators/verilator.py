@@ -12,10 +12,10 @@ from pathlib import Path
 
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import made_by, run_tool
+from firm_hdl.jobs.programs import find_compiler
 from firm_hdl.verify.simulators.benches import RESULTS, written
 from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.verify.simulators.verilated import (
-    find_compiler,
     find_verilator,
     runtime_of,
     runtime_parts,
@@ -49,7 +49,7 @@ class Verilator:
 
     def __init__(self) -> None:
         self.path = find_verilator()
-        self.compiler = find_compiler()
+        self.compiler = find_compiler("Verilator")
 
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
         files = write_inputs(trace, tops(), folder)

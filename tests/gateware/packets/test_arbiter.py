@@ -13,7 +13,7 @@ from firm_hdl.plan import build_plan
 from firm_hdl.sim import Stalls
 from firm_hdl.sim.payloads import beats_of
 from firm_hdl.wire import lay_out
-from tests.gateware.packets.bench import PacketBench, beats
+from tests.gateware.packets.bench import PacketBench, beats, with_side
 from tests.gateware.test_parser import has_path
 from tests.gateware.traffic import random_packets
 
@@ -42,6 +42,24 @@ def run(arbiter, sent, stalls=None, **options):
         order.append(source)
     assert came == [list(packets) for packets in sent]
     return order, seen
+
+
+def test_what_comes_beside_a_packet_leaves_beside_it():
+    arbiter = PacketArbiter(2, 3, side_bits=20)
+    ports = zip(arbiter.packets_in, arbiter.sides_in, strict=True)
+    bench = PacketBench(
+        arbiter,
+        {f"in{number}": with_side(port, side) for number, (port, side) in enumerate(ports)},
+        {"out": (arbiter.packets_out, 2, Cat(arbiter.source, arbiter.side_out))},
+    )
+    sent = [some(9, 2, seed) for seed in range(3)]
+    sides = [[1000 * number + k for k in range(9)] for number in range(3)]
+    sources = {f"in{n}": beats(sent[n], 2, sides[n]) for n in range(3)}
+    seen = bench.run(sources, {"out": 27}, stalls=Stalls(0.3))
+    came = [[] for _ in sent]
+    for (side,) in seen.sides["out"]:
+        came[side & 3].append(side >> 2)
+    assert came == sides
 
 
 def some(count, bus_bytes, seed, sizes=(1, 2, 5)):

@@ -71,6 +71,23 @@ def test_latency_is_a_cycle_and_no_cycle_is_lost():
     assert left == ends
 
 
+def test_what_comes_beside_a_packet_leaves_beside_it():
+    router = PacketRouter(2, 3, side_bits=20)
+    side = Cat(router.topic, router.side_in)
+    bench = PacketBench(
+        router,
+        {"in": with_side(router.packets_in, side)},
+        {f"out{k}": (port, 2, router.side_out) for k, port in enumerate(router.packets_out)},
+    )
+    packets, topics = some(30, 2, 1), [k % 4 for k in range(30)]
+    sides = [topic | (1000 + k) << 16 for k, topic in enumerate(topics)]
+    want = {f"out{k}": topics.count(k) for k in range(3)}
+    seen = bench.run({"in": beats(packets, 2, sides)}, want, stalls=Stalls(0.3))
+    for output in range(3):
+        want = [{1000 + k} for k, topic in enumerate(topics) if topic == output]
+        assert seen.sides[f"out{output}"] == want
+
+
 def test_an_arbiter_and_a_router_are_the_reverse_of_each_other():
     m = Module()
     m.submodules.arbiter = arbiter = PacketArbiter(4, 3)

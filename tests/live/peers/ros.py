@@ -10,7 +10,7 @@ import time
 
 import rclpy
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from sensor_msgs.msg import Imu
+from sensor_msgs.msg import Imu, PointCloud2, PointField
 from std_msgs.msg import String, UInt8MultiArray
 from std_srvs.srv import SetBool
 
@@ -49,9 +49,23 @@ def block(number, size):
     )
 
 
+def cloud(number, size):
+    message = PointCloud2(height=1, width=size // 16, point_step=16, row_step=size // 16 * 16)
+    message.header.stamp.sec = number
+    message.header.frame_id = "lidar"
+    message.fields = [
+        PointField(name=name, offset=4 * at, datatype=PointField.FLOAT32, count=1)
+        for at, name in enumerate(["x", "y", "z", "intensity"])
+    ]
+    message.data = (number.to_bytes(4, "little") * 4) * (size // 16)
+    message.is_dense = True
+    return message
+
+
 def message_of(options, number):
     return {
         "imu": lambda: imu(number),
+        "cloud": lambda: cloud(number, options.get("bytes", 0)),
         "block": lambda: block(number, options.get("bytes", 0)),
         "string": lambda: String(data=f"m{number}"),
     }[options["type"]]()
@@ -59,7 +73,7 @@ def message_of(options, number):
 
 def number_of(options, message):
     """Return the number of a message, or -1 if its content is not what that number's has to be."""
-    if options["type"] == "imu":
+    if options["type"] in ("imu", "cloud"):
         number = message.header.stamp.sec
     elif options["type"] == "block":
         number = message.data[0] if message.data else -1
@@ -68,7 +82,7 @@ def number_of(options, message):
     return number if message == message_of(options, number) else -1
 
 
-TYPES = {"imu": Imu, "block": UInt8MultiArray, "string": String}
+TYPES = {"imu": Imu, "cloud": PointCloud2, "block": UInt8MultiArray, "string": String}
 
 
 def publish(node, options):
@@ -90,6 +104,49 @@ def publish(node, options):
     while time.monotonic() < end:
         rclpy.spin_once(node, timeout_sec=0.1)
     return say(sent=len(messages))
+
+
+def trip(node, options):
+    """Publish on several topics at once, and take what comes back on others.
+
+    Numbers of messages are those of this process: each has to come back with equal values.
+    """
+    numbers = [[] for _ in options["topics"]]
+    publishers, messages, due = [], [], []
+    for got, each in zip(numbers, options["topics"], strict=True):
+        kind, qos = TYPES[each["type"]], qos_of(each)
+        publishers.append(node.create_publisher(kind, each["to"], qos))
+        messages.append([message_of(each, n) for n in range(each["count"])])
+
+        def take(message, got=got, each=each):
+            got.append(number_of(each, message))
+
+        node.create_subscription(kind, each["back"], take, qos)
+    say(ready=True)
+    end = time.monotonic() + options.get("patience", 60)
+    while not all(
+        publisher.get_subscription_count() and node.count_publishers(each["back"])
+        for publisher, each in zip(publishers, options["topics"], strict=True)
+    ):
+        if time.monotonic() > end:
+            return say(failed="no bridge")
+        rclpy.spin_once(node, timeout_sec=0.02)
+    time.sleep(options.get("settle", 1))
+    say(begins=True)
+    begin = time.monotonic()
+    for index, each in enumerate(options["topics"]):
+        due += [(begin + n * each["period"], index, n) for n in range(each["count"])]
+    for at, index, number in sorted(due):
+        while (left := at - time.monotonic()) > 0:
+            rclpy.spin_once(node, timeout_sec=left)
+        publishers[index].publish(messages[index][number])
+    seconds = time.monotonic() - begin
+    end = time.monotonic() + options.get("linger", 10)
+    while time.monotonic() < end and any(
+        len(got) < each["count"] for got, each in zip(numbers, options["topics"], strict=True)
+    ):
+        rclpy.spin_once(node, timeout_sec=0.1)
+    return say(numbers=numbers, seconds=seconds)
 
 
 def subscribe(node, options):
@@ -187,6 +244,7 @@ if __name__ == "__main__":
     node = rclpy.create_node(options.get("own", "peer"))
     {
         "publish": publish,
+        "trip": trip,
         "subscribe": subscribe,
         "graph": graph,
         "gone": gone,

@@ -1,0 +1,96 @@
+"""The command ``node``: designs with several topics behind one link."""
+
+from __future__ import annotations
+
+import argparse
+
+from firm_hdl.arguments import add_path, number_between
+
+__all__ = ["add_node"]
+
+
+def add_node(command: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``firm-hdl node``."""
+    command.add_argument(
+        "action",
+        choices=["info", "build", "run"],
+        help="info: print topics, ids, cycles, clocks, memory and area; build: write the design; "
+        "run: join a board, or the design in simulation, with a graph of ROS",
+    )
+    command.add_argument("file", metavar="FILE", help="description of a node; see docs/node.md")
+    add_path(command)
+    command.add_argument(
+        "--out", default="node_out", help="folder that build writes to (%(default)s)"
+    )
+    command.add_argument("--force", action="store_true", help="also write a folder that is current")
+    command.add_argument(
+        "--board",
+        default="sim",
+        metavar="BOARD",
+        help="for run: sim, udp://HOST[:PORT], tcp://HOST:PORT or serial:///dev/DEVICE[?baud=RATE] "
+        "(%(default)s)",
+    )
+    command.add_argument(
+        "--graph",
+        choices=["ros2", "ros1", "rtps", "none"],
+        help="for run: ros2 is rclpy if an environment of ROS 2 is active, else rtps; rtps needs "
+        "no ROS; ros1 is rospy; none: lines of JSON (default: by the distro)",
+    )
+    command.add_argument("--domain", type=_domain, help="for run: domain of ROS 2 (ROS_DOMAIN_ID)")
+    command.add_argument("--interface", help="for run: network interface of rtps, such as lo")
+    command.add_argument(
+        "--seconds", type=_seconds, help="for run: end after so long (default: at Ctrl-C)"
+    )
+    command.add_argument(
+        "--engine",
+        choices=["auto", "cxxrtl", "amaranth"],
+        default="auto",
+        help="for run --board sim: compiled by CXXRTL, or Amaranth's slow simulator (%(default)s: "
+        "the former if there is a C++ compiler)",
+    )
+    command.add_argument("--quiet", action="store_true", help="for run: print no figures")
+    command.set_defaults(run=_node)
+
+
+def _domain(text: str) -> int:
+    return number_between(text, 0, 232)
+
+
+def _seconds(text: str) -> float:
+    try:
+        found = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+    if not 0 < found < float("inf"):
+        raise argparse.ArgumentTypeError(f"must be above 0, not {text}")
+    return found
+
+
+def _node(args: argparse.Namespace) -> None:
+    from firm_hdl.node import read_description
+
+    description = read_description(args.file, paths=args.path)
+    if args.action == "run":
+        from firm_hdl.node.bridge.command import run_bridge
+
+        run_bridge(
+            description,
+            args.board,
+            graph=args.graph,
+            domain=args.domain,
+            interface=args.interface,
+            seconds=args.seconds,
+            engine=args.engine,
+            quiet=args.quiet,
+        )
+        return
+    from firm_hdl.node.summary import summary
+
+    if args.action == "build":
+        from firm_hdl.node.build import build_node
+
+        built = build_node(description, args.out, force=args.force)
+        print(f"{'current' if built.was_current else 'wrote':8}{built.folder}", flush=True)
+        for old, new in sorted(built.renamed.items()):
+            print(f"        your file {old} is now {new}", flush=True)
+    print(summary(description))

@@ -1,0 +1,136 @@
+# amaranth: UnusedElaboratable=no
+"""The accelerator of a node: its class is found, made, and its ports are matched."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In
+
+from firm_hdl.errors import DefinitionError, Diagnostic, UserError
+from firm_hdl.node.description import Description
+from firm_hdl.node.gateware.converters import message_groups
+from firm_hdl.node.gateware.streams import time_layout
+
+__all__ = ["accelerator_signature", "check_accelerator", "load_accelerator", "other_members"]
+
+OF_THE_NODE = ("subscribe", "publish", "serve", "time")
+
+
+def accelerator_signature(description: Description, **others: wiring.Member) -> wiring.Signature:
+    """Return the ports of an accelerator for a description.
+
+    Parameters
+    ----------
+    others : members
+        More members, such as pins; they come out of the node as `io`.
+
+    Returns
+    -------
+    Signature
+        `subscribe`, `publish` and `serve` with a member for each topic, as far as the description
+        has such topics, and `time`, the clock of the node.
+    """
+    groups = {name: In(group) for name, group in message_groups(description).items()}
+    return wiring.Signature({**groups, "time": In(time_layout()), **others})
+
+
+def load_accelerator(description: Description) -> Any:
+    """Make the accelerator that a description names: its class is called with the description.
+
+    The module is searched in the folder of the description first, then where Python searches.
+
+    Raises
+    ------
+    DefinitionError
+        At the name in the description, if there is no such module or class, or it cannot be made,
+        or its ports do not match.
+    """
+    module, _, path = description.accelerator.partition(":")
+    try:
+        with _searched_first(description.folder):
+            found: Any = importlib.import_module(module)
+    except ImportError as error:
+        raise _refused(description, f"cannot import '{module}': {error}") from None
+    except Exception as error:
+        raise _refused(description, f"'{module}' {_raised(error)}") from None
+    for name in path.split("."):
+        if not hasattr(found, name):
+            raise _refused(description, f"'{module}' has no '{path}'")
+        found = getattr(found, name)
+    try:
+        accelerator = found(description)
+    except Exception as error:
+        raise _refused(description, f"'{description.accelerator}' {_raised(error)}") from None
+    try:
+        check_accelerator(description, accelerator)
+    except UserError as error:
+        raise _refused(description, str(error)) from None
+    return accelerator
+
+
+def check_accelerator(description: Description, accelerator: Any) -> None:
+    """Check that the ports of an accelerator are those of a description.
+
+    Raises
+    ------
+    UserError
+        If a member is missing, or has another shape or direction.
+    """
+    signature = getattr(accelerator, "signature", None)
+    if not isinstance(signature, wiring.Signature):
+        raise UserError("an accelerator is a component of amaranth.lib.wiring")
+    wanted = accelerator_signature(description)
+    found = signature.members
+    for name, member in wanted.members.items():
+        if name == "time":
+            # Who does not stamp messages needs no clock.
+            if name in found and found[name] != member:
+                raise UserError("the accelerator's 'time' must be In(time_layout())")
+            continue
+        if name not in found or not found[name].is_signature:
+            raise UserError(f"the accelerator has no '{name}' with the ports of its topics")
+        # Members of a signature that is an input are those of the flipped one.
+        ports = found[name].signature.members
+        for port, topic in member.signature.members.items():
+            if port not in ports:
+                raise UserError(f"the accelerator has no '{name}.{port}'")
+            if ports[port] != topic:
+                raise UserError(
+                    f"the accelerator's '{name}.{port}' is {ports[port]!r}, and should be {topic!r}"
+                )
+        if more := sorted(set(ports) - set(member.signature.members)):
+            raise UserError(f"the description has no topic for '{name}.{more[0]}'")
+
+
+def other_members(accelerator: Any) -> dict[str, wiring.Member]:
+    """Return the members of an accelerator that are not of the node, such as pins."""
+    members = accelerator.signature.members
+    return {name: member for name, member in members.items() if name not in OF_THE_NODE}
+
+
+@contextmanager
+def _searched_first(folder: str) -> Iterator[None]:
+    before = list(sys.path)
+    sys.path.insert(0, folder or ".")
+    try:
+        yield
+    finally:
+        sys.path[:] = before
+
+
+def _raised(error: Exception) -> str:
+    """Say what went wrong in the user's code, and where."""
+    frames = traceback.extract_tb(error.__traceback__)
+    place = f" at {frames[-1].filename}:{frames[-1].lineno}" if len(frames) > 1 else ""
+    return f"raised {type(error).__name__}{place}: {error}"
+
+
+def _refused(description: Description, message: str) -> DefinitionError:
+    return DefinitionError([Diagnostic(message=message, span=description.accelerator_span)])

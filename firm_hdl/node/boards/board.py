@@ -1,0 +1,90 @@
+"""What a bridge needs of a board: frames out, frames in, and something to wait for."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections import Counter
+from collections.abc import Sequence
+
+__all__ = ["Board", "BoardError"]
+
+
+class BoardError(Exception):
+    """A board cannot be opened, or is gone; the text says why. Opening it again may help."""
+
+
+class Board(ABC):
+    """A way to a node.
+
+    Nothing blocks but :meth:`open` and :meth:`close`. A board is used from one thread.
+
+    Attributes
+    ----------
+    name : str
+        As the user named it.
+    frame_bytes : int or None
+        Most bytes of a frame, header included. `None`: no limit.
+    sample_seconds : float
+        How often the time of the node is compared with that of the host.
+    counters : Counter of str
+        What the way itself lost, by cause: ``damaged`` and ``large`` frames, ``full`` for messages
+        that found no room in what waits to be sent. They go on when the board is opened again.
+    """
+
+    sample_seconds = 1.0
+
+    def __init__(self, name: str, frame_bytes: int | None = None) -> None:
+        self.name = name
+        self.frame_bytes = frame_bytes
+        self.counters: Counter[str] = Counter()
+
+    @abstractmethod
+    def open(self) -> None:
+        """Open the way; a way that is open is closed first.
+
+        Raises
+        ------
+        BoardError
+        """
+
+    @abstractmethod
+    def fileno(self) -> int:
+        """Return the file descriptor that can be read when frames have come."""
+
+    @property
+    def waits_to_send(self) -> bool:
+        """Whether :meth:`flush` has something to do once the file descriptor can be written to."""
+        return False
+
+    @abstractmethod
+    def send(self, frames: Sequence[bytes]) -> bool:
+        """Send the frames of one message, or none of them.
+
+        Returns
+        -------
+        bool
+            Whether they were taken; if not, they are counted.
+
+        Raises
+        ------
+        BoardError
+            If the board is gone.
+        """
+
+    def flush(self) -> None:
+        """Send what waits, as far as possible without blocking; raises as :meth:`send`."""
+        return
+
+    @abstractmethod
+    def receive(self) -> list[bytes]:
+        """Take the frames that have come; none is no error.
+
+        Raises
+        ------
+        BoardError
+            If the board is gone.
+        """
+
+    @abstractmethod
+    def close(self) -> None:
+        """Close the way. May be called at any time, and again."""

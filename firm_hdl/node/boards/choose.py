@@ -1,0 +1,75 @@
+"""Make a board of what a user names."""
+
+from __future__ import annotations
+
+from typing import Any
+from urllib.parse import SplitResult, parse_qsl, urlsplit
+
+from firm_hdl.errors import UserError
+from firm_hdl.node.boards.board import Board
+from firm_hdl.node.boards.bytestreams import BAUD_RATES, SerialBoard, TcpBoard
+from firm_hdl.node.boards.udp import UdpBoard
+from firm_hdl.node.description import Description
+
+__all__ = ["BOARD_FORMS", "board_of"]
+
+BOARD_FORMS = "sim, udp://HOST[:PORT], tcp://HOST:PORT, serial:///dev/DEVICE[?baud=RATE]"
+"""The forms of names of boards."""
+
+
+def board_of(name: str, description: Description, **simulation: Any) -> Board:
+    """Make a board, which is not yet open.
+
+    Parameters
+    ----------
+    name : str
+        One of `BOARD_FORMS`. Port and rate are by default those of the description's link.
+    simulation
+        Further parameters of a :class:`.SimulatedBoard`.
+
+    Raises
+    ------
+    UserError
+        If the name has another form, or a simulation is not possible.
+    """
+    if name == "sim":
+        # Amaranth takes seconds to import, and a host of a real board does not need it.
+        from firm_hdl.node.boards.simulated import SimulatedBoard
+
+        return SimulatedBoard(description, **simulation)
+    url = urlsplit(name)
+    link = description.link
+    match url.scheme:
+        case "udp":
+            default = link.port if link.kind == "udp" else None
+            return UdpBoard(name, *_address(name, url, default), link.datagram_bytes)
+        case "tcp":
+            return TcpBoard(name, *_address(name, url, None))
+        case "serial":
+            return SerialBoard(name, *_device(name, url, link.baud))
+    raise UserError(f"'{name}' is no board; boards are {BOARD_FORMS}")
+
+
+def _address(name: str, url: SplitResult, default: int | None) -> tuple[str, int]:
+    try:
+        port = url.port or default
+    except ValueError:
+        raise UserError(f"'{name}' has no port from 1 to 65535") from None
+    if not url.hostname or url.path not in ("", "/") or url.query:
+        raise UserError(f"'{name}' is not {url.scheme}://HOST:PORT")
+    if port is None:
+        raise UserError(f"'{name}' needs a port, such as {url.scheme}://{url.hostname}:7411")
+    return url.hostname, port
+
+
+def _device(name: str, url: SplitResult, baud: int) -> tuple[str, int]:
+    if url.netloc or not url.path:
+        raise UserError(f"'{name}' is not serial:///dev/DEVICE, with three '/'")
+    for key, value in parse_qsl(url.query, keep_blank_values=True):
+        if key != "baud" or not value.isdigit():
+            raise UserError(f"'{name}' has an option other than 'baud=RATE'")
+        baud = int(value)
+    if baud not in BAUD_RATES:
+        rates = ", ".join(str(rate) for rate in sorted(BAUD_RATES) if rate >= 9600)
+        raise UserError(f"this system has no rate of {baud} baud; it has {rates}")
+    return url.path, baud

@@ -1,0 +1,106 @@
+# amaranth: UnusedElaboratable=no
+"""The node in simulation, in place of a board."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from firm_hdl.errors import UserError
+from firm_hdl.node.boards.board import Board, BoardError
+from firm_hdl.node.description import Description, Link
+from firm_hdl.node.node import Node
+from firm_hdl.sim.fast import BuildError, EngineName, FastSimulation, SimulationError
+from firm_hdl.sim.fast.ports import ports_of
+
+__all__ = ["SimulatedBoard"]
+
+_IN, _OUT = "link.frames_in", "link.frames_out"
+
+
+class SimulatedBoard(Board):
+    """A node that runs live in a :class:`.FastSimulation`, as fast as the engine can.
+
+    The node has the link `stream`, whatever the description says: a frame is a packet, and the
+    signals of a medium are not simulated. Core, gates, converters and accelerator are those of the
+    hardware. The clock of a simulation is slower than that of the board, and slower still while
+    nothing comes, so the time of the node is set several times per second.
+
+    Parameters
+    ----------
+    description : Description
+        With an accelerator.
+    accelerator : component class or None
+        Called with the description for an accelerator in place of the one that is named there.
+    engine : {"auto", "cxxrtl", "amaranth"}
+
+    Raises
+    ------
+    DefinitionError, UserError
+        If the description has no accelerator, or one that cannot be used.
+    """
+
+    sample_seconds = 0.1
+
+    def __init__(
+        self, description: Description, *, accelerator: Any = None, engine: EngineName = "auto"
+    ) -> None:
+        super().__init__("sim")
+        if accelerator is None and not description.accelerator:
+            raise UserError(
+                "a simulated board needs an 'accelerator' in the description of the node: without "
+                "one, nothing takes its messages"
+            )
+        self._description = replace(description, link=Link(kind="stream"))
+        self._accelerator, self._engine = accelerator, engine
+        self._simulation: FastSimulation | None = None
+
+    @property
+    def engine(self) -> str:
+        """The engine that runs; empty before the board is open."""
+        return self._simulation.engine if self._simulation else ""
+
+    def open(self) -> None:
+        """Elaborate the node, compile it unless that was done before, and let it run."""
+        self.close()
+        make = self._accelerator
+        node = Node(self._description, make(self._description) if make else None)
+        outputs = (each.name for each in ports_of(node).streams if not each.is_input)
+        ignored = [name for name in outputs if name != _OUT]
+        try:
+            self._simulation = FastSimulation(node, engine=self._engine, ignored=ignored)
+            self._simulation.go_live()
+        except BuildError as error:
+            raise UserError(str(error)) from None
+        except SimulationError as error:
+            raise BoardError(str(error)) from None
+
+    def fileno(self) -> int:
+        try:
+            return self._running().fileno()
+        except SimulationError as error:
+            raise BoardError(str(error)) from None
+
+    def send(self, frames: Sequence[bytes]) -> bool:
+        try:
+            self._running().send_packets(_IN, frames)
+        except SimulationError as error:
+            raise BoardError(str(error)) from None
+        return True
+
+    def receive(self) -> list[bytes]:
+        try:
+            return self._running().receive_packets(_OUT)
+        except SimulationError as error:
+            raise BoardError(str(error)) from None
+
+    def close(self) -> None:
+        if self._simulation is not None:
+            self._simulation.close()
+            self._simulation = None
+
+    def _running(self) -> FastSimulation:
+        if self._simulation is None:
+            raise BoardError("the simulation is closed")
+        return self._simulation

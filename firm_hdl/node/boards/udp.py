@@ -1,0 +1,99 @@
+"""A board behind UDP: a datagram is a frame."""
+
+from __future__ import annotations
+
+import errno
+import socket
+from collections.abc import Sequence
+
+from firm_hdl.node.boards.board import Board, BoardError
+
+__all__ = ["UdpBoard"]
+
+_MOST_DATAGRAM = 65_535
+_BUFFER_BYTES = 1 << 22
+_MOST_AT_ONCE = 256
+# What the network says of one datagram, such as that nobody listens there (ICMP). Others follow.
+_PASSING = (errno.ECONNREFUSED, errno.EHOSTUNREACH, errno.ENETUNREACH, errno.EHOSTDOWN)
+
+
+class UdpBoard(Board):
+    """A board with the link `udp`.
+
+    Nothing tells that such a board is gone; a bridge notices that it does not answer.
+
+    Parameters
+    ----------
+    name : str
+    host, port
+        Address of the board; datagrams of others are ignored.
+    frame_bytes : int
+        Most bytes of a datagram's payload: a multiple of 16.
+    """
+
+    def __init__(self, name: str, host: str, port: int, frame_bytes: int) -> None:
+        super().__init__(name, frame_bytes)
+        self._address = (host, port)
+        self._socket: socket.socket | None = None
+
+    def open(self) -> None:
+        self.close()
+        found = None
+        try:
+            family, kind, proto, _, address = socket.getaddrinfo(
+                *self._address, type=socket.SOCK_DGRAM
+            )[0]
+            found = socket.socket(family, kind, proto)
+            found.setblocking(False)
+            # A message may be many datagrams. The system may give less.
+            for option in (socket.SO_RCVBUF, socket.SO_SNDBUF):
+                found.setsockopt(socket.SOL_SOCKET, option, _BUFFER_BYTES)
+            found.connect(address)
+        except OSError as error:
+            if found is not None:
+                found.close()
+            raise BoardError(f"cannot reach {self.name}: {error.strerror or error}") from None
+        self._socket = found
+
+    def fileno(self) -> int:
+        return self._opened().fileno()
+
+    def send(self, frames: Sequence[bytes]) -> bool:
+        own = self._opened()
+        for frame in frames:
+            try:
+                own.send(frame)
+            except BlockingIOError:
+                self.counters["full"] += 1
+                return False
+            except OSError as error:
+                self._judge(error)
+                return False
+        return True
+
+    def receive(self) -> list[bytes]:
+        own, frames = self._opened(), []
+        for _ in range(_MOST_AT_ONCE):
+            try:
+                frames.append(own.recv(_MOST_DATAGRAM))
+            except BlockingIOError:
+                break
+            except OSError as error:
+                self._judge(error)
+        return frames
+
+    def close(self) -> None:
+        if self._socket is not None:
+            self._socket.close()
+            self._socket = None
+
+    def _judge(self, error: OSError) -> None:
+        """Count what concerns one datagram; anything else ends the board."""
+        if error.errno not in _PASSING:
+            raise BoardError(f"{self.name}: {error.strerror or error}") from None
+        self.counters["unreachable"] += 1
+
+    def _opened(self) -> socket.socket:
+        if self._socket is None:
+            raise BoardError(f"{self.name} is closed")
+        return self._socket

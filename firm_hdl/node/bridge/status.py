@@ -1,0 +1,101 @@
+"""The line that says how a bridge does, and the account at its end."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import TextIO
+
+from firm_hdl.node.bridge.bridge import Bridge
+from firm_hdl.node.bridge.counters import summary_lines
+
+__all__ = ["Status", "account", "status_line"]
+
+_LOG_SECONDS = 10.0
+"""How often the line is printed where it cannot be replaced."""
+
+
+class Status:
+    """Print what happens, and a line of figures.
+
+    On a terminal, the line is replaced each second. Elsewhere, it is printed every 10 s.
+
+    Parameters
+    ----------
+    stream : text file
+    quiet : bool
+        Print no line of figures.
+    """
+
+    def __init__(self, stream: TextIO, *, quiet: bool = False) -> None:
+        self._stream, self._quiet = stream, quiet
+        self._replaces = stream.isatty()
+        self._width = 0
+        self._before: tuple[float, int, int] | None = None
+        self._next = 0.0 if self._replaces else time.monotonic() + _LOG_SECONDS
+
+    def report(self, text: str) -> None:
+        """Print a line that stays."""
+        self._print(text, "\n")
+
+    def show(self, bridge: Bridge) -> None:
+        """Print the line of figures if it is due."""
+        now = time.monotonic()
+        if self._quiet or now < self._next:
+            return
+        self._next = now + (0.0 if self._replaces else _LOG_SECONDS)
+        sums = (bridge.counters.to_board.total(), bridge.counters.to_graph.total())
+        before = self._before or (now, *sums)
+        self._before = (now, *sums)
+        seconds = max(now - before[0], 1e-9)
+        rates = tuple((sums[n] - before[n + 1]) / seconds for n in (0, 1))
+        self._print(status_line(bridge, rates), "" if self._replaces else "\n")
+
+    def _print(self, text: str, end: str) -> None:
+        head = "\r" if self._width else ""
+        print(f"{head}{text.ljust(self._width)}", end=end, file=self._stream, flush=True)
+        self._width = 0 if end else len(text)
+
+
+def status_line(bridge: Bridge, rates: tuple[float, ...]) -> str:
+    """Return the line of figures.
+
+    Parameters
+    ----------
+    rates : pair of float
+        Messages per second to the board, and to the graph.
+    """
+    dropped = bridge.counters.dropped.total()
+    parts = [
+        f"{bridge.description.node}",
+        "ready" if bridge.is_ready else "no board",
+        f"to board {rates[0]:.0f}/s",
+        f"to graph {rates[1]:.0f}/s",
+        f"dropped {dropped + sum(value for _, value in _drops(bridge))}",
+    ]
+    session = bridge.session
+    if session is not None and session.latency is not None:
+        parts.append(f"round trip {1000 * session.latency:.2f} ms")
+    if session is not None and session.offset_ns is not None:
+        parts.append(f"clock {session.offset_ns / 1000:+.0f} us")
+    return ", ".join(parts)
+
+
+def account(bridge: Bridge) -> Iterator[str]:
+    """Yield lines about all that was passed, lost and dropped, for the end of a bridge."""
+    yield from summary_lines(bridge.description, bridge.counters)
+    for name, value in _drops(bridge):
+        yield f"dropped: {value} {name}"
+    if bridge.restarts:
+        yield f"the board was started again or lost {bridge.restarts} times"
+
+
+def _drops(bridge: Bridge) -> Iterator[tuple[str, int]]:
+    """Yield the losses that the bridge did not cause, with where they happened."""
+    for name, value in sorted(bridge.on_the_way.items()):
+        yield f"on the way from the board: {name}", value
+    for name, value in sorted(bridge.graph.counters.items()):
+        if value:
+            yield f"in the graph: {name}", value
+    for register, value in bridge.last_drops:
+        yield f"on the board, {register.owner} {register.part}: {register.name}", value

@@ -1,0 +1,243 @@
+"""Control messages: the host reads registers of the node, and sets its clock.
+
+A request and its response have 16 bytes each, and travel with topic 0 and a tag, as those of a
+service do. Each response has the time of the node, so any request also measures the distance of the
+clocks. Formats, operations and registers are data here, from which host and gateware are made.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Literal
+
+from firm_hdl.node.description import Description
+
+__all__ = [
+    "CONTROL_BYTES",
+    "COUNTERS_FROM",
+    "GATE_COUNTERS",
+    "IDENTITY",
+    "LINK_COUNTERS",
+    "RATE_FRACTION_BITS",
+    "REQUEST",
+    "RESPONSE",
+    "ControlField",
+    "ControlRequest",
+    "ControlResponse",
+    "Operation",
+    "Register",
+    "Result",
+    "nominal_rate",
+    "registers",
+]
+
+CONTROL_BYTES = 16
+
+RATE_FRACTION_BITS = 22
+"""The rate of the clock is nanoseconds per cycle, with so many bits after the point: steps of
+0.24 fs, or 24 parts per billion at 100 MHz."""
+
+
+class Operation(IntEnum):
+    """What a request asks for.
+
+    Members
+    -------
+    READ
+        The value of the register with the number `argument`.
+    SET_TIME
+        The clock continues from `seconds` and `nanoseconds`.
+    SET_RATE
+        In each cycle, the clock advances by `argument` in steps of ``2**-22`` ns.
+    """
+
+    READ = 1
+    SET_TIME = 2
+    SET_RATE = 3
+
+
+class Result(IntEnum):
+    """What became of a request.
+
+    Members
+    -------
+    OK
+        It was done.
+    OPERATION
+        There is no such operation, or the request has not 16 bytes.
+    ARGUMENT
+        There is no such register, or the nanoseconds are not below a second.
+    """
+
+    OK = 0
+    OPERATION = 1
+    ARGUMENT = 2
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlField:
+    """A field of a control message: its name and its bytes; fields follow without gaps."""
+
+    name: str
+    bytes: int
+
+
+REQUEST = (
+    ControlField(name="operation", bytes=1),
+    ControlField(name="reserved", bytes=3),
+    ControlField(name="argument", bytes=4),
+    ControlField(name="seconds", bytes=4),
+    ControlField(name="nanoseconds", bytes=4),
+)
+"""The fields of a request."""
+
+RESPONSE = (
+    ControlField(name="operation", bytes=1),
+    ControlField(name="result", bytes=1),
+    ControlField(name="reserved", bytes=2),
+    ControlField(name="value", bytes=4),
+    ControlField(name="seconds", bytes=4),
+    ControlField(name="nanoseconds", bytes=4),
+)
+"""The fields of a response. `value` is that of the register, else 0; the time is the node's, in the
+cycle in which the request was done, and before a `SET_TIME`."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlRequest:
+    """A request. See `Operation` for the meaning of the numbers."""
+
+    operation: int
+    argument: int = 0
+    seconds: int = 0
+    nanoseconds: int = 0
+
+    def encode(self) -> bytes:
+        """Write the request; a number that does not fit raises an `OverflowError`."""
+        return b"".join(
+            getattr(self, each.name, 0).to_bytes(each.bytes, "little") for each in REQUEST
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlResponse:
+    """A response.
+
+    Attributes
+    ----------
+    operation : int
+        That of the request.
+    result : Result
+    value : int
+    seconds, nanoseconds : int
+        Time of the node.
+    """
+
+    operation: int
+    result: Result
+    value: int
+    seconds: int
+    nanoseconds: int
+
+    @classmethod
+    def decode(cls, data: bytes) -> ControlResponse:
+        """Read a response.
+
+        Raises
+        ------
+        ValueError
+            If the bytes are none.
+        """
+        if len(data) != CONTROL_BYTES:
+            raise ValueError(f"a response has {CONTROL_BYTES} bytes, not {len(data)}")
+        values, at = {}, 0
+        for each in RESPONSE:
+            values[each.name] = int.from_bytes(data[at : at + each.bytes], "little")
+            at += each.bytes
+        return cls(
+            operation=values["operation"],
+            result=Result(values["result"]),
+            value=values["value"],
+            seconds=values["seconds"],
+            nanoseconds=values["nanoseconds"],
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Register:
+    """A register that a host can read: 32 bits.
+
+    Attributes
+    ----------
+    number : int
+    owner : str
+        ``node``, ``link``, or the complete name of a topic.
+    part : "identity", "link", "node", "in" or "out"
+    name : str
+        A counter of two registers has ``_low`` and ``_high`` at the end of their names.
+    topic : int
+        Id of the topic; 0 for others.
+    """
+
+    number: int
+    owner: str
+    part: Literal["identity", "link", "node", "in", "out"]
+    name: str
+    topic: int = 0
+
+
+IDENTITY = ("version", "fingerprint_low", "fingerprint_high", "topics", "clock_hz", "rate")
+"""Registers that tell what the node is: the version of the frame, the fingerprint of the
+description, the number of topics, the frequency of the clock, and the rate that is set."""
+
+COUNTERS_FROM = 16
+"""The number of the first counter."""
+
+LINK_COUNTERS = ("passed", "lost", "late", "cut", "stray", "malformed", "full", "large", "unsent")
+"""Counters of every link; those that it has no use for stay 0."""
+
+NODE_COUNTERS = ("unknown", "control", "control_full")
+"""Messages of topics that the node does not have; control requests; those without room."""
+
+GATE_COUNTERS = (
+    *("passed", "truncated", "trailing", "length", "encapsulation", "string"),
+    *("full", "large", "overrun"),
+)
+"""Counters of packets from the host, as :class:`firm_hdl.PacketGate` has them."""
+
+FIFO_COUNTERS = ("passed", "aborted", "full", "large")
+"""Counters of packets to the host, as :class:`firm_hdl.PacketFifo` has them."""
+
+_BYTES = ("bytes_low", "bytes_high")
+"""Bytes of the packets that passed, as two registers."""
+
+
+def registers(description: Description) -> tuple[Register, ...]:
+    """List all registers of a node, in the order of their numbers."""
+    found = [
+        Register(number=number, owner="node", part="identity", name=name)
+        for number, name in enumerate(IDENTITY)
+    ]
+
+    def add(owner: str, part: Literal["link", "node", "in", "out"], name: str, topic: int) -> None:
+        number = COUNTERS_FROM + len(found) - len(IDENTITY)
+        found.append(Register(number=number, owner=owner, part=part, name=name, topic=topic))
+
+    for name in LINK_COUNTERS:
+        add("link", "link", name, 0)
+    for name in NODE_COUNTERS:
+        add("node", "node", name, 0)
+    for topic in description.topics:
+        if topic.store("in") is not None:
+            for name in (*GATE_COUNTERS, *_BYTES):
+                add(topic.name, "in", name, topic.id)
+        if topic.store("out") is not None:
+            for name in (*FIFO_COUNTERS, *_BYTES):
+                add(topic.name, "out", name, topic.id)
+    return tuple(found)
+
+
+def nominal_rate(clock_hz: float) -> int:
+    """Return the rate of a clock of that frequency, as `SET_RATE` takes it."""
+    return round(1e9 / clock_hz * (1 << RATE_FRACTION_BITS))

@@ -1,0 +1,238 @@
+"""The description of a node, as frozen values: what a file says, checked and completed.
+
+:mod:`firm_hdl.node.reading` makes one of a file; ``docs/node.md`` describes the file. Every other
+part of :mod:`firm_hdl.node` starts from here, and decides nothing again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+from firm_hdl.errors import Span
+from firm_hdl.model import Message, Wire
+
+__all__ = [
+    "CONTROL_TOPIC",
+    "LINKS",
+    "Description",
+    "Direction",
+    "Kind",
+    "Link",
+    "Qos",
+    "Store",
+    "Topic",
+]
+
+Kind: TypeAlias = Literal["subscribe", "publish", "serve"]
+"""What the node does with a topic; `serve` is a service, of which the node is the server."""
+
+Direction: TypeAlias = Literal["in", "out"]
+"""The way of packets: `in` from the host to the node, `out` from the node to the host."""
+
+LinkKind: TypeAlias = Literal["stream", "udp", "uart"]
+
+LINKS: tuple[LinkKind, ...] = ("stream", "udp", "uart")
+"""All links."""
+
+CONTROL_TOPIC = 0
+"""The id of control messages. Topics are numbered from 1 on."""
+
+DATAGRAM_BYTES = 1472
+"""Payload of the largest datagram that fits into a frame of Ethernet: 1500 bytes, less 20 for the
+header of IPv4 (RFC 791) and 8 for that of UDP (RFC 768)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Qos:
+    """The quality of service that the host asks ROS for. The hardware does not depend on it.
+
+    Attributes
+    ----------
+    reliability : "reliable" or "best_effort"
+    durability : "volatile" or "transient_local"
+        In ROS 1, `transient_local` is a latched topic.
+    history : "keep_last" or "keep_all"
+    depth : int
+        Messages that are kept; the size of the queue in ROS 1.
+    """
+
+    reliability: Literal["reliable", "best_effort"] = "reliable"
+    durability: Literal["volatile", "transient_local"] = "volatile"
+    history: Literal["keep_last", "keep_all"] = "keep_last"
+    depth: int = 10
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Store:
+    """The packets of one message type in one direction, and the memory in which they wait.
+
+    Attributes
+    ----------
+    message : Message
+    max_message_bytes : int
+        As for :class:`firm_hdl.Deserializer`.
+    memory_bytes, packets, when_full
+        As for :class:`firm_hdl.PacketFifo`.
+    """
+
+    message: Message
+    max_message_bytes: int
+    memory_bytes: int
+    packets: int
+    when_full: Literal["wait", "drop"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Topic:
+    """A topic or a service of a node.
+
+    Attributes
+    ----------
+    id : int
+        The number that travels in a frame: the place in the description, from 1 on.
+    kind : Kind
+    name : str
+        The complete name, after remappings.
+    written : str
+        The name as the description has it.
+    port : str
+        Name of the member in the circuit.
+    type : str
+        The full name of the type.
+    definition_hash : str
+        SHA-256 of the definitions, as `Library.definition_hash` gives it.
+    stores : tuple of pairs of Direction and Store
+        `in` of a subscription, `out` of a publication, both of a service.
+    qos : Qos
+    rate_hz : float or None
+        Messages per second that the user expects, for the summary.
+    span : Span or None
+        The name in the description.
+    """
+
+    id: int
+    kind: Kind
+    name: str
+    written: str
+    port: str
+    type: str
+    definition_hash: str
+    stores: tuple[tuple[Direction, Store], ...]
+    qos: Qos = Qos()
+    rate_hz: float | None = None
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+    def store(self, direction: Direction) -> Store | None:
+        """Return the packets of a direction; `None` if the topic has none there."""
+        return dict(self.stores).get(direction)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Link:
+    """The link between the node and its host.
+
+    Attributes
+    ----------
+    kind : LinkKind
+    memory_bytes : int
+        Memory in which a message is put together and checked (`udp` and `uart`). The largest
+        message that passes has 16 bytes less.
+    packets : int
+        Most messages in that memory.
+    datagram_bytes : int
+        Most bytes of a datagram's payload, header included (`udp`).
+    data_bytes : int
+        Bytes per cycle at the interface of the core below (`udp`).
+    port : int
+        Port of the node (`udp`).
+    host : str
+        IPv4 address of the host (`udp`). Empty: the one from which the last valid frame came.
+    host_port : int
+        Port of the host (`udp`); counts only with `host`.
+    baud : int
+        Bits per second (`uart`).
+    """
+
+    kind: LinkKind
+    memory_bytes: int = 1 << 14
+    packets: int = 16
+    datagram_bytes: int = DATAGRAM_BYTES
+    data_bytes: int = 1
+    port: int = 7411
+    host: str = ""
+    host_port: int = 7411
+    baud: int = 1_000_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Description:
+    """A node: its name, its topics, its link and its accelerator.
+
+    Attributes
+    ----------
+    node : str
+        Name of the node.
+    namespace : str
+        Complete namespace.
+    distro : str
+    wire : Wire
+    bus_bytes : int
+        Bytes per beat of all packet streams of the node: 1, 2, 4, 8 or 16.
+    clock_hz : float
+        Frequency of the clock, from which the time and the baud rate follow.
+    link : Link
+    topics : tuple of Topic
+        In the order of their ids.
+    accelerator : str
+        ``module:Class``; empty if the message ports come out of the node.
+    folder : str
+        The folder of the file, in which the module of the accelerator is searched, too.
+    """
+
+    node: str
+    namespace: str = "/"
+    distro: str
+    wire: Wire
+    bus_bytes: int = 8
+    clock_hz: float = 100e6
+    link: Link
+    topics: tuple[Topic, ...]
+    accelerator: str = ""
+    folder: str = field(default="", compare=False)
+    accelerator_span: Span | None = field(default=None, compare=False, repr=False)
+
+    def of_kind(self, kind: Kind) -> tuple[Topic, ...]:
+        """Return the topics of a kind, in the order of their ids."""
+        return tuple(topic for topic in self.topics if topic.kind == kind)
+
+    def received(self) -> Iterator[tuple[Topic, Store]]:
+        """Yield the topics whose packets come from the host, and how they are stored."""
+        return self._stores("in")
+
+    def sent(self) -> Iterator[tuple[Topic, Store]]:
+        """Yield the topics whose packets go to the host, and how they are stored."""
+        return self._stores("out")
+
+    def _stores(self, direction: Direction) -> Iterator[tuple[Topic, Store]]:
+        for topic in self.topics:
+            store = topic.store(direction)
+            if store is not None:
+                yield topic, store
+
+    @property
+    def fingerprint(self) -> int:
+        """64 bits that tell whether two sides mean the same by the ids of topics.
+
+        They depend on the wire format, and on id, kind, name and definition of every topic. The
+        node answers with them, so that a host finds out that its description is another one.
+        """
+        lines = [f"wire {self.wire}"]
+        for topic in self.topics:
+            lines.append(
+                f"{topic.id} {topic.kind} {topic.name} {topic.type} {topic.definition_hash}"
+            )
+        digest = hashlib.sha256("\n".join(lines).encode()).digest()
+        return int.from_bytes(digest[:8], "little")

@@ -1,0 +1,213 @@
+"""The unit that answers control messages: registers are read, the clock is set."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Cat, Module, Mux, Signal, Value
+from amaranth.lib import data, wiring
+from amaranth.lib.fifo import SyncFIFO
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.gateware import PacketSignature
+from firm_hdl.gateware.packets.counters import add_counters, counters_layout
+from firm_hdl.node.control import CONTROL_BYTES, REQUEST, RESPONSE, ControlField, Operation, Result
+from firm_hdl.node.gateware.counters import READ_CYCLES
+from firm_hdl.node.gateware.streams import TAG_BITS, time_layout
+
+__all__ = ["ControlUnit"]
+
+REQUESTS = 4
+"""Requests that wait. A host sends no more at once."""
+
+
+class ControlUnit(wiring.Component):
+    """Answer requests of the host, in order.
+
+    A request takes about 10 cycles. While 4 requests wait, others are dropped and counted.
+
+    Parameters
+    ----------
+    bus_bytes : int
+        1, 2, 4, 8 or 16.
+    first : int
+        Number of registers that begin at 0.
+    counters_from, counters : int
+        Number of the first counter, and number of counters.
+
+    Members
+    -------
+    packets_in : In(PacketSignature(bus_bytes))
+        Requests; `ready` is always high.
+    tag_in : In(32)
+        Counts with the last beat.
+    packets_out : Out(PacketSignature(bus_bytes))
+        Responses.
+    tag_out : Out(32)
+        Tag of the response, in all its beats.
+    number : Out(range(first + counters))
+        Register to read: counters follow the first registers without a gap.
+    value : In(32)
+        Its value, `READ_CYCLES` later.
+    time : In(time_layout())
+    to : Out(time_layout())
+    sets, sets_rate : Out(1)
+        As for :class:`NodeClock`.
+    to_rate : Out(32)
+    counters : Out(counters_layout("control", "control_full"))
+        Requests, and those that were dropped.
+    """
+
+    def __init__(self, bus_bytes: int, first: int, counters_from: int, counters: int):
+        self.bus_bytes, self.first = bus_bytes, first
+        self.counters_from, self.last = counters_from, counters_from + counters
+        super().__init__(
+            {
+                "packets_in": In(PacketSignature(bus_bytes)),
+                "tag_in": In(TAG_BITS),
+                "packets_out": Out(PacketSignature(bus_bytes)),
+                "tag_out": Out(TAG_BITS),
+                "number": Out(range(first + counters)),
+                "value": In(32),
+                "time": In(time_layout()),
+                "to": Out(time_layout()),
+                "sets": Out(1),
+                "sets_rate": Out(1),
+                "to_rate": Out(32),
+                "counters": Out(counters_layout("control", "control_full")),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        layout = data.StructLayout({"request": _layout(REQUEST), "is_whole": 1, "tag": TAG_BITS})
+        m.submodules.waiting = waiting = SyncFIFO(width=layout.size, depth=REQUESTS)
+        self._receive(m, waiting, layout)
+        self._answer(m, layout, waiting)
+        return m
+
+    def _receive(self, m: Module, waiting: SyncFIFO, layout: data.StructLayout) -> None:
+        """Collect the beats of a request."""
+        beats = CONTROL_BYTES // self.bus_bytes
+        packets, beat = self.packets_in, self.packets_in.payload
+        words, number, long = Signal(8 * CONTROL_BYTES), Signal(range(beats + 1)), Signal()
+        bits = 8 * self.bus_bytes
+        whole = Signal(layout)
+        kept = Signal(8 * CONTROL_BYTES)
+        ends = Signal()
+        m.d.comb += [
+            packets.ready.eq(1),
+            # The first beat comes first, and moves to the lowest bits.
+            kept.eq(Cat(words[bits:], Value.cast(beat.data))),
+            ends.eq(packets.valid & beat.last),
+            Value.cast(whole.request).eq(kept),
+            whole.is_whole.eq((number == beats - 1) & (beat.count == self.bus_bytes) & ~long),
+            whole.tag.eq(self.tag_in),
+            waiting.w_data.eq(whole),
+            waiting.w_en.eq(ends),
+        ]
+        with m.If(packets.valid):
+            m.d.sync += [
+                words.eq(kept),
+                number.eq(Mux(beat.last, 0, Mux(number == beats, beats, number + 1))),
+                long.eq(~beat.last & (long | (number == beats - 1))),
+            ]
+        add_counters(
+            m,
+            self.counters,
+            {"control": ends & waiting.w_rdy, "control_full": ends & ~waiting.w_rdy},
+        )
+
+    def _answer(self, m: Module, layout: data.StructLayout, waiting: SyncFIFO) -> None:
+        """Do the oldest request, and send the response."""
+        asked, response = Signal(layout), Signal(_layout(RESPONSE))
+        cycles, is_known = Signal(range(READ_CYCLES + 1)), Signal()
+        m.d.comb += [
+            self.tag_out.eq(asked.tag),
+            self.to.sec.eq(asked.request.seconds),
+            self.to.nanosec.eq(asked.request.nanoseconds),
+            self.to_rate.eq(asked.request.argument),
+        ]
+        m.d.sync += [self.sets.eq(0), self.sets_rate.eq(0)]
+        with m.FSM():
+            with m.State("IDLE"):
+                # No logic follows the read of the FIFO in the same cycle.
+                m.d.comb += waiting.r_en.eq(1)
+                m.d.sync += Value.cast(asked).eq(waiting.r_data)
+                with m.If(waiting.r_rdy):
+                    m.next = "CHECK"
+            with m.State("CHECK"):
+                self._check(m, asked, response, is_known)
+                m.next = "DO"
+            with m.State("DO"):
+                self._do(m, asked, response, is_known)
+                m.d.sync += cycles.eq(READ_CYCLES)
+            with m.State("READ"):
+                m.d.sync += [cycles.eq(cycles - 1), response.value.eq(self.value)]
+                with m.If(cycles == 0):
+                    m.next = "SEND"
+            with m.State("SEND"):
+                self._send(m, response)
+
+    def _check(self, m: Module, asked: data.View, response: data.View, is_known: Signal) -> None:
+        """Compare the numbers of a request with their limits."""
+        request, argument = asked.request, asked.request.argument
+        is_first, is_counter = argument < self.first, Signal()
+        reads = request.operation == Operation.READ
+        sets = request.operation == Operation.SET_TIME
+        m.d.comb += is_counter.eq((argument >= self.counters_from) & (argument < self.last))
+        m.d.sync += [
+            self.number.eq(Mux(is_first, argument, argument - (self.counters_from - self.first))),
+            is_known.eq(
+                asked.is_whole & (reads | sets | (request.operation == Operation.SET_RATE))
+            ),
+            response.result.eq(
+                Mux(
+                    (reads & ~is_first & ~is_counter)
+                    | (sets & (request.nanoseconds >= 1_000_000_000)),
+                    Result.ARGUMENT,
+                    Result.OK,
+                )
+            ),
+        ]
+
+    def _do(self, m: Module, asked: data.View, response: data.View, is_known: Signal) -> None:
+        """Do a request; go on to the state that follows."""
+        request, does = asked.request, Signal()
+        m.d.comb += does.eq(is_known & (response.result == Result.OK))
+        m.d.sync += [
+            self.sets.eq(does & (request.operation == Operation.SET_TIME)),
+            self.sets_rate.eq(does & (request.operation == Operation.SET_RATE)),
+            response.operation.eq(request.operation),
+            response.reserved.eq(0),
+            response.value.eq(0),
+            response.seconds.eq(self.time.sec),
+            response.nanoseconds.eq(self.time.nanosec),
+        ]
+        m.next = "SEND"
+        with m.If(~is_known):
+            m.d.sync += response.result.eq(Result.OPERATION)
+        with m.Elif(does & (request.operation == Operation.READ)):
+            m.next = "READ"
+
+    def _send(self, m: Module, response: data.View) -> None:
+        """Send the response, its first bytes first, and go back to the next request."""
+        beats = CONTROL_BYTES // self.bus_bytes
+        out, number = self.packets_out, Signal(range(max(2, beats)))
+        bits = 8 * self.bus_bytes
+        m.d.comb += [
+            out.valid.eq(1),
+            Value.cast(out.payload.data).eq(Value.cast(response)[:bits]),
+            out.payload.count.eq(self.bus_bytes),
+            out.payload.last.eq(number == beats - 1),
+        ]
+        with m.If(out.ready):
+            m.d.sync += [
+                Value.cast(response).eq(Value.cast(response)[bits:]),
+                number.eq(number + 1),
+            ]
+            with m.If(out.payload.last):
+                m.d.sync += number.eq(0)
+                m.next = "IDLE"
+
+
+def _layout(fields: tuple[ControlField, ...]) -> data.StructLayout:
+    return data.StructLayout({each.name: 8 * each.bytes for each in fields})

@@ -1,0 +1,97 @@
+"""Counters of a node, and how a host reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from amaranth.hdl import Module, Mux, Signal, Value
+from amaranth.lib import data, wiring
+from amaranth.lib.wiring import In, Out
+from amaranth.utils import ceil_log2
+
+__all__ = ["READ_CYCLES", "ByteCounter", "RegisterReader"]
+
+READ_CYCLES = 4
+"""Cycles from a new number of a register to its value."""
+
+_GROUP = 16
+
+
+class ByteCounter(wiring.Component):
+    """Count bytes of packets, in 64 bits. The upper half changes a cycle after the lower one.
+
+    Members
+    -------
+    adds : In(1)
+        A packet of `size` bytes is counted in this cycle.
+    size : In(size_bits)
+    low, high : Out(32)
+    """
+
+    def __init__(self, size_bits: int):
+        super().__init__({"adds": In(1), "size": In(size_bits), "low": Out(32), "high": Out(32)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        adds, size, carry = Signal(), Signal.like(self.size), Signal()
+        total = Signal(33)
+        m.d.comb += total.eq(self.low + Mux(adds, size, 0))
+        m.d.sync += [
+            adds.eq(self.adds),
+            size.eq(self.size),
+            self.low.eq(total),
+            carry.eq(total[32]),
+            self.high.eq(self.high + carry),
+        ]
+        return m
+
+
+class RegisterReader(wiring.Component):
+    """Give the value of one of many registers, `READ_CYCLES` cycles after its number.
+
+    Parameters
+    ----------
+    count : int
+        Number of registers.
+
+    Members
+    -------
+    values : In(ArrayLayout(32, count))
+    number : In(range(count))
+    value : Out(32)
+    """
+
+    def __init__(self, count: int):
+        super().__init__(
+            {
+                "values": In(data.ArrayLayout(32, count)),
+                "number": In(range(max(2, count))),
+                "value": Out(32),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        number = Signal.like(self.number)
+        low, high = number[: ceil_log2(_GROUP)], number[ceil_log2(_GROUP) :]
+        m.d.sync += number.eq(self.number)
+        chosen: list[Value] = []
+        # A tree of multiplexers with a register after each level.
+        values: Sequence[Value] = [Value.cast(each) for each in self.values]
+        for at in range(0, len(values), _GROUP):
+            group = Signal(32, name=f"group_{at}", reset_less=True)
+            m.d.sync += group.eq(_pick(values[at : at + _GROUP], low))
+            chosen.append(group)
+        m.d.sync += self.value.eq(_pick(chosen, high))
+        return m
+
+
+def _pick(values: Sequence[Value], number: Value) -> Value:
+    """Return the value with a number; the last one for numbers without a value."""
+    if len(values) == 1:
+        return values[0]
+    half = 1 << (ceil_log2(len(values)) - 1)
+    bit = ceil_log2(half)
+    if bit >= len(number):
+        return _pick(values[:half], number)
+    return Mux(number[bit], _pick(values[half:], number[:bit]), _pick(values[:half], number[:bit]))

@@ -1,0 +1,96 @@
+"""The stream between a node's core and its link, and the structures that both know."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amaranth.lib import data, stream, wiring
+from amaranth.lib.wiring import Out
+
+from firm_hdl.gateware import PacketSignature
+from firm_hdl.gateware.signatures import packet_layout
+from firm_hdl.node.control import LINK_COUNTERS
+from firm_hdl.node.frame import HEADER
+
+__all__ = [
+    "LENGTH_BITS",
+    "TAG_BITS",
+    "TOPIC_BITS",
+    "LinkSignature",
+    "RequestSignature",
+    "ResponseSignature",
+    "header_layout",
+    "link_counters_layout",
+    "link_layout",
+    "passes",
+    "time_layout",
+]
+
+_BITS = {each.name: 8 * each.bytes for each in HEADER}
+TOPIC_BITS, TAG_BITS, LENGTH_BITS = _BITS["topic"], _BITS["tag"], _BITS["length"]
+
+
+def header_layout() -> data.StructLayout:
+    """Return the header of a frame: its bytes, the first one in the lowest bits."""
+    return data.StructLayout(_BITS)
+
+
+def link_layout(bus_bytes: int) -> data.StructLayout:
+    """Return the payload of the stream between core and link.
+
+    Members
+    -------
+    beat : packet_layout(bus_bytes)
+        A beat of the message.
+    topic : unsigned(16)
+    tag : unsigned(32)
+    length : unsigned(32)
+        Bytes of the message. `topic`, `tag` and `length` are the same in all its beats.
+    """
+    return data.StructLayout(
+        {
+            "beat": packet_layout(bus_bytes),
+            "topic": TOPIC_BITS,
+            "tag": TAG_BITS,
+            "length": LENGTH_BITS,
+        }
+    )
+
+
+def LinkSignature(bus_bytes: int) -> stream.Signature:
+    """Return the stream between core and link. See :func:`link_layout`."""
+    return stream.Signature(link_layout(bus_bytes))
+
+
+def RequestSignature(bus_bytes: int) -> wiring.Signature:
+    """Return the requests of a service: `packets`, and `tag`, the same in all beats of a packet."""
+    return wiring.Signature({"packets": Out(PacketSignature(bus_bytes)), "tag": Out(TAG_BITS)})
+
+
+def ResponseSignature(bus_bytes: int) -> wiring.Signature:
+    """Return packets to the host: `packets`; `tag` of the request, and `abort`, with the last beat.
+
+    A publication has no use for `tag`.
+    """
+    return wiring.Signature(
+        {"packets": Out(PacketSignature(bus_bytes)), "tag": Out(TAG_BITS), "abort": Out(1)}
+    )
+
+
+def link_counters_layout() -> data.StructLayout:
+    """Return the counters of a link, 32 bits each; those that it has no use for stay 0."""
+    return data.StructLayout(dict.fromkeys(LINK_COUNTERS, 32))
+
+
+def time_layout() -> data.StructLayout:
+    """Return a time as ROS has it: `sec` and `nanosec`, 32 bits each."""
+    return data.StructLayout({"sec": 32, "nanosec": 32})
+
+
+def passes(source: Any, target: Any) -> list[Any]:
+    """Return the statements that connect two streams with the same payload."""
+    return [
+        target.payload.eq(source.payload),
+        target.valid.eq(source.valid),
+        source.ready.eq(target.ready),
+    ]

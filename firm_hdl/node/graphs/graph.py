@@ -1,0 +1,87 @@
+"""What a bridge needs of a graph: serialized messages out, and a callback for those that come."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections import Counter
+from collections.abc import Callable
+from typing import TypeAlias
+
+from firm_hdl.node.description import Topic
+
+__all__ = ["Graph", "GraphError", "OnMessage"]
+
+OnMessage: TypeAlias = Callable[[Topic, bytes, object], None]
+"""Takes a message of a subscription, or a request of a service: topic, packet and, of a request,
+its caller, which :meth:`Graph.respond` gets back. Called in any thread; it does not block."""
+
+
+class GraphError(Exception):
+    """A graph cannot be joined, or is gone; the text says why. Joining it again may help."""
+
+
+class Graph(ABC):
+    """A way to other nodes, under the name of the node that the board is.
+
+    A packet is a serialized message as a converter has it, with the encapsulation header of CDR.
+
+    Attributes
+    ----------
+    name : str
+        For people.
+    counters : Counter of str
+        What the way itself lost, by cause.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.counters: Counter[str] = Counter()
+
+    @abstractmethod
+    def open(self, on_message: OnMessage) -> None:
+        """Join the graph with all topics and services of the node.
+
+        Raises
+        ------
+        GraphError
+            If there is none now.
+        UserError
+            If it will never be possible, such as without a package of messages.
+        """
+
+    @abstractmethod
+    def publish(self, topic: Topic, packet: bytes) -> bool:
+        """Publish a message; return whether the graph has taken it.
+
+        Raises
+        ------
+        GraphError
+            If the graph is gone.
+        """
+
+    @abstractmethod
+    def respond(self, topic: Topic, caller: object, packet: bytes) -> bool:
+        """Answer a request; as :meth:`publish`."""
+
+    def abandon(self, topic: Topic, caller: object) -> None:
+        """Forget a request that will not be answered. Its caller may wait for longer."""
+        return
+
+    def check(self) -> None:
+        """Look whether the graph is still there; called about once a second.
+
+        Raises
+        ------
+        GraphError
+            If it is gone.
+        """
+        return
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether nothing will come any more, and the bridge may end."""
+        return False
+
+    @abstractmethod
+    def close(self) -> None:
+        """Leave the graph. May be called at any time, and again."""

@@ -1,0 +1,173 @@
+"""The graph of ROS 2 through rclpy, where an environment of ROS 2 is active.
+
+Messages of topics pass as bytes: rclpy's raw subscriptions give them, and its publishers take them.
+rclpy has no raw services; there, requests are serialized again, and responses are read.
+"""
+
+from __future__ import annotations
+
+import threading
+from importlib import import_module
+from typing import Any
+
+from firm_hdl.errors import UserError
+from firm_hdl.node.description import Description, Qos, Topic
+from firm_hdl.node.graphs.graph import Graph, GraphError, OnMessage
+
+__all__ = ["RclpyGraph", "has_rclpy"]
+
+
+def has_rclpy() -> bool:
+    """Whether an environment of ROS 2 with rclpy is active."""
+    try:
+        import_module("rclpy")
+    except ImportError:
+        return False
+    return True
+
+
+class RclpyGraph(Graph):
+    """A node of rclpy, with a thread of its own that waits for messages.
+
+    The domain is that of the environment (``ROS_DOMAIN_ID``) unless it is given; the middleware is
+    the environment's, too. The packages of all types have to be installed.
+
+    Parameters
+    ----------
+    description : Description
+    domain : int or None
+    """
+
+    def __init__(self, description: Description, *, domain: int | None = None) -> None:
+        super().__init__("rclpy")
+        self._description, self._domain = description, domain
+        self._context: Any = None
+        self._node: Any = None
+        self._executor: Any = None
+        self._thread: threading.Thread | None = None
+        self._publishers: dict[int, Any] = {}
+        self._services: dict[int, Any] = {}
+
+    def open(self, on_message: OnMessage) -> None:
+        self.close()
+        rclpy: Any = import_module("rclpy")
+        # A context of its own, so that the process may have other nodes, and its own signals.
+        self._context = rclpy.context.Context()
+        description = self._description
+        try:
+            rclpy.init(context=self._context, domain_id=self._domain, signal_handler_options=None)
+            self._node = rclpy.create_node(
+                description.node,
+                namespace=description.namespace,
+                context=self._context,
+                start_parameter_services=False,
+                enable_rosout=False,
+            )
+        except Exception as error:
+            raise GraphError(f"rclpy: {error}") from None
+        for topic in description.topics:
+            self._add(topic, on_message)
+        executors: Any = import_module("rclpy.executors")
+        self._executor = executors.SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._thread = threading.Thread(target=self._spin, name="rclpy", daemon=True)
+        self._thread.start()
+
+    def _add(self, topic: Topic, on_message: OnMessage) -> None:
+        found, qos = _class_of(topic), _qos(topic.qos)
+        match topic.kind:
+            case "publish":
+                made = self._node.create_publisher(found, topic.name, qos)
+                self._publishers[topic.id] = made
+            case "subscribe":
+
+                def take(packet: bytes) -> None:
+                    on_message(topic, bytes(packet), None)
+
+                self._node.create_subscription(found, topic.name, take, qos, raw=True)
+            case "serve":
+                self._services[topic.id] = self._serve(topic, found, on_message)
+
+    def _serve(self, topic: Topic, found: Any, on_message: OnMessage) -> Any:
+        serialize = import_module("rclpy.serialization").serialize_message
+
+        def keep(request: Any, response: Any) -> Any:
+            return request
+
+        def ask(request: Any, header: Any) -> None:
+            on_message(topic, bytes(serialize(request)), header)
+
+        service = self._node.create_service(found, topic.name, keep)
+        # The executor calls this with what the callback returned. The response comes later, and in
+        # no thread of the executor, which must not wait for it.
+        service.send_response = ask
+        return service
+
+    def _spin(self) -> None:
+        context, executor = self._context, self._executor
+        try:
+            while context.ok():
+                executor.spin_once(timeout_sec=0.5)
+        except Exception:
+            # The context was shut down while the executor waited; anything else is found by
+            # `check`, as the thread has ended.
+            return
+
+    def publish(self, topic: Topic, packet: bytes) -> bool:
+        self._call(self._publishers[topic.id].publish, packet)
+        return True
+
+    def respond(self, topic: Topic, caller: object, packet: bytes) -> bool:
+        service = self._services[topic.id]
+        deserialize = import_module("rclpy.serialization").deserialize_message
+        response = self._call(deserialize, packet, service.srv_type.Response)
+        self._call(type(service).send_response, service, response, caller)
+        return True
+
+    def check(self) -> None:
+        if self._thread is not None and not self._thread.is_alive():
+            raise GraphError("rclpy has ended")
+
+    def close(self) -> None:
+        context, self._context = self._context, None
+        self._publishers, self._services = {}, {}
+        if context is None:
+            return
+        if self._executor is not None:
+            self._executor.shutdown(timeout_sec=2)
+        if self._node is not None:
+            self._node.destroy_node()
+        if context.ok():
+            context.shutdown()
+        if self._thread is not None:
+            self._thread.join(timeout=5)
+        self._node = self._executor = self._thread = None
+
+    def _call(self, function: Any, *arguments: Any) -> Any:
+        if self._context is None or not self._context.ok():
+            raise GraphError("rclpy was shut down")
+        try:
+            return function(*arguments)
+        except Exception as error:
+            raise GraphError(f"rclpy: {error}") from None
+
+
+def _class_of(topic: Topic) -> Any:
+    package, kind, name = topic.type.split("/")
+    try:
+        return getattr(import_module(f"{package}.{kind}"), name)
+    except (ImportError, AttributeError):
+        raise UserError(
+            f"the active environment of ROS 2 has no '{topic.type}', which '{topic.name}' needs; "
+            "build its package there, or use --graph rtps, which needs none"
+        ) from None
+
+
+def _qos(qos: Qos) -> Any:
+    rclpy: Any = import_module("rclpy.qos")
+    return rclpy.QoSProfile(
+        history=rclpy.HistoryPolicy[qos.history.upper()],
+        depth=qos.depth,
+        reliability=rclpy.ReliabilityPolicy[qos.reliability.upper()],
+        durability=rclpy.DurabilityPolicy[qos.durability.upper()],
+    )

@@ -1,0 +1,148 @@
+"""The graph of ROS 2 through the participant of firm-hdl, without ROS."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import Future, InvalidStateError
+from contextlib import suppress
+from typing import Any
+
+from firm_hdl.errors import UserError
+from firm_hdl.identity import type_hash
+from firm_hdl.node.description import Description, Qos, Topic
+from firm_hdl.node.graphs.graph import Graph, GraphError, OnMessage
+from firm_hdl.rtps import (
+    DataReader,
+    DataWriter,
+    Durability,
+    HistoryFullError,
+    Reliability,
+    Sample,
+    TransportError,
+)
+from firm_hdl.rtps import Qos as RtpsQos
+from firm_hdl.rtps.ros import Node
+
+__all__ = ["RtpsGraph"]
+
+_ROOM_SECONDS = 0.1
+"""How long a writer that keeps all samples waits for room, as ROS 2 does by default."""
+
+
+class RtpsGraph(Graph):
+    """A node in the graph of ROS 2 by :mod:`firm_hdl.rtps`.
+
+    Parameters
+    ----------
+    description : Description
+    domain : int or None
+        `None`: the environment's ``ROS_DOMAIN_ID``, or 0.
+    interface : str or None
+        As of :class:`firm_hdl.rtps.Participant`.
+    options
+        Further parameters of the participant.
+    """
+
+    def __init__(
+        self,
+        description: Description,
+        *,
+        domain: int | None = None,
+        interface: str | None = None,
+        **options: Any,
+    ) -> None:
+        super().__init__("rtps")
+        self._description = description
+        self._options = {"domain": _domain(domain), "interface": interface, **options}
+        self._node: Node | None = None
+        self._writers: dict[int, DataWriter] = {}
+        self._readers: list[DataReader] = []
+        self._full: set[int] = set()
+
+    def open(self, on_message: OnMessage) -> None:
+        self.close()
+        description = self._description
+        try:
+            self._node = Node(description.node, description.namespace, **self._options)
+        except TransportError as error:
+            raise GraphError(str(error)) from None
+        except ValueError as error:
+            raise UserError(str(error)) from None
+        for topic in description.topics:
+            try:
+                self._add(self._node, topic, on_message)
+            except ValueError as error:
+                raise UserError(str(error)) from None
+
+    def _add(self, node: Node, topic: Topic, on_message: OnMessage) -> None:
+        if topic.kind == "serve":
+
+            def handle(request: bytes) -> Future[bytes]:
+                answer: Future[bytes] = Future()
+                on_message(topic, request, answer)
+                return answer
+
+            node.service(topic.name, topic.type, handle)
+            return
+        (_, store), qos = topic.stores[0], _qos(topic.qos)
+        options = {"type_hash": type_hash(store.message)}
+        if topic.kind == "publish":
+            self._writers[topic.id] = node.publisher(topic.name, topic.type, qos, **options)
+            return
+
+        def take(sample: Sample) -> None:
+            on_message(topic, sample.payload, None)
+
+        self._readers.append(node.subscription(topic.name, topic.type, take, qos, **options))
+
+    def publish(self, topic: Topic, packet: bytes) -> bool:
+        writer = self._writers.get(topic.id)
+        if writer is None:
+            raise GraphError("the participant is closed")
+        # A reader that has died takes nothing until its lease ends. Others are not kept waiting.
+        patience = 0.0 if topic.id in self._full else _ROOM_SECONDS
+        try:
+            writer.write(packet, timeout=patience)
+        except HistoryFullError:
+            self._full.add(topic.id)
+            return False
+        self._full.discard(topic.id)
+        return True
+
+    def respond(self, topic: Topic, caller: object, packet: bytes) -> bool:
+        assert isinstance(caller, Future)
+        with suppress(InvalidStateError):
+            caller.set_result(packet)
+            return True
+        return False
+
+    def abandon(self, topic: Topic, caller: object) -> None:
+        assert isinstance(caller, Future)
+        caller.cancel()
+
+    def check(self) -> None:
+        self.counters["lost"] = sum(reader.lost for reader in self._readers)
+
+    def close(self) -> None:
+        if self._node is not None:
+            self._node.close()
+        self._node = None
+        self._writers, self._readers = {}, []
+        self._full.clear()
+
+
+def _qos(qos: Qos) -> RtpsQos:
+    return RtpsQos(
+        reliability=Reliability[qos.reliability.upper()],
+        durability=Durability[qos.durability.upper()],
+        depth=0 if qos.history == "keep_all" else qos.depth,
+    )
+
+
+def _domain(domain: int | None) -> int:
+    if domain is not None:
+        return domain
+    text = os.environ.get("ROS_DOMAIN_ID") or "0"
+    if not text.isdigit():
+        raise UserError(f"ROS_DOMAIN_ID is '{text}', and should be a number from 0 to 232")
+    return int(text)

@@ -1,0 +1,246 @@
+"""YAML with the place of every key and value, for errors with a line, a column and a caret.
+
+Only the syntax tree of PyYAML is used. No Python object is made of a tag, and every value is read
+by the function that its key asks for. All problems of a text are collected, and reported together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from difflib import get_close_matches
+from typing import TypeVar
+
+import yaml
+
+from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
+
+__all__ = ["Entry", "Marked", "parse"]
+
+T = TypeVar("T")
+
+_KINDS = {
+    "tag:yaml.org,2002:str": "text",
+    "tag:yaml.org,2002:int": "an integer",
+    "tag:yaml.org,2002:float": "a number",
+    "tag:yaml.org,2002:bool": "a boolean",
+    "tag:yaml.org,2002:null": "empty",
+    "tag:yaml.org,2002:timestamp": "a date",
+}
+
+
+class Marked:
+    """A text, and the problems that were found in it.
+
+    Attributes
+    ----------
+    source : Source
+    problems : list of Diagnostic
+        In the order in which they were found.
+    """
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.problems: list[Diagnostic] = []
+
+    def span(self, node: yaml.Node) -> Span:
+        """Return the place of a value; of a mapping or a list, the place of its first word."""
+        start, end = node.start_mark.index, node.end_mark.index
+        if not isinstance(node, yaml.ScalarNode):
+            line_end = self.source.text.find("\n", start)
+            end = min(end, len(self.source.text) if line_end < 0 else line_end)
+        return Span(source=self.source, start=start, end=max(start, end))
+
+    def error(self, node: yaml.Node, message: str) -> None:
+        """Note a problem at a node."""
+        self.problems.append(Diagnostic(message=message, span=self.span(node)))
+
+    def error_at_start(self, message: str) -> None:
+        """Note a problem of the whole text."""
+        self.problems.append(Diagnostic(message=message, span=self._start))
+
+    @property
+    def _start(self) -> Span:
+        return Span(source=self.source, start=0, end=0)
+
+    def check(self) -> None:
+        """Raise what was found.
+
+        Raises
+        ------
+        DefinitionError
+            With all problems, in the order of the text.
+        """
+        if self.problems:
+            # A service has one set of options for both of its messages, and one mistake in it.
+            found = dict.fromkeys(self.problems)
+            raise DefinitionError(sorted(found, key=lambda p: p.span.start if p.span else -1))
+
+    def mapping(self, node: yaml.Node, what: str) -> dict[str, Entry]:
+        """Read a mapping whose keys are texts; a key that occurs twice is a problem."""
+        if not isinstance(node, yaml.MappingNode):
+            self.error(node, f"{what} must be a mapping of names to values, not {kind(node)}")
+            return {}
+        entries: dict[str, Entry] = {}
+        for key, value in node.value:
+            if not isinstance(key, yaml.ScalarNode) or key.tag != "tag:yaml.org,2002:str":
+                self.error(key, f"a key must be text, not {kind(key)}; put it in quotes")
+                continue
+            name = str(key.value)
+            if name in entries:
+                line = self.span(entries[name].key).line
+                self.error(key, f"'{name}' is already in line {line}")
+                continue
+            entries[name] = Entry(marked=self, key=key, value=value)
+        return entries
+
+    def known(
+        self, entries: Mapping[str, Entry], keys: Collection[str], what: str
+    ) -> dict[str, Entry]:
+        """Return the entries with a key among `keys`; others are problems."""
+        for name in entries.keys() - set(keys):
+            close = get_close_matches(name, keys, n=1)
+            hint = f"did you mean '{close[0]}'?" if close else f"keys are {', '.join(keys)}"
+            self.error(entries[name].key, f"{what} has no '{name}'; {hint}")
+        return {name: entry for name, entry in entries.items() if name in keys}
+
+
+class Entry:
+    """A key and its value. The readers return a default, and note a problem, if it is wrong."""
+
+    def __init__(self, *, marked: Marked, key: yaml.Node, value: yaml.Node) -> None:
+        self.marked, self.key, self.value = marked, key, value
+
+    @property
+    def name(self) -> str:
+        """The key."""
+        return str(self.key.value)
+
+    def error(self, message: str) -> None:
+        """Note a problem at the value; if the value is empty, at the key."""
+        empty = self.value.start_mark.index == self.value.end_mark.index
+        self.marked.error(self.key if empty else self.value, message)
+
+    def error_at_key(self, message: str) -> None:
+        """Note a problem at the key."""
+        self.marked.error(self.key, message)
+
+    def text(self, default: str = "") -> str:
+        """Read a text."""
+        value = self.value
+        if isinstance(value, yaml.ScalarNode) and value.tag == "tag:yaml.org,2002:str":
+            return str(value.value)
+        self._wrong("text")
+        return default
+
+    def texts(self) -> list[str]:
+        """Read a list of texts, or a single one."""
+        if not isinstance(self.value, yaml.SequenceNode):
+            return [text] if (text := self.text()) else []
+        items = [Entry(marked=self.marked, key=self.key, value=each) for each in self.value.value]
+        return [text for item in items if (text := item.text())]
+
+    def choice(self, choices: Collection[str], default: T) -> str | T:
+        """Read one of some words."""
+        before = len(self.marked.problems)
+        word = self.text()
+        if word in choices:
+            return word
+        if len(self.marked.problems) == before:
+            close = get_close_matches(word, choices, n=1)
+            hint = f"; did you mean '{close[0]}'?" if close else ""
+            self.error(f"'{self.name}' must be {_either(choices)}, not '{word}'{hint}")
+        return default
+
+    def integer(self, default: T, least: int, most: int | None = None) -> int | T:
+        """Read an integer between limits, both included; ``0x10`` and ``1_000`` are as in YAML."""
+        value = self.value
+        if not isinstance(value, yaml.ScalarNode) or value.tag != "tag:yaml.org,2002:int":
+            self._wrong("an integer")
+            return default
+        try:
+            number = int(yaml.SafeLoader("").construct_yaml_int(value))
+        except ValueError:
+            self._wrong("an integer")
+            return default
+        if number < least or (most is not None and number > most):
+            limits = f"at least {least}" if most is None else f"from {least} to {most}"
+            self.error(f"'{self.name}' must be {limits}, not {number}")
+            return default
+        return number
+
+    def number(self, default: T, least: float, most: float) -> float | T:
+        """Read a number between limits, both included."""
+        value = self.value
+        kinds = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
+        if not isinstance(value, yaml.ScalarNode) or value.tag not in kinds:
+            self._wrong("a number")
+            return default
+        try:
+            number = float(str(value.value).replace("_", ""))
+        except ValueError:
+            self._wrong("a number")
+            return default
+        if not least <= number <= most:
+            self.error(f"'{self.name}' must be from {least:g} to {most:g}, not {number:g}")
+            return default
+        return number
+
+    def checked(self, problem: Callable[[str], str], default: str = "") -> str:
+        """Read a text that `problem` finds nothing wrong with."""
+        before = len(self.marked.problems)
+        text = self.text(default)
+        if len(self.marked.problems) == before and (wrong := problem(text)):
+            self.error(wrong)
+            return default
+        return text
+
+    def _wrong(self, wanted: str) -> None:
+        found = kind(self.value)
+        is_word = isinstance(self.value, yaml.ScalarNode) and found != "empty"
+        quotes = "; put it in quotes" if wanted == "text" and is_word else ""
+        self.error(f"'{self.name}' must be {wanted}, not {found}{quotes}")
+
+
+def kind(node: yaml.Node) -> str:
+    """Say what a node is."""
+    if isinstance(node, yaml.MappingNode):
+        return "a mapping"
+    if isinstance(node, yaml.SequenceNode):
+        return "a list"
+    what = _KINDS.get(node.tag, "a value with a tag")
+    return f"{what} ({node.value})" if what in ("a boolean", "an integer", "a date") else what
+
+
+def parse(source: Source) -> tuple[Marked, yaml.Node]:
+    """Parse a text.
+
+    Raises
+    ------
+    DefinitionError
+        If the text is not YAML, is nested too deep, or is empty.
+    """
+    marked = Marked(source)
+    end = len(source.text)
+    try:
+        # The loader in Python: it counts characters, as spans do.
+        node = yaml.compose(source.text, Loader=yaml.SafeLoader)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+        at = getattr(error, "position", None) if mark is None else mark.index
+        reason = getattr(error, "problem", None) or getattr(error, "reason", None) or "not YAML"
+        raise _failure(source, min(at or 0, end), f"not YAML: {reason}") from None
+    except RecursionError:
+        raise _failure(source, 0, "not a description: nested too deep") from None
+    if node is None:
+        raise _failure(source, 0, "a description must not be empty")
+    return marked, node
+
+
+def _failure(source: Source, at: int, message: str) -> DefinitionError:
+    span = Span(source=source, start=at, end=at)
+    return DefinitionError([Diagnostic(message=message, span=span)])
+
+
+def _either(choices: Collection[str]) -> str:
+    *others, last = (f"'{word}'" for word in choices)
+    return f"{', '.join(others)} or {last}" if others else last

@@ -1,0 +1,252 @@
+"""From the text of a description to its value; every mistake has its line and a caret."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from firm_hdl.errors import DefinitionError, Diagnostic, Source
+from firm_hdl.files import read_file
+from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS, Library, open_library
+from firm_hdl.model import WIRE_OF
+from firm_hdl.node.description import Description, Kind, Link, Topic
+from firm_hdl.node.link_reading import NODE_BUS_BYTES, read_link, with_memory
+from firm_hdl.node.marked_yaml import Entry, Marked, parse
+from firm_hdl.node.names import (
+    MOST_TOPIC_CHARACTERS,
+    expand,
+    namespace_problem,
+    node_problem,
+    topic_problem,
+)
+from firm_hdl.node.topics import TOPIC_KEYS, TopicReader, port_of
+
+__all__ = ["read_description", "read_description_text"]
+
+MOST_BYTES = 1 << 18
+"""Largest file that is read: a thousand topics need less."""
+
+KINDS: tuple[Kind, ...] = ("subscribe", "publish", "serve")
+
+_KEYS = ("node", "namespace", "distro", "paths", "bags", "bus_bytes", "clock_mhz", "link", "remap")
+KEYS = (*_KEYS, *KINDS, "accelerator")
+
+
+def read_description(
+    path: str | os.PathLike[str],
+    *,
+    paths: Iterable[str | os.PathLike[str]] = (),
+    library: Library | None = None,
+) -> Description:
+    """Read the description of a node.
+
+    Parameters
+    ----------
+    path : str or path
+        A file in YAML; ``docs/node.md`` describes it.
+    paths : iterable of str or path
+        Folders with ROS packages, searched before those that the file names.
+    library : Library or None
+        Definitions to use in place of those that the file and the environment name.
+
+    Raises
+    ------
+    DefinitionError
+        With all mistakes that were found, also those in definitions of types.
+    """
+    name = os.fspath(path)
+    try:
+        text = read_file(path, MOST_BYTES).decode("utf-8")
+    except OSError as error:
+        message = f"cannot read '{name}': {error.strerror or error}"
+        raise DefinitionError([Diagnostic(message=message)]) from None
+    except UnicodeDecodeError:
+        raise DefinitionError([Diagnostic(message=f"'{name}' is not text in UTF-8")]) from None
+    folder = str(Path(name).parent)
+    return read_description_text(text, name=name, folder=folder, paths=paths, library=library)
+
+
+def read_description_text(
+    text: str,
+    *,
+    name: str = "<description>",
+    folder: str = ".",
+    paths: Iterable[str | os.PathLike[str]] = (),
+    library: Library | None = None,
+) -> Description:
+    """Read the text of a description; `folder` is the one that its paths are relative to.
+
+    The other parameters and the errors are those of :func:`read_description`.
+    """
+    # As universal newlines of Python: a carriage return is no part of a caret's line.
+    marked, node = parse(Source(name=name, text=text.replace("\r\n", "\n")))
+    return _Reader(marked, folder, list(paths), library).read(marked.mapping(node, "a description"))
+
+
+class _Reader:
+    """The reading of one description."""
+
+    def __init__(
+        self,
+        marked: Marked,
+        folder: str,
+        paths: list[str | os.PathLike[str]],
+        library: Library | None,
+    ) -> None:
+        self.marked, self.folder, self.paths = marked, folder, paths
+        self.library = library
+
+    def read(self, entries: dict[str, Entry]) -> Description:
+        known = self.marked.known(entries, KEYS, "a description")
+        library = self._library(known)
+        dialect = library.dialect
+        given: dict[str, Any] = {}
+        if "node" not in known:
+            self.marked.error_at_start("a description needs a 'node', the name of the node")
+        else:
+            given["node"] = known["node"].checked(lambda t: node_problem(t, dialect), "node")
+        if "namespace" in known:
+            given["namespace"] = known["namespace"].checked(
+                lambda t: namespace_problem(t, dialect), "/"
+            )
+        bus_bytes = 8
+        if "bus_bytes" in known:
+            bus_bytes = self._bus_bytes(known["bus_bytes"])
+        clock_hz = 100e6
+        if "clock_mhz" in known:
+            clock_hz = 1e6 * known["clock_mhz"].number(100.0, 1.0, 1000.0)
+        link = Link(kind="stream")
+        if "link" in known:
+            link = read_link(self.marked, known["link"], clock_hz)
+        names = _Names(given.get("namespace", "/"), given.get("node", "node"), {})
+        if "remap" in known:
+            names.remap = self._remap(known["remap"], library, names)
+        topics = self._topics(known, library, names, bus_bytes, link)
+        if not topics and not self.marked.problems:
+            self.marked.error_at_start(f"a node needs a topic: {', '.join(KINDS)}")
+        accelerator = known["accelerator"].checked(_class_problem) if "accelerator" in known else ""
+        self.marked.check()
+        return Description(
+            **given,
+            distro=library.distro,
+            wire=WIRE_OF[dialect],
+            bus_bytes=bus_bytes,
+            clock_hz=clock_hz,
+            link=with_memory(link, topics, known.get("link")),
+            topics=tuple(topics),
+            accelerator=accelerator,
+            folder=self.folder,
+            accelerator_span=(
+                self.marked.span(known["accelerator"].value) if accelerator else None
+            ),
+        )
+
+    def _library(self, known: dict[str, Entry]) -> Library:
+        """Open the definitions; without them, no type can be checked, so errors are final."""
+        distro = (
+            known["distro"].choice(list(DISTROS), DEFAULT_DISTRO) if "distro" in known else None
+        )
+        if self.library is not None:
+            if distro not in (None, self.library.distro):
+                known["distro"].error(f"the types are those of {self.library.distro}")
+            return self.library
+        named = known["paths"].texts() if "paths" in known else []
+        bags = known["bags"].texts() if "bags" in known else []
+        folders = [*self.paths, *(os.path.join(self.folder, each) for each in named)]
+        if bags and folders:
+            known["bags"].error_at_key("recordings are read without any other definitions")
+            bags = []
+        try:
+            return open_library(distro, folders, [os.path.join(self.folder, b) for b in bags])
+        except DefinitionError as error:
+            # A folder or a recording that cannot be read has no place of its own.
+            entry = known.get("bags" if bags else "paths")
+            for problem in error.diagnostics:
+                if entry is None or problem.span is not None:
+                    self.marked.problems.append(problem)
+                else:
+                    entry.error(problem.message)
+            self.marked.check()
+            raise
+
+    def _bus_bytes(self, entry: Entry) -> int:
+        width = entry.integer(8, 1)
+        if width not in NODE_BUS_BYTES:
+            *others, last = map(str, NODE_BUS_BYTES)
+            entry.error(f"'bus_bytes' must be {', '.join(others)} or {last}, not {width}")
+            return 8
+        return width
+
+    def _remap(self, entry: Entry, library: Library, names: _Names) -> dict[str, str]:
+        remap: dict[str, str] = {}
+        for name, each in self.marked.mapping(entry.value, "'remap'").items():
+            if problem := topic_problem(name, library.dialect):
+                each.error_at_key(problem)
+                continue
+            new = each.checked(lambda text: topic_problem(text, library.dialect))
+            if new:
+                remap[names.complete(name)] = names.complete(new)
+        return remap
+
+    def _topics(
+        self,
+        known: dict[str, Entry],
+        library: Library,
+        names: _Names,
+        bus_bytes: int,
+        link: Link,
+    ) -> list[Topic]:
+        reader = TopicReader(self.marked, library, bus_bytes, link)
+        topics: list[Topic] = []
+        places: dict[tuple[str, str], str] = {}
+        ports: dict[tuple[str, str], str] = {}
+        # The place in the text is the id, so sections count in the order in which they are written.
+        for section in (entry for name, entry in known.items() if name in KINDS):
+            kind: Kind = section.name  # type: ignore[assignment]
+            for written, entry in self.marked.mapping(section.value, f"'{kind}'").items():
+                name = self._name(entry, written, library, names)
+                keys = self.marked.mapping(entry.value, f"'{written}'")
+                options = self.marked.known(keys, TOPIC_KEYS[kind], f"a topic of '{kind}'")
+                if (name, kind) in places:
+                    entry.error_at_key(f"'{name}' is already there, as '{places[name, kind]}'")
+                places[name, kind] = written
+                port = port_of(name, options.get("port"), entry, ports, kind)
+                topic = reader.topic(entry, options, kind, name, written, port, 1 + len(topics))
+                if topic is not None:
+                    topics.append(topic)
+        return topics
+
+    def _name(self, entry: Entry, written: str, library: Library, names: _Names) -> str:
+        """Complete and check the name of a topic; an unusable one is returned as it is."""
+        if problem := topic_problem(written, library.dialect):
+            entry.error_at_key(problem)
+            return written
+        name = names.final(written)
+        if len(name) > MOST_TOPIC_CHARACTERS:
+            most = f"at most {MOST_TOPIC_CHARACTERS} characters, not {len(name)}"
+            entry.error_at_key(f"the complete name of a topic has {most}")
+        return name
+
+
+class _Names:
+    """How names of topics are completed and remapped."""
+
+    def __init__(self, namespace: str, node: str, remap: dict[str, str]) -> None:
+        self.namespace, self.node, self.remap = namespace, node, remap
+
+    def complete(self, name: str) -> str:
+        return expand(name, self.namespace, self.node)
+
+    def final(self, name: str) -> str:
+        complete = self.complete(name)
+        return self.remap.get(complete, complete)
+
+
+def _class_problem(text: str) -> str:
+    module, colon, name = text.partition(":")
+    words = [*module.split("."), *name.split(".")]
+    if not colon or not all(word.isidentifier() for word in words):
+        return "an accelerator is named as 'module:Class', such as 'wheels.core:Wheels'"
+    return ""

@@ -1,0 +1,187 @@
+"""The summary of a node: its topics, ids, cycles, clocks, memory and area, as data and as text.
+
+Nothing is elaborated. Cycles come from plans, areas from converters that were measured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from firm_hdl.estimates import estimates_of
+from firm_hdl.metrics import metrics_of
+from firm_hdl.node.control import IDENTITY, registers
+from firm_hdl.node.description import Description, Direction, Store, Topic
+from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
+from firm_hdl.node.link_reading import LINK_OPTIONS
+from firm_hdl.plan import Plan, build_plan
+from firm_hdl.plan.timing import timing
+from firm_hdl.wire import lay_out
+
+__all__ = ["facts_of", "summary"]
+
+_SERVICES = {"in": "request", "out": "response"}
+
+
+def facts_of(description: Description) -> dict[str, Any]:
+    """Return what a host and a reader have to know of a node, as values of JSON.
+
+    The key `topics` has an entry for each topic, in the order of ids. `registers` has those of
+    :func:`firm_hdl.node.control.registers`.
+    """
+    link = description.link
+    options = LINK_OPTIONS[link.kind]
+    return {
+        "node": description.node,
+        "namespace": description.namespace,
+        "distro": description.distro,
+        "wire": description.wire,
+        "bus_bytes": description.bus_bytes,
+        "clock_hz": description.clock_hz,
+        "fingerprint": f"{description.fingerprint:016x}",
+        "link": {"kind": link.kind, **{name: getattr(link, name) for name in options}},
+        "frame": {
+            "version": VERSION,
+            "header": [{"name": each.name, "bytes": each.bytes} for each in HEADER],
+        },
+        "accelerator": description.accelerator,
+        "topics": [_topic(description, topic) for topic in description.topics],
+        "registers": [
+            {"number": each.number, "owner": each.owner, "part": each.part, "name": each.name}
+            for each in registers(description)
+        ],
+    }
+
+
+def _topic(description: Description, topic: Topic) -> dict[str, Any]:
+    qos = topic.qos
+    return {
+        "id": topic.id,
+        "kind": topic.kind,
+        "name": topic.name,
+        "type": topic.type,
+        "port": topic.port,
+        "definition_sha256": topic.definition_hash,
+        "rate_hz": topic.rate_hz,
+        "qos": {
+            "reliability": qos.reliability,
+            "durability": qos.durability,
+            "history": qos.history,
+            "depth": qos.depth,
+        },
+        "packets": {
+            direction: _store(description, topic, direction, store)
+            for direction, store in topic.stores
+        },
+    }
+
+
+def _store(
+    description: Description, topic: Topic, direction: Direction, store: Store
+) -> dict[str, Any]:
+    """Return the figures of the packets of a topic in one direction."""
+    plan = _plan(description, store)
+    figures = metrics_of(store.message, description.wire)
+    hardest = timing(plan).hardest
+    name = "deserializer" if direction == "in" else "serializer"
+    estimate = estimates_of(plan).get(name)
+    rate = topic.rate_hz
+    return {
+        "message": store.message.name,
+        "min_bytes": figures.min_bytes,
+        "max_bytes": figures.max_bytes,
+        "memory_bytes": store.memory_bytes,
+        "stored_packets": store.packets,
+        "when_full": store.when_full,
+        "max_message_bytes": store.max_message_bytes,
+        "cycles": {"bytes": hardest.bytes, "beats": hardest.beats, "cycles": hardest.cycles},
+        "clock_hz": None if rate is None else rate * hardest.cycles,
+        "estimate": None
+        if estimate is None
+        else {"part": estimate.part, "lut": estimate.lut, "ff": estimate.ff, "mhz": estimate.mhz},
+    }
+
+
+def _plan(description: Description, store: Store) -> Plan:
+    return build_plan(
+        lay_out(store.message, description.wire),
+        bus_bytes=description.bus_bytes,
+        max_message_bytes=store.max_message_bytes,
+    )
+
+
+def summary(description: Description) -> str:
+    """Describe a node on a page of text, as ``firm-hdl node info`` prints it."""
+    facts = facts_of(description)
+    return "\n".join([*_head(description, facts), "", *_table(facts), "", *_totals(facts)])
+
+
+def _head(description: Description, facts: dict[str, Any]) -> Iterator[str]:
+    name = f"{description.namespace.rstrip('/')}/{description.node}"
+    yield (
+        f"{name}: {description.distro}, {description.wire}, {8 * description.bus_bytes}-bit bus, "
+        f"{description.clock_hz / 1e6:g} MHz"
+    )
+    link = dict(facts["link"])
+    kind = link.pop("kind")
+    options = ", ".join(f"{key} {value}" for key, value in link.items() if value != "")
+    yield f"link {kind}{': ' if options else ''}{options}"
+    yield f"fingerprint {facts['fingerprint']}, {len(facts['registers']) - len(IDENTITY)} counters"
+    if description.accelerator:
+        yield f"accelerator {description.accelerator}"
+
+
+def _table(facts: dict[str, Any]) -> Iterator[str]:
+    """Yield the rows of topics, a row for each direction, with aligned columns."""
+    head = ["id", "kind", "name", "message", "bytes", "memory", "cycles", "rate", "clock"]
+    rows = [head, *_rows(facts)]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(head))]
+    for row in rows:
+        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        yield "  ".join(cells).rstrip()
+
+
+def _rows(facts: dict[str, Any]) -> Iterator[list[str]]:
+    for topic in facts["topics"]:
+        for direction, store in topic["packets"].items():
+            kind = _SERVICES[direction] if topic["kind"] == "serve" else topic["kind"]
+            least, most = store["min_bytes"], store["max_bytes"]
+            size = f"{least}" if least == most else f"{least}-{'' if most is None else most}"
+            rate, clock = topic["rate_hz"], store["clock_hz"]
+            yield [
+                str(topic["id"]),
+                kind,
+                topic["name"],
+                store["message"],
+                size,
+                f"{store['memory_bytes']} {store['when_full']}",
+                str(store["cycles"]["cycles"]),
+                "-" if rate is None else f"{rate:g} Hz",
+                "-" if clock is None else f"{clock / 1e6:.3g} MHz",
+            ]
+
+
+def _totals(facts: dict[str, Any]) -> Iterator[str]:
+    """Yield sums: memory, area of converters, and bytes on the link."""
+    stores = [store for topic in facts["topics"] for store in topic["packets"].values()]
+    memory = sum(store["memory_bytes"] for store in stores) + facts["link"].get("memory_bytes", 0)
+    # A service stores its requests before the gate, too.
+    memory += sum(
+        topic["packets"]["in"]["memory_bytes"]
+        for topic in facts["topics"]
+        if topic["kind"] == "serve"
+    )
+    yield f"memory for packets: {memory} bytes"
+    found = [store["estimate"] for store in stores if store["estimate"] is not None]
+    if found:
+        lut, ff = (sum(each[key] for each in found) for key in ("lut", "ff"))
+        slowest = min(each["mhz"] for each in found)
+        yield (
+            f"converters, after measured ones on {found[0]['part']}: {lut} LUT, {ff} FF, "
+            f"{slowest:g} MHz; gates, core and link come on top"
+        )
+    clocks = [store["clock_hz"] for store in stores if store["clock_hz"] is not None]
+    if clocks:
+        yield f"clock for all stated rates on one link: {sum(clocks) / 1e6:.3g} MHz"
+    yield f"a message costs {HEADER_BYTES} bytes of header"
+    yield "cycles: of the packet that is hardest for its converter, of those that were tried"

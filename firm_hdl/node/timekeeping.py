@@ -1,0 +1,99 @@
+"""Keep the clock of a node in step with that of its host, on the host.
+
+Every response of the node has its time. The host knows when it sent the request and when the
+response came, so it knows the distance of the clocks up to half of that delay, as in NTP (RFC 5905,
+8). The clock is set once; then only its rate is changed, so that the time never jumps.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+from firm_hdl.node.control import ControlRequest, ControlResponse, Operation
+
+__all__ = ["ClockKeeper"]
+
+SECOND_NS = 1_000_000_000
+
+STEP_NS = 1_000_000
+"""A clock that is further away than this is set."""
+
+DELAYS = 16
+"""Delays from which the usual one is taken."""
+
+MOST_CORRECTION = 500e-6
+"""Largest change of the rate, as a fraction; crystals are within 100e-6."""
+
+_PROPORTIONAL, _INTEGRAL = 0.4, 0.08
+
+
+class ClockKeeper:
+    """Decide what to tell a node about its clock.
+
+    Send any request about once a second, and give each response to :meth:`sample`. If that returns
+    a request, send it, and do not sample its response.
+
+    Parameters
+    ----------
+    nominal : int
+        The rate of the node's clock without a correction: register `rate` after a reset, or
+        :func:`firm_hdl.node.control.nominal_rate`.
+
+    Attributes
+    ----------
+    offset_ns : float or None
+        Time of the node less that of the host, at the last sample that counted.
+    """
+
+    def __init__(self, nominal: int) -> None:
+        self._nominal = nominal
+        self._delays: deque[int] = deque(maxlen=DELAYS)
+        self._last_ns: int | None = None
+        # The error of the node's crystal that is corrected, as a fraction.
+        self._drift = 0.0
+        self.offset_ns: float | None = None
+
+    def sample(
+        self, sent_ns: int, response: ControlResponse, received_ns: int
+    ) -> ControlRequest | None:
+        """Take a response; return what to send to the node.
+
+        Parameters
+        ----------
+        sent_ns, received_ns : int
+            Times of the host, in ns since the epoch, when the request was sent and when the
+            response came.
+
+        Returns
+        -------
+        ControlRequest or None
+            `SET_TIME` at first, and whenever the clock is more than 1 ms away; else `SET_RATE`.
+            `None` if the sample does not count, because its delay is more than twice the usual one.
+        """
+        delay = received_ns - sent_ns
+        self._delays.append(delay)
+        node_ns = response.seconds * SECOND_NS + response.nanoseconds
+        offset = node_ns - (sent_ns + received_ns) / 2
+        if abs(offset) > max(STEP_NS, delay):
+            self._last_ns = None
+            seconds, nanoseconds = divmod(received_ns + delay // 2, SECOND_NS)
+            return ControlRequest(
+                operation=Operation.SET_TIME,
+                seconds=seconds % (1 << 32),
+                nanoseconds=nanoseconds,
+            )
+        if delay > 2 * sorted(self._delays)[len(self._delays) // 2]:
+            return None
+        self.offset_ns = offset
+        before, self._last_ns = self._last_ns, received_ns
+        if before is None or received_ns <= before:
+            return None
+        error = offset / (received_ns - before)
+        self._drift = _limited(self._drift - _INTEGRAL * error)
+        correction = _limited(self._drift - _PROPORTIONAL * error)
+        rate = round(self._nominal * (1 + correction))
+        return ControlRequest(operation=Operation.SET_RATE, argument=rate)
+
+
+def _limited(correction: float) -> float:
+    return max(-MOST_CORRECTION, min(MOST_CORRECTION, correction))

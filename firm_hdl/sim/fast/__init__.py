@@ -1,0 +1,20 @@
+"""Fast simulation of whole designs: compiled by CXXRTL, or in Amaranth's simulator."""
+
+from __future__ import annotations
+
+from firm_hdl.sim.fast.channel import SimulationError
+from firm_hdl.sim.fast.compilers import BuildError
+from firm_hdl.sim.fast.engines import EngineName
+from firm_hdl.sim.fast.packing import Packet, Transfer
+from firm_hdl.sim.fast.simulation import FastSimulation
+from firm_hdl.sim.fast.top import ClockDomainError
+
+__all__ = [
+    "BuildError",
+    "ClockDomainError",
+    "EngineName",
+    "FastSimulation",
+    "Packet",
+    "SimulationError",
+    "Transfer",
+]

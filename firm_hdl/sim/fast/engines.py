@@ -1,0 +1,37 @@
+"""Choose and start the engine of a simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from firm_hdl.jobs import ProgramMissingError
+from firm_hdl.sim.fast.amaranth_engine import AmaranthEngine
+from firm_hdl.sim.fast.compilers import program_of
+from firm_hdl.sim.fast.cxxrtl import cxxrtl_source
+from firm_hdl.sim.fast.process import CxxrtlEngine
+from firm_hdl.sim.fast.top import Top
+
+__all__ = ["EngineName", "check_engine", "start"]
+
+EngineName: TypeAlias = Literal["auto", "cxxrtl", "amaranth"]
+
+
+def check_engine(engine: str) -> None:
+    """Raise a ValueError unless there is an engine of that name."""
+    if engine not in ("auto", "cxxrtl", "amaranth"):
+        raise ValueError(f"Engine must be 'auto', 'cxxrtl' or 'amaranth', not {engine!r}")
+
+
+def start(
+    top: Top, engine: EngineName, *, options: Sequence[str], cache: Path | None
+) -> CxxrtlEngine | AmaranthEngine:
+    """Start an engine. Parameters and errors are those of :class:`.FastSimulation`."""
+    if engine != "amaranth":
+        try:
+            return CxxrtlEngine(program_of(cxxrtl_source(top), options=options, cache=cache))
+        except ProgramMissingError:
+            if engine == "cxxrtl":
+                raise
+    return AmaranthEngine(top)

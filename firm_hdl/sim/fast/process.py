@@ -1,0 +1,77 @@
+"""A compiled design as a process of its own."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import weakref
+from contextlib import suppress
+from pathlib import Path
+
+from firm_hdl.sim.fast.channel import Channel
+from firm_hdl.sim.fast.compilers import BuildError
+
+__all__ = ["CxxrtlEngine"]
+
+_END_SECONDS = 2.0
+
+
+class CxxrtlEngine(Channel):
+    """A process that simulates a design by CXXRTL.
+
+    The process ends when its socket is closed, or when the process that started it has died, half a
+    second later at most. It is not interrupted by Ctrl-C, so that its parent may finish first.
+
+    Parameters
+    ----------
+    program : Path
+        From :func:`.program_of`.
+
+    Attributes
+    ----------
+    process : subprocess.Popen
+
+    Raises
+    ------
+    BuildError
+        If the program cannot be started.
+    """
+
+    engine = "cxxrtl"
+
+    def __init__(self, program: Path):
+        own, other = socket.socketpair()
+        command = [str(program), str(os.getpid())]
+        try:
+            # Texts of `Print` and `Assert` go where those of this process go.
+            self.process = subprocess.Popen(command, stdin=other.fileno(), start_new_session=True)
+        except OSError as error:
+            own.close()
+            raise BuildError(f"The program of a design cannot be started: {error}") from None
+        finally:
+            other.close()
+        super().__init__(own)
+        # A simulation that nobody closed leaves no zombie.
+        self._finalizer = weakref.finalize(self, _end, own, self.process)
+
+    def close(self) -> None:
+        self._finalizer()
+
+    def _reason(self) -> str:
+        status = self.process.returncode
+        if status is None or status >= 0:
+            return f"exit status {status}"
+        try:
+            return f"killed by {signal.Signals(-status).name}"
+        except ValueError:
+            return f"killed by signal {-status}"
+
+
+def _end(own: socket.socket, process: subprocess.Popen[bytes]) -> None:
+    own.close()
+    with suppress(subprocess.TimeoutExpired):
+        process.wait(_END_SECONDS)
+    process.kill()
+    process.wait()

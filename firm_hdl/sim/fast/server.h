@@ -1,0 +1,402 @@
+// Simulates a design that CXXRTL has compiled, by the messages of `protocol.py` on a socket.
+//
+// A cycle begins when the inputs have been applied and all signals have settled. Then transfers are
+// sampled, the clock rises, and the inputs of the next cycle are applied. Registers sample in the
+// evaluation with the rising clock, so the next inputs and the falling clock need only one more.
+#pragma once
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+namespace firm_hdl {
+
+using Bytes = std::vector<uint8_t>;
+
+// Ports of the design, as words of 32 bits.
+template <size_t bits>
+uint32_t* words(cxxrtl::value<bits>& port) {
+    return port.data;
+}
+template <size_t bits>
+uint32_t* words(cxxrtl::wire<bits>& port) {
+    return port.curr.data;
+}
+
+enum Order : uint8_t { SEND = 1, SET, GET, STALL, RUN, LIVE, HALT, RESET };
+enum Answer : uint8_t { TRANSFERS = 1, VALUES, DONE };
+enum class Reason : uint8_t { Cycles, Quiet, Conditions, Halted };
+
+constexpr uint16_t ALL_TRANSFERS = 0xffff;
+// Cycles between two looks at the socket.
+constexpr uint64_t BURST = 64;
+// Bytes of transfers that are sent before a run ends.
+constexpr size_t FLUSH_BYTES = 1 << 16;
+constexpr int PARENT_MILLISECONDS = 500;
+
+template <typename Number>
+void put(Bytes& bytes, Number number) {
+    for (size_t n = 0; n < sizeof number; ++n)
+        bytes.push_back(static_cast<uint8_t>(static_cast<uint64_t>(number) >> 8 * n));
+}
+
+// Reads numbers from the body of a message.
+struct Reader {
+    const uint8_t* at;
+    const uint8_t* end;
+
+    template <typename Number>
+    Number take() {
+        uint64_t number = 0;
+        for (size_t n = 0; n < sizeof(Number); ++n) number |= uint64_t(*at++) << 8 * n;
+        return static_cast<Number>(number);
+    }
+};
+
+// The machine is little-endian, as that of the protocol; bits above the value are 0.
+inline void load(uint32_t* to, const uint8_t* from, size_t bytes) { std::memcpy(to, from, bytes); }
+
+struct Stalls {
+    std::vector<bool> pattern;
+
+    bool at(uint64_t cycle) const { return !pattern.empty() && pattern[cycle % pattern.size()]; }
+};
+
+struct Stream {
+    bool is_input;
+    // `ready` of an output, `valid` of an input: what the outside drives. Null: it is constant.
+    uint32_t* valid;
+    uint32_t* ready;
+    uint32_t* payload;
+    size_t bytes;
+
+    Stalls stalls;
+    bool is_offered = false;
+    // Payloads that were not yet taken, from `first` on.
+    Bytes queue;
+    size_t first = 0;
+    // Transfers that were not yet sent.
+    Bytes records;
+
+    uint64_t queued() const { return (queue.size() - first) / bytes; }
+
+    void apply(uint64_t cycle) {
+        if (!is_input) {
+            if (ready) *ready = !stalls.at(cycle);
+            return;
+        }
+        if (!is_offered && first < queue.size() && !stalls.at(cycle)) {
+            load(payload, &queue[first], bytes);
+            is_offered = true;
+        }
+        *valid = is_offered;
+    }
+
+    void taken() {
+        is_offered = false;
+        first += bytes;
+        if (first == queue.size()) {
+            queue.clear();
+            first = 0;
+        } else if (first >= FLUSH_BYTES && 2 * first >= queue.size()) {
+            queue.erase(queue.begin(), queue.begin() + static_cast<std::ptrdiff_t>(first));
+            first = 0;
+        }
+    }
+};
+
+struct Plain {
+    uint32_t* value;
+    size_t bytes;
+};
+
+struct Condition {
+    Stream* stream;
+    uint16_t bit;
+    uint64_t count;
+
+    void note(const Stream& moved) {
+        if (&moved != stream || !count) return;
+        if (bit == ALL_TRANSFERS || stream->payload[bit / 32] >> bit % 32 & 1) --count;
+    }
+};
+
+// What `model.cc` fills in: the ports of a design.
+struct Ports {
+    std::vector<Stream> streams;
+    std::vector<Plain> inputs, outputs;
+};
+
+template <typename Design>
+class Server {
+  public:
+    Server(int socket, int parent, void (*connect)(Design&, Ports&))
+        : socket(socket), parent(parent), connect(connect) {
+        start();
+    }
+
+    // Serves messages until the other side closes the socket.
+    void serve() {
+        while (true) {
+            bool is_active = is_live && quiet_cycles < live_quiet;
+            if (is_live) run_burst(is_active ? BURST : 0);
+            receive(is_active ? 0 : is_live ? live_milliseconds : PARENT_MILLISECONDS);
+        }
+    }
+
+  private:
+    void start() {
+        design.reset(new Design);
+        ports = Ports();
+        connect(*design, ports);
+        cycle = quiet_cycles = 0;
+        // Not yet settled.
+        is_applied = false;
+    }
+
+    void reset() {
+        Ports before = std::move(ports);
+        start();
+        for (size_t n = 0; n < ports.streams.size(); ++n)
+            ports.streams[n].stalls = before.streams[n].stalls;
+        for (size_t n = 0; n < set_values.size(); ++n)
+            if (!set_values[n].empty())
+                load(ports.inputs[n].value, set_values[n].data(), set_values[n].size());
+    }
+
+    void apply() {
+        if (is_applied) return;
+        for (Stream& stream : ports.streams) stream.apply(cycle);
+        design->p_clk.template set<bool>(false);
+        design->step();
+        is_applied = true;
+    }
+
+    // Simulates the rest of a cycle whose inputs have been applied.
+    void finish_cycle() {
+        bool moved = false;
+        for (Stream& stream : ports.streams) {
+            if (stream.is_input ? !stream.is_offered : !(*stream.valid & 1)) continue;
+            if (stream.ready && !(*stream.ready & 1)) continue;
+            moved = true;
+            for (Condition& condition : conditions) condition.note(stream);
+            if (stream.is_input)
+                stream.taken();
+            else
+                record(stream);
+        }
+        design->p_clk.template set<bool>(true);
+        design->eval();
+        design->commit();
+        ++cycle;
+        quiet_cycles = moved ? 0 : quiet_cycles + 1;
+        is_applied = false;
+    }
+
+    void record(Stream& stream) {
+        size_t at = stream.records.size();
+        stream.records.resize(at + sizeof cycle + stream.bytes);
+        std::memcpy(&stream.records[at], &cycle, sizeof cycle);
+        std::memcpy(&stream.records[at + sizeof cycle], stream.payload, stream.bytes);
+        if (stream.records.size() >= FLUSH_BYTES) flush();
+    }
+
+    bool are_met() const {
+        for (const Condition& condition : conditions)
+            if (condition.count) return false;
+        return !conditions.empty();
+    }
+
+    Reason run(uint64_t cycles, uint64_t quiet) {
+        quiet_cycles = 0;
+        for (uint64_t n = 0; n < cycles; ++n) {
+            if (are_met()) return Reason::Conditions;
+            if (quiet && quiet_cycles >= quiet) return Reason::Quiet;
+            if (n % (1 << 16) == 0) end_if_alone();
+            apply();
+            finish_cycle();
+        }
+        if (are_met()) return Reason::Conditions;
+        return quiet && quiet_cycles >= quiet ? Reason::Quiet : Reason::Cycles;
+    }
+
+    void run_burst(uint64_t cycles) {
+        // A burst of a sleeping design; a transfer wakes it up.
+        if (!cycles) cycles = live_cycles;
+        for (uint64_t n = 0; n < cycles; ++n) {
+            apply();
+            finish_cycle();
+        }
+        flush();
+    }
+
+    void send(Answer kind, const Bytes& body) {
+        Bytes head;
+        put(head, kind);
+        put(head, static_cast<uint32_t>(body.size()));
+        send_all(head);
+        send_all(body);
+    }
+
+    void send_all(const Bytes& bytes) {
+        for (size_t at = 0; at < bytes.size();) {
+            ssize_t sent = ::send(socket, &bytes[at], bytes.size() - at, MSG_NOSIGNAL);
+            if (sent < 0 && errno == EINTR) continue;
+            if (sent <= 0) std::exit(0);
+            at += static_cast<size_t>(sent);
+        }
+    }
+
+    void flush() {
+        for (size_t n = 0; n < ports.streams.size(); ++n) {
+            Bytes& records = ports.streams[n].records;
+            if (records.empty()) continue;
+            Bytes body;
+            put(body, static_cast<uint16_t>(n));
+            body.insert(body.end(), records.begin(), records.end());
+            send(TRANSFERS, body);
+            records.clear();
+        }
+    }
+
+    void send_done(Reason reason) {
+        flush();
+        Bytes body;
+        put(body, reason);
+        put(body, cycle);
+        for (const Stream& stream : ports.streams) put(body, stream.queued());
+        send(DONE, body);
+    }
+
+    void send_values() {
+        apply();
+        Bytes body;
+        for (const Plain& output : ports.outputs) {
+            const auto* from = reinterpret_cast<const uint8_t*>(output.value);
+            body.insert(body.end(), from, from + output.bytes);
+        }
+        send(VALUES, body);
+    }
+
+    // Ends this process if the parent has died: nobody may have closed the socket.
+    void end_if_alone() {
+        if (getppid() != parent) std::exit(0);
+        uint8_t byte;
+        if (recv(socket, &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0) std::exit(0);
+    }
+
+    void receive(int milliseconds) {
+        if (milliseconds) {
+            pollfd waiting{socket, POLLIN, 0};
+            poll(&waiting, 1, milliseconds);
+        }
+        if (getppid() != parent) std::exit(0);
+        uint8_t buffer[1 << 16];
+        ssize_t count = recv(socket, buffer, sizeof buffer, MSG_DONTWAIT);
+        if (count == 0) std::exit(0);
+        if (count < 0) {
+            if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return;
+            std::exit(0);
+        }
+        received.insert(received.end(), buffer, buffer + count);
+        size_t at = 0;
+        while (received.size() - at >= 5) {
+            Reader head{&received[at + 1], nullptr};
+            size_t length = head.take<uint32_t>();
+            if (received.size() - at - 5 < length) break;
+            const uint8_t* body = received.data() + at + 5;
+            handle(received[at], {body, body + length});
+            at += 5 + length;
+        }
+        received.erase(received.begin(), received.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+
+    void handle(uint8_t order, Reader body) {
+        switch (order) {
+            case SEND: {
+                Bytes& queue = ports.streams.at(body.take<uint16_t>()).queue;
+                queue.insert(queue.end(), body.at, body.end);
+                wake();
+                break;
+            }
+            case SET: {
+                size_t number = body.take<uint16_t>();
+                Plain& input = ports.inputs.at(number);
+                set_values.resize(ports.inputs.size());
+                set_values[number].assign(body.at, body.end);
+                load(input.value, body.at, input.bytes);
+                wake();
+                break;
+            }
+            case GET:
+                send_values();
+                break;
+            case STALL: {
+                Stream& stream = ports.streams.at(body.take<uint16_t>());
+                stream.stalls.pattern.resize(body.take<uint32_t>());
+                for (size_t n = 0; n < stream.stalls.pattern.size(); ++n)
+                    stream.stalls.pattern[n] = body.at[n / 8] >> n % 8 & 1;
+                wake();
+                break;
+            }
+            case RUN: {
+                auto cycles = body.take<uint64_t>(), quiet = body.take<uint64_t>();
+                while (body.at < body.end) {
+                    Stream* stream = &ports.streams.at(body.take<uint16_t>());
+                    auto bit = body.take<uint16_t>();
+                    conditions.push_back({stream, bit, body.take<uint64_t>()});
+                }
+                Reason reason = run(cycles, quiet);
+                conditions.clear();
+                send_done(reason);
+                break;
+            }
+            case LIVE:
+                live_quiet = body.take<uint32_t>();
+                live_milliseconds = static_cast<int>(body.take<uint32_t>());
+                live_cycles = body.take<uint32_t>();
+                is_live = true;
+                quiet_cycles = 0;
+                break;
+            case HALT:
+                is_live = false;
+                send_done(Reason::Halted);
+                break;
+            case RESET:
+                reset();
+                break;
+            default:
+                std::fprintf(stderr, "firm-hdl: unknown message %u\n", order);
+                std::exit(2);
+        }
+    }
+
+    // Inputs have changed within a cycle.
+    void wake() {
+        is_applied = false;
+        quiet_cycles = 0;
+    }
+
+    int socket, parent;
+    void (*connect)(Design&, Ports&);
+    std::unique_ptr<Design> design;
+    Ports ports;
+    std::vector<Bytes> set_values;
+    std::vector<Condition> conditions;
+    Bytes received;
+    uint64_t cycle = 0, quiet_cycles = 0;
+    bool is_applied = false, is_live = false;
+    uint64_t live_quiet = 0, live_cycles = 0;
+    int live_milliseconds = 0;
+};
+
+}  // namespace firm_hdl

@@ -1,0 +1,397 @@
+"""A simulated design as an object: send and receive transfers while an engine runs it."""
+
+from __future__ import annotations
+
+import select
+import time
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from itertools import islice
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Literal
+
+from amaranth.lib import wiring
+
+from firm_hdl.sim.bench import DeadlineError
+from firm_hdl.sim.fast import protocol
+from firm_hdl.sim.fast.arrivals import Arrivals
+from firm_hdl.sim.fast.compilers import COMPILER_OPTIONS
+from firm_hdl.sim.fast.engines import EngineName, check_engine, start
+from firm_hdl.sim.fast.packing import Packet, Transfer, packed, packed_packets
+from firm_hdl.sim.fast.ports import StreamPort, ports_of
+from firm_hdl.sim.fast.protocol import Answer, Done, Order, Reason
+from firm_hdl.sim.fast.top import Top
+from firm_hdl.sim.stalls import StallPlan, stalls_of
+
+__all__ = ["FastSimulation"]
+
+LIMIT = 1_000_000
+QUIET = 1000
+STALL_CYCLES = 1 << 14
+# Bytes of a message to the engine, which it copies.
+_MOST_BYTES = 1 << 22
+
+
+class FastSimulation:
+    """A design that runs in an engine: CXXRTL, up to a million cycles per second, or Amaranth's.
+
+    The design is a component whose members are streams and plain values, in any nesting. A stream
+    or value is named by the members on the way to it: ``"packets_in"``, ``"message.linear.x"``.
+    There is one clock domain, `sync`; its reset is never high.
+
+    What is sent on an input stream waits in a queue, and is offered as soon as the design takes it.
+    An output stream is always ready, and what came waits until it is received. `stalls` change
+    both. With the same calls, both engines have the same transfers in the same cycles, except while
+    the simulation is live.
+
+    Use it from one thread, and close it; ``with FastSimulation(design) as sim:`` does.
+
+    Parameters
+    ----------
+    design : wiring.Component
+        It must not be a part of another design.
+    engine : {"auto", "cxxrtl", "amaranth"}
+        ``"cxxrtl"`` compiles the design with a C++ compiler: the environment's ``CXX``, g++,
+        clang++, or that of the Python package `ziglang`. That takes seconds to a minute, and once
+        only, because programs are kept (:mod:`firm_hdl.sim.fast.compilers`). ``"amaranth"`` is
+        Amaranth's simulator in a thread, hundreds of times slower. ``"auto"`` takes CXXRTL if
+        there is a compiler.
+    stalls : Stalls, mapping or None
+        Stalls of all streams, or of streams by name. See :meth:`stall`.
+    options : sequence of str
+        Options of the compiler. ``["-O1"]`` compiles in less time.
+    cache : Path or None
+        Folder of compiled programs; `None`: the user's cache.
+    ignored : collection of str
+        Output streams whose transfers are not kept. A stream that is not received in a live
+        simulation would take more and more memory.
+
+    Attributes
+    ----------
+    ports : Ports
+        Streams and plain values.
+    engine : {"cxxrtl", "amaranth"}
+        Which engine runs.
+    cycle : int
+        Number of the next cycle, as of the last run, halt or reset.
+    is_live : bool
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the design or a name is not what it has to be.
+    ProgramMissingError
+        If the engine is ``"cxxrtl"`` and there is no compiler.
+    BuildError
+        If the design cannot be compiled.
+    ClockDomainError
+        If the design has another clock domain than `sync`.
+    """
+
+    def __init__(
+        self,
+        design: wiring.Component,
+        *,
+        engine: EngineName = "auto",
+        stalls: StallPlan = None,
+        options: Sequence[str] = COMPILER_OPTIONS,
+        cache: Path | None = None,
+        ignored: Collection[str] = (),
+    ):
+        check_engine(engine)
+        self.ports = ports_of(design)
+        for name in ignored:
+            self.ports.stream(name, is_input=False)
+        self._ignored = frozenset(ignored)
+        self.cycle = 0
+        self.is_live = False
+        self._clear()
+        self._channel = start(Top(design, self.ports), engine, options=options, cache=cache)
+        self.engine: Literal["cxxrtl", "amaranth"] = self._channel.engine
+        try:
+            self._prepare(stalls)
+        except BaseException:
+            self.close()
+            raise
+
+    def _prepare(self, stalls: StallPlan) -> None:
+        for port in self.ports.inputs:
+            if port.init is not None:
+                self.set(port.name, port.init)
+        for each in self.ports.streams:
+            if pattern := stalls_of(stalls, each.name):
+                cycles = len(pattern.pattern) or STALL_CYCLES
+                self.stall(each.name, islice(pattern.cycles(each.name), cycles))
+
+    def __enter__(self) -> FastSimulation:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the engine. A simulation that is closed cannot be used."""
+        self._channel.close()
+
+    # Inputs.
+
+    def send(self, name: str, payloads: Iterable[object]) -> None:
+        """Put payloads into the queue of an input stream.
+
+        Parameters
+        ----------
+        payloads : iterable
+            As `ctx.set` of a testbench takes them. An integer is the bits of a payload. On a stream
+            of 8 bits, `bytes` are many payloads.
+        """
+        port = self.ports.stream(name, is_input=True)
+        if isinstance(payloads, bytes | bytearray) and port.bytes == 1 and port.width == 8:
+            self._send(port, bytes(payloads))
+        else:
+            self._send(port, packed(map(port.bits, payloads), port.bytes))
+
+    def send_packets(self, name: str, packets: Iterable[bytes]) -> None:
+        """Put packets into the queue of a packet stream, back to back."""
+        port = self.ports.stream(name, is_input=True, is_packets=True)
+        self._send(port, packed_packets(packets, port.bus_bytes))
+
+    def set(self, name: str, value: object) -> None:
+        """Set a plain input, from the current cycle on."""
+        number, port = self.ports.plain_port(name, is_input=True)
+        body = port.bits(value).to_bytes(port.bytes, "little")
+        self._channel.send(protocol.numbered(Order.SET, number, body))
+
+    def stall(self, name: str, pattern: Iterable[bool]) -> None:
+        """Stall a stream: in a cycle with a stall, nothing new is offered, or nothing is taken.
+
+        Parameters
+        ----------
+        pattern : iterable of bool
+            Whether the stream is stalled in cycle 0, 1 and so on; it is repeated. No cycles: no
+            stalls. A pattern from a :class:`.Stalls` has its first 16,384 cycles.
+
+        Raises
+        ------
+        ValueError
+            If the pattern has only stalls, or the stream is an output that is always ready.
+        """
+        port = self.ports.stream(name)
+        bits = [bool(bit) for bit in pattern]
+        if bits and all(bits):
+            raise ValueError(f"The pattern of {name!r} would stall for ever")
+        if not port.is_input and port.is_always_ready and any(bits):
+            raise ValueError(f"Stream {name!r} is always ready, and cannot be stalled")
+        self._channel.send(protocol.stall(port.number, bits))
+
+    # Outputs.
+
+    def receive(self, name: str) -> list[Any]:
+        """Take all payloads that came on an output stream, as `ctx.get` would return them."""
+        port = self.ports.stream(name, is_input=False)
+        return [port.view(each.bits) for each in self.transfers(name)]
+
+    def transfers(self, name: str) -> list[Transfer]:
+        """Take all transfers that came on an output stream: cycles, and payloads as bits.
+
+        On a packet stream, ask either for transfers or for packets: what was joined to packets is
+        not there as transfers any more.
+        """
+        self.ports.stream(name, is_input=False)
+        self._poll()
+        return self._arrivals.take_transfers(name)
+
+    def receive_packets(self, name: str) -> list[bytes]:
+        """Take all complete packets that came on a packet stream."""
+        return [packet.data for packet in self.packets(name)]
+
+    def packets(self, name: str) -> list[Packet]:
+        """Take all complete packets that came on a packet stream, with the cycles of their ends."""
+        self.ports.stream(name, is_input=False, is_packets=True)
+        self._poll()
+        return self._arrivals.take_packets(name)
+
+    def get(self, name: str) -> Any:
+        """Return the value of a plain output in the current cycle."""
+        number, port = self.ports.plain_port(name, is_input=False)
+        self._channel.send(protocol.message(Order.GET))
+        body = self._answer(Answer.VALUES)
+        at = sum(each.bytes for each in self.ports.outputs[:number])
+        return port.view(int.from_bytes(body[at : at + port.bytes], "little"))
+
+    def queued(self, name: str) -> int:
+        """Return the number of payloads of an input stream that were not taken.
+
+        The number is that at the end of the last run, or at the halt.
+        """
+        return self._queued[self.ports.stream(name, is_input=True).number]
+
+    # Time.
+
+    def run(self, cycles: int) -> None:
+        """Run a number of cycles."""
+        self._run(cycles, 0, {})
+
+    def run_until(self, counts: Mapping[str, int], *, limit: int = LIMIT) -> None:
+        """Run until so many transfers wait to be received on output streams.
+
+        Parameters
+        ----------
+        counts : mapping of str to int
+            Transfers by stream; packets if it is a packet stream.
+        limit : int
+            Most cycles.
+
+        Raises
+        ------
+        DeadlineError
+            If they do not come in `limit` cycles.
+        """
+        missing = self._missing(counts)
+        if missing and self._run(limit, 0, missing).reason != Reason.CONDITIONS:
+            left = [f"{n} on {name!r}" for name, n in self._missing(counts).items()]
+            raise DeadlineError(f"Did not come in {limit} cycles: {', '.join(left)}")
+
+    def run_until_idle(self, *, quiet: int = QUIET, limit: int = LIMIT) -> None:
+        """Run until no stream has transferred in `quiet` cycles, and all that was sent is taken.
+
+        Raises
+        ------
+        DeadlineError
+            If something that was sent is not taken, or there are more than `limit` cycles.
+        """
+        result = self._run(limit, quiet, {})
+        over = zip(self.ports.streams, result.queued, strict=True)
+        left = [f"{count} on {port.name!r}" for port, count in over if count]
+        if left:
+            waiting = ", ".join(left)
+            raise DeadlineError(f"Not taken up to cycle {self.cycle}: {waiting}")
+        if result.reason != Reason.QUIET:
+            raise DeadlineError(f"There are still transfers after {limit} cycles")
+
+    def reset(self) -> None:
+        """Go back to the state of the start. All that was sent or came is discarded.
+
+        Stalls, and the values of plain inputs, stay.
+        """
+        self._not_live()
+        # An answer, so that nothing from before the reset can come later.
+        self._channel.send(protocol.message(Order.RESET) + protocol.message(Order.HALT))
+        self._done()
+        self._clear()
+
+    # Live simulation.
+
+    def go_live(self, *, quiet: int = 4096, nap_cycles: int = 1000, nap_ms: int = 10) -> None:
+        """Let the engine run on its own, as fast as it can, until :meth:`halt`.
+
+        Parameters
+        ----------
+        quiet : int
+            After so many cycles without a transfer, the engine sleeps. What is sent wakes it up.
+        nap_cycles, nap_ms : int
+            A sleeping engine runs `nap_cycles` cycles every `nap_ms` milliseconds, for timers of
+            the design. A transfer wakes it up.
+        """
+        self._not_live()
+        self.is_live = True
+        self._channel.send(protocol.live(quiet, nap_ms, nap_cycles))
+
+    def wait(self, seconds: float) -> bool:
+        """Wait until something has come on an output stream; return whether it has.
+
+        What came before and was not received counts, ignored streams do not.
+        """
+        end = time.monotonic() + seconds
+        self._poll()
+        while not self._arrivals:
+            left = end - time.monotonic()
+            if left <= 0 or not self.is_live:
+                return False
+            select.select([self.fileno()], [], [], left)
+            self._poll()
+        return True
+
+    def fileno(self) -> int:
+        """Return the file descriptor that can be read when something came in a live simulation.
+
+        Bytes that were read from it wait to be received, so receive everything before the next
+        `select`.
+        """
+        return self._channel.fileno()
+
+    def halt(self) -> None:
+        """End a live simulation between two cycles. What came can be received."""
+        self._channel.send(protocol.message(Order.HALT))
+        self._done()
+        self.is_live = False
+
+    # Inside.
+
+    def _clear(self) -> None:
+        self._arrivals = Arrivals(self.ports.streams, self._ignored)
+        self._queued: Sequence[int] = [0] * len(self.ports.streams)
+
+    def _send(self, port: StreamPort, payloads: bytes) -> None:
+        step = max(1, _MOST_BYTES // port.bytes) * port.bytes
+        for at in range(0, len(payloads), step):
+            part = payloads[at : at + step]
+            self._channel.send(protocol.numbered(Order.SEND, port.number, part))
+
+    def _missing(self, counts: Mapping[str, int]) -> dict[str, int]:
+        """Return how many transfers or packets must still come, by stream."""
+        missing = {}
+        for name, count in counts.items():
+            self.ports.stream(name, is_input=False)
+            if name in self._ignored:
+                raise ValueError(f"Stream {name!r} is ignored")
+            if (here := self._arrivals.count(name)) < count:
+                missing[name] = count - here
+        return missing
+
+    def _run(self, cycles: int, quiet: int, counts: Mapping[str, int]) -> Done:
+        self._not_live()
+        conditions = []
+        for name, count in counts.items():
+            port = self.ports.stream(name)
+            bit = protocol.ALL_TRANSFERS if port.last_bit is None else port.last_bit
+            conditions.append((port.number, bit, count))
+        self._channel.send(protocol.run(cycles, quiet, conditions))
+        return self._done()
+
+    def _done(self) -> Done:
+        result = protocol.read_done(self._answer(Answer.DONE))
+        self.cycle, self._queued = result.cycle, result.queued
+        return result
+
+    def _not_live(self) -> None:
+        if self.is_live:
+            raise RuntimeError("The simulation is live; halt it first")
+
+    def _answer(self, kind: Answer) -> bytes:
+        try:
+            while True:
+                found = self._channel.receive(None)
+                for index, (came, body) in enumerate(found):
+                    if came == kind:
+                        # An engine that is live may already have sent more.
+                        self._keep(found[:index] + found[index + 1 :])
+                        return body
+                self._keep(found)
+        except KeyboardInterrupt:
+            # The answer would be taken for that of the next call.
+            self.close()
+            raise
+
+    def _poll(self) -> None:
+        if self.is_live:
+            self._keep(self._channel.receive(0.0))
+
+    def _keep(self, messages: Iterable[tuple[int, bytes]]) -> None:
+        for kind, body in messages:
+            assert kind == Answer.TRANSFERS, kind
+            self._arrivals.keep(*protocol.read_number(body))

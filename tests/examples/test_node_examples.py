@@ -1,0 +1,233 @@
+# amaranth: UnusedElaboratable=no
+"""The nodes of `examples/nodes`, each in simulation behind a bridge."""
+
+from __future__ import annotations
+
+import io
+import math
+import random
+import re
+import struct
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from amaranth.hdl import Module, Signal, signed
+from amaranth.sim import Simulator
+from rosbags.typesys import Stores, get_typestore
+
+import firm_hdl
+from firm_hdl.cli import main
+from firm_hdl.node import read_description
+from firm_hdl.node.boards.simulated import SimulatedBoard
+from tests.node.bridge.fakes import FakeGraph, bridge_of, run_until
+
+EXAMPLES = Path(firm_hdl.__file__).parents[1] / "examples" / "nodes"
+STORE = get_typestore(Stores.ROS2_JAZZY)
+
+
+@pytest.fixture
+def modules():
+    """Forget the modules of accelerators, which have no package."""
+    before = set(sys.modules)
+    yield
+    for name in set(sys.modules) - before:
+        del sys.modules[name]
+
+
+@pytest.fixture
+def start(modules):
+    """Start a node in Amaranth's simulator, behind a bridge with a fake graph."""
+    started = []
+
+    def start(name):
+        description = read_description(EXAMPLES / name)
+        board = SimulatedBoard(description, engine="amaranth")
+        made, said = bridge_of(board, FakeGraph(), description)
+        started.append(made)
+        assert run_until(made, lambda: made.graph.opened, 60), said
+        topics = {topic.name: topic for topic in description.topics}
+        return made, topics
+
+    yield start
+    for each in started:
+        each.close()
+
+
+def twist(forward, turn):
+    new = STORE.types
+    vector = new["geometry_msgs/msg/Vector3"]
+    message = new["geometry_msgs/msg/Twist"](
+        linear=vector(x=forward, y=9.0, z=9.0), angular=vector(x=9.0, y=9.0, z=turn)
+    )
+    return bytes(STORE.serialize_cdr(message, "geometry_msgs/msg/Twist"))
+
+
+def read(packets, name, kind):
+    return [STORE.deserialize_cdr(p, kind) for topic, p in packets if topic == name]
+
+
+def test_wheels(start):
+    made, topics = start("wheels/wheels.yaml")
+    graph = made.graph
+    graph.say(topics["/cmd_vel"], twist(1.0, 0.0))
+
+    def odometry():
+        return read(graph.got, "/odom", "nav_msgs/msg/Odometry")
+
+    assert run_until(made, lambda: len(odometry()) >= 5, 60)
+    graph.say(topics["/cmd_vel"], twist(0.5, -1.0))
+    before = len(odometry())
+    assert run_until(made, lambda: len(odometry()) >= before + 5, 60)
+    speeds = [
+        [each.data for each in read(graph.got, name, "std_msgs/msg/Float64")]
+        for name in ("/wheel/left", "/wheel/right")
+    ]
+    assert speeds == [[1.0, 0.75], [1.0, 0.25]]
+    check_odometry(odometry())
+    graph.on_message(topics["/wheels/reset"], b"\0\1\0\0\0", "me")
+    assert run_until(made, lambda: graph.answers, 60)
+    ((caller, answer),) = graph.answers
+    # Padding may be any.
+    assert caller == "me" and answer[:5] == b"\0\1\0\0\1"
+    assert answer[8:] == struct.pack("<I", 8) + b"at zero\0"
+    assert not made.counters.dropped
+
+
+def check_odometry(messages):
+    """Check each message by the one before it: the way that the robot made in this time."""
+    times = [each.header.stamp.sec + each.header.stamp.nanosec / 1e9 for each in messages]
+    assert times == sorted(times) and abs(times[-1] - time.time()) < 5
+    yaws = []
+    for each in messages:
+        assert (each.header.frame_id, each.child_frame_id) == ("odom", "base")
+        turn = each.pose.pose.orientation
+        yaws.append(2 * math.atan2(turn.z, turn.w))
+        assert abs(turn.z**2 + turn.w**2 - 1) < 1e-3 and turn.x == turn.y == 0
+        assert not np.any(each.pose.covariance) and not np.any(each.twist.covariance)
+    moved = 0
+    for n in range(1, len(messages)):
+        seconds = times[n] - times[n - 1]
+        old, new = messages[n - 1].pose.pose.position, messages[n].pose.pose.position
+        # The speed when the message was sent is that of the whole time, unless it changed in it.
+        speed, bend = messages[n].twist.twist.linear.x, messages[n].twist.twist.angular.z
+        if speed != messages[n - 1].twist.twist.linear.x or seconds >= 1:
+            continue
+        way = math.hypot(new.x - old.x, new.y - old.y)
+        turned = math.remainder(yaws[n] - yaws[n - 1], 2 * math.pi)
+        assert abs(way - speed * seconds) < 2e-3, n
+        # The table has 1,024 angles.
+        assert abs(turned - bend * seconds) < 0.03, n
+        if way > 0.01:
+            moved += 1
+            course = math.atan2(new.y - old.y, new.x - old.x)
+            assert abs(math.remainder(course - yaws[n], 2 * math.pi)) < 0.05, n
+    assert moved >= 3
+
+
+def test_filter(start):
+    made, topics = start("filter/near.yaml")
+    graph, new = made.graph, STORE.types
+    stamp = new["builtin_interfaces/msg/Time"](sec=1, nanosec=2)
+    header = new["std_msgs/msg/Header"](stamp=stamp, frame_id="laser")
+    ranges = [0.5, 2.5, 2.6, 1e9, -3.0, math.inf, 0.0, math.nan, 1.0]
+    for count in (9, 0, 1, 8):
+        scan = new["sensor_msgs/msg/LaserScan"](
+            header=header,
+            **dict.fromkeys(("angle_min", "angle_max", "angle_increment", "time_increment"), 0.25),
+            **dict.fromkeys(("scan_time", "range_min", "range_max"), 9.0),
+            ranges=np.array(ranges[:count], np.float32),
+            intensities=np.arange(count, dtype=np.float32),
+        )
+        graph.say(topics["/scan"], bytes(STORE.serialize_cdr(scan, "sensor_msgs/msg/LaserScan")))
+    assert run_until(made, lambda: len(graph.got) == 4, 60)
+    scans = read(graph.got, "/near", "sensor_msgs/msg/LaserScan")
+    for count, scan in zip((9, 0, 1, 8), scans, strict=True):
+        assert scan.header == header and scan.range_max == 9.0 and scan.angle_min == 0.25
+        assert list(scan.intensities) == list(range(count))
+        want = [0.5, 2.5, math.inf, math.inf, -3.0, math.inf, 0.0, math.inf, 1.0][:count]
+        assert list(scan.ranges) == want
+
+
+def test_echo_of_ros_1(start):
+    made, topics = start("echo_ros1/echo.yaml")
+    texts = [struct.pack("<I", size) + b"x" * size for size in (0, 1, 7, 8, 9, 40)]
+    made.graph.say(topics["/heard"], *texts)
+    assert run_until(made, lambda: len(made.graph.got) == len(texts), 60)
+    assert made.graph.got == [("/said", text) for text in texts]
+
+
+def floats(count):
+    rng = random.Random(count)
+    yield from (
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        0.5,
+        2**-20,
+        2**-21,
+        -(2**-20),
+        524_287.0,
+        3e5,
+        1e-300,
+        5e-324,
+    )
+    for _ in range(count):
+        yield math.ldexp(rng.uniform(-1, 1), rng.randrange(-25, 19))
+
+
+def test_floats_and_fixed_numbers(modules, monkeypatch):
+    monkeypatch.syspath_prepend(EXAMPLES / "wheels")
+    import wheels
+
+    m = Module()
+    number, fixed = Signal(64), Signal(signed(wheels.BITS))
+    found, back = wheels.from_float64(m, number), wheels.to_float64(m, fixed)
+    seen = []
+
+    async def testbench(ctx):
+        for value in floats(200):
+            ctx.set(number, struct.unpack("<Q", struct.pack("<d", value))[0])
+            await ctx.delay(1e-9)
+            whole = ctx.get(found)
+            # Cut towards 0, and exact on the way back.
+            assert whole == math.trunc(value * 2**20), value
+            ctx.set(fixed, whole)
+            await ctx.delay(1e-9)
+            bits = ctx.get(back)
+            assert struct.unpack("<d", struct.pack("<Q", bits))[0] == whole / 2**20, value
+            seen.append(whole)
+        for value, want in (
+            (math.inf, 2**39 - 1),
+            (-math.inf, 1 - 2**39),
+            (math.nan, 0),
+            (1e9, 2**39 - 1),
+        ):
+            ctx.set(number, struct.unpack("<Q", struct.pack("<d", value))[0])
+            await ctx.delay(1e-9)
+            assert ctx.get(found) == want
+
+    simulator = Simulator(m)
+    simulator.add_testbench(testbench)
+    simulator.run()
+    assert len(set(seen)) > 100
+
+
+def test_the_tutorial(tmp_path, monkeypatch, capsys, modules):
+    """The files of the tutorial, written and run as it says."""
+    page = (EXAMPLES.parents[1] / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    for name, language in (("double.yaml", "yaml"), ("double.py", "py")):
+        (text,) = re.findall(rf"^```{language}\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+        (tmp_path / name).write_text(text)
+    ((line, answer),) = re.findall(r"^(\{.*\})\n(\{.*\})$", page, re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "stdin", io.StringIO(f"{line}\n"))
+    options = ["--graph", "none", "--engine", "amaranth"]
+    assert main(["node", "run", "double.yaml", *options]) == 0
+    out, err = capsys.readouterr()
+    assert out == f"{answer}\n"
+    rows = [line.split() for line in err.splitlines()]
+    assert ["/number", "subscribe", "1", "0"] in rows and ["/double", "publish", "0", "1"] in rows

@@ -1,0 +1,107 @@
+"""A peer in rospy, run by the Python of the system; arguments and output are those of `ros.py`."""
+
+import json
+import sys
+import threading
+import time
+
+import rospy
+from sensor_msgs.msg import Imu, PointCloud2, PointField
+from std_srvs.srv import SetBool
+
+
+def say(**what):
+    print(json.dumps(what), flush=True)
+
+
+def imu(number, size):
+    message = Imu()
+    message.header.stamp.secs = number
+    message.header.frame_id = f"imu{number % 7}"
+    message.orientation.x = number * 0.5
+    message.angular_velocity_covariance[8] = number
+    message.linear_acceleration.z = -float(number)
+    return message
+
+
+def cloud(number, size):
+    message = PointCloud2(height=1, width=size // 16, point_step=16, row_step=size // 16 * 16)
+    message.header.stamp.secs = number
+    message.header.frame_id = "lidar"
+    message.fields = [
+        PointField(name=name, offset=4 * at, datatype=PointField.FLOAT32, count=1)
+        for at, name in enumerate(["x", "y", "z", "intensity"])
+    ]
+    message.data = (number.to_bytes(4, "little") * 4) * (size // 16)
+    message.is_dense = True
+    return message
+
+
+TYPES = {"imu": (Imu, imu), "cloud": (PointCloud2, cloud)}
+
+
+def content(message):
+    """Return what has to be equal: rospy sets the number in the header when it sends."""
+    message.header.seq = 0
+    return str(message)
+
+
+def trip(options):
+    """Publish on several topics at once, and take what comes back on others."""
+    numbers = [[] for _ in options["topics"]]
+    publishers, subscribers, messages = [], [], []
+    for got, each in zip(numbers, options["topics"], strict=True):
+        kind, make = TYPES[each["type"]]
+        messages.append([make(n, each.get("bytes", 0)) for n in range(each["count"])])
+        publishers.append(rospy.Publisher(each["to"], kind, queue_size=10_000, tcp_nodelay=True))
+
+        def take(message, got=got, make=make, each=each):
+            number = message.header.stamp.secs
+            wanted = make(number, each.get("bytes", 0))
+            got.append(number if content(message) == content(wanted) else -1)
+
+        subscribers.append(rospy.Subscriber(each["back"], kind, take, tcp_nodelay=True))
+    say(ready=True)
+    end = time.monotonic() + options.get("patience", 60)
+    while not all(each.get_num_connections() for each in (*publishers, *subscribers)):
+        if time.monotonic() > end:
+            return say(failed="no bridge")
+        time.sleep(0.02)
+    time.sleep(options.get("settle", 0.5))
+    say(begins=True)
+    begin = time.monotonic()
+
+    def publish(index):
+        for n, message in enumerate(messages[index]):
+            time.sleep(max(0, begin + n * options["topics"][index]["period"] - time.monotonic()))
+            publishers[index].publish(message)
+
+    threads = [threading.Thread(target=publish, args=[n]) for n in range(len(messages))]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    seconds = time.monotonic() - begin
+    end = time.monotonic() + options.get("linger", 20)
+    while time.monotonic() < end and any(
+        len(got) < each["count"] for got, each in zip(numbers, options["topics"], strict=True)
+    ):
+        time.sleep(0.05)
+    return say(numbers=numbers, seconds=seconds)
+
+
+def call(options):
+    say(ready=True)
+    rospy.wait_for_service(options["name"], timeout=options.get("patience", 20))
+    ask = rospy.ServiceProxy(options["name"], SetBool, persistent=options.get("persistent", False))
+    answers = []
+    for number in range(options["count"]):
+        answer = ask(bool(number & 1))
+        answers.append([answer.success, answer.message])
+    say(answers=answers)
+
+
+if __name__ == "__main__":
+    what, options = sys.argv[1], json.loads(sys.argv[2])
+    rospy.init_node(options.get("own", "peer"), disable_signals=True)
+    {"trip": trip, "call": call}[what](options)

@@ -1,0 +1,115 @@
+"""The bridge with real nodes of ROS 2 on one side, and gateware in simulation on the other."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+
+import pytest
+
+from firm_hdl.jobs import ProgramMissingError
+from firm_hdl.jobs.programs import find_compiler
+from tests.live.bridges import BridgeProcess
+from tests.live.nodes import LOOP, PACKAGES
+from tests.live.peer import Peer, python_of
+from tests.tools import need
+
+pytestmark = pytest.mark.live
+
+RELEASES = pytest.mark.parametrize("release", ["jazzy", "kilted"])
+IMU = {"type": "imu", "to": "/imu_in", "back": "/imu_out", "depth": 0}
+CLOUD = {"type": "cloud", "bytes": 20_000, "to": "/cloud_in", "back": "/cloud_out", "depth": 0}
+
+
+def compiler():
+    try:
+        return find_compiler("A fast simulation", with_zig=True)[0]
+    except ProgramMissingError:
+        return None
+
+
+@pytest.fixture
+def bridge(tmp_path):
+    """Start bridges of `Loop`: with our own participant, or with the rclpy of an environment."""
+    need("a C++ compiler", compiler())
+    started = []
+
+    def start(release, graph="rtps", *arguments):
+        file = tmp_path / "loop.yaml"
+        file.write_text(LOOP.format(distro=release, paths=PACKAGES, link="stream"))
+        options = [
+            "--graph",
+            graph,
+            *(["--interface", "lo"] if graph == "rtps" else []),
+            *arguments,
+        ]
+        python = {"python": python_of(release)} if graph == "ros2" else {}
+        started.append(BridgeProcess(file, *options, **python))
+        started[-1].wait_for("joined")
+        return started[-1]
+
+    yield start
+    for each in started:
+        each.__exit__()
+
+
+GRAPHS = pytest.mark.parametrize("graph", ["rtps", "ros2"])
+
+
+@GRAPHS
+@RELEASES
+def test_two_topics_at_once(release, graph, bridge):
+    running = bridge(release, graph)
+    topics = [{**IMU, "count": 3000, "period": 0.001}, {**CLOUD, "count": 300, "period": 0.02}]
+    with Peer(release, "trip", topics=topics) as peer:
+        assert peer.next(90) == {"begins": True}
+        result = peer.result(90)
+    assert result["numbers"] == [list(range(3000)), list(range(300))]
+    account = running.stop()
+    assert not [line for line in account if "dropped" in line], account
+
+
+@GRAPHS
+@RELEASES
+def test_200_calls(release, graph, bridge):
+    running = bridge(release, graph)
+    with Peer(release, "call", name="/mode", count=200) as peer:
+        answers = peer.result(90)["answers"]
+    assert answers == [[bool(n & 1), "ok"] for n in range(200)]
+    running.stop(signal.SIGTERM)
+
+
+@GRAPHS
+def test_the_board_is_killed_and_starts_again(graph, bridge):
+    running = bridge("kilted", graph)
+    topics = [{**IMU, "count": 4000, "period": 0.002}]
+    with Peer("kilted", "trip", topics=topics, linger=3) as peer:
+        assert peer.next(90) == {"begins": True}
+        time.sleep(1)
+        os.kill(running.engine(), signal.SIGKILL)
+        running.wait_for("killed by SIGKILL; trying again")
+        running.wait_for("ready")
+        (numbers,) = peer.result(90)["numbers"]
+    # In order, none twice, none wrong (-1); and the last ones came.
+    assert numbers == sorted(set(numbers)) and numbers[0] == 0 and numbers[-1] == 3999
+    assert len(numbers) < 4000
+    account = "\n".join(running.stop())
+    assert "of /imu_in: no board" in account and "started again or lost 1 times" in account
+
+
+@GRAPHS
+def test_the_peer_is_killed_and_starts_again(graph, bridge):
+    running = bridge("kilted", graph)
+    endless = [{**IMU, "count": 100_000, "period": 0.002}]
+    with Peer("kilted", "trip", topics=endless) as peer:
+        assert peer.next(90) == {"begins": True}
+        time.sleep(1)
+        peer.kill()
+    # The dead reader takes nothing, and does not hold up others.
+    topics = [{**IMU, "count": 500, "period": 0.002}]
+    with Peer("kilted", "trip", topics=topics) as peer:
+        assert peer.next(90) == {"begins": True}
+        (numbers,) = peer.result(90)["numbers"]
+    assert numbers == list(range(500))
+    running.stop()

@@ -1,0 +1,96 @@
+"""The bridge with real nodes of ROS 1 on one side, and gateware in simulation on the other."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+
+import pytest
+
+from tests.live.bridges import BridgeProcess
+from tests.live.nodes import LOOP_ROS1, PACKAGES
+from tests.live.peer import Peer, python_of, ros1_variables
+from tests.live.test_bridge import CLOUD, IMU, compiler
+from tests.tools import need
+
+pytestmark = pytest.mark.live
+
+
+class Master:
+    """A master of ROS 1; a context manager."""
+
+    def __init__(self):
+        code = "import rosmaster; rosmaster.rosmaster_main(['rosmaster', '--core', '-p', '11311'])"
+        self._process = subprocess.Popen(
+            [python_of("ros1"), "-c", code],
+            env=ros1_variables(),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._process.kill()
+        self._process.wait()
+
+
+@pytest.fixture
+def bridge(tmp_path):
+    """A bridge of `Loop` with a graph of ROS 1, and its master."""
+    need("a C++ compiler", compiler())
+    python = python_of("ros1")
+    file = tmp_path / "loop.yaml"
+    file.write_text(LOOP_ROS1.format(paths=PACKAGES))
+    with Master(), BridgeProcess(file, python=python, variables=ros1_variables()) as running:
+        running.wait_for("joined")
+        yield running
+
+
+def test_two_topics_at_once(bridge):
+    topics = [{**IMU, "count": 3000, "period": 0.001}, {**CLOUD, "count": 300, "period": 0.02}]
+    with Peer("ros1", "trip", topics=topics) as peer:
+        assert peer.next(90) == {"begins": True}
+        result = peer.result(90)
+    assert result["numbers"] == [list(range(3000)), list(range(300))]
+    account = bridge.stop()
+    assert not [line for line in account if "dropped" in line], account
+
+
+@pytest.mark.parametrize("persistent", [False, True])
+def test_200_calls(bridge, persistent):
+    with Peer("ros1", "call", name="/mode", count=200, persistent=persistent) as peer:
+        answers = peer.result(90)["answers"]
+    assert answers == [[bool(n & 1), "ok"] for n in range(200)]
+
+
+def test_the_board_is_killed_and_starts_again(bridge):
+    topics = [{**IMU, "count": 4000, "period": 0.002}]
+    with Peer("ros1", "trip", topics=topics, linger=3) as peer:
+        assert peer.next(90) == {"begins": True}
+        time.sleep(1)
+        os.kill(bridge.engine(), signal.SIGKILL)
+        bridge.wait_for("killed by SIGKILL; trying again")
+        bridge.wait_for("ready")
+        (numbers,) = peer.result(90)["numbers"]
+    assert numbers == sorted(set(numbers)) and numbers[0] == 0 and numbers[-1] == 3999
+    assert len(numbers) < 4000
+
+
+def test_the_master_starts_again(tmp_path):
+    file = tmp_path / "loop.yaml"
+    file.write_text(LOOP_ROS1.format(paths=PACKAGES))
+    topics = [{**IMU, "count": 100, "period": 0.002}]
+    python = python_of("ros1")
+    with BridgeProcess(file, python=python, variables=ros1_variables()) as running:
+        running.wait_for("no master at http://127.0.0.1:11311; trying again")
+        for _ in range(2):
+            with Master():
+                running.wait_for("joined")
+                with Peer("ros1", "trip", topics=topics) as peer:
+                    assert peer.next(90) == {"begins": True}
+                    assert peer.result(90)["numbers"] == [list(range(100))]
+            running.wait_for("the master does not answer")

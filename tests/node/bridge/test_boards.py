@@ -1,0 +1,255 @@
+"""The ways to boards: names, sockets, serial lines; what they lose, and how they end."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pty
+import random
+import select
+import socket
+import threading
+import time
+import tty
+
+import pytest
+
+from firm_hdl.errors import UserError
+from firm_hdl.node.boards import BoardError, board_of
+from firm_hdl.node.boards.bytestreams import SerialBoard, TcpBoard
+from firm_hdl.node.boards.udp import UdpBoard
+from firm_hdl.node.bytestream import ByteStreamReader, write_frame
+from tests.node.bridge.fakes import ECHO, HEARD, FakeGraph, FakeNode, bridge_of, run_until
+from tests.node.samples import read
+
+TEXTS = [b"%d" % n * (n % 300) for n in range(200)]
+
+
+class UdpNode(threading.Thread):
+    """A `FakeNode` behind a UDP socket."""
+
+    def __init__(self, port=0):
+        super().__init__(daemon=True)
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", port))
+        self.socket.settimeout(0.05)
+        self.port = self.socket.getsockname()[1]
+        self.node, self.ends = FakeNode(), False
+        self.start()
+
+    def run(self):
+        while not self.ends:
+            with contextlib.suppress(TimeoutError):
+                frame, peer = self.socket.recvfrom(1 << 16)
+                for answer in self.node.take(frame):
+                    self.socket.sendto(answer, peer)
+        self.socket.close()
+
+    def stop(self):
+        self.ends = True
+        self.join()
+
+
+class ByteNode(threading.Thread):
+    """A `FakeNode` behind a file descriptor that carries bytes, of which some are changed."""
+
+    def __init__(self, file, flips=0.0):
+        super().__init__(daemon=True)
+        self.file, self.flips, self.random = file, flips, random.Random(1)
+        self.node, self.reader, self.ends = FakeNode(), ByteStreamReader(), False
+        self.flipped = 0
+        self.start()
+
+    def run(self):
+        while not self.ends:
+            if not select.select([self.file], [], [], 0.05)[0]:
+                continue
+            try:
+                data = os.read(self.file, 4096)
+            except OSError:
+                return
+            if not data:
+                return
+            for frame in self.reader.feed(self._damaged(data)):
+                for answer in self.node.take(frame):
+                    os.write(self.file, self._damaged(write_frame(answer)))
+
+    def _damaged(self, data):
+        out = bytearray(data)
+        for at in range(len(out)):
+            if self.random.random() < self.flips:
+                out[at] ^= 1 << self.random.randrange(8)
+                self.flipped += 1
+        return bytes(out)
+
+    def stop(self):
+        self.ends = True
+        self.join()
+
+
+@pytest.fixture
+def serial():
+    """Return the path of a pty, and what serves its other side with `ByteNode`."""
+    master, slave = pty.openpty()
+    tty.setraw(master)
+    nodes = []
+
+    def serve(**options):
+        nodes.append(ByteNode(master, **options))
+        return nodes[-1]
+
+    yield f"serial://{os.ttyname(slave)}?baud=115200", serve
+    for node in nodes:
+        node.stop()
+    os.close(slave)
+    with contextlib.suppress(OSError):
+        os.close(master)
+
+
+def exchange(board, texts, description=ECHO):
+    """Send texts through a board; return the bridge and what came back."""
+    graph = FakeGraph()
+    made, said = bridge_of(board, graph, description)
+    assert run_until(made, lambda: graph.opened), said
+    for text in texts:
+        graph.say(HEARD, text)
+        made.step(time.monotonic())
+    run_until(made, lambda: len(graph.got) == len(texts), 1)
+    return made, [packet for _, packet in graph.got], said
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("udp://127.0.0.1:99", UdpBoard),
+        ("udp://board.local", UdpBoard),
+        ("tcp://[::1]:7411", TcpBoard),
+        ("serial:///dev/ttyUSB0", SerialBoard),
+        ("serial:///dev/ttyUSB0?baud=9600", SerialBoard),
+    ],
+)
+def test_names_of_boards(name, kind):
+    board = board_of(name, ECHO)
+    assert type(board) is kind and board.name == name
+    assert board.frame_bytes == (1472 if kind is UdpBoard else None)
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("simm", "'simm' is no board; boards are sim, udp://"),
+        ("http://a:1", "is no board"),
+        ("udp://", "is not udp://HOST:PORT"),
+        ("tcp://a", "'tcp://a' needs a port, such as tcp://a:7411"),
+        ("tcp://a:99999", "has no port from 1 to 65535"),
+        ("udp://a:1/b", "is not udp://HOST:PORT"),
+        ("serial://dev/tty", "with three '/'"),
+        ("serial:///dev/x?speed=1", "has an option other than 'baud=RATE'"),
+        ("serial:///dev/x?baud=12345", "this system has no rate of 12345 baud; it has 9600, "),
+    ],
+)
+def test_wrong_names_of_boards(name, message):
+    with pytest.raises(UserError, match=message.replace("?", r"\?")):
+        board_of(name, ECHO)
+
+
+def test_a_simulated_board_needs_an_accelerator():
+    text = "node: n\nsubscribe:\n  /a: {type: std_msgs/msg/Bool}\ndistro: jazzy\n"
+    with pytest.raises(UserError, match="a simulated board needs an 'accelerator'"):
+        board_of("sim", read(text))
+
+
+def test_a_board_behind_udp_and_its_restart():
+    node = UdpNode()
+    made, got, said = exchange(board_of(f"udp://127.0.0.1:{node.port}", ECHO), TEXTS)
+    assert got == TEXTS and not made.on_the_way
+    node.stop()
+    # The next request finds nobody, which is no error.
+    run_until(made, lambda: made.board.counters["unreachable"])
+    node = UdpNode(node.port)
+    assert run_until(made, lambda: made.restarts == 1 and made.is_ready), said
+    made.graph.say(HEARD, b"again")
+    assert run_until(made, lambda: made.graph.got[-1][1] == b"again")
+    made.close()
+    node.stop()
+
+
+def test_a_host_without_a_name_is_an_error_that_may_pass():
+    with pytest.raises(BoardError, match=r"cannot reach udp://no\.such\.host\.invalid:1"):
+        board_of("udp://no.such.host.invalid:1", ECHO).open()
+
+
+def test_a_board_behind_tcp_and_its_restart():
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        board = board_of(f"tcp://127.0.0.1:{server.getsockname()[1]}", ECHO)
+        accepted = []
+
+        def accept():
+            for _ in range(2):
+                accepted.append(server.accept()[0])
+                ByteNode(accepted[-1].fileno())
+
+        threading.Thread(target=accept, daemon=True).start()
+        made, got, said = exchange(board, TEXTS)
+        assert got == TEXTS and not made.on_the_way
+        accepted[0].shutdown(socket.SHUT_RDWR)
+        assert run_until(made, lambda: len(accepted) == 2 and made.is_ready), said
+        assert "the other side has closed; trying again" in "".join(said)
+        made.graph.say(HEARD, b"again")
+        assert run_until(made, lambda: made.graph.got[-1][1] == b"again")
+        made.close()
+        for each in accepted:
+            each.close()
+
+
+def test_a_board_behind_a_serial_line(serial):
+    name, serve = serial
+    serve()
+    made, got, _ = exchange(board_of(name, ECHO), TEXTS)
+    made.close()
+    assert got == TEXTS and not made.on_the_way
+
+
+def test_flipped_bits_of_a_serial_line_lose_messages_and_change_none(serial):
+    name, serve = serial
+    node = serve(flips=0.01)
+    texts = [b"%d." % n for n in range(300)]
+    made, got, _ = exchange(board_of(name, ECHO), texts)
+    made.close()
+    assert node.flipped > 100 and 30 < len(got) < 300
+    # In order, each at most once, and none that was not sent.
+    assert got == [text for text in texts if text in set(got)]
+    assert made.on_the_way["damaged"] > 10
+
+
+def test_a_serial_line_that_ends(serial):
+    name, serve = serial
+    node = serve()
+    made, _, said = exchange(board_of(name, ECHO), [])
+    node.stop()
+    os.close(node.file)
+    assert run_until(made, lambda: not made.is_ready), said
+    assert "serial:///dev/pts/" in said[-1] and said[-1].endswith("; trying again")
+    made.close()
+
+
+def test_a_file_is_no_serial_line(tmp_path):
+    path = tmp_path / "file"
+    path.write_text("")
+    with pytest.raises(BoardError, match="is no serial device"):
+        board_of(f"serial://{path}", ECHO).open()
+    with pytest.raises(BoardError, match="cannot open '/dev/no-such-tty': No such file"):
+        board_of("serial:///dev/no-such-tty", ECHO).open()
+    with pytest.raises(BoardError, match="is no serial device"):
+        board_of("serial:///dev/null", ECHO).open()
+
+
+def test_what_a_line_does_not_take_is_dropped_whole(serial):
+    name, _ = serial
+    board = board_of(name, ECHO)
+    board.open()
+    frames = [b"x" * 300_000]
+    results = [board.send(frames) for _ in range(8)]
+    assert results == sorted(results, reverse=True) and not results[-1]
+    assert board.counters["full"] == results.count(False) and board.waits_to_send
+    board.close()

@@ -1,0 +1,105 @@
+"""The command `firm-hdl node run`: mistakes, signals, and its account at the end."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import subprocess
+import sys
+import threading
+
+import pytest
+
+from firm_hdl.cli import main
+from tests.node.accelerators import echo_text
+from tests.node.bridge.fakes import FakeNode
+from tests.node.bridge.test_boards import UdpNode
+from tests.node.samples import PACKAGES
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "echo.yaml"
+    path.write_text(echo_text(link="udp", paths=f"'{PACKAGES}'") + "\n")
+    return str(path)
+
+
+@pytest.fixture
+def board():
+    node = UdpNode()
+    yield node
+    node.stop()
+
+
+def test_lines_go_to_a_board_and_back(file, board, capsys, monkeypatch):
+
+    line = '{"topic": "/heard", "packet": "0102"}\n'
+    monkeypatch.setattr(sys, "stdin", io.StringIO(line * 3))
+    address = f"udp://127.0.0.1:{board.port}"
+    assert main(["node", "run", file, "--board", address, "--graph", "none"]) == 0
+    out, err = capsys.readouterr()
+    assert out == '{"topic": "/said", "packet": "0102"}\n' * 3
+    lines = err.splitlines()
+    assert lines[:2] == [f"board {address}: ready", "graph none: joined"]
+    rows = [each.split() for each in lines]
+    assert ["/heard", "subscribe", "3", "0"] in rows and ["/said", "publish", "0", "3"] in rows
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--board", "usb"], "error: 'usb' is no board; boards are sim, udp://"),
+        (["--graph", "ros1"], "error: messages of jazzy are those of cdr, which the graph 'ros1'"),
+    ],
+)
+def test_wrong_names(file, capsys, options, message):
+    assert main(["node", "run", file, *options]) == 1
+    assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--seconds", "0"], "must be above 0, not 0"),
+        (["--seconds", "x"], "'x' is not a number"),
+        (["--domain", "233"], "must be from 0 to 232, not 233"),
+        (["--graph", "ros3"], "invalid choice: 'ros3'"),
+    ],
+)
+def test_wrong_arguments(file, capsys, options, message):
+    with pytest.raises(SystemExit, match=r"^2$"):
+        main(["node", "run", file, *options])
+    assert message in capsys.readouterr().err
+
+
+def test_another_board_ends_the_command(file, board, capsys):
+    board.node = FakeNode(fingerprint=1)
+    options = ["--board", f"udp://127.0.0.1:{board.port}", "--graph", "none"]
+    assert main(["node", "run", file, *options]) == 1
+    assert "error: the board's fingerprint is 0000000000000001" in capsys.readouterr().err
+
+
+def test_signals_end_it(file, board, capsys):
+    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGTERM)).start()
+    before = signal.getsignal(signal.SIGTERM)
+    options = ["--board", f"udp://127.0.0.1:{board.port}", "--graph", "rtps", "--interface", "lo"]
+    assert main(["node", "run", file, *options, "--domain", "161", "--quiet"]) == 0
+    assert signal.getsignal(signal.SIGTERM) is before
+    assert "ready" in capsys.readouterr().err
+
+
+def test_ctrl_c_ends_it_while_there_is_no_board(file):
+    """As a process, as Ctrl-C is one's own in a terminal."""
+    code = "import sys; from firm_hdl.cli import main; sys.exit(main())"
+    command = [sys.executable, "-c", code, "node", "run", file, "--board", "tcp://127.0.0.1:1"]
+    process = subprocess.Popen([*command, "--graph", "none"], stderr=subprocess.PIPE, text=True)
+    try:
+        assert "cannot reach tcp://127.0.0.1:1: Connection refused" in process.stderr.readline()
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+    finally:
+        process.kill()
+        process.communicate()
+    assert process.returncode == 0 and "Traceback" not in said
+    assert ["/heard", "subscribe", "0", "0"] in [line.split() for line in said.splitlines()]

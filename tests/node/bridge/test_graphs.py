@@ -1,0 +1,154 @@
+"""The ways to graphs of ROS: names, lines of JSON, our own participant."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import sys
+import time
+
+import pytest
+
+from firm_hdl.errors import UserError
+from firm_hdl.node import read_description_text
+from firm_hdl.node.graphs import GraphError, graph_of
+from firm_hdl.node.graphs.lines import LinesGraph
+from firm_hdl.node.graphs.ros1 import definitions
+from firm_hdl.node.graphs.ros2 import RclpyGraph, has_rclpy
+from firm_hdl.node.graphs.rtps import RtpsGraph
+from firm_hdl.rtps import Qos
+from firm_hdl.rtps.ros import Node
+from tests.node.accelerators import echo_text
+from tests.node.bridge.fakes import CAL, ECHO, HEARD, SAID
+from tests.node.samples import read
+
+# One that no other test has.
+DOMAIN = 100 + os.getpid() % 60
+OPTIONS = {"domain": DOMAIN, "interface": "lo"}
+STRING = "std_msgs/msg/String"
+
+
+def wait(condition, seconds=20.0):
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.01)
+    return condition()
+
+
+def test_lines_are_messages():
+    rows = [
+        {"topic": "/heard", "packet": "00 01"},
+        {"topic": "/cal", "packet": "", "call": [1]},
+        {"topic": "/said", "packet": ""},
+        {"topic": "/heard", "packet": "0"},
+        {"topic": "/heard"},
+        [],
+    ]
+    text = "\n".join([*map(json.dumps, rows), "", "no JSON"])
+    sink, got = io.StringIO(), []
+    graph = LinesGraph(ECHO, io.StringIO(text), sink)
+    assert not graph.has_ended
+    graph.open(lambda *message: got.append(message))
+    assert wait(lambda: graph.has_ended)
+    assert got == [(HEARD, b"\0\1", None), (CAL, b"", [1])]
+    # The board publishes `/said`, so nobody sends it there.
+    assert graph.counters == {"malformed": 5}
+    assert graph.publish(SAID, b"\1") and graph.respond(CAL, [1], b"\2")
+    assert [json.loads(line) for line in sink.getvalue().splitlines()] == [
+        {"topic": "/said", "packet": "01"},
+        {"topic": "/cal", "packet": "02", "call": [1]},
+    ]
+
+
+def test_names_of_graphs(monkeypatch):
+    assert isinstance(graph_of("none", ECHO), LinesGraph)
+    assert isinstance(graph_of("rtps", ECHO, domain=3), RtpsGraph)
+    assert isinstance(graph_of(None, ECHO), RclpyGraph if has_rclpy() else RtpsGraph)
+    # An interface is what rclpy cannot choose.
+    assert isinstance(graph_of("ros2", ECHO, interface="lo"), RtpsGraph)
+    with pytest.raises(UserError, match="which the graph 'ros1' does not carry"):
+        graph_of("ros1", ECHO)
+    old = read_description_text(
+        "node: n\ndistro: noetic\nsubscribe:\n  /a: {type: std_msgs/Bool}\n"
+    )
+    with pytest.raises(UserError, match="noetic are those of ros1, which the graph 'rtps'"):
+        graph_of("rtps", old)
+    monkeypatch.setitem(sys.modules, "rospy", None)
+    with pytest.raises(UserError, match="needs rospy, which this Python does not have"):
+        graph_of(None, old)
+
+
+def test_the_domain_of_the_environment(monkeypatch):
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    assert RtpsGraph(ECHO)._options["domain"] == 7
+    monkeypatch.setenv("ROS_DOMAIN_ID", "seven")
+    with pytest.raises(UserError, match="ROS_DOMAIN_ID is 'seven', and should be a number"):
+        RtpsGraph(ECHO)
+
+
+def test_our_own_participant():
+    description = read(echo_text())
+    _, said, _, cal = description.topics
+    got, heard_by_peer = [], []
+    graph = RtpsGraph(description, **OPTIONS)
+    graph.open(lambda topic, packet, caller: got.append((topic.name, packet, caller)))
+    try:
+        with Node("peer", **OPTIONS) as peer:
+            writer = peer.publisher("/heard", STRING, Qos(depth=0))
+            peer.subscription("/said", STRING, lambda s: heard_by_peer.append(s.payload))
+            client = peer.client("/cal", "robot_msgs/srv/Calibrate")
+            assert peer.context.wait_for_node("echo")
+            assert writer.wait_for_match() and client.wait_for_service()
+            assert peer.context.type_hashes("/said") == {
+                "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
+            }
+            for number in range(20):
+                writer.write(b"%d" % number)
+            assert wait(lambda: len(got) == 20)
+            assert got == [("/heard", b"%d" % number, None) for number in range(20)]
+            assert wait(lambda: graph._writers[said.id].matched)
+            assert graph.publish(said, b"hello")
+            assert wait(lambda: heard_by_peer == [b"hello"])
+            calls = [client.call_async(b"%d" % number) for number in range(3)]
+            assert wait(lambda: len(got) == 23)
+            graph.abandon(cal, got[22][2])
+            for _, packet, caller in got[20:22]:
+                assert graph.respond(cal, caller, packet + b"!")
+            assert [call.result(20) for call in calls[:2]] == [b"0!", b"1!"]
+            assert not graph.respond(cal, got[22][2], b"late") and not calls[2].done()
+            graph.check()
+            assert graph.counters == {"lost": 0}
+    finally:
+        graph.close()
+    with pytest.raises(GraphError, match="the participant is closed"):
+        graph.publish(said, b"")
+
+
+def test_a_dead_reader_does_not_hold_up_others():
+    description = read(echo_text().replace("/said: {", "/said: {history: keep_all, "))
+    said = description.topics[1]
+    graph = RtpsGraph(description, **OPTIONS)
+    graph.open(lambda *message: None)
+    try:
+        graph._full.add(said.id)
+        begin = time.monotonic()
+        # Nobody reads, so there is room again at once.
+        assert graph.publish(said, b"") and said.id not in graph._full
+        assert time.monotonic() - begin < 5
+    finally:
+        graph.close()
+
+
+def test_definitions_of_ros_1():
+    description = read_description_text(
+        "node: n\ndistro: noetic\nsubscribe:\n  /a: {type: std_msgs/Header}\n"
+    )
+    (topic,) = description.topics
+    text = definitions(topic.store("in").message)
+    assert "uint32 seq" in text and "=" * 80 not in text
+    nested = read_description_text(
+        "node: n\ndistro: noetic\nsubscribe:\n  /a: {type: geometry_msgs/Twist}\n"
+    )
+    text = definitions(nested.topics[0].store("in").message)
+    assert text.split("\n" + "=" * 80 + "\n")[1].startswith("MSG: geometry_msgs/Vector3\n")

@@ -1,0 +1,194 @@
+"""What a host says to a board: time, losses and restarts are arguments."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from firm_hdl.node.bridge.session import (
+    REPEAT_SECONDS,
+    SILENT_SECONDS,
+    Session,
+    SilentBoardError,
+    WrongBoardError,
+)
+from firm_hdl.node.control import registers
+from firm_hdl.node.messages import NodeMessage
+from tests.node.bridge.fakes import ECHO, FakeNode
+
+EPOCH_NS = 1_800_000_000_000_000_000
+
+
+class Talk:
+    """A session and a node, with a clock of their own."""
+
+    def __init__(self, node=None, loses=lambda: False, **options):
+        self.node, self.loses, self.now = node or FakeNode(), loses, 100.0
+        self.session = Session(ECHO, None, self.now, **options)
+        self.got = []
+
+    def step(self, seconds=0.03):
+        """Exchange what is due, then let time pass."""
+        for frame in self.session.due(self.now, self.wall):
+            self.say(frame)
+        self.now += seconds
+
+    def say(self, frame):
+        self.now += 0.001
+        answers = [] if self.loses() else self.node.take(frame)
+        self.now += 0.001
+        for answer in answers:
+            if not self.loses():
+                self.got += self.session.take(answer, self.now, self.wall)
+
+    def run(self, seconds):
+        end = self.now + seconds
+        while self.now < end:
+            self.step()
+
+    @property
+    def wall(self):
+        return EPOCH_NS + int((self.now - 100) * 1e9)
+
+
+def published(node, number=1):
+    (frame,) = node.sender.frames(NodeMessage(topic=2, packet=b"%d" % number))
+    return frame
+
+
+def test_a_board_is_ready_when_it_has_the_same_fingerprint():
+    talk = Talk()
+    assert not talk.session.is_ready
+    talk.run(0.1)
+    assert talk.session.is_ready and talk.node.read[:2] == [1, 2]
+    assert 0.001 < talk.session.latency < 0.01
+
+
+@pytest.mark.parametrize("bit", [0, 31, 32, 63])
+def test_another_fingerprint_is_an_error(bit):
+    talk = Talk(FakeNode(ECHO.fingerprint ^ 1 << bit))
+    with pytest.raises(WrongBoardError, match=f"is {ECHO.fingerprint ^ 1 << bit:016x}, and that"):
+        talk.run(1)
+    assert not talk.session.is_ready
+
+
+def test_messages_of_a_board_wait_until_it_is_known():
+    talk = Talk()
+    assert talk.session.take(published(talk.node), talk.now, talk.wall) == []
+    talk.run(0.1)
+    assert [each.packet for each in talk.got] == [b"1"]
+    wrong = Talk(FakeNode(1))
+    wrong.session.take(published(wrong.node), wrong.now, wrong.wall)
+    with pytest.raises(WrongBoardError):
+        wrong.run(1)
+    assert wrong.got == [] and wrong.session.lost_on_the_way()["held back"] == 1
+
+
+def test_a_board_that_does_not_answer_is_gone():
+    talk = Talk()
+    talk.node.is_mute = True
+    with pytest.raises(SilentBoardError, match="no answer for 5 s"):
+        talk.run(60)
+    assert SILENT_SECONDS <= talk.now - 100 < SILENT_SECONDS + 1
+
+
+def test_a_board_that_falls_silent_is_gone():
+    talk = Talk()
+    talk.run(10)
+    assert talk.session.is_ready
+    talk.node.is_mute = True
+    with pytest.raises(SilentBoardError):
+        talk.run(10)
+
+
+def test_the_clock_is_set_and_the_rate_corrected():
+    talk = Talk()
+    talk.run(3)
+    assert 0 <= talk.node.seconds - EPOCH_NS // 10**9 < 3
+    # A clock that stands still is set again and again, and never a reason to think of a restart.
+    assert talk.session.restarts == 0
+
+
+def test_all_counters_are_read_in_turn():
+    talk = Talk()
+    talk.run(6)
+    numbers = {each.number for each in registers(ECHO) if each.part != "identity"}
+    assert numbers <= talk.session.values.keys()
+    assert [(each.owner, each.name, value) for each, value in talk.session.drops()] == [
+        ("link", "lost", 7)
+    ]
+
+
+def test_one_request_is_under_way_at_any_time():
+    talk = Talk()
+    first = talk.session.due(talk.now, talk.wall)
+    assert len(first) == 1
+    assert talk.session.due(talk.now + 0.9 * REPEAT_SECONDS, talk.wall) == []
+    assert talk.session.next_due() == pytest.approx(talk.now + REPEAT_SECONDS)
+    again = talk.session.due(talk.now + REPEAT_SECONDS, talk.wall)
+    # Both say that a sequence begins, as the first one may have been lost.
+    assert len(again) == 1 and first[0][1] & 2 and again[0][1] & 2
+    # The answer to either of them counts.
+    (answer,) = talk.node.take(first[0])
+    talk.session.take(answer, talk.now + 0.3, talk.wall)
+    assert talk.session.due(talk.now + 0.3, talk.wall)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_loss_of_two_fifths_of_all_frames(seed):
+    rng = random.Random(seed)
+    talk = Talk(loses=lambda: rng.random() < 0.4)
+    while not talk.session.is_ready:
+        talk.step()
+    talk.run(10)
+    assert talk.session.is_ready and talk.session.restarts == 0
+
+
+def test_a_board_that_starts_again_is_asked_again():
+    talk = Talk()
+    talk.run(2)
+    # Its first message says so.
+    talk.node = FakeNode()
+    assert talk.session.take(published(talk.node), talk.now, talk.wall) == []
+    assert talk.session.restarts == 1 and not talk.session.is_ready
+    talk.run(0.1)
+    assert talk.session.is_ready and [each.packet for each in talk.got] == [b"1"]
+    talk.node = FakeNode(fingerprint=3)
+    with pytest.raises(WrongBoardError):
+        talk.run(5)
+
+
+@pytest.mark.parametrize("seconds", [2, 20])
+def test_a_restart_is_seen_if_the_first_message_is_lost(seconds):
+    talk = Talk()
+    talk.run(seconds)
+    talk.node = FakeNode()
+    published(talk.node)
+    talk.run(3)
+    # By the numbers of messages, or by the clock.
+    assert talk.session.restarts == 1 and talk.session.is_ready
+
+
+def test_foreign_frames_change_nothing():
+    rng = random.Random(1)
+    talk = Talk()
+    talk.run(1)
+    for _ in range(300):
+        frame = bytearray(published(FakeNode())) + rng.randbytes(rng.randrange(40))
+        frame[rng.randrange(len(frame))] ^= 1 << rng.randrange(8)
+        frame[1] &= 1
+        assert all(m.topic for m in talk.session.take(bytes(frame), talk.now, talk.wall))
+    talk.run(1)
+    assert talk.session.is_ready
+
+
+def test_an_answer_that_nobody_asked_for_is_ignored():
+    talk = Talk()
+    talk.run(1)
+    stray = NodeMessage(topic=0, packet=bytes([1, 0, 0, 0]) + b"\xff" * 12, tag=1234)
+    before = dict(talk.session.values)
+    talk.session.take(talk.node.sender.frames(stray)[0], talk.now, talk.wall)
+    short = NodeMessage(topic=0, packet=b"\1", tag=5)
+    talk.session.take(talk.node.sender.frames(short)[0], talk.now, talk.wall)
+    assert talk.session.values == before

@@ -1,0 +1,76 @@
+# amaranth: UnusedElaboratable=no
+"""A node in simulation as a board: real gateware behind the bridge."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.node.boards import BoardError
+from firm_hdl.node.boards.simulated import SimulatedBoard
+from tests.depth import by_depth
+from tests.node.accelerators import echo_text
+from tests.node.bridge.fakes import FakeGraph, bridge_of, run_until
+from tests.node.samples import read
+from tests.node.test_node import string
+from tests.node.traffic import packets_of
+
+
+@pytest.mark.parametrize("link", by_depth(["udp"], ["udp", "stream", "uart"]))
+def test_messages_and_calls_go_through_gateware(link):
+    """The link is that of the description; a simulated board replaces it."""
+    description = read(echo_text(link=link))
+    heard, _, _, cal = description.topics
+    graph = FakeGraph()
+    board = SimulatedBoard(description, engine="amaranth")
+    made, said = bridge_of(board, graph, description)
+    try:
+        assert run_until(made, lambda: graph.opened, 60), said
+        texts = [f"text {number}" * (number % 3) for number in range(6)]
+        graph.say(heard, *(string(text) for text in texts))
+        # What the gate refuses does not come back.
+        graph.say(heard, string("bad")[:-1])
+        (request,) = packets_of(cal.store("in").message, 1, most=200)
+        assert run_until(made, lambda: len(graph.got) == 12, 60)
+        graph.on_message(cal, request, "caller")
+        assert run_until(made, lambda: graph.answers or graph.abandoned, 60)
+    finally:
+        made.close()
+    assert [packet for name, packet in graph.got if name == "/said"] == [
+        string(text) for text in texts
+    ]
+    stamps = [struct.unpack("<4xiI", p)[0] for name, p in graph.got if name == "/stamp"]
+    # The clock of the node was set before the graph was joined, or soon after.
+    assert len(stamps) == 6 and stamps == sorted(stamps)
+    assert not made.counters.dropped and not made.on_the_way
+
+
+def test_a_simulation_that_is_killed_is_started_again():
+    description = read(echo_text())
+    graph = FakeGraph()
+    board = SimulatedBoard(description, engine="amaranth")
+    made, said = bridge_of(board, graph, description)
+    try:
+        assert run_until(made, lambda: graph.opened, 60), said
+        board._simulation.close()
+        assert run_until(made, lambda: made.restarts == 1 and made.is_ready, 60), said
+        graph.say(description.topics[0], string("again"))
+        assert run_until(made, lambda: graph.got, 60)
+    finally:
+        made.close()
+    assert "The simulation is closed; trying again" in "".join(said)
+
+
+def test_mistakes_of_an_accelerator_are_errors_of_the_user():
+    text = echo_text().replace("accelerators:Echo", "accelerators:Exploding")
+    with pytest.raises(DefinitionError, match="no such gain"):
+        SimulatedBoard(read(text), engine="amaranth").open()
+
+
+def test_a_board_that_is_not_open_is_an_error():
+    board = SimulatedBoard(read(echo_text()), engine="amaranth")
+    for use in (board.receive, board.fileno, lambda: board.send([b""])):
+        with pytest.raises(BoardError, match="the simulation is closed"):
+            use()

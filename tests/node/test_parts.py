@@ -1,0 +1,201 @@
+# amaranth: UnusedElaboratable=no
+"""The parts of links, against the host's side of the frame and a second COBS."""
+
+from __future__ import annotations
+
+import random
+from types import SimpleNamespace
+
+import pytest
+from amaranth.hdl import Const, Module, Mux, Signal
+
+from firm_hdl.node.bytestream import write_frame
+from firm_hdl.node.gateware.cobs import ByteFrameReader, CobsDecoder, CobsEncoder
+from firm_hdl.node.gateware.fragmenter import Fragmenter
+from firm_hdl.node.gateware.reassembler import Reassembler
+from firm_hdl.node.gateware.uart import UartReceiver, UartTransmitter
+from firm_hdl.sim import Stalls
+from tests.depth import by_depth
+from tests.gateware.packets.bench import PacketBench, beats, with_side
+from tests.node import cobs
+from tests.node.traffic import counters_of, frames_of, received_by_host, some
+
+STALLS = Stalls(0.25, max_cycles=5)
+BUSES = by_depth([1, 8], [1, 2, 4, 8, 16])
+
+
+def run_fragmenter(bus, frame_bytes, messages, stalls=None):
+    part = Fragmenter(bus, frame_bytes)
+    bench = PacketBench(part, {"i": part.i}, {"o": (part.frames, bus, part.size)})
+    count = len(frames_of(messages, frame_bytes))
+    seen = bench.run({"i": beats(frames_of(messages), bus)}, {"o": count}, stalls=stalls)
+    assert seen.sides["o"] == [{len(frame)} for frame in seen.packets["o"]]
+    return seen.packets["o"]
+
+
+@pytest.mark.parametrize("bus", BUSES)
+def test_fragments_are_those_of_the_host(bus):
+    messages = some(12, bus)
+    for stalls in (None, STALLS):
+        assert run_fragmenter(bus, 48, messages, stalls) == frames_of(messages, 48)
+
+
+def reassemble(bus, frames, bad=(), stalls=None):
+    """Return the messages that are whole, and the counters."""
+    part = Reassembler(bus)
+    bench = PacketBench(
+        part,
+        {"i": with_side(part.i, part.bad)},
+        {"o": (part.o, bus, part.abort & part.o.payload.last)},
+        final={"lost": part.lost}
+        | {name: part.counters[name] for name in part.counters.shape().members},
+    )
+    sides = [number in bad for number in range(len(frames))]
+    source = list(beats(frames, bus, [(lambda last, b=b: b & last) for b in sides]))
+    seen = bench.run({"i": source}, {"i": len(source)}, stalls=stalls, settle=80, deadline=200)
+    whole = [
+        packet
+        for packet, sides in zip(seen.packets["o"], seen.sides["o"], strict=True)
+        if 1 not in sides
+    ]
+    aborted = len(seen.packets["o"]) - len(whole)
+    return received_by_host(whole)[0], aborted, counters_of(bench)
+
+
+@pytest.mark.parametrize("bus", BUSES)
+def test_fragments_become_messages(bus):
+    messages = some(20, 7)
+    for stalls in (None, STALLS):
+        out, aborted, counters = reassemble(bus, frames_of(messages, 48), stalls=stalls)
+        assert (out, aborted, counters) == (messages, 0, {})
+
+
+@pytest.mark.parametrize("bus", BUSES)
+@pytest.mark.parametrize("seed", range(by_depth(2, 30)))
+def test_losses_repeats_and_damage_are_as_on_the_host(bus, seed):
+    """The host's receiver is the model; only the order of fragments is not changed."""
+    rng = random.Random(seed)
+    messages = some(30, seed)
+    frames = []
+    for frame in frames_of(messages, 48, sequence=65530):
+        what = rng.random()
+        if what < 0.1:
+            continue
+        frames += [frame] * (1 + (what < 0.2 and frame[14:][:2] == b"\0\0"))
+        if what > 0.95:
+            frames.append(rng.randbytes(rng.choice((0, 3, 15, 16, 40))))
+    out, aborted, counters = reassemble(bus, frames)
+    host, expected = received_by_host(frames)
+    assert out == host
+    assert counters.get("lost", 0) == expected.lost
+    assert counters.get("malformed", 0) == expected.malformed
+    assert aborted == counters.get("cut", 0)
+
+
+def test_damaged_frames_are_aborted():
+    messages = some(20, 4, (1, 16, 20, 40))
+    frames = frames_of(messages)
+    out, aborted, counters = reassemble(8, frames, bad={3, 4, 11})
+    assert out == [m for n, m in enumerate(messages) if n not in (3, 4, 11)]
+    assert aborted == 3 and counters == {"cut": 3, "lost": 3}
+
+
+def test_a_wrong_length_or_a_short_fragment_is_no_message():
+    frames = [bytearray(frame) for frame in frames_of(some(6, 5, (40,)), 48)]
+    frames[2][4] = 41  # In both frames of the message.
+    frames[3][4] = 41
+    del frames[6][-1]
+    out, _, counters = reassemble(8, list(map(bytes, frames)))
+    assert len(out) == 4 and counters == {"cut": 2, "lost": 2, "stray": 1}
+
+
+def test_senders_that_start_again_and_late_messages():
+    first, again = some(5, 1), some(5, 2)
+    frames = frames_of(first)
+    out, _, counters = reassemble(8, [*frames, *frames[3:], *frames_of(again)])
+    assert out[:5] == first and out[5:] == again and counters == {"late": 2}
+
+
+BLOCKS = [b"a", b"\0", b"\0\0", b"ab\0", b"\0a", *(b"\1" * n for n in (253, 254, 255, 508, 509))]
+BLOCKS += [b"\1" * 253 + b"\0", b"\1" * 254 + b"\0", b"\1" * 254 + b"\0\1", bytes(300)]
+
+
+@pytest.mark.parametrize("stalls", by_depth([STALLS], [None, STALLS]))
+def test_the_encoder_is_cobs(stalls):
+    part = CobsEncoder()
+    want = b"".join(b"\0" + cobs.encode(block) + b"\0" for block in BLOCKS)
+    bench = PacketBench(part, {"i": part.i}, {}, others={"o": part.o})
+    seen = bench.run({"i": beats(BLOCKS, 1)}, {"o": len(want)}, stalls=stalls, deadline=700)
+    assert bytes(seen.others["o"]) == want
+
+
+@pytest.mark.parametrize("stalls", by_depth([STALLS], [None, STALLS]))
+def test_the_decoder_undoes_cobs(stalls):
+    part = CobsDecoder()
+    stream = b"".join(b"\0" + cobs.encode(block) + b"\0" for block in BLOCKS) + b"\0\5ab\0"
+    total = sum(len(block) + 1 for block in BLOCKS) + 3
+    bench = PacketBench(part, {"i": part.i}, {}, others={"o": part.o})
+    seen = bench.run({"i": list(stream)}, {"o": total}, stalls=stalls, deadline=700)
+    found, block = [], b""
+    for bits in seen.others["o"]:
+        if bits >> 8 & 1:
+            found.append((block, bits >> 9))
+            block = b""
+        else:
+            block += bytes([bits & 255])
+    assert found == [*((block, 0) for block in BLOCKS), (b"ab", 1)]
+
+
+def test_a_reader_without_a_check_is_found():
+    """The twin: a reader that trusts every CRC passes damage."""
+
+    class Trusts(ByteFrameReader):
+        def elaborate(self, platform):
+            m = super().elaborate(platform)
+            m.d.comb += m.submodules.slice.i.payload.bad.eq(0)
+            return m
+
+    for kind, flag in ((ByteFrameReader, 1), (Trusts, 0)):
+        part = kind()
+        stream = bytearray(write_frame(b"abcdefgh"))
+        stream[4] ^= 3
+        bench = PacketBench(part, {"i": part.i}, {"frames": (part.frames, 1, part.bad)})
+        seen = bench.run({"i": list(stream)}, {"frames": 1})
+        assert max(seen.sides["frames"][0]) == flag
+
+
+def test_the_uart_sends_and_receives():
+    m = Module()
+    m.submodules.tx = tx = UartTransmitter(5)
+    m.submodules.rx = rx = UartReceiver(5)
+    m.d.comb += rx.rx.eq(tx.tx)
+    bench = PacketBench(m, {"i": tx.i}, {}, others={"o": rx.o}, events={"line": (Const(1), tx.tx)})
+    data = [0, 255, 0x55, 0xAA, 1, 128, *range(20)]
+    seen = bench.run({"i": data}, {"o": len(data)})
+    assert seen.others["o"] == data
+    # Ten bits of five cycles for each byte, and their levels in the middle of each bit.
+    levels = [value for _, value in seen.events["line"]]
+    start = levels.index(0)
+    for number, byte in enumerate(data[:4]):
+        bits = [levels[start + 50 * number + 5 * bit + 2] for bit in range(10)]
+        assert bits == [0, *(byte >> bit & 1 for bit in range(8)), 1]
+
+
+def test_a_line_that_breaks_is_no_byte():
+    """A 0 in place of the stop bit, a line that stays 0, and a glitch."""
+    m = Module()
+    m.submodules.part = part = UartReceiver(4)
+    source = SimpleNamespace(payload=Signal(), valid=Signal(), ready=Const(1))
+    m.d.comb += part.rx.eq(Mux(source.valid, source.payload, 1))
+    flags = {"broken": (part.broken, Const(0, 1)), "overrun": (part.overrun, Const(0, 1))}
+    bench = PacketBench(m, {"line": source}, {}, others={"o": part.o}, events=flags)
+    bits = [*"0", *f"{0x5A:08b}"[::-1], *"1", *"0", *"0" * 8, *"0000", *"1", *"0", *"1" * 9]
+    levels = [int(bit) for bit in bits for _ in range(4)]
+    levels[-40:-36] = [1, 0, 1, 1]  # A start bit that is too short.
+    seen = bench.run({"line": levels}, {"line": len(levels), "broken": 1})
+    assert seen.others["o"] == [0x5A] and len(seen.events["broken"]) == 1
+    late = {"o": Stalls.bits("0" * 200 + "1" * 200)}
+    seen = bench.run({"line": levels[:40] * 3}, {"line": 120, "o": 1}, stalls=late, deadline=400)
+    assert seen.others["o"] == [0x5A] and len(seen.events["overrun"]) == 2
+    with pytest.raises(ValueError, match=r"^A bit must take 4 cycles at least, not 3$"):
+        UartReceiver(3)

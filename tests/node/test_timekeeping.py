@@ -1,0 +1,95 @@
+"""The node's clock follows that of the host, whatever its crystal and the network do."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from firm_hdl.node.control import ControlResponse, Operation, Result, nominal_rate
+from firm_hdl.node.timekeeping import ClockKeeper
+
+NOMINAL = nominal_rate(100e6)
+START = 1_700_000_000 * 10**9
+
+
+class SimulatedClock:
+    """A node's clock with a crystal that is wrong."""
+
+    def __init__(self, error):
+        self.error, self.rate = error, NOMINAL
+        self.host_ns, self.node_ns = START, 0.0
+
+    def at(self, host_ns):
+        passed = host_ns - self.host_ns
+        self.node_ns += passed * (1 + self.error) * self.rate / NOMINAL
+        self.host_ns = host_ns
+        return self.node_ns
+
+    def do(self, host_ns, request):
+        self.at(host_ns)
+        if request.operation == Operation.SET_TIME:
+            self.node_ns = request.seconds * 10**9 + request.nanoseconds
+        else:
+            self.rate = request.argument
+
+
+def run(error, jitter_ns, seconds=90, keeper=None):
+    """Return the offsets in ns after each second, and how often the time was set."""
+    clock, keeper, rng = SimulatedClock(error), keeper or ClockKeeper(NOMINAL), random.Random(1)
+    offsets, sets, now = [], 0, START
+    for second in range(seconds):
+        now = START + second * 10**9
+        there, back = (rng.randint(50_000, 50_000 + jitter_ns) for _ in range(2))
+        node = int(clock.at(now + there))
+        whole, part = divmod(node, 10**9)
+        response = ControlResponse(
+            operation=1, result=Result.OK, value=0, seconds=whole, nanoseconds=part
+        )
+        request = keeper.sample(now, response, now + there + back)
+        if request is not None:
+            sets += request.operation == Operation.SET_TIME
+            clock.do(now + 2 * (there + back), request)
+        later = now + 900_000_000
+        offsets.append(clock.at(later) - later)
+    return offsets, sets
+
+
+@pytest.mark.parametrize("error", [-100e-6, 0, 37e-6, 100e-6])
+def test_a_clock_is_set_once_and_then_kept_in_step(error):
+    offsets, sets = run(error, jitter_ns=20_000)
+    assert sets == 1
+    assert all(abs(offset) < 30_000 for offset in offsets[60:])
+
+
+def test_samples_with_a_long_delay_do_not_count():
+    keeper = ClockKeeper(NOMINAL)
+    run(0, 1_000, seconds=20, keeper=keeper)
+    node, part = divmod(START + 20 * 10**9 + 700_000, 10**9)
+    response = ControlResponse(
+        operation=1, result=Result.OK, value=0, seconds=node, nanoseconds=part
+    )
+    before = keeper.offset_ns
+    assert keeper.sample(START + 20 * 10**9, response, START + 20 * 10**9 + 800_000) is None
+    assert keeper.offset_ns == before
+
+
+def test_a_node_that_was_reset_is_set_again():
+    keeper = ClockKeeper(NOMINAL)
+    run(0, 1_000, seconds=5, keeper=keeper)
+    response = ControlResponse(operation=1, result=Result.OK, value=0, seconds=3, nanoseconds=4)
+    request = keeper.sample(START + 10**10, response, START + 10**10 + 100_000)
+    assert request.operation == Operation.SET_TIME
+    assert request.seconds == START // 10**9 + 10 and request.nanoseconds == 150_000
+
+
+def test_a_keeper_that_never_changes_the_rate_is_found():
+    """The twin: without corrections, 100 ppm are 10 ms after 100 s."""
+
+    class Idle(ClockKeeper):
+        def sample(self, sent_ns, response, received_ns):
+            request = super().sample(sent_ns, response, received_ns)
+            return request if request and request.operation == Operation.SET_TIME else None
+
+    offsets, _ = run(100e-6, 1_000, keeper=Idle(NOMINAL))
+    assert max(map(abs, offsets[60:])) > 30_000

@@ -1,0 +1,55 @@
+# amaranth: UnusedElaboratable=no
+"""The one program that `make test` compiles."""
+
+from __future__ import annotations
+
+import fcntl
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.sim import StallPlan
+from firm_hdl.sim.fast import EngineName, FastSimulation
+from firm_hdl.sim.fast.compilers import program_of
+from firm_hdl.sim.fast.cxxrtl import cxxrtl_source
+from firm_hdl.sim.fast.ports import ports_of
+from firm_hdl.sim.fast.top import Top
+from tests.sim.fast.designs import Awkward
+
+OPTIONS = ("-O0",)
+
+Open = Callable[..., FastSimulation]
+
+
+@pytest.fixture(scope="session")
+def programs(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
+    """A folder with the program of `Awkward`, which is compiled by one of pytest's processes."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base if worker_id == "master" else base.parent) / "programs"
+    folder.mkdir(exist_ok=True)
+    with (folder.parent / "programs.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        design = Awkward()
+        source = cxxrtl_source(Top(design, ports_of(design)))
+        program_of(source, options=OPTIONS, cache=folder)
+    return folder
+
+
+@pytest.fixture
+def start(programs: Path, request: pytest.FixtureRequest) -> Open:
+    """Start a simulation of `Awkward`, which is closed at the end of the test."""
+
+    def started(engine: EngineName, stalls: StallPlan = None, **options: object) -> FastSimulation:
+        simulation = FastSimulation(
+            Awkward(),
+            engine=engine,
+            stalls=stalls,
+            options=OPTIONS,
+            cache=programs,
+            **options,  # type: ignore[arg-type]
+        )
+        request.addfinalizer(simulation.close)
+        return simulation
+
+    return started

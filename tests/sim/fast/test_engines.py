@@ -1,0 +1,207 @@
+# amaranth: UnusedElaboratable=no
+"""Both engines: the same transfers in the same cycles, and those that are right."""
+
+from __future__ import annotations
+
+import gc
+import random
+from typing import Any
+
+import pytest
+
+from firm_hdl.sim import DeadlineError, StallPlan, Stalls
+from firm_hdl.sim.fast import FastSimulation, SimulationError
+from tests.sim.fast.designs import Awkward, Fault
+
+ENGINES = ("cxxrtl", "amaranth")
+NUMBERS = [1, -2, 300, -2048, 2047, 0, 0, 0, 17, -300]
+PACKETS = [b"abcdefg", b"", b"1234", bytes(range(60)), b"x", b"12345678"]
+STALLS: dict[str, StallPlan] = {
+    "no stalls": None,
+    "random": Stalls(probability=0.4, max_cycles=3, seed=5),
+    "slow consumer": {"class": Stalls.bits("0001"), "packets_out": Stalls.bits("00100")},
+    "slow producer": {"int": Stalls.bits("00001"), "packets_in": Stalls(0.9, seed=2)},
+}
+RECEIVED = ("class", "packets_out", "echo_out.0", "echo_out.1")
+
+
+def observe(simulation: FastSimulation) -> dict[str, Any]:
+    """Send and run in all ways; return all that can be seen."""
+    seen: dict[str, Any] = {"at the start": (simulation.get("wide"), simulation.cycle)}
+    simulation.send("int", NUMBERS)
+    simulation.send_packets("packets_in", PACKETS)
+    simulation.send("echo_in.0", b"hello")
+    simulation.run(3)
+    simulation.set("p.in", 0xA5)
+    simulation.set("add", 4)
+    seen["then"] = (simulation.get("wide"), simulation.cycle, simulation.queued("int"))
+    simulation.run_until({"class": 4, "packets_out": 2})
+    seen["until"] = simulation.cycle
+    simulation.run_until_idle(quiet=30)
+    seen["idle"] = simulation.cycle
+    for name in RECEIVED:
+        seen[name] = simulation.transfers(name)
+    simulation.reset()
+    simulation.send("int", [5])
+    simulation.run_until({"class": 1})
+    seen["after the reset"] = (simulation.transfers("class"), simulation.cycle)
+    return seen
+
+
+def in_amaranth(stalls: StallPlan, fault: Fault = "") -> dict[str, Any]:
+    with FastSimulation(Awkward(fault), engine="amaranth", stalls=stalls) as simulation:
+        return observe(simulation)
+
+
+@pytest.fixture(params=STALLS)
+def stalls(request: pytest.FixtureRequest) -> StallPlan:
+    plan = STALLS[request.param]
+    if isinstance(plan, Stalls):
+        return dict.fromkeys(("int", "class", "packets_in", "packets_out"), plan)
+    return plan
+
+
+def test_both_engines_transfer_the_same_in_the_same_cycles(start, stalls):
+    seen = observe(start("cxxrtl", stalls))
+    assert seen == in_amaranth(stalls)
+    assert all(seen[name] for name in RECEIVED if name != "echo_out.0")
+
+
+@pytest.mark.parametrize("fault", ["value", "late", "order"])
+def test_a_fault_in_the_design_is_seen(start, fault):
+    simulation = start("cxxrtl")
+    assert observe(simulation) != in_amaranth(None, fault)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_transfers_are_those_of_the_design(start, engine, stalls):
+    simulation = start(engine, stalls)
+    simulation.send("int", NUMBERS)
+    simulation.send("echo_in.1", [200, 0x55])
+    simulation.send_packets("packets_in", PACKETS)
+    simulation.run_until_idle(quiet=50)
+    sums = [sum(NUMBERS[: n + 1]) + 3 * (n + 1) for n in range(len(NUMBERS))]
+    assert [(each.sum, each.odd) for each in simulation.receive("class")] == [
+        (each, each & 1) for each in sums
+    ]
+    assert simulation.receive_packets("packets_out") == PACKETS
+    assert simulation.receive("echo_out.0") == [200, 0x55]
+    assert simulation.receive("echo_out.1") == []
+    assert simulation.receive("class") == []
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_cycles_are_counted(start, engine):
+    simulation = start(engine)
+    simulation.send("echo_in.0", [1])
+    simulation.run(4)
+    simulation.send("echo_in.0", [2])
+    simulation.run_until({"echo_out.1": 2})
+    # A register: what is offered in a cycle comes out in the next one.
+    assert simulation.transfers("echo_out.1") == [(1, 1), (5, 2)]
+    assert simulation.cycle == 6
+    assert simulation.get("wide") & ((1 << 40) - 1) == 6
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_plain_values(start, engine):
+    simulation = start(engine)
+    simulation.set("p__in", 0x12)
+    simulation.set("p.in", 0x34)
+    assert simulation.get("wide") >> 80 == 0x3412
+    simulation.run(1)
+    simulation.reset()
+    assert simulation.get("wide") >> 80 == 0x3412
+    assert simulation.get("wide") & 0xFFFF == 0
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_packet_in_parts(start, engine):
+    simulation = start(engine)
+    simulation.stall("packets_out", [True, True, True, False])
+    simulation.send_packets("packets_in", [bytes(40), b"end"])
+    simulation.run(30)
+    assert simulation.receive_packets("packets_out") == []
+    simulation.stall("packets_out", [])
+    simulation.run_until({"packets_out": 2})
+    assert simulation.receive_packets("packets_out") == [bytes(40), b"end"]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_live(start, engine):
+    simulation = start(engine, ignored=["class"])
+    simulation.go_live(quiet=200, nap_cycles=10, nap_ms=1)
+    packets = [random.Random(n).randbytes(n) for n in range(40)]
+    came = []
+    for packet in packets:
+        simulation.send_packets("packets_in", [packet])
+        simulation.send("int", [1])
+        while not (found := simulation.receive_packets("packets_out")):
+            assert simulation.wait(60)
+        came += found
+    assert came == packets
+    with pytest.raises(RuntimeError, match="live"):
+        simulation.run(1)
+    assert not simulation.wait(0.01)
+    # It sleeps, and still some cycles pass.
+    before = simulation.get("wide")
+    while simulation.get("wide") == before:
+        pass
+    simulation.halt()
+    assert simulation.queued("int") == 0
+    assert simulation.receive("class") == []
+    cycle = simulation.cycle
+    simulation.run(5)
+    assert simulation.cycle == cycle + 5
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_deadlock_is_an_error(start, engine):
+    simulation = start(engine)
+    simulation.stall("packets_out", [True] * 5000 + [False])
+    simulation.send_packets("packets_in", [bytes(60)] * 2)
+    with pytest.raises(DeadlineError, match=r"^Not taken up to cycle \d+: \d+ on 'packets_in'$"):
+        simulation.run_until_idle(quiet=100)
+    late = r"^Did not come in 50 cycles: 2 on 'packets_out', 1 on 'class'$"
+    with pytest.raises(DeadlineError, match=late):
+        simulation.run_until({"packets_out": 2, "class": 1}, limit=50)
+    simulation.stall("packets_out", [])
+    simulation.run_until({"packets_out": 2})
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_endless_transfers_are_not_idle(start, engine):
+    simulation = start(engine)
+    simulation.send("echo_in.0", bytes(200))
+    with pytest.raises(DeadlineError, match="Not taken"):
+        simulation.run_until_idle(limit=100)
+    with pytest.raises(DeadlineError, match="still transfers after 100 cycles"):
+        simulation.run_until_idle(limit=100)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_much_is_sent_and_received_at_once(start, engine):
+    simulation = start(engine)
+    data = bytes(range(250)) * (1 if engine == "amaranth" else 160)
+    simulation.send("echo_in.1", data)
+    simulation.run(len(data) + 1)
+    assert simulation.transfers("echo_out.0") == [(n + 1, each) for n, each in enumerate(data)]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_closed_simulation_cannot_be_used(start, engine):
+    simulation = start(engine)
+    simulation.close()
+    simulation.close()
+    for use in (lambda: simulation.run(1), lambda: simulation.send("int", [1])):
+        with pytest.raises(SimulationError, match="is closed"):
+            use()
+
+
+def test_a_simulation_that_nobody_closed_leaves_no_process(start, programs):
+    simulation = FastSimulation(Awkward(), engine="cxxrtl", options=["-O0"], cache=programs)
+    process = simulation._channel.process  # type: ignore[union-attr]
+    assert process.poll() is None
+    del simulation
+    gc.collect()
+    assert process.returncode is not None

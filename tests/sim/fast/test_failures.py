@@ -1,0 +1,285 @@
+# amaranth: UnusedElaboratable=no
+"""What happens if a process dies, a pipe is cut, a compiler fails, or a name is wrong."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from amaranth.hdl import Elaboratable, Module
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In
+
+from firm_hdl.jobs import ProgramMissingError
+from firm_hdl.jobs import programs as all_programs
+from firm_hdl.sim import Stalls
+from firm_hdl.sim.fast import (
+    BuildError,
+    ClockDomainError,
+    FastSimulation,
+    SimulationError,
+    compilers,
+)
+from firm_hdl.sim.fast.cxxrtl import CxxrtlSource
+from tests.sim.fast.designs import Awkward, WithClocks
+
+DEADLINE = 60.0
+
+PARENT = """
+import os, sys
+from pathlib import Path
+from firm_hdl.sim.fast import FastSimulation
+from tests.sim.fast.designs import Awkward
+
+simulation = FastSimulation(Awkward(), engine="cxxrtl", options=["-O0"], cache=Path(sys.argv[1]))
+simulation.go_live()
+# A process that outlives the parent, and has its sockets.
+if os.fork() == 0:
+    import time
+    time.sleep(60)
+    os._exit(0)
+print(simulation._channel.process.pid, flush=True)
+sys.stdin.read()
+"""
+
+
+def is_alive(process: int) -> bool:
+    """Return whether a process exists and is no zombie."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+def test_a_process_that_died(start):
+    simulation = start("cxxrtl")
+    simulation._channel.process.kill()
+    with pytest.raises(SimulationError, match=r"^The simulation ended: killed by SIGKILL$"):
+        simulation.run(1)
+    with pytest.raises(SimulationError, match="closed"):
+        simulation.run(1)
+
+
+def test_a_process_that_dies_during_a_run(start):
+    simulation = start("cxxrtl")
+    simulation.go_live()
+    os.kill(simulation._channel.process.pid, signal.SIGABRT)
+    with pytest.raises(SimulationError, match="killed by SIGABRT"):
+        while True:
+            simulation.send("int", [1])
+            simulation.wait(1)
+
+
+def test_a_message_that_is_wrong_ends_the_engine(start):
+    simulation = start("cxxrtl")
+    simulation._channel.send(b"\x63\0\0\0\0")
+    with pytest.raises(SimulationError, match="exit status 2"):
+        simulation.run(1)
+    simulation = start("amaranth")
+    simulation._channel.send(b"\x63\0\0\0\0")
+    with pytest.raises(SimulationError, match="99"):
+        simulation.run(1)
+
+
+@pytest.mark.parametrize("is_live", [False, True])
+def test_the_process_ends_when_its_pipe_is_cut(start, is_live):
+    simulation = start("cxxrtl")
+    if is_live:
+        simulation.go_live()
+    process = simulation._channel.process
+    os.close(os.dup(simulation._channel.fileno()))
+    simulation._channel._socket.close()
+    assert process.wait(DEADLINE) == 0
+
+
+def test_the_process_ends_when_its_parent_is_killed(programs):
+    root = Path(__file__).parents[3]
+    with subprocess.Popen(
+        [sys.executable, "-c", PARENT, str(programs)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        cwd=root,
+        env={**os.environ, "PYTHONPATH": str(root)},
+        start_new_session=True,
+    ) as parent:
+        try:
+            engine = int(parent.stdout.readline())
+            assert is_alive(engine)
+            parent.kill()
+            end = time.monotonic() + DEADLINE
+            while is_alive(engine):
+                assert time.monotonic() < end, "the engine outlives its parent"
+                time.sleep(0.05)
+        finally:
+            # The child of the parent, too.
+            os.killpg(parent.pid, signal.SIGKILL)
+
+
+def script(folder: Path, name: str, text: str) -> str:
+    path = folder / name
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
+    return str(path)
+
+
+@pytest.fixture
+def source(monkeypatch):
+    """A source that CXXRTL need not translate."""
+
+    def translate(source: CxxrtlSource, folder: Path) -> Path:
+        return folder / "main.cc"
+
+    monkeypatch.setattr(compilers, "translate", translate)
+    return CxxrtlSource("netlist", "main")
+
+
+COMPILES = 'case "$*" in *--version) cat "$0.version"; exit;; esac; echo "$@" >>"$0.calls"'
+
+
+def test_a_program_is_compiled_once(source, tmp_path, monkeypatch):
+    write = 'while [ "$1" != -o ]; do shift; done; echo program >"$2"'
+    compiler = script(tmp_path, "compiler", f"{COMPILES}; {write}")
+    version = Path(f"{compiler}.version")
+    version.write_text("1")
+    calls = Path(f"{compiler}.calls")
+    monkeypatch.setenv("CXX", f"{compiler} -fast")
+
+    def count(**options) -> int:
+        compilers._version.cache_clear()
+        assert compilers.program_of(source, cache=tmp_path / "cache", **options).read_text()
+        return len(calls.read_text().splitlines())
+
+    assert count() == count() == 1
+    assert "-fast -O2 -std=c++17" in calls.read_text()
+    assert count(options=["-O1"]) == 2
+    version.write_text("2")
+    assert count() == count() == 3
+    source.netlist += " "
+    assert count() == 4
+    old = tmp_path / "cache" / "old"
+    old.write_text("")
+    os.utime(old, (0, 0))
+    (tmp_path / "cache" / "building-old").mkdir()
+    os.utime(tmp_path / "cache" / "building-old", (0, 0))
+    assert count(options=["-O3"]) == 5
+    assert len(list((tmp_path / "cache").iterdir())) == 5
+
+
+def test_a_compiler_that_fails_is_quoted(source, tmp_path, monkeypatch):
+    fails = "seq 1000; echo 'main.cc: error'; exit 1"
+    compiler = script(tmp_path, "compiler", f"{COMPILES}; {fails}")
+    Path(f"{compiler}.version").write_text("1")
+    monkeypatch.setenv("CXX", compiler)
+    with pytest.raises(BuildError) as caught:
+        compilers.program_of(source, cache=tmp_path / "cache")
+    lines = str(caught.value).splitlines()
+    assert lines[0].startswith(f"The compiler failed: {compiler} -O2")
+    assert lines[1:3] == ["1", "2"]
+    assert lines[-1] == "... and 989 more lines"
+    assert list((tmp_path / "cache").iterdir()) == []
+
+
+def test_a_compiler_that_writes_nothing(source, tmp_path, monkeypatch):
+    monkeypatch.setenv("CXX", "true")
+    with pytest.raises(BuildError, match="did not write program"):
+        compilers.program_of(source, cache=tmp_path / "cache")
+    compiler = script(tmp_path, "broken", "exit 1")
+    monkeypatch.setenv("CXX", compiler)
+    with pytest.raises(BuildError, match="broken --version: exit status 1"):
+        compilers.program_of(source, cache=tmp_path / "cache")
+
+
+def test_a_program_that_cannot_start(source, tmp_path, monkeypatch):
+    write = 'while [ "$1" != -o ]; do shift; done; echo program >"$2"'
+    compiler = script(tmp_path, "compiler", f"{COMPILES}; {write}")
+    Path(f"{compiler}.version").write_text("1")
+    monkeypatch.setenv("CXX", compiler)
+    with pytest.raises(BuildError, match=r"cannot be started: .*Permission denied"):
+        FastSimulation(Awkward(), engine="cxxrtl", cache=tmp_path / "cache")
+
+
+def test_a_cache_that_cannot_be_written(source, tmp_path, monkeypatch):
+    monkeypatch.setenv("CXX", "true")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(BuildError, match="cannot be kept"):
+        compilers.program_of(source, cache=tmp_path / "file")
+
+
+def test_without_a_compiler_amaranth_simulates(monkeypatch, tmp_path):
+    monkeypatch.delenv("CXX", raising=False)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(all_programs.importlib.util, "find_spec", lambda name: None)
+    with FastSimulation(Awkward()) as simulation:
+        assert simulation.engine == "amaranth"
+    with pytest.raises(ProgramMissingError, match=r"A fast simulation needs .*or pip install zig"):
+        FastSimulation(Awkward(), engine="cxxrtl")
+    monkeypatch.setattr(all_programs.importlib.util, "find_spec", lambda name: object())
+    found = all_programs.find_compiler("A test", with_zig=True)
+    assert found == (sys.executable, "-m", "ziglang", "c++")
+    with pytest.raises(ProgramMissingError, match=r"A test needs .*apt install g\+\+\)$"):
+        all_programs.find_compiler("A test")
+
+
+class AlwaysValid(wiring.Component):
+    def __init__(self):
+        super().__init__({"i": In(stream.Signature(8, always_valid=True))})
+
+
+class Plain(Elaboratable):
+    def elaborate(self, platform):
+        return Module()
+
+
+@pytest.mark.parametrize(
+    ("design", "error", "message"),
+    [
+        (Plain, TypeError, "must be a component of amaranth.lib.wiring"),
+        (AlwaysValid, ValueError, "Stream 'i' is an input that is always valid"),
+        (WithClocks, ClockDomainError, "one clock domain, 'sync'; the design also has 'video'"),
+    ],
+)
+@pytest.mark.parametrize("engine", ["cxxrtl", "amaranth"])
+def test_designs_that_cannot_be_simulated(design, error, message, engine):
+    with pytest.raises(error, match=message):
+        FastSimulation(design(), engine=engine)
+
+
+def test_names_and_values_that_are_wrong(start):
+    simulation = start("amaranth")
+    for use, message in [
+        (lambda: simulation.send("intt", [1]), "no input stream 'intt'; there are 'int', 'packets"),
+        (lambda: simulation.send("class", [1]), "There is no input stream 'class'"),
+        (lambda: simulation.receive("int"), "There is no output stream 'int'"),
+        (lambda: simulation.send_packets("int", [b""]), "Stream 'int' does not carry packets"),
+        (lambda: simulation.receive_packets("class"), "'class' does not carry packets"),
+        (lambda: simulation.set("wide", 1), "no plain input 'wide'; there are 'add', 'p.in'"),
+        (lambda: simulation.get("add"), "no plain output 'add'; there are 'wide'"),
+        (lambda: simulation.send("int", [4096]), "'int' has 12 bits, too few for 4096"),
+        (lambda: simulation.set("add", -129), "'add' has 8 bits, too few for -129"),
+        (lambda: simulation.stall("int", [True]), "pattern of 'int' would stall for ever"),
+        (lambda: simulation.stall("echo_out.0", [True, False]), "'echo_out.0' is always ready"),
+        (lambda: simulation.run_until({"int": 1}), "There is no output stream 'int'"),
+        (lambda: start("amaranth", ignored=["x"]), "There is no output stream 'x'"),
+        (lambda: start("verilator"), "must be 'auto', 'cxxrtl' or 'amaranth', not 'verilator'"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            use()
+    simulation.run(1)
+
+
+def test_payloads_that_are_ignored_cannot_be_waited_for(start):
+    simulation = start("amaranth", ignored=["class"])
+    with pytest.raises(ValueError, match="'class' is ignored"):
+        simulation.run_until({"class": 1})
+
+
+def test_stalls_of_a_stream_that_is_always_ready(start):
+    with pytest.raises(ValueError, match="always ready"):
+        start("amaranth", {"echo_out": Stalls.bits("10")})
