@@ -16,6 +16,10 @@ __all__ = ["Table", "table_of"]
 
 _LENGTH_BYTES = 4
 _HEADER_BYTES = 4
+# On CDR, a sequence may lose this much of its padding, and save as much after it.
+_SAVED_BYTES = 14
+# A nested length that claims fewer bytes than a 16th of the largest packet is not counted.
+_LEAST_UNCOUNTED, _MOST_UNCOUNTED = 256, 4096
 _EMPTY = "structure_needs_at_least_one_member"
 
 
@@ -48,17 +52,27 @@ class Table:
     ----------
     least_bytes : int
         Size of the shortest packet, without padding.
+    room : int
+        Bytes that nested lengths may claim together.
+    claim_bytes : int
+        Least bytes that the items of a nested length must have to be counted.
+    saved_bytes : int
+        Bytes of its items that such a length does not claim.
     """
 
     wire: Wire
     bus_bytes: int
     least_bytes: int
+    room: int
+    claim_bytes: int
+    saved_bytes: int
     leaves: tuple[TableLeaf, ...]
     lines: tuple[str, ...]
 
     def text(self) -> str:
         """Return what the harness reads."""
         head = f"table {int(self.wire == 'cdr')} {self.bus_bytes} {len(self.leaves)}"
+        head += f" {self.room} {self.claim_bytes} {self.saved_bytes}"
         leaves = (f"{'.'.join(leaf.path)} {leaf.bits} {leaf.lanes}" for leaf in self.leaves)
         return "".join(f"{line}\n" for line in (head, *leaves, *self.lines))
 
@@ -69,8 +83,16 @@ def table_of(message: Message, *, wire: Wire, bus_bytes: int, max_message_bytes:
     least = _HEADER_BYTES * walk.is_cdr + walk.least_bytes(message)
     walk.room = max_message_bytes - least
     lines = tuple(walk.message(message, ()))
-    leaves = tuple(walk.leaves)
-    return Table(wire=wire, bus_bytes=bus_bytes, least_bytes=least, leaves=leaves, lines=lines)
+    return Table(
+        wire=wire,
+        bus_bytes=bus_bytes,
+        least_bytes=least,
+        room=max(0, walk.room),
+        claim_bytes=min(_MOST_UNCOUNTED, max(_LEAST_UNCOUNTED, max_message_bytes // 16)),
+        saved_bytes=_SAVED_BYTES if walk.has_padding else 0,
+        leaves=tuple(walk.leaves),
+        lines=lines,
+    )
 
 
 @dataclass
@@ -81,12 +103,15 @@ class _Walk:
     ----------
     room : int
         Bytes that the shortest packet leaves of `max_message_bytes`.
+    has_padding : bool
+        Whether the shortest elements of a sequence have padding.
     leaves : list of TableLeaf
     """
 
     wire: Wire
     bus_bytes: int
     room: int = 0
+    has_padding: bool = False
     leaves: list[TableLeaf] = field(default_factory=list)
 
     @property
@@ -107,11 +132,46 @@ class _Walk:
             case Message():
                 return sum(self.least_bytes(item.type) for item in kind.fields)
 
+    def end(self, kind: FieldType, at: int) -> int:
+        """Return where the shortest value that starts at an offset ends, padding included."""
+        match kind:
+            case Primitive():
+                return at + (-at % kind.bytes if self.is_cdr else 0) + kind.bytes
+            case String() | Sequence():
+                return at + (-at % _LENGTH_BYTES if self.is_cdr else 0) + _LENGTH_BYTES
+            case Array(count=0):
+                return at
+            case Array(element=element, count=count):
+                first = self.end(element, at)
+                return first + (count - 1) * (self.end(element, first) - first)
+            case Message(fields=()):
+                return at + self.is_cdr
+            case Message():
+                for item in kind.fields:
+                    at = self.end(item.type, at)
+                return at
+
+    def repeated_bytes(self, element: FieldType) -> int:
+        """Return the least bytes of an element from the end of the element before it."""
+        first = self.end(element, 0)
+        return self.end(element, first) - first
+
     def limit(self, item_bytes: int, bound: int | None, nul_bytes: int = 0) -> str:
         """Return the declared bound (0: none), and the largest length that is no error."""
+        return self.limits((self.room - nul_bytes) // item_bytes, bound)
+
+    def limits(self, most: int, bound: int | None) -> str:
+        return f"{bound or 0} {max(0, most if bound is None else min(bound, most))}"
+
+    def elements_limit(self, element: FieldType, bound: int | None) -> str:
+        """Return the same as `limit` for a sequence of any elements."""
+        least, repeated = self.least_bytes(element), self.repeated_bytes(element)
         # An element without bytes still has a transfer, and counts as one byte.
-        most = max(0, (self.room - nul_bytes) // max(1, item_bytes))
-        return f"{bound or 0} {most if bound is None else min(bound, most)}"
+        most = self.room // max(1, least)
+        if repeated > least and not isinstance(element, Primitive):
+            self.has_padding = True
+            most = min(most, (self.room + _SAVED_BYTES) // repeated)
+        return self.limits(most, bound)
 
     def leaf(self, *path: str, bits: int, lanes: int = 1, has_last: bool = False) -> int:
         self.leaves.append(TableLeaf(path=path, bits=bits, lanes=lanes, has_last=has_last))
@@ -142,7 +202,7 @@ class _Walk:
                 yield from self.elements(element, path, -1, f"{count} 0 0")
             case Sequence(element=element, bound=bound):
                 length = self.leaf(*path, "length", bits=32)
-                limit = self.limit(self.least_bytes(element), bound)
+                limit = self.elements_limit(element, bound)
                 yield from self.elements(element, path, length, f"0 {limit}")
 
     def elements(
@@ -151,7 +211,8 @@ class _Walk:
         if isinstance(element, Primitive):
             yield self.run(path, length, element.bytes, element.kind == "bool", f"0 {counts}")
             return
-        yield f"loop {length} {counts}"
+        # An element without bytes claims one.
+        yield f"loop {length} {max(1, self.repeated_bytes(element))} {counts}"
         yield from self.value(element, (*path, "item"))
         yield "end"
 

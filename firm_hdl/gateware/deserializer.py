@@ -113,4 +113,6 @@ class Deserializer(wiring.Component):
             self.status.valid.eq(mover.status.valid),
             mover.status.ready.eq(self.status.ready),
         ]
+        if plan.has_claims:
+            m.d.comb += [queue.holds.eq(sequencer.holds), queue.refuses.eq(sequencer.refuses)]
         return m

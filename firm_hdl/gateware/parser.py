@@ -63,8 +63,9 @@ class Parser(wiring.Component):
     Each step takes a cycle, and one beat per cycle is accepted. A bus word with several lengths has
     several steps: for example two for two empty strings on a bus of 8 bytes. So a packet occupies
     the parser for as many cycles as it has beats, or steps before its first error, whichever is
-    more, and for at most 4 cycles more after an error. Bytes that lengths claim but that never
-    arrive cost nothing. Up to 8 beats (16 on a bus of 1 or 2 bytes) wait in a buffer while the
+    more, and for at most 4 cycles more after an error. A length that shares a budget holds the
+    parser for some cycles (`Claim.check_cycles`). Bytes that lengths claim but that never arrive
+    cost nothing. Up to 8 beats (16 on a bus of 1 or 2 bytes) wait in a buffer while the
     parser catches up; then `packets.ready` goes low.
 
     `packets.ready`, `status.valid`, `status.payload` and `sizes` are registers; no path leads from

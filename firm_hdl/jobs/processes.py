@@ -236,15 +236,15 @@ def _end_with(parent: int, folder: str) -> None:
         time.sleep(1)
     # The main thread goes on. From here on, it cannot start a program. But it may begin another
     # task, whose files can appear while the folder is being removed.
-    _starting.acquire()
-    for process in list(_running):
-        _kill(process)
-    for _ in range(REMOVAL_ATTEMPTS):
-        shutil.rmtree(folder, ignore_errors=True)
-        if not os.path.exists(folder):
-            break
-        time.sleep(0.1)
-    os._exit(128 + signal.SIGKILL)
+    with _starting:
+        for process in list(_running):
+            _kill(process)
+        for _ in range(REMOVAL_ATTEMPTS):
+            shutil.rmtree(folder, ignore_errors=True)
+            if not os.path.exists(folder):
+                break
+            time.sleep(0.1)
+        os._exit(128 + signal.SIGKILL)
 
 
 def _exists(process: int) -> bool:

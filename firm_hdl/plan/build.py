@@ -18,6 +18,7 @@ from firm_hdl.plan.ir import (
     Begin,
     BeginLoop,
     BeginRun,
+    Claim,
     Fixed,
     Jump,
     Leaf,
@@ -36,6 +37,8 @@ from firm_hdl.plan.limits import (
     DEFAULT_MAX_MESSAGE_BYTES,
     check_bus_bytes,
     check_max_message_bytes,
+    claims_of,
+    most_items,
 )
 from firm_hdl.plan.link import END, NOWHERE, BodyEnd, BodyStart, Load, Mark, link
 from firm_hdl.wire import (
@@ -85,7 +88,8 @@ def build_plan(
         isinstance(node, RunNode | LoopNode) and isinstance(node.length, LengthField)
         for node in walk(layout.nodes)
     )
-    builder = _Builder(layout, bus_bytes, max_message_bytes, has_lengths)
+    claims = claims_of(layout, max_message_bytes)
+    builder = _Builder(layout, bus_bytes, max_message_bytes, has_lengths, claims)
     start, steps = builder.build()
     return Plan(
         message=layout.message.name,
@@ -104,10 +108,11 @@ def build_plan(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Count:
-    """A number of elements that a length decides: its leaf, and its largest legal value."""
+    """A number of elements that a length decides: its leaf, its largest legal value, its claim."""
 
     length: int
     limit: int
+    claim: Claim | None
 
 
 @dataclass(slots=True)
@@ -120,6 +125,8 @@ class _Builder:
         As for :func:`build_plan`.
     has_lengths : bool
         Whether the message has any length.
+    claims : dict of Path to Claim
+        What lengths claim, by the path of the string or sequence.
     leaves, runs : list
         In wire order.
     levels : int
@@ -140,6 +147,7 @@ class _Builder:
     bus_bytes: int
     max_message_bytes: int
     has_lengths: bool
+    claims: dict[Path, Claim]
     leaves: list[Leaf] = field(default_factory=list)
     runs: list[Run] = field(default_factory=list)
     levels: int = 0
@@ -202,36 +210,30 @@ class _Builder:
         at = self.segment_bytes
         self.segment.append(Part(at=at, bytes=size, leaf=leaf, first=0, size=size, end=end))
 
-    def limit(self, bound: int | None, item_bytes: int, end_bytes: int = 0) -> int:
-        """Return the largest count that a legal message can have."""
-        # An element without bytes still takes a transfer, so it counts as one byte.
-        available = self.max_message_bytes - self.layout.min_bytes - end_bytes
-        most = max(0, available // max(1, item_bytes))
-        return most if bound is None else min(bound, most)
-
     def lanes(self, item: Primitive) -> int:
         return max(1, self.bus_bytes // item.bytes)
 
-    def length(
-        self, path: Path, length: LengthField, item_bytes: int, end_bytes: int = 0
-    ) -> _Count:
-        """Add a length to the segment; return its leaf and limit."""
+    def length(self, node: RunNode | LoopNode, length: LengthField) -> _Count:
+        """Add a length to the segment; return its leaf, limit and claim."""
         self.gap(length.gap)
-        leaf = self.leaf(path, "length", LENGTH)
+        leaf = self.leaf(node.path, "length", LENGTH)
         self.value(leaf, LENGTH.bytes)
-        return _Count(length=leaf, limit=self.limit(length.bound, item_bytes, end_bytes))
+        most = most_items(self.layout, node, self.max_message_bytes)
+        limit = most if length.bound is None else min(length.bound, most)
+        return _Count(length=leaf, limit=limit, claim=self.claims.get(node.path))
 
     def counted_run(self, node: RunNode, length: LengthField) -> None:
         """Plan a string or a sequence of primitives: a length, then a run or a loop."""
-        count = self.length(node.path, length, node.item.bytes, int(node.terminated))
+        count = self.length(node, length)
         items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
         if node.item.bytes > self.bus_bytes:
             self.item_loop(node, items, count)
         else:
             run = self.new_run(items, terminated=node.terminated)
             align = node.item_gap.align if node.item_gap.bytes != 0 else 1
+            leaf, limit, claim = count.length, count.limit, count.claim
             self.flush(
-                BeginRun(length=count.length, limit=count.limit, run=run, align=align, body=END)
+                BeginRun(length=leaf, limit=limit, run=run, align=align, claim=claim, body=END)
             )
             self.program.append(RunStep(run=run, exits=NOWHERE))
             self.rest = run
@@ -281,7 +283,7 @@ class _Builder:
     def loop(self, node: LoopNode) -> None:
         match node.length:
             case LengthField() as length:
-                self.enter_loop(self.length(node.path, length, node.min_body_bytes))
+                self.enter_loop(self.length(node, length))
             case ConstantLength(count=count):
                 self.enter_loop(count)
         self.nodes(node.body)
@@ -297,8 +299,8 @@ class _Builder:
             self.flush_rest()
             self.program.append(Load(counter=level, count=count))
         else:
-            length, limit = count.length, count.limit
-            self.flush(BeginLoop(length=length, limit=limit, level=level, body=END))
+            leaf, limit, claim = count.length, count.limit, count.claim
+            self.flush(BeginLoop(length=leaf, limit=limit, level=level, claim=claim, body=END))
         self.program.append(BodyStart(level=level))
         return level
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from firm_hdl.model import PRIMITIVE_OF
-from firm_hdl.plan.conform import against_layout
+from firm_hdl.plan.conform import against_layout, check_claims
 from firm_hdl.plan.ir import (
     RUN_COUNTER,
     Begin,
@@ -45,7 +45,7 @@ def check(plan: Plan, layout: Layout | None = None) -> list[str]:
     """Return the problems of a plan: by itself and, if a layout is given, as a plan of it."""
     problems: list[str] = []
     # Each stage relies on the invariants that the stages before it have checked.
-    for stage in (_tables, _steps, _header, _transfers, _flow, _rests, check_offsets):
+    for stage in (_tables, _steps, _header, _transfers, _flow, _rests, check_claims, check_offsets):
         problems.extend(stage(plan))
         if problems:
             return problems

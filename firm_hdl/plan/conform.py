@@ -1,9 +1,14 @@
-"""Check that a plan belongs to a layout: its leaves, bounds and constant counts."""
+"""Check that a plan belongs to a layout: its leaves, bounds and constant counts, and its claims."""
 
 from __future__ import annotations
 
-from firm_hdl.plan.ir import RUN_COUNTER, LoopEnd, Plan, RunStep
+from collections.abc import Iterator
+
+from firm_hdl.plan.ir import RUN_COUNTER, BeginLoop, BeginRun, Claim, LoopEnd, Plan, RunStep
+from firm_hdl.plan.limits import counted_from
+from firm_hdl.plan.offsets import loop_spans
 from firm_hdl.wire import (
+    RULES,
     ConstantLength,
     Layout,
     LengthField,
@@ -15,7 +20,7 @@ from firm_hdl.wire import (
     walk,
 )
 
-__all__ = ["against_layout"]
+__all__ = ["against_layout", "check_claims"]
 
 Row = tuple[tuple[str, ...], str, str]
 
@@ -44,7 +49,83 @@ def against_layout(plan: Plan, layout: Layout) -> list[str]:
         comparison.problems.append("leaves are not those of the layout")
     if comparison.counts != _loop_counts(plan):
         comparison.problems.append("constant loops are not those of the layout")
+    if not comparison.problems:
+        comparison.problems += _claims(plan, layout)
     return comparison.problems
+
+
+def check_claims(plan: Plan) -> Iterator[str]:
+    """Check what the lengths of a plan claim, as far as this follows from the plan alone."""
+    least_bytes = counted_from(plan.max_message_bytes)
+    outer = _outermost(plan)
+    begins = {index: step.begin for index, step in enumerate(plan.steps) if step.begin is not None}
+    saved = {begin.claim.saved for begin in begins.values() if begin.claim}
+    if len(saved) > 1 or not saved <= {0, 2 * (RULES[plan.wire].max_align - 1)}:
+        yield f"lengths save {', '.join(map(str, sorted(saved)))} bytes"
+    shared = {outer[index] for index, begin in begins.items() if begin.claim and index in outer}
+    for index, begin in begins.items():
+        claim, most = begin.claim, plan.max_count(begin)
+        item = plan.item_bytes(begin.run) if isinstance(begin, BeginRun) else 0
+        where = f"step {index}: {plan.leaves[begin.length]}"
+        if claim is None:
+            if index in shared or (index in outer and most * item >= least_bytes):
+                yield f"{where} claims nothing"
+            continue
+        if claim.bytes < 1 or item not in (0, claim.bytes):
+            yield f"{where} claims {claim.bytes} bytes for each item"
+        elif claim.least != -(-least_bytes // claim.bytes):
+            yield f"{where} is counted from {claim.least}"
+        is_inside = index in outer and begins[outer[index]].claim is not None
+        is_outermost = index in shared
+        if is_inside is is_outermost or is_outermost is (claim.total is None):
+            yield f"{where} has a budget, or renews it, at the wrong place"
+        elif claim.total is not None:
+            room = plan.max_message_bytes - plan.header_bytes
+            if not most * claim.bytes - claim.saved <= claim.total <= room:
+                yield f"{where} has a budget of {claim.total} bytes"
+
+
+def _outermost(plan: Plan) -> dict[int, int]:
+    """Return, for each step inside a sequence of messages, the step that begins the outermost."""
+    spans, outer = loop_spans(plan), dict[int, int]()
+    for index, step in enumerate(plan.steps):
+        if isinstance(step.begin, BeginLoop) and index not in outer:
+            first = step.begin.body.step or 0
+            last = spans.get((step.begin.level, first), first)
+            outer.update(dict.fromkeys(range(first, last + 1), index))
+    return outer
+
+
+def _claims(plan: Plan, layout: Layout) -> Iterator[str]:
+    """Compare what lengths claim with the layout: paths tell which length is inside which."""
+    nodes = {
+        node.path: node
+        for node in walk(layout.nodes)
+        if isinstance(node, RunNode | LoopNode) and isinstance(node.length, LengthField)
+    }
+    loops = {path: node for path, node in nodes.items() if isinstance(node, LoopNode)}
+    is_padded = any(node.repeated_bytes > node.min_body_bytes for node in loops.values())
+    saved = 2 * (layout.rules.max_align - 1) if is_padded else 0
+    least_bytes = counted_from(plan.max_message_bytes)
+    wanted: dict[Path, Claim] = {}
+    for leaf, begin in plan.begins.items():
+        path = plan.leaves[leaf].path[:-1]
+        node = nodes[path]
+        each = max(1, node.item.bytes if isinstance(node, RunNode) else node.repeated_bytes)
+        around = [loop for loop in loops if loop == path[: len(loop)] and loop != path]
+        least = -(-least_bytes // each)
+        if not around or plan.max_count(begin) < least:
+            continue
+        outermost = min(around, key=len)
+        wanted[path] = Claim(bytes=each, least=least, saved=saved)
+        each = max(1, loops[outermost].repeated_bytes)
+        total = plan.max_message_bytes - layout.min_bytes
+        least = -(-least_bytes // each)
+        wanted[outermost] = Claim(bytes=each, least=least, saved=saved, total=total)
+    for leaf, begin in plan.begins.items():
+        path = plan.leaves[leaf].path[:-1]
+        if begin.claim != wanted.get(path):
+            yield f"{'.'.join(path)} claims other bytes than in the layout"
 
 
 class _Comparison:

@@ -112,7 +112,7 @@ def deserializer_cycles(packets: Sequence[Packet]) -> list[int]:
     base = finished = 0
     for packet in packets:
         ring = ring_beats(packet.plan.bus_bytes)
-        for first, last in _reads(packet):
+        for first, last, held in _reads(packet):
             while len(beats) <= base + last:
                 # A beat reuses the slot of one that no step needs any more.
                 while finished < len(steps) and steps[finished][0] <= len(beats) - ring:
@@ -120,27 +120,27 @@ def deserializer_cycles(packets: Sequence[Packet]) -> list[int]:
                 free = steps[finished - 1][1] + FREED_AFTER if finished else 0
                 beats.append(max([free, *(cycle + 1 for cycle in beats[-1:])]))
             cycle = max([beats[base + last], *(cycle + 1 for _, cycle in steps[-1:])])
-            steps.append((base + first, cycle))
+            steps.append((base + first, cycle + held))
         ends.append(steps[-1][1])
         base += packet.beats
     return ends
 
 
-def _reads(packet: Packet) -> list[tuple[int, int]]:
-    """Return the first and the last beat of each step of a deserializer."""
+def _reads(packet: Packet) -> list[tuple[int, int, int]]:
+    """Return the first and last beat of each step of a deserializer, and how long it is held."""
     bus, visits = packet.plan.bus_bytes, packet.visits
     starts = [0, *(packet.next_start(index) for index in range(len(visits) - 1))]
     beats = [
-        (start // bus, max(0, -(-visit.end // bus) - 1))
+        (start // bus, max(0, -(-visit.end // bus) - 1), visit.held)
         for start, visit in zip(starts, visits, strict=True)
     ]
     last = packet.beats - 1
     if packet.plan.steps[visits[-1].step].begin is None:
         # The last beat shows whether bytes follow the message.
-        beats[-1] = (beats[-1][0], last)
+        beats[-1] = (beats[-1][0], last, visits[-1].held)
     else:
         # The length is known too late for its step to end the packet: the end is another step.
-        beats.append((visits[-1].end // bus, last))
+        beats.append((visits[-1].end // bus, last, 0))
     return beats
 
 

@@ -1,15 +1,61 @@
-"""The legal bus widths and message sizes of converters."""
+"""The legal bus widths and message sizes of converters, and what nested lengths may claim.
+
+After an error, a deserializer completes every sequence whose length it has already transferred. If
+each length were judged by itself, a packet of 60 bytes could claim `max_message_bytes` once for
+each level of nesting. So a sequence and the lengths inside its elements share a budget: the bytes
+of the largest packet without those of the shortest one.
+
+No legal packet is refused. Without padding: each length claims bytes that must follow it, its count
+times the bytes of the shortest item. The shortest element has 4 bytes for each length inside, and
+no items of these lengths, so the items of an inner length are other bytes than those that the outer
+length claimed. So the claims of a packet are disjoint parts of it, and the shortest packet, in
+which every length is 0, is another part. An element without bytes counts as one byte.
+
+With padding, a loop claims for each element what the shortest one after another shortest one has
+(`LoopNode.repeated_bytes`). If `a` is the strictest alignment of the wire, the first element may
+have up to a - 1 bytes less. And items that a length inside adds may save padding after them: a part
+that starts later never ends earlier, and a part that starts `a` bytes later ends `a` bytes later;
+so c bytes more in a part are at least c - (a - 1) bytes more in the whole. So each length claims
+2 (a - 1) bytes less than its items have (`Claim.saved`). If no element has padding, none is
+claimed, and nothing is saved.
+
+A length that claims only a few bytes is not counted, because the check takes some cycles. So each
+level of nesting can claim as much beyond the budget. A length that is not nested, and counts no
+elements with lengths, is bounded by its own limit: at most one such length is pending.
+"""
 
 from __future__ import annotations
 
-from firm_hdl.wire import Layout
+from collections.abc import Iterator
+from dataclasses import replace
 
-__all__ = ["BUS_BYTES", "DEFAULT_MAX_MESSAGE_BYTES", "check_bus_bytes", "check_max_message_bytes"]
+from firm_hdl.plan.ir import Claim
+from firm_hdl.wire import ConstantLength, Layout, LengthField, LoopNode, Node, Path, RunNode, walk
+
+__all__ = [
+    "BUS_BYTES",
+    "DEFAULT_MAX_MESSAGE_BYTES",
+    "check_bus_bytes",
+    "check_max_message_bytes",
+    "claims_of",
+    "counted_from",
+    "most_items",
+]
 
 BUS_BYTES = (1, 2, 4, 8, 16, 32, 64)
 """Legal widths of the packet bus."""
 
 DEFAULT_MAX_MESSAGE_BYTES = 1 << 24
+
+
+def counted_from(max_message_bytes: int) -> int:
+    """Return the least bytes that a nested length must claim to be counted in the budget.
+
+    A counted length costs a deserializer some cycles, which are few compared with 4,096 bytes: 512
+    cycles on a bus of 8 bytes. What is not counted must be little compared with the largest packet.
+    So the number is a 16th of that packet, but at least 256 and at most 4,096.
+    """
+    return min(4096, max(256, max_message_bytes // 16))
 
 
 def check_bus_bytes(bus_bytes: int) -> None:
@@ -53,3 +99,69 @@ def check_max_message_bytes(layout: Layout, max_message_bytes: int) -> None:
             f"Maximum message size must be from {layout.min_bytes} bytes, the least that a "
             f"{layout.message.name} has, to {(1 << 32) - 1}, not {max_message_bytes!r}"
         )
+
+
+def most_items(layout: Layout, node: RunNode | LoopNode, max_message_bytes: int) -> int:
+    """Return the largest number of items or elements that a packet has room for.
+
+    The NUL of a string is no item. The room is counted without padding, as the shortest packet is.
+    For elements, it is also counted with the padding between them. An element without bytes counts
+    as one byte, because it has a transfer.
+    """
+    room = max_message_bytes - layout.min_bytes
+    if isinstance(node, RunNode):
+        return max(0, (room - node.terminated) // node.item.bytes)
+    padded = (room + _saved(layout)) // max(1, node.repeated_bytes)
+    return max(0, min(room // max(1, node.min_body_bytes), padded))
+
+
+def claims_of(layout: Layout, max_message_bytes: int) -> dict[Path, Claim]:
+    """Return what the lengths of a layout claim, by the path of the string or sequence.
+
+    Lengths that are not counted are left out: those that cannot claim enough bytes, and those that
+    do not share a budget.
+    """
+    saved = _saved(layout) if any(map(_claims_padding, walk(layout.nodes))) else 0
+    total = max_message_bytes - layout.min_bytes
+    least_bytes = counted_from(max_message_bytes)
+
+    def claim(node: RunNode | LoopNode) -> Claim:
+        each = node.item.bytes if isinstance(node, RunNode) else max(1, node.repeated_bytes)
+        return Claim(bytes=each, least=-(-least_bytes // each), saved=saved)
+
+    claims: dict[Path, Claim] = {}
+    for outermost in _outermost(layout.nodes):
+        inner = {}
+        for node in walk(outermost.body):
+            if isinstance(node, RunNode | LoopNode) and isinstance(node.length, LengthField):
+                bound, nul = node.length.bound, isinstance(node, RunNode) and node.terminated
+                most = most_items(layout, node, max_message_bytes)
+                most = nul + (most if bound is None else min(bound, most))
+                if most >= claim(node).least:
+                    inner[node.path] = claim(node)
+        if inner:
+            claims[outermost.path] = replace(claim(outermost), total=total)
+            claims |= inner
+    return claims
+
+
+def _claims_padding(node: Node) -> bool:
+    """Tell whether a node is a sequence that claims padding between its elements."""
+    if not isinstance(node, LoopNode) or isinstance(node.length, ConstantLength):
+        return False
+    return node.repeated_bytes > node.min_body_bytes
+
+
+def _saved(layout: Layout) -> int:
+    """Return how many bytes fewer than its items a length claims, if padding is claimed."""
+    return 2 * (layout.rules.max_align - 1)
+
+
+def _outermost(nodes: tuple[Node, ...]) -> Iterator[LoopNode]:
+    """Yield the loops that a length counts, and that are in no such loop."""
+    for node in nodes:
+        match node:
+            case LoopNode(length=ConstantLength()):
+                yield from _outermost(node.body)
+            case LoopNode():
+                yield node

@@ -1,11 +1,10 @@
 """The time that a bad packet can cost a deserializer, found from the plan alone.
 
 After an error, a deserializer completes every sequence whose length it has already transferred, one
-step per cycle, and takes all further lengths as 0 (``docs/interface.md``). So what follows the
-error is at most the steps of a message in which every length is 0, and the steps that the open
-sequences have claimed: one sequence, one inside its element, and so on. Each length is limited
-alone. So the claims of the levels add up, and a bad packet can cost up to as many times the longest
-legal packet as it has levels.
+step per cycle (``docs/interface.md``). So what follows the error is at most the steps of a message
+in which every length is 0, and the steps of the elements that one sequence, and one sequence inside
+each of these elements, have claimed. :mod:`firm_hdl.plan.limits` tells how much lengths can claim
+together. The worst packet claims what has the most steps per byte.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from fractions import Fraction
 from math import ceil
 
 from firm_hdl.plan.interpret import decode
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginLoop, Fixed, Plan, RunStep
+from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginLoop, Claim, Fixed, Plan, RunStep
 from firm_hdl.plan.offsets import Span, loop_spans
 from firm_hdl.wire.alignment import LENGTH
 
@@ -32,8 +31,8 @@ step with these bytes.
 END_CYCLES = 1
 """Cycles after the last step, if the end of the packet is no part of it."""
 
-MANY = 16
-"""Elements of a packet from which the average size of an element is taken: padding recurs."""
+FEW = 2
+"""Elements after which each further one has as many bytes: it starts as the one before it."""
 
 MOST_STEPS = 1 << 14
 """Most steps of such a packet. Padding matters little in larger elements."""
@@ -71,11 +70,13 @@ class _Level:
         Largest legal count on the wire.
     steps : Fraction
         Steps of an element whose lengths are 0, or of an item.
+    claim : Claim or None
     """
 
     length: int
     most: int
     steps: Fraction
+    claim: Claim | None
 
 
 def recovery(plan: Plan, shortest_cycles: int) -> Recovery:
@@ -90,8 +91,8 @@ def recovery(plan: Plan, shortest_cycles: int) -> Recovery:
     steps = _Steps(plan)
     shortest = steps.of_region(0, len(plan.steps) - 1, 0)
     chains = list(steps.chains(0, len(plan.steps) - 1, 0, ()))
-    worst = max((sum(each.most * each.steps for each in chain) for chain in chains), default=0)
-    longest = max((_longest(plan, shortest, chain) for chain in chains), default=0)
+    worst = max(map(_most_steps, chains), default=Fraction(0))
+    longest = max(map(_Longest(plan, shortest).cycles, chains), default=0)
     return Recovery(
         cycles=ERROR_CYCLES + shortest + ceil(worst) + END_CYCLES,
         longest_packet=shortest_cycles + longest,
@@ -167,42 +168,86 @@ class _Steps:
         else:
             steps = Fraction(1, self.plan.items_leaf(begin.run).lanes)
         most = self.plan.max_count(begin)
-        return _Level(length=begin.length, most=most, steps=steps)
+        return _Level(length=begin.length, most=most, steps=steps, claim=begin.claim)
 
 
-def _longest(plan: Plan, shortest: int, chain: tuple[_Level, ...]) -> int:
-    """Return the cycles of a packet in which the last sequence of a chain is as long as possible.
+def _most_steps(chain: tuple[_Level, ...]) -> Fraction:
+    """Return the largest number of steps that sequences inside each other can have claimed.
 
-    The sequences around it have one element each, and all other lengths are 0. The packet has
-    `max_message_bytes`, or the sequence its largest length. The steps of the shortest packet are
-    not counted.
+    Each sequence has either claimed too little to be counted, or a part of the budget; the bound is
+    the sum of both.
     """
-    level = chain[-1]
-    most = ceil(level.most * level.steps)
-    few = min(MANY // 2, level.most)
-    if few == level.most or shortest + MANY * level.steps > MOST_STEPS:
-        return most
-    size = _size(plan, chain, few)
-    each = Fraction(_size(plan, chain, 2 * few) - size, few)
-    if not each:
-        return most
-    count = min(level.most, few + int((plan.max_message_bytes - size) / each))
-    return ceil(count * max(level.steps, each / plan.bus_bytes))
-
-
-def _size(plan: Plan, chain: tuple[_Level, ...], count: int) -> int:
-    """Return the bytes of a packet in which the last sequence of a chain has `count` elements."""
-    packet = b"".join(
-        item.data for step in plan.steps for item in step.slices if isinstance(item, Fixed)
-    )
+    steps, budget = Fraction(0), 0
+    counted: list[tuple[Fraction, int, Claim, _Level]] = []
     for level in chain:
-        # The packet ends before the length, so the interpreter continues with lengths of 0.
-        visits = decode(plan, packet).steps
-        step = next(
-            n for n, s in enumerate(plan.steps) if s.begin and s.begin.length == level.length
-        )
-        # The length is the end of its step.
-        at = next(visit.end for visit in visits if visit.step == step) - LENGTH.bytes
-        number = count if level is chain[-1] else 1
-        packet = packet.ljust(at, b"\0") + number.to_bytes(LENGTH.bytes, "little")
-    return decode(plan, packet).steps[-1].end
+        if level.claim is None:
+            steps += level.most * level.steps
+        else:
+            budget = (level.claim.total or budget) + level.claim.saved
+            counted.append((level.steps / level.claim.bytes, level.most, level.claim, level))
+    for rate, most, claim, level in sorted(counted, key=lambda each: -each[0]):
+        taken = min(budget, most * claim.bytes)
+        budget -= taken
+        # All that the level may claim is taken, or it may also have claimed some bytes uncounted.
+        extra = min(claim.least - 1, most - taken // claim.bytes)
+        steps += taken * rate + extra * level.steps
+    return steps
+
+
+@dataclass(slots=True)
+class _Longest:
+    """The longest legal packets.
+
+    Attributes
+    ----------
+    plan : Plan
+    shortest : int
+        Steps of the shortest packet.
+    starts : dict of int to bytes
+        A packet up to a length, by its leaf: the sequences around it have one element each, and all
+        other lengths are 0.
+    """
+
+    plan: Plan
+    shortest: int
+    starts: dict[int, bytes] = field(default_factory=dict)
+
+    def cycles(self, chain: tuple[_Level, ...]) -> int:
+        """Return the cycles of a packet in which the last sequence of a chain is the longest.
+
+        The packet has `max_message_bytes`, or the sequence its largest length. The cycles of the
+        shortest packet are not counted. The chain around the sequence was asked for before.
+        """
+        level = chain[-1]
+        start = self.starts[level.length] = self._start(chain)
+        most = ceil(level.most * level.steps)
+        if level.most <= FEW or self.shortest + (FEW + 1) * level.steps > MOST_STEPS:
+            return most
+        size = self._size(start, FEW)
+        each = self._size(start, FEW + 1) - size
+        if not each:
+            return most
+        count = min(level.most, FEW + max(0, self.plan.max_message_bytes - size) // each)
+        return ceil(count * max(level.steps, Fraction(each, self.plan.bus_bytes)))
+
+    def _start(self, chain: tuple[_Level, ...]) -> bytes:
+        """Return a packet up to the length of the last sequence of a chain."""
+        if len(chain) > 1:
+            packet = self.starts[chain[-2].length] + _number(1)
+        else:
+            fixed = (item for step in self.plan.steps for item in step.slices)
+            packet = b"".join(item.data for item in fixed if isinstance(item, Fixed))
+        begin = self.plan.begins[chain[-1].length]
+        # The packet ends before the length, so the interpreter continues with lengths of 0. The
+        # length is the end of its step.
+        visits = decode(self.plan, packet).steps
+        end = next(visit.end for visit in visits if self.plan.steps[visit.step].begin is begin)
+        return packet.ljust(end - LENGTH.bytes, b"\0")
+
+    def _size(self, start: bytes, count: int) -> int:
+        """Return the bytes of a packet after whose start a length is `count`."""
+        return decode(self.plan, start + _number(count)).steps[-1].end
+
+
+def _number(count: int) -> bytes:
+    return count.to_bytes(LENGTH.bytes, "little")

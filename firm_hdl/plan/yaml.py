@@ -16,6 +16,7 @@ from firm_hdl.plan.ir import (
     ArrayEnd,
     Begin,
     BeginLoop,
+    Claim,
     Exits,
     Fixed,
     Jump,
@@ -47,6 +48,10 @@ LEGEND = """\
 #                       is constant, until the run is done
 #   next                the step in the next cycle; "loop 0 again" if that loop has elements left
 """
+CLAIMS_LEGEND = """\
+#   claims: 8 from 512  a length of 512 or more claims 8 bytes of a budget for each item; "less 14"
+#                       gives 14 bytes back; "of 999" renews the budget, with 999 bytes
+"""
 COLUMNS = 100
 # Words that YAML 1.1 does not read as text.
 WORDS = frozenset({"yes", "no", "on", "off", "true", "false", "null", "y", "n"})
@@ -73,6 +78,8 @@ class _Printer:
             f"{counted(plan.levels, 'loop level')}, {counted(len(plan.steps), 'step')}."
         )
         yield from LEGEND.splitlines()
+        if any(step.begin is not None and step.begin.claim for step in plan.steps):
+            yield from CLAIMS_LEGEND.splitlines()
         yield f"message: {_plain(plan.message)}"
         yield f"wire: {plan.wire}"
         yield f"bus_bytes: {plan.bus_bytes}"
@@ -153,6 +160,8 @@ class _Printer:
 
     def begin(self, begin: Begin) -> dict[str, str]:
         count = {"count": _plain(self.paths[begin.length]), "limit": str(begin.limit)}
+        if begin.claim is not None:
+            count["claims"] = _claim(begin.claim)
         if isinstance(begin, BeginLoop):
             return {"loop": str(begin.level), **count, "body": _jump(begin.body)}
         entries = {"run": self.run(begin.run), **count}
@@ -196,6 +205,12 @@ def _jump(jump: Jump) -> str:
         return target
     # Semicolons, as a comma would end the text in flow style.
     return f"{target} with " + "; ".join(f"{_counter(c)} = {n}" for c, n in jump.enter)
+
+
+def _claim(claim: Claim) -> str:
+    text = f"{claim.bytes} from {claim.least}"
+    text = f"{text} less {claim.saved}" if claim.saved else text
+    return text if claim.total is None else f"{text} of {claim.total}"
 
 
 def _counter(counter: int | str) -> str:

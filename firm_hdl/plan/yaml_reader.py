@@ -19,6 +19,7 @@ from firm_hdl.plan.ir import (
     Begin,
     BeginLoop,
     BeginRun,
+    Claim,
     Exits,
     Fixed,
     Jump,
@@ -51,6 +52,7 @@ PART = re.compile(
     r"(?:(, last)(?: of loop (\d+))?)?"
 )
 JUMP = re.compile(r"(?:end|step (\d+))(?: with (.+))?")
+CLAIM = re.compile(r"(\d+) from (\d+)(?: less (\d+))?(?: of (\d+))?")
 COUNTER = re.compile(r"(?:loop (\d+)|run) = (\d+)")
 
 
@@ -113,6 +115,16 @@ def _match(pattern: re.Pattern[str], node: yaml.Node, what: str) -> re.Match[str
 
 def _take(entries: Entries, key: str, read: Callable[[yaml.Node, str], T]) -> T | None:
     return read(entries.pop(key), key) if key in entries else None
+
+
+def _claim(node: yaml.Node, _: str) -> Claim:
+    each, least, saved, total = _match(CLAIM, node, "what a length claims").groups()
+    return Claim(
+        bytes=int(each),
+        least=int(least),
+        saved=int(saved or 0),
+        total=None if total is None else int(total),
+    )
 
 
 class _Reader:
@@ -259,6 +271,7 @@ class _Reader:
         length = _take(entries, "count", lambda each, _: self.path(self.indices, each))
         limit = _take(entries, "limit", _number)
         align = _take(entries, "align", _number)
+        claim = _take(entries, "claims", _claim)
         body = _take(entries, "body", self.jump)
         for key, value in entries.items():
             raise _error(value, f"starts has no {key!r}")
@@ -266,12 +279,14 @@ class _Reader:
             raise _error(node, "starts needs 'count', 'limit' and 'body'")
         if run is not None and level is None:
             align = 1 if align is None else align
-            return BeginRun(length=length, limit=limit, run=run, align=align, body=body)
+            return BeginRun(
+                length=length, limit=limit, run=run, align=align, claim=claim, body=body
+            )
         if level is None or run is not None:
             raise _error(node, "starts has one of 'run' and 'loop'")
         if align is not None:
             raise _error(node, "a loop that starts has no 'align'")
-        return BeginLoop(length=length, limit=limit, level=level, body=body)
+        return BeginLoop(length=length, limit=limit, level=level, claim=claim, body=body)
 
     def path(self, table: dict[str, int], node: yaml.Node) -> int:
         return self.index(table, _text(node, "a path"), node)

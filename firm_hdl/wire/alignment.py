@@ -34,6 +34,7 @@ class Alignment:
 
     rules: WireRules
     _after: dict[tuple[FieldType, int], int] = field(default_factory=dict)
+    _shortest: dict[tuple[FieldType, int], int] = field(default_factory=dict)
 
     def of(self, primitive: Primitive) -> int:
         """Return the number of bytes to a multiple of which a primitive is aligned."""
@@ -64,6 +65,50 @@ class Alignment:
                 self._after[key] = self._after_one(kind, rs.single(r))
             result |= self._after[key]
         return result
+
+    def shortest(self, kind: FieldType, start: int) -> int:
+        """Return the bytes of the shortest value, padding before it included.
+
+        Strings and sequences have a length of 0 and nothing else; CDR strings have no NUL.
+
+        Parameters
+        ----------
+        kind : FieldType
+        start : int
+            Offset where the value may start.
+        """
+        key = (kind, start % rs.MODULUS)
+        if key not in self._shortest:
+            self._shortest[key] = self._shortest_one(*key)
+        return self._shortest[key]
+
+    def repeated(self, element: FieldType) -> int:
+        """Return the bytes of the shortest element that follows another shortest one.
+
+        Each later one has as many bytes. Let the strictest alignment in an element be to a bytes.
+        Then each element ends at the same offset modulo a, wherever the first one started, and
+        the size of the next one depends on this offset only.
+        """
+        return self.shortest(element, self.shortest(element, 0))
+
+    def _shortest_one(self, kind: FieldType, start: int) -> int:
+        match kind:
+            case Primitive():
+                return -start % self.of(kind) + kind.bytes
+            case Message(fields=()):
+                return 0 if self.rules.empty_member is None else OCTET.bytes
+            case Message():
+                at = start
+                for item in kind.fields:
+                    at += self.shortest(item.type, at)
+                return at - start
+            case Array(count=0):
+                return 0
+            case Array(element=element, count=count):
+                first = self.shortest(element, start)
+                return first + (count - 1) * self.shortest(element, start + first)
+            case String() | Sequence():
+                return self.shortest(LENGTH, start)
 
     def _after_one(self, kind: FieldType, at: int) -> int:
         match kind:

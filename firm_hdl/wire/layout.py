@@ -136,13 +136,16 @@ class LoopNode:
     body : tuple of Node
         One element, laid out for all offsets where any element may start.
     min_body_bytes : int
-        Lower bound of the size of an element in bytes.
+        Lower bound of the size of an element in bytes, without padding.
+    repeated_bytes : int
+        Size of the shortest element after another shortest one in bytes, with padding.
     """
 
     path: Path
     length: Length
     body: tuple[Node, ...]
     min_body_bytes: int
+    repeated_bytes: int
 
 
 Node: TypeAlias = "Scalar | Trigger | RunNode | LoopNode"
@@ -279,6 +282,7 @@ class _Builder:
             length=self.length(kind, at),
             body=self.field(kind.element, (*path, "item"), self.alignment.entry(kind, at)),
             min_body_bytes=self.min_bytes(kind.element),
+            repeated_bytes=self.alignment.repeated(kind.element),
         )
 
     # Sizes.

@@ -120,12 +120,12 @@ def test_commands_print_what_is_quoted(workdir, capsys, text):
             # Folders that are written at the same time are in any order, too.
             out, output = (written_in_order(text) for text in (out, output))
         # A line `...` stands for any number of lines.
-        parts = re.split(r"^\.\.\.\n", output.strip("\n"), flags=re.MULTILINE)
+        parts = re.split(r"^\.\.\.\n", output.strip("\n") + "\n", flags=re.MULTILINE)
         pattern = r"(?:.*\n)*?".join(map(re.escape, parts))
         # Times differ from machine to machine.
         pattern = re.sub(r"(?:\\ )+\d+\\\.\d\\ s\b", r"\\ +\\d+\\.\\d\\ s", pattern)
         pattern = re.sub(r"(^|\?)\d+\\ s,", r"\1\\d+\\ s,", pattern, flags=re.MULTILINE)
-        assert re.fullmatch(pattern, (out + err).strip("\n")), out + err
+        assert re.fullmatch(pattern, (out + err).strip("\n") + "\n"), out + err
         assert status == (1 if "error:" in output else 0)
 
 

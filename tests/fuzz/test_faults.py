@@ -51,6 +51,16 @@ def test_a_fault_in_the_decoders_table_is_found(line):
 
 
 @pytest.mark.thorough
+def test_a_decoder_that_does_not_sum_what_lengths_claim_is_found():
+    def alter(table):
+        return replace(table, claim_bytes=1 << 40)
+
+    name = "diagnostic_msgs/msg/DiagnosticArray"
+    assert not run(name, "deserializer", bus_bytes=8).failures
+    assert "length" in found(run(name, "deserializer", bus_bytes=8, alter_table=alter)).rule
+
+
+@pytest.mark.thorough
 def test_a_failure_is_repeated_by_its_packet_alone():
     fault = FAULTS[3]
     failure = found(run(STRING, fault.circuit, alter=fault.alter))

@@ -25,14 +25,14 @@ def test_the_text_of_a_table():
     message = make("ros2", {"a": "uint8", "few": "float64[<=3]", "w": "wstring", "m": inner})
     # The shortest packet has 4 + 1 + 4 + 4 + 1 + 2 * 4 bytes.
     assert table(message).text() == (
-        "table 1 8 8\n"
+        "table 1 8 8 978 256 0\n"
         "a 8 1\nfew.length 32 1\nfew.items 64 1\nw.length 32 1\nw.items 32 2\n"
         "m.flag 1 1\nm.names.item.length 32 1\nm.names.item.items 8 8\n"
         "scalar 0 1 0\n"
         "run 1 2 8 0 0 0 3 3\n"
         "run 3 4 4 0 0 0 0 244\n"
         "scalar 5 1 1\n"
-        "loop -1 2 0 0\nrun 6 7 1 0 1 0 5 5\nend\n"
+        "loop -1 4 2 0 0\nrun 6 7 1 0 1 0 5 5\nend\n"
     )
 
 

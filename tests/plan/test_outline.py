@@ -51,7 +51,11 @@ def test_lengths_and_their_limits_stay(wire, bus_bytes):
     message = load_message("visualization_msgs/msg/InteractiveMarker")
     plan, short = plans_of(message, wire, bus_bytes)
     names = [
-        {(leaf.path[:-1], p.begins[k].limit) for k, leaf in enumerate(p.leaves) if k in p.begins}
+        {
+            (leaf.path[:-1], p.begins[k].limit, p.begins[k].claim)
+            for k, leaf in enumerate(p.leaves)
+            if k in p.begins
+        }
         for p in (plan, short)
     ]
     # A sequence of numbers that are wider than the bus is a loop in both.

@@ -19,7 +19,7 @@ BODY = """\
 message: p/msg/T
 wire: cdr
 bus_bytes: 8
-max_message_bytes: 1000
+max_message_bytes: 280
 header_bytes: 4
 max_trailing_bytes: 3
 levels: 1
@@ -49,7 +49,7 @@ steps:
   step 2:  # in loop 0 (points.length)
     align: 4
     0..3: points.item.name.length
-    starts: {run: points.item.name.items, count: points.item.name.length, limit: 967, body: step 3}
+    starts: {run: points.item.name.items, count: points.item.name.length, limit: 247, body: step 3}
     next: {loop 0 again: step 1, else: step 4}
   step 3:  # in loop 0 (points.length)
     words of: points.item.name.items
@@ -76,7 +76,7 @@ def body_of(text):
 
 
 def test_a_plan_prints_as_an_engineer_reads_it():
-    assert body_of(text_of(MESSAGE, max_message_bytes=1000)) == BODY
+    assert body_of(text_of(MESSAGE, max_message_bytes=280)) == BODY
 
 
 def test_the_first_line_sums_it_up():
@@ -135,6 +135,20 @@ def test_items_wider_than_the_bus_name_their_loop():
     assert from_yaml(text) == plan
 
 
+def test_what_lengths_claim_is_printed_and_read():
+    names = make("ros1", {"names": "string[]"}, "Names")
+    plan = build_plan(lay_out(names), max_message_bytes=65_536)
+    text = to_yaml(plan)
+    assert "claims: 4 from 1024 of 65532" in text
+    assert "claims: 1 from 4096" in text
+    assert from_yaml(text) == plan
+    # Only plans with claims explain them.
+    assert "#   claims: " in text
+    assert "#   claims: " not in text_of(make("ros1", {"a": "string"}))
+    with pytest.raises(ValueError, match=r"^Line \d+: '4 of 9' is not what a length claims$"):
+        from_yaml(text.replace("4 from 1024 of 65532", "4 of 9"))
+
+
 MISTAKES = [
     ("", "", "Line 1: a plan must be a mapping, not empty"),
     (BODY, "[1, 2]", "Line 1: a plan must be a mapping"),
@@ -161,13 +175,13 @@ MISTAKES = [
     ("limit: 5, ", "", "Line 25: starts needs 'count', 'limit' and 'body'"),
     ("count: points.length, ", "", "Line 25: starts needs 'count', 'limit' and 'body'"),
     (", body: step 1}", "}", "Line 25: starts needs 'count', 'limit' and 'body'"),
-    ("limit: 967, body: step 3", "limit: 967",
+    ("limit: 247, body: step 3", "limit: 967",
      "Line 34: starts needs 'count', 'limit' and 'body'"),
     ("limit: 5, ", "limit: 5, most: 5, ", "Line 25: starts has no 'most'"),
     ("{loop: 0, ", "{", "Line 25: starts has one of 'run' and 'loop'"),
     ("{loop: 0, ", "{loop: 0, run: grid.items, ", "Line 25: starts has one of 'run' and 'loop'"),
     ("limit: 5, ", "limit: 5, align: 4, ", "Line 25: a loop that starts has no 'align'"),
-    ("limit: 967, ", "limit: 967, align: four, ", "Line 34: align must be a number, not 'four'"),
+    ("limit: 247, ", "limit: 967, align: four, ", "Line 34: align must be a number, not 'four'"),
     ("run: points.item.name.items, ", "run: points, ", "Line 34: the plan has no run 'points'"),
     ("rest of: points.item.name.items", "rest of: points.item.x",
      "Line 28: the plan has no run 'points.item.x'"),

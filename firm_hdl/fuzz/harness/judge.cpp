@@ -20,6 +20,7 @@ void Judge::judge(const std::vector<uint8_t>& packet, Expected& expected) {
     packet_ = &packet;
     out_ = &expected;
     position_ = 0;
+    depth_ = 0;
     expected.status = OK;
     expected.transfers.clear();
     expected.words.clear();
@@ -101,8 +102,10 @@ void Judge::node(const Node& node) {
         case Node::Kind::Loop: {
             uint32_t count = node.count;
             if (node.length_leaf >= 0) length(node, count);
+            depth_ += node.length_leaf >= 0;
             for (uint32_t n = 0; n < count; ++n)
                 for (const Node& each : node.body) this->node(each);
+            depth_ -= node.length_leaf >= 0;
             break;
         }
     }
@@ -113,7 +116,7 @@ bool Judge::length(const Node& node, uint32_t& count) {
     align(4);
     uint32_t wire = static_cast<uint32_t>(read(4));
     count = node.is_terminated && wire ? wire - 1 : wire;
-    if (count > node.limit) {
+    if (count > node.limit || !may_claim(uint64_t{wire} * node.bytes)) {
         fail(LENGTH);
         wire = count = 0;
     }
@@ -121,6 +124,14 @@ bool Judge::length(const Node& node, uint32_t& count) {
     // A serializer terminates an empty string, too.
     write(count + node.is_terminated, 4);
     return node.is_terminated && wire > 0;
+}
+
+// A sequence and all lengths inside claim no more bytes together than a packet has for them.
+bool Judge::may_claim(uint64_t bytes) {
+    if (!depth_) claimed_ = 0;
+    if (bytes < table_.claim_bytes) return true;
+    claimed_ += bytes - table_.saved_bytes;
+    return claimed_ <= table_.room;
 }
 
 void Judge::run(const Node& node) {

@@ -42,6 +42,7 @@ private:
     void node(const Node& node);
     void run(const Node& node);
     bool length(const Node& node, uint32_t& count);
+    bool may_claim(uint64_t bytes);
     void align(int bytes);
     uint64_t read(int bytes);
     void send(int leaf, uint64_t value);
@@ -53,4 +54,6 @@ private:
     const std::vector<uint8_t>* packet_ = nullptr;
     Expected* out_ = nullptr;
     size_t position_ = 0;
+    int depth_ = 0;          // sequences around the field
+    uint64_t claimed_ = 0;  // by the outermost sequence and lengths inside
 };

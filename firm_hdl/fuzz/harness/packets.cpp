@@ -147,7 +147,7 @@ bool Damager::damage(Random& random, Damage kind, Written& packet) {
                 bytes[random.below(size)] ^= static_cast<uint8_t>(1 << random.below(8));
             return true;
         case Damage::Length:
-            return play_with_length(random, packet);
+            return play_with_lengths(random, packet);
         case Damage::Header:
             if (!table_.is_cdr) return false;
             // The other identifiers, or any two bytes.
@@ -179,21 +179,29 @@ bool Damager::damage(Random& random, Damage kind, Written& packet) {
     return false;
 }
 
-// Replace a length by a number that is next to something. The packet's bytes stay, or are cut, too.
-bool Damager::play_with_length(Random& random, Written& packet) {
+// Replace lengths by other numbers. The packet's bytes stay, or are cut, too.
+bool Damager::play_with_lengths(Random& random, Written& packet) {
     if (packet.lengths.empty()) return false;
     const uint32_t lengths = static_cast<uint32_t>(packet.lengths.size());
     const LengthAt& length = packet.lengths[random.below(lengths)];
-    const uint32_t limit = length.node->limit + length.node->is_terminated;
-    const uint32_t bound = length.node->bound + length.node->is_terminated;
-    const uint32_t numbers[] = {0,     1,         bound,       bound + 1,        limit,
-                                limit, limit + 1, 0x80000000u, 0xffffffffu,      length.value - 1,
-                                length.value + 1, random.below(limit + 2)};
-    put_at(packet.bytes, length.at, numbers[random.below(sizeof numbers / sizeof numbers[0])]);
+    replace_length(random, length, packet.bytes);
+    // Lengths inside each other claim too much together.
+    for (uint32_t left = random.one_in(4) ? 1 + random.below(3) : 0; left; --left)
+        replace_length(random, packet.lengths[random.below(lengths)], packet.bytes);
     if (random.one_in(8)) {
         const size_t least = length.at + 4;
         const uint32_t rest = static_cast<uint32_t>(packet.bytes.size() - least);
         packet.bytes.resize(least + random.below(rest + 1));
     }
     return true;
+}
+
+// The new number is next to something.
+void Damager::replace_length(Random& random, const LengthAt& length, Bytes& bytes) {
+    const uint32_t limit = length.node->limit + length.node->is_terminated;
+    const uint32_t bound = length.node->bound + length.node->is_terminated;
+    const uint32_t numbers[] = {0,     1,         bound,       bound + 1,        limit,
+                                limit, limit + 1, 0x80000000u, 0xffffffffu,      length.value - 1,
+                                length.value + 1, random.below(limit + 2)};
+    put_at(bytes, length.at, numbers[random.below(sizeof numbers / sizeof numbers[0])]);
 }

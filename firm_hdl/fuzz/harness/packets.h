@@ -64,7 +64,8 @@ public:
 
 private:
     bool damage(Random& random, Damage kind, Written& packet);
-    bool play_with_length(Random& random, Written& packet);
+    bool play_with_lengths(Random& random, Written& packet);
+    void replace_length(Random& random, const LengthAt& length, Bytes& bytes);
 
     Writer writer_;
     const Table& table_;

@@ -25,7 +25,7 @@ std::vector<Node> read_nodes(std::istream& text, bool is_nested) {
             words >> node.is_terminated >> node.count >> node.bound >> node.limit;
         } else if (kind == "loop") {
             node.kind = Node::Kind::Loop;
-            words >> node.length_leaf >> node.count >> node.bound >> node.limit;
+            words >> node.length_leaf >> node.bytes >> node.count >> node.bound >> node.limit;
         } else {
             throw std::runtime_error("the table has a line that is not known: " + line);
         }
@@ -44,6 +44,7 @@ Table read_table(std::istream& text) {
     std::string word;
     size_t leaves = 0;
     text >> word >> table.is_cdr >> table.bus_bytes >> leaves;
+    text >> table.room >> table.claim_bytes >> table.saved_bytes;
     if (!text || word != "table") throw std::runtime_error("this is not a table");
     table.leaves.resize(leaves);
     for (Leaf& leaf : table.leaves) text >> leaf.name >> leaf.bits >> leaf.lanes;

@@ -24,7 +24,7 @@ struct Node {
     Kind kind = Kind::Scalar;
     int length_leaf = -1;  // of a run or a loop that a length counts, else -1
     int leaf = -1;         // of the scalar, the trigger or the items
-    int bytes = 0;         // of the scalar or of an item
+    int bytes = 0;         // of the scalar or of an item; of a loop: least, of an element
     bool is_bool = false;
     bool is_terminated = false;  // a NUL follows the items, and the length counts it
     uint32_t count = 0;          // without a length: the number of items or elements
@@ -36,6 +36,9 @@ struct Node {
 struct Table {
     bool is_cdr = false;
     int bus_bytes = 0;
+    uint64_t room = 0;         // bytes that nested lengths may claim together
+    uint64_t claim_bytes = 0;  // a length whose items have fewer is not counted
+    uint64_t saved_bytes = 0;  // of the items of a counted length that it does not claim
     std::vector<Leaf> leaves;
     std::vector<Node> nodes;
 

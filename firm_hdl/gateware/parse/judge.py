@@ -98,6 +98,10 @@ class Judge:
         missing_nul = self.wrong_nul & (state.present | (~within[-1] & within.any()))
         overrun = state.ends_message & ~self.ended & self.has_trailing
         early = self.mismatch | missing_nul | cut | overrun
+        claims = self.length.claims
+        if claims is not None and state.has_leaves:
+            # The length before this step is not checked yet; its error would be the first one.
+            early = early & ~claims.pending
         # What is left if no other error is found: trailing bytes, or a length over its limit.
         code = Mux(state.ends_message, Status.TRAILING, Status.LENGTH)
         code = Mux(cut, Status.TRUNCATED, code)
@@ -110,6 +114,10 @@ class Judge:
             m.d.sync += state.bad.eq(early | (begins & self.length.over))
         with m.If(~state.bad):
             m.d.sync += [state.new_error.eq(early), self.code.eq(code)]
+        if claims is not None:
+            # An error that was found before is later in wire order. No packet ends in this cycle.
+            with m.If(claims.fails):
+                m.d.sync += [state.bad.eq(1), self.code.eq(Status.LENGTH)]
 
     def _keep_good(self, ready: Value) -> None:
         """After an error, compute how many bytes of the step's words are good."""

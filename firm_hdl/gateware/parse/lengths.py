@@ -85,6 +85,12 @@ class _Meaning(ABC):
         return f"skips_{self.kind}_{self.max_count}"
 
     @property
+    def counted(self) -> str | None:
+        """The value is large enough to be counted by its claim; `None`: it has no claim."""
+        claim = self.begin.claim
+        return None if claim is None else f"counted_{claim.least}"
+
+    @property
     def single(self) -> str:
         """The body is executed at most once."""
         return f"single_{self.kind}"
@@ -247,6 +253,8 @@ class Lengths(wiring.Component):
         fields = {"zero": 1}
         for meaning in self.meanings:
             fields |= {meaning.over: 1, meaning.skips: 1, meaning.single: 1, meaning.double: 1}
+            if meaning.counted is not None:
+                fields[meaning.counted] = 1
             if isinstance(meaning, RunMeaning):
                 fields[meaning.rest] = meaning.lanes.bit_length()
                 for step in meaning.nexts:
@@ -318,6 +326,9 @@ class Lengths(wiring.Component):
                 entry[meaning.single].eq(single),
                 entry[meaning.double].eq(double),
             ]
+            if meaning.begin.claim is not None:
+                counted = exceeds(length, meaning.begin.claim.least - 1)
+                m.d.comb += entry[meaning.counted].eq(counted)
 
     @staticmethod
     def _rest(length: Value, lanes: int, nul: int) -> Value:

@@ -78,16 +78,21 @@ class OrderQueue(wiring.Component):
         The first beat that the sequencer still needs.
     freed : Out(beat)
         The first beat that any order or the sequencer still needs.
+    holds, refuses : In(1)
+        As of :class:`Sequencer`; only if the plan has claims. No order comes while `holds` is high.
     """
 
     def __init__(self, plan: Plan):
         layout, beat = order_layout(plan), Ring(plan).beat_bits
+        self.checks = plan.has_claims
+        checks = {"holds": In(1), "refuses": In(1)} if self.checks else {}
         super().__init__(
             {
                 "i": In(stream.Signature(layout)),
                 "o": Out(stream.Signature(layout)),
                 "oldest": In(beat),
                 "freed": Out(beat),
+                **checks,
             }
         )
 
@@ -96,17 +101,19 @@ class OrderQueue(wiring.Component):
         # The order that came while `o` was waiting.
         second = Signal(self.i.payload.shape(), reset_less=True)
         has_second = Signal()
+        first, valid, ready = self.o.payload, self.o.valid, self.o.ready
+        if self.checks:
+            first, valid = Signal(first.shape(), reset_less=True), Signal(name="has_first")
+            ready = self._wait(m, first, valid, has_second)
         m.d.comb += [
             self.i.ready.eq(~has_second),
-            self.freed.eq(
-                Mux(self.o.valid, self.o.payload.first, Mux(has_second, second.first, self.oldest))
-            ),
+            self.freed.eq(Mux(valid, first.first, Mux(has_second, second.first, self.oldest))),
         ]
         # `o` waits for `ready` even if it has no order: so `ready` alone enables its registers.
-        with m.If(self.o.ready):
+        with m.If(ready):
             m.d.sync += [
-                self.o.valid.eq(self.i.valid | has_second),
-                self.o.payload.eq(Mux(has_second, Value.cast(second), Value.cast(self.i.payload))),
+                valid.eq(self.i.valid | has_second),
+                first.eq(Mux(has_second, Value.cast(second), Value.cast(self.i.payload))),
                 has_second.eq(0),
             ]
         with m.Elif(self.i.valid):
@@ -114,3 +121,28 @@ class OrderQueue(wiring.Component):
         with m.If(~has_second):
             m.d.sync += second.eq(self.i.payload)
         return m
+
+    def _wait(self, m: Module, first: data.View, valid: Signal, has_second: Signal) -> Value:
+        """Let the newest order wait for the check of its length; return whether the first moves.
+
+        A refusal is a bit of its own: the orders' own bits come late in the cycle.
+        """
+        waits, ready = Signal(name="waits"), Signal(name="moves")
+        first_refused, second_refused = Signal(name="first_refused"), Signal(name="second_refused")
+        m.d.comb += [
+            waits.eq(self.holds & ~has_second),
+            ready.eq(self.o.ready & ~waits),
+            self.o.valid.eq(valid & ~waits),
+            self.o.payload.eq(first),
+            self.o.payload.length_good.eq(first.length_good & ~first_refused),
+        ]
+        with m.If(ready):
+            m.d.sync += [
+                first_refused.eq(has_second & (second_refused | self.refuses)),
+                second_refused.eq(0),
+            ]
+        with m.Elif(self.refuses & has_second):
+            m.d.sync += second_refused.eq(1)
+        with m.Elif(self.refuses):
+            m.d.sync += first_refused.eq(1)
+        return ready

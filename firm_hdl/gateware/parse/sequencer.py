@@ -38,6 +38,11 @@ class Sequencer(wiring.Component):
     step transfers it as 0. All later steps are ordered without bytes and with lengths of 0, and the
     rest of the packet is dropped.
 
+    A counted length (:class:`Claims`) holds the sequencer before the next step. Its order must
+    wait, too (`holds`). If the length claims too much, the order must transfer it as 0 (`refuses`),
+    and the sequencer goes back to the length's step, and leaves it with an order that has no step.
+    Without leaves, nothing is held but the end of the packet.
+
     Parameters
     ----------
     plan : Plan
@@ -61,6 +66,11 @@ class Sequencer(wiring.Component):
         Bytes of the packet after the message, if `next` and the status is `OK`.
     oldest : Out(beat)
         The sequencer needs no beat before this one.
+    holds : Out(1)
+        The newest order must wait: its length is not checked yet. Only if the plan has claims and
+        orders write leaves, as for `refuses`.
+    refuses : Out(1)
+        The newest order must transfer its length as 0. Only in the last cycle of `holds`.
     orders : Out(stream.Signature(order_layout(plan)))
         `valid` does not depend on `ready`; the payload is stable only with `valid`.
     """
@@ -68,6 +78,8 @@ class Sequencer(wiring.Component):
     def __init__(self, plan: Plan, *, has_leaves: bool = True):
         self.plan, self.has_leaves = plan, has_leaves
         ring = Ring(plan)
+        has_holds = plan.has_claims and has_leaves
+        checks = {"holds": Out(1), "refuses": Out(1)} if has_holds else {}
         super().__init__(
             {
                 "beat": In(beat_layout(plan)),
@@ -78,6 +90,7 @@ class Sequencer(wiring.Component):
                 "trailing": Out(2),
                 "oldest": Out(ring.beat_bits),
                 "orders": Out(stream.Signature(order_layout(plan))),
+                **checks,
             }
         )
 
@@ -97,6 +110,7 @@ class _SequencerLogic:
         self.m, self.plan = m, plan = Module(), sequencer.plan
         self.state = state = ParseState(m, plan, has_leaves=sequencer.has_leaves)
         self.length = StepLength(state, c.beat)
+        self.claims = self.length.claims
         self._decide()
         self.judge = Judge(state, self.length, c.beat, c.limit, c.ended, c.orders.ready)
         self._order()
@@ -139,9 +153,21 @@ class _SequencerLogic:
         # late in the cycle; so it is a factor of its own, and all else is computed before it.
         drains, allowed = state.drains, Signal(name="allowed")
         ready, good, ends = c.orders.ready, self.judge.good, state.ends_packet
+        may_proceed = ~bad & (~state.ends_message | c.ended) & ~self._too_early()
+        may_drain = bad & ~state.new_error & (~traits.end | c.ended)
+        blank = traits.end if state.refused is None else traits.end | state.refused
+        if self.claims is not None:
+            waits = self.claims.pending
+            if c.has_leaves:
+                may_proceed = may_proceed & ~waits
+                m.d.comb += [c.holds.eq(waits), c.refuses.eq(self.claims.fails)]
+            else:
+                # Only the end of the packet waits: the check may still find an error.
+                may_proceed = may_proceed & ~(waits & state.ends_message)
+                may_drain = may_drain & ~waits
         m.d.comb += [
-            drains.eq(bad & ~state.new_error & (~traits.end | c.ended)),
-            allowed.eq(~bad & (~state.ends_message | c.ended) & ~self._too_early()),
+            drains.eq(may_drain),
+            allowed.eq(may_proceed),
             c.orders.valid.eq(drains | (allowed & good)),
             state.issue.eq((drains & ready) | (allowed & ready & good)),
             c.next.eq((drains & ready & ends) | (allowed & ready & ends & good)),
@@ -153,7 +179,7 @@ class _SequencerLogic:
             order.step.eq(
                 pick([(state.step[i], i) for i in range(len(self.plan.steps))], len(order.step))
             ),
-            order.blank.eq(traits.end),
+            order.blank.eq(blank),
             order.items_at.eq(state.items_at),
             order.map_at.eq(state.map_at),
             order.items_next.eq(ring.slot(state.items_at) + 1),
@@ -205,6 +231,13 @@ class _SequencerLogic:
         )
         with m.If(state.issue):
             m.d.sync += Value.cast(flow.step_state).eq(next_state)
+        if state.refused is not None and self.claims is not None:
+            # Back to the step of the length. It begins nothing, and is left at once.
+            back = {s.begin.body.step: i for i, s in enumerate(self.plan.steps) if s.begin}
+            bits = pick([(state.step[k], 1 << i) for k, i in back.items() if k], len(state.step))
+            with m.If(self.claims.fails):
+                m.d.sync += [state.traits.plain.eq(1), state.step.eq(bits)]
+        with m.If(state.issue):
             with m.If(state.ends_packet):
                 m.d.sync += [state.rest.eq(0), state.has_nul.eq(0)]
             with m.Else():
@@ -222,7 +255,9 @@ class _SequencerLogic:
                 state.rest.eq(Mux(good, self.length.rest, 0)),
                 state.has_nul.eq(terminated & good & ~self.length.zero),
             ]
-        with m.Elif(state.traits.rest):
+        with m.Elif(
+            state.traits.rest if state.refused is None else state.traits.rest | state.refused
+        ):
             m.d.sync += [state.rest.eq(0), state.has_nul.eq(0)]
 
     def _move_on(self) -> None:

@@ -28,6 +28,7 @@ class ParseState:
     ----------
     m : Module
     plan : Plan
+    has_leaves : bool
     ring : Ring
     meanings : dict of int to Meaning
         What the length of a step means, by the step's index.
@@ -49,6 +50,9 @@ class ParseState:
     phase : int, Const or Signal(3)
         Position after the packet's encapsulation header, modulo 8: an `int` on a bus of 8 bytes or
         more, and a signal on others if anything is aligned to it.
+    refused : Signal(1) or None
+        A length claimed too much: `step` is the length's step again, and is left at once. The
+        traits are those of the step after it. `None` without leaves, or if the plan has no claims.
     bad : Signal(1)
         An error was found in the packet.
     new_error : Signal(1)
@@ -77,9 +81,11 @@ class ParseState:
     """
 
     def __init__(self, m: Module, plan: Plan, *, has_leaves: bool):
-        self.m, self.plan = m, plan
+        self.m, self.plan, self.has_leaves = m, plan, has_leaves
         self.ring = ring = Ring(plan)
         self.meanings = meanings_of(plan, has_leaves=has_leaves)
+        checks = has_leaves and plan.has_claims
+        self.refused = Signal(name="refused") if checks else None
         self.flow = self._flow()
         self.traits, self.step = self.flow.step_state, self.flow.step
         start = shift_of(plan, plan.start.step) % (1 << ring.bits)

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from amaranth.hdl import Cat, Const, Signal, Value
 from amaranth.lib import data
 
+from firm_hdl.gateware.parse.claims import Claims
 from firm_hdl.gateware.parse.lengths import Lengths, LoopMeaning, RunMeaning
 from firm_hdl.gateware.parse.state import ParseState
 from firm_hdl.gateware.positions import any_of, pick
@@ -33,6 +34,8 @@ class StepLength:
         The fields that :class:`Meaning` names; `None` if the plan has no lengths.
     count : Value
         The length on the wire, a cycle later. It includes the NUL of a CDR `string`.
+    claims : Claims or None
+        The check of what the length claims; `None` if no length of the plan has a claim.
     zero, over : Value(1)
         The length is 0; the length is above the largest legal value.
     run_skips, loop_skips : Value(1)
@@ -49,6 +52,7 @@ class StepLength:
     def __init__(self, state: ParseState, beat: data.View):
         self.state = state
         self.entry: data.View | None = None
+        self.claims: Claims | None = None
         self.zero: Value = Const(0, 1)
         self.over = self.run_skips = self.loop_skips = self.zero
         self.single = self.double = self.count = self.rest = self.zero
@@ -65,6 +69,10 @@ class StepLength:
         self.single = self._select((index, each.single) for index, each in every)
         self.double = self._select((index, each.double) for index, each in every)
         self.rest = self._select(((index, each.rest) for index, each in runs), len(state.rest))
+        claims = [(index, each.counted) for index, each in every if each.counted is not None]
+        if claims:
+            counted = self._select(claims, exact=True)
+            self.claims = Claims(state, counted & ~self.over, self.count)
 
     def _look_up(self, beat: data.View) -> data.View:
         """Return the entry of the step's length."""

@@ -17,6 +17,12 @@ from firm_hdl.plan.ir import (
 
 __all__ = ["DecodeStatus", "Decoded", "Transfer", "decode"]
 
+CHECK_CYCLES = 3
+"""Cycles for which a deserializer holds the next step, to check what a counted length claims."""
+
+REFUSAL_CYCLES = 2
+"""Cycles in which a deserializer refuses a length that claims too much, and leaves its step."""
+
 DecodeStatus: TypeAlias = Literal[
     "OK", "TRUNCATED", "TRAILING", "LENGTH", "ENCAPSULATION", "STRING"
 ]
@@ -88,6 +94,8 @@ class _Reader(Machine):
     position: int = 0
     status: DecodeStatus = "OK"
     transfers: list[Transfer] = field(default_factory=list)
+    # Bytes that counted lengths may still claim.
+    budget: int = 0
     # Bytes of the current transfer that earlier parts had.
     partial: bytes = b""
 
@@ -136,12 +144,25 @@ class _Reader(Machine):
     def count(self, begin: Begin, wire: int) -> int:
         """Return the payload of a length, and store the length as it is on the wire."""
         length = wire - 1 if self.plan.has_nul(begin) and wire else wire
-        if length > begin.limit:
+        if length > begin.limit or not self.may_claim(begin, wire):
             # A length is read whole or is 0, so no error came before.
             self.status = "LENGTH"
             wire = length = 0
         self.length = wire
         return length
+
+    def may_claim(self, begin: Begin, wire: int) -> bool:
+        """Take what a legal length claims from the budget, and return whether it had enough."""
+        claim = begin.claim
+        if claim is None:
+            return True
+        if claim.total is not None:
+            self.budget = claim.total
+        if wire < claim.least:
+            return True
+        self.budget -= wire * claim.bytes - claim.saved
+        self.held = CHECK_CYCLES + (REFUSAL_CYCLES if self.budget < 0 else 0)
+        return self.budget >= 0
 
     def items(self, run: Run, count: int, last: bool) -> None:
         leaf = self.plan.leaves[run.items]

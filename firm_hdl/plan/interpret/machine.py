@@ -39,11 +39,14 @@ class Visit(NamedTuple):
         Bytes that the step takes, without computed padding.
     end : int
         Bytes of the packet up to the end of the step.
+    held : int
+        Cycles for which a deserializer holds the step, to check what the length before it claims.
     """
 
     step: int
     bytes: int
     end: int
+    held: int = 0
 
 
 class Edge(NamedTuple):
@@ -71,6 +74,8 @@ class Machine(ABC):
     counters: dict[int | str, int] = field(default_factory=dict)
     # The value of the latest length: items on the wire, a NUL included.
     length: int = 0
+    # Cycles for which the next step is held.
+    held: int = 0
     visits: list[Visit] = field(default_factory=list)
     edges: set[Edge] = field(default_factory=set)
     # The loop or run of each length. The length's first bytes may be in steps before the start.
@@ -130,6 +135,7 @@ class Machine(ABC):
         if isinstance(step, RunStep):
             self.words(index, step.run)
             return self.leave(index, step.exits)
+        held, self.held = self.held, 0
         for item in step.slices:
             match item:
                 case Pad():
@@ -138,12 +144,15 @@ class Machine(ABC):
                     self.fixed(item)
                 case Part():
                     self.part(item)
-        self.visits.append(Visit(index, self.offset - start - padding, self.offset))
+        self.visit(index, self.offset - start - padding, held)
         body = self.begin(step)
         if body is None:
             return self.leave(index, step.exits)
         self.edges.add(Edge(index, "body"))
         return self.enter(body)
+
+    def visit(self, index: int, size: int, held: int) -> None:
+        self.visits.append(Visit(index, size, self.offset, held))
 
     def align(self, align: int) -> int:
         """Skip padding, and return its size."""
@@ -182,7 +191,8 @@ class Machine(ABC):
         while True:
             start = self.offset
             self.transfer_items(run, lanes)
-            self.visits.append(Visit(index, self.offset - start, self.offset))
+            self.visit(index, self.offset - start, self.held)
+            self.held = 0
             if self.counters[RUN_COUNTER] <= rest:
                 return
             self.edges.add(Edge(index, "again"))

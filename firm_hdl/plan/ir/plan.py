@@ -62,6 +62,11 @@ class Plan:
         """The loop or run that each length counts, by the index of the length's leaf."""
         return {step.begin.length: step.begin for step in self.steps if step.begin is not None}
 
+    @property
+    def has_claims(self) -> bool:
+        """Whether lengths share a budget."""
+        return any(begin.claim is not None for begin in self.begins.values())
+
     def has_nul(self, begin: Begin) -> bool:
         """Tell whether a count on the wire includes a NUL; the leaf's length never does."""
         return not isinstance(begin, BeginLoop) and self.runs[begin.run].terminated

@@ -13,6 +13,7 @@ __all__ = [
     "Begin",
     "BeginLoop",
     "BeginRun",
+    "Claim",
     "Exits",
     "IntoBody",
     "Jump",
@@ -68,6 +69,34 @@ class Exits:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Claim:
+    """How much of a packet a length claims: at least so many bytes follow it, if it is true.
+
+    A sequence and the lengths inside its elements share a budget of bytes. A length that claims
+    more than is left of the budget is an error, as a length over its limit is. A length below
+    `least` is not counted. See :mod:`firm_hdl.plan.limits`.
+
+    Attributes
+    ----------
+    bytes : int
+        Bytes of the packet that each item or element claims, padding between elements included; an
+        element without bytes claims one. The NUL of a string is an item.
+    least : int
+        Smallest count on the wire, a NUL included, that is counted.
+    saved : int
+        The length claims as many bytes less, because items may save padding in other places.
+    total : int or None
+        The budget in bytes, which the outermost sequence renews. `None`: the length is inside this
+        sequence and uses its budget.
+    """
+
+    bytes: int
+    least: int
+    saved: int = 0
+    total: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class BeginLoop:
     """The start of a loop over elements whose number is a length of the message.
 
@@ -79,6 +108,8 @@ class BeginLoop:
         Largest legal count: the declared bound, or the count that `max_message_bytes` can hold.
     level : int
         Loop counter to load.
+    claim : Claim or None
+        What the length claims; `None`: the length is not counted.
     body : Jump
         Taken if the count is above zero.
     """
@@ -86,6 +117,7 @@ class BeginLoop:
     length: int
     limit: int
     level: int
+    claim: Claim | None = None
     body: Jump
 
 
@@ -105,6 +137,8 @@ class BeginRun:
     align : int
         The first item starts at a multiple of this many bytes, counted from the end of the
         encapsulation header. An empty run has no padding.
+    claim : Claim or None
+        What the length claims; `None`: the length is not counted.
     body : Jump
         Taken if the run has more than one word. If `limit` is at most a word, only a serializer
         takes it, because it writes lengths over the limit, too.
@@ -114,6 +148,7 @@ class BeginRun:
     limit: int
     run: int
     align: int = 1
+    claim: Claim | None = None
     body: Jump
 
 

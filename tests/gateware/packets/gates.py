@@ -21,9 +21,9 @@ BACKLOG = 3
 
 OK, FULL, LARGE, OVERRUN = GateStatus.OK, GateStatus.FULL, GateStatus.LARGE, GateStatus.OVERRUN
 DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
-BOMB_HEAD = "00010000 01000000 02000000 01000000 00 000000 a0bb0d00"
+BOMB_HEAD = "00010000 01000000 02000000 01000000 00 000000 00350c00"
 BOMB = bytes.fromhex(BOMB_HEAD).ljust(60, b"\0")
-"""A packet that claims 900,000 elements."""
+"""A packet that claims 800,000 elements."""
 NO_BOMB = bytes.fromhex(BOMB_HEAD[:-8] + "00000000")
 
 

@@ -36,6 +36,8 @@ PLANS = {
     "text": plan_of({"s": "string"}),
     # A run before a loop that ends in a run.
     "texts": plan_of({"s": "string", "ts": (make("ros1", {"t": "string"}, "T"), "[2]")}),
+    # Lengths that share a budget.
+    "nested": plan_of({"a": (make("ros1", {"t": "uint16[]"}, "T"), "[]"), "b": "uint16[]"}),
     # Padding of items only, before the first one.
     "gap": plan_of({"a": "uint8[]", "d": "float64[]"}, 8, "ros2"),
 }

@@ -18,6 +18,10 @@ MARK = "has a mark of its end, which only items have"
 RULE = "a length must be complete in the step that starts what it counts, and in no other"
 CONSTANT = "has a constant count, which neither begins nor has a rest"
 
+NESTED = PLANS["nested"].steps
+A, NONE = "a.item.t.length", "claims nothing"
+PLACE = "has a budget, or renews it, at the wrong place"
+
 # The plan, its changes, and the messages of the check.
 CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     # Tables.
@@ -125,6 +129,27 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("rich", {"steps.0.begin.align": 3}, ["step 0: alignment of items to 3"]),
     ("rich", {"steps.0.begin.align": 16}, ["step 0: alignment of items to 16"]),
     ("rich", {"steps.0.begin.body.step": None}, ["step 0, body: goes to step 14, not 1"]),
+    # What lengths claim.
+    ("nested", {"steps.0.begin.claim": None, "steps.1.begin.claim": None}, [f"step 1: {A} {NONE}"]),
+    ("nested", {"steps.0.begin.claim": None}, [f"step 0: a.length {NONE}", f"step 1: {A} {PLACE}"]),
+    ("nested", {"steps.1.begin.claim": None}, [f"step 0: a.length {PLACE}", f"step 1: {A} {NONE}"]),
+    ("nested", {"steps.1.begin.claim.bytes": 4}, [f"step 1: {A} claims 4 bytes for each item"]),
+    ("nested", {"steps.0.begin.claim.bytes": 0}, ["step 0: a.length claims 0 bytes for each item"]),
+    ("nested", {"steps.1.begin.claim.least": 2047}, [f"step 1: {A} is counted from 2047"]),
+    ("nested", {"steps.1.begin.claim.saved": 14}, ["lengths save 0, 14 bytes"]),
+    ("nested", {"steps.1.begin.claim.total": 9}, [f"step 1: {A} {PLACE}"]),
+    ("nested", {"steps.0.begin.claim.total": None}, [f"step 0: a.length {PLACE}"]),
+    (
+        "nested",
+        {"steps.0.begin.claim.total": 1 << 24},
+        [],
+    ),
+    (
+        "nested",
+        {"steps.0.begin.claim.total": (1 << 24) + 1},
+        [f"step 0: a.length has a budget of {(1 << 24) + 1} bytes"],
+    ),
+    ("nested", {"steps.3.begin.claim": NESTED[1].begin.claim}, [f"step 3: b.length {PLACE}"]),
     # The header.
     ("rich", {"steps.0.slices.0.data": b"\0\0"}, ["the header is not that of cdr"]),
     ("rich", {"steps.0.slices.0.check": False}, ["the header is not that of cdr"]),

@@ -1,0 +1,109 @@
+"""What lengths claim: no packet within `max_message_bytes` is refused, and padding is claimed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+
+from firm_hdl import load_message
+from firm_hdl.plan import Fixed, build_plan, decode
+from firm_hdl.wire import LengthField, LoopNode, lay_out, walk
+from tests.strategies import make
+
+
+def packet_of(plan, lengths):
+    """Return a packet of zeros with these lengths in wire order; further lengths are 0."""
+    packet = b"".join(s.data for step in plan.steps for s in step.slices if isinstance(s, Fixed))
+    for number in lengths:
+        steps = decode(plan, packet).steps
+        lengths_at = (v.end - 4 for v in steps if plan.steps[v.step].begin and v.end > len(packet))
+        packet = packet.ljust(next(lengths_at), b"\0") + number.to_bytes(4, "little")
+    return packet.ljust(decode(plan, packet).steps[-1].end, b"\0")
+
+
+@pytest.mark.parametrize(
+    ("name", "distro"),
+    [
+        ("diagnostic_msgs/msg/DiagnosticArray", "lyrical"),
+        ("diagnostic_msgs/DiagnosticArray", "noetic"),
+        ("sensor_msgs/msg/PointCloud2", "lyrical"),
+        ("geometry_msgs/msg/Polygon", "lyrical"),
+        ("tf2_msgs/msg/TFMessage", "lyrical"),
+        ("nav_msgs/msg/Path", "lyrical"),
+        ("sensor_msgs/msg/BatteryState", "lyrical"),
+        ("trajectory_msgs/msg/JointTrajectory", "lyrical"),
+        ("visualization_msgs/msg/MarkerArray", "lyrical"),
+        ("rcl_interfaces/msg/ParameterEvent", "lyrical"),
+    ],
+)
+def test_elements_claim_the_bytes_that_the_interpreter_steps_over(name, distro):
+    layout = lay_out(load_message(name, distro=distro))
+    plan = build_plan(layout)
+    counted = [node for node in layout.nodes if hasattr(node, "length")]
+    counted = [node for node in counted if isinstance(node.length, LengthField)]
+    for place, node in enumerate(counted):
+        if isinstance(node, LoopNode):
+            sizes = [len(packet_of(plan, [0] * place + [n])) for n in (2, 3, 4, 5)]
+            assert [b - a for a, b in pairwise(sizes)] == [node.repeated_bytes] * 3
+
+
+# In both, the items of a string may take the place of padding: 7 bytes of each element.
+FIELDS = {"b": "uint32", "s": "string", "a": "uint8", "x": "float64"}
+ELEMENT = make("ros2", FIELDS, "Element")
+ROW = make("ros2", {"e": (ELEMENT, "[]"), "y": "uint8"}, "Row")
+
+
+def messages():
+    yield (
+        make("ros2", {"e": (ELEMENT, "[]"), "z": "float64"}),
+        lambda letters: [12] + [letters] * 12,
+    )
+    yield (
+        make("ros2", {"r": (ROW, "[]")}),
+        lambda letters: [3] + 3 * [8, *[letters] * 8],
+    )
+
+
+def refused(change=None):
+    """Return how many of the largest legal packets are refused."""
+    count = 0
+    for message, lengths in messages():
+        layout = lay_out(message)
+        largest = build_plan(layout)
+        for letters in range(300, 308):
+            packet = packet_of(largest, lengths(letters))
+            plan = build_plan(layout, max_message_bytes=len(packet))
+            assert any(
+                begin.claim and begin.claim.least <= letters for begin in plan.begins.values()
+            )
+            for each in (plan, change and change(plan)):
+                status = decode(each, packet).status if each else "OK"
+                assert status in ("OK", "STRING", "LENGTH")
+                count += status == "LENGTH"
+    return count
+
+
+def altered(plan, **changes):
+    steps = tuple(
+        replace(step, begin=replace(step.begin, claim=replace(step.begin.claim, **changes)))
+        if step.begin and step.begin.claim
+        else step
+        for step in plan.steps
+    )
+    return replace(plan, steps=steps)
+
+
+def test_no_packet_within_the_largest_size_is_refused():
+    assert refused() == 0
+    # A twin: padding that items save is claimed.
+    assert refused(lambda plan: altered(plan, saved=0))
+
+
+def test_padding_is_only_saved_where_it_is_claimed():
+    for fields, saved in (({"s": "string"}, 0), ({"s": "string", "x": "uint8"}, 14)):
+        message = make("ros2", {"e": (make("ros2", fields, "Element"), "[]")})
+        plan = build_plan(lay_out(message))
+        assert {begin.claim.saved for begin in plan.begins.values()} == {saved}
+        assert any(isinstance(node, LoopNode) for node in walk(lay_out(message).nodes))
