@@ -37,7 +37,7 @@ def bridge(tmp_path):
 
     def start(release, graph="rtps", *arguments):
         file = tmp_path / "loop.yaml"
-        file.write_text(LOOP.format(distro=release, paths=PACKAGES, link="stream"))
+        file.write_text(LOOP.format(distro="jazzy", paths=PACKAGES, link="stream"))
         options = [
             "--graph",
             graph,

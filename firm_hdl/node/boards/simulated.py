@@ -55,6 +55,7 @@ class SimulatedBoard(Board):
         self._description = replace(description, link=Link(kind="stream"))
         self._accelerator, self._engine = accelerator, engine
         self._simulation: FastSimulation | None = None
+        self._is_open = False
 
     @property
     def engine(self) -> str:
@@ -62,19 +63,25 @@ class SimulatedBoard(Board):
         return self._simulation.engine if self._simulation else ""
 
     def open(self) -> None:
-        """Elaborate the node, compile it unless that was done before, and let it run."""
-        self.close()
-        make = self._accelerator
-        node = Node(self._description, make(self._description) if make else None)
-        outputs = (each.name for each in ports_of(node).streams if not each.is_input)
-        ignored = [name for name in outputs if name != _OUT]
+        """Elaborate and compile the node unless that was done before, and let it run."""
         try:
-            self._simulation = FastSimulation(node, engine=self._engine, ignored=ignored)
+            if self._simulation is None:
+                self._simulation = self._start()
+            else:
+                self._simulation.restart()
             self._simulation.go_live()
         except BuildError as error:
             raise UserError(str(error)) from None
         except SimulationError as error:
             raise BoardError(str(error)) from None
+        self._is_open = True
+
+    def _start(self) -> FastSimulation:
+        make = self._accelerator
+        node = Node(self._description, make(self._description) if make else None)
+        outputs = (each.name for each in ports_of(node).streams if not each.is_input)
+        ignored = [name for name in outputs if name != _OUT]
+        return FastSimulation(node, engine=self._engine, ignored=ignored)
 
     def fileno(self) -> int:
         try:
@@ -96,11 +103,11 @@ class SimulatedBoard(Board):
             raise BoardError(str(error)) from None
 
     def close(self) -> None:
+        self._is_open = False
         if self._simulation is not None:
             self._simulation.close()
-            self._simulation = None
 
     def _running(self) -> FastSimulation:
-        if self._simulation is None:
+        if self._simulation is None or not self._is_open:
             raise BoardError("the simulation is closed")
         return self._simulation

@@ -14,10 +14,11 @@ from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 
+from firm_hdl.errors import UserError
 from firm_hdl.node.boards.board import Board, BoardError
 from firm_hdl.node.bridge.counters import BridgeCounters
 from firm_hdl.node.bridge.session import Session, SilentBoardError, WrongBoardError
-from firm_hdl.node.bridge.waiting import Call, Calls, MessageQueue, Waiting
+from firm_hdl.node.bridge.waiting import Call, Calls, MessageQueue, Retry, Waiting
 from firm_hdl.node.control import Register
 from firm_hdl.node.description import Description, Topic
 from firm_hdl.node.graphs.graph import Graph, GraphError
@@ -84,8 +85,7 @@ class Bridge:
         self._calls = Calls(_MOST_CALLS)
         self._stops = False
         self._has_graph = self._was_ready = False
-        self._retry_board = self._retry_graph = 0.0
-        self._pause_board, self._pause_graph = RETRY_SECONDS[0], RETRY_SECONDS[0]
+        self._board_retry, self._graph_retry = Retry(*RETRY_SECONDS), Retry(*RETRY_SECONDS)
         self._next_check = 0.0
         self._wake_receiver, self._wake_sender = socket.socketpair()
         for each in (self._wake_receiver, self._wake_sender):
@@ -144,6 +144,10 @@ class Bridge:
                     next_second = now + CHECK_SECONDS
                     each_second()
                 self.step(end)
+        except UserError:
+            # Ctrl-C also ends a compiler that makes a simulation, which is no mistake then.
+            if not self._stops:
+                raise
         finally:
             self.close()
 
@@ -193,7 +197,7 @@ class Bridge:
     def _care_for_board(self, now: float) -> None:
         try:
             if self.session is None:
-                if now < self._retry_board:
+                if now < self._board_retry.at:
                     return
                 self.board.open()
                 self.session = Session(
@@ -219,9 +223,8 @@ class Bridge:
         self._end_calls()
         if why is not None:
             self._restarts += 1
-            self._retry_board = time.monotonic() + self._pause_board
+            self._board_retry.failed(time.monotonic())
             self._report(f"board {self.board.name}: {why}; trying again")
-            self._pause_board = min(2 * self._pause_board, RETRY_SECONDS[1])
 
     def _from_board(self) -> None:
         """Take what has come."""
@@ -250,7 +253,7 @@ class Bridge:
             self._end_calls()
         if session.is_ready and not was_ready:
             self._was_ready = True
-            self._pause_board = RETRY_SECONDS[0]
+            self._board_retry.worked()
             self._report(f"board {self.board.name}: ready")
         for message in messages:
             self._pass(message)
@@ -262,11 +265,11 @@ class Bridge:
             return
         try:
             if not self._has_graph:
-                if now < self._retry_graph:
+                if now < self._graph_retry.at:
                     return
                 self.graph.open(self.on_message)
                 self._has_graph = True
-                self._pause_graph = RETRY_SECONDS[0]
+                self._graph_retry.worked()
                 self._report(f"graph {self.graph.name}: joined")
             if now >= self._next_check:
                 self._next_check = now + CHECK_SECONDS
@@ -279,8 +282,7 @@ class Bridge:
         self.graph.close()
         # The callers are gone with it.
         self._end_calls()
-        self._retry_graph = time.monotonic() + self._pause_graph
-        self._pause_graph = min(2 * self._pause_graph, RETRY_SECONDS[1])
+        self._graph_retry.failed(time.monotonic())
         self._report(f"graph {self.graph.name}: {why}; trying again")
 
     def _pass(self, message: NodeMessage) -> None:
@@ -381,12 +383,9 @@ class Bridge:
                 self._wake_receiver.recv(4096)
 
     def _next_due(self) -> float:
-        if self.session is not None:
-            found = self.session.next_due()
-        else:
-            found = self._retry_board
+        found = self.session.next_due() if self.session else self._board_retry.at
         if self._was_ready and not self._has_graph:
-            found = min(found, self._retry_graph)
+            found = min(found, self._graph_retry.at)
         oldest = self._queue.oldest()
         if oldest is not None and not self.is_ready:
             found = min(found, oldest + HOLD_SECONDS)

@@ -1,4 +1,4 @@
-"""What a bridge keeps for a moment: messages for the board, and requests without a response."""
+"""What a bridge keeps in mind: messages for the board, requests at the board, and retries."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from firm_hdl.node.description import Topic
 
-__all__ = ["Call", "Calls", "MessageQueue", "Waiting"]
+__all__ = ["Call", "Calls", "MessageQueue", "Retry", "Waiting"]
 
 _TAGS = 1 << 32
 
@@ -113,3 +113,32 @@ class Calls:
         """Take the requests whose time is over."""
         while self._calls and next(iter(self._calls.values())).until < now:
             yield self._calls.popitem(last=False)[1]
+
+
+class Retry:
+    """When something that failed is tried again: soon at first, then less and less often.
+
+    Parameters
+    ----------
+    first, longest : float
+        Seconds.
+
+    Attributes
+    ----------
+    at : float
+        The time from which it may be tried.
+    """
+
+    def __init__(self, first: float, longest: float) -> None:
+        self._first, self._longest = first, longest
+        self._pause = first
+        self.at = 0.0
+
+    def failed(self, now: float) -> None:
+        """It was tried, or has ended."""
+        self.at = now + self._pause
+        self._pause = min(2 * self._pause, self._longest)
+
+    def worked(self) -> None:
+        """It works again."""
+        self._pause = self._first

@@ -33,6 +33,7 @@ class AmaranthEngine(Channel):
     engine = "amaranth"
 
     def __init__(self, top: Top):
+        self._top = top
         own, other = socket.socketpair()
         try:
             server = _Server(top, other)
@@ -43,6 +44,9 @@ class AmaranthEngine(Channel):
         super().__init__(own)
         self._thread = threading.Thread(target=server.serve, name="simulation", daemon=True)
         self._thread.start()
+
+    def again(self) -> AmaranthEngine:
+        return AmaranthEngine(self._top)
 
     def close(self) -> None:
         super().close()

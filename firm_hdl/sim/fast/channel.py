@@ -94,6 +94,10 @@ class Channel:
         self._check()
         return self._socket.fileno()
 
+    def again(self) -> Channel:
+        """Start another engine of the same design, without compiling it again."""
+        raise NotImplementedError
+
     def close(self) -> None:
         """Close the socket, and wait until the engine has ended. May be called again."""
         self._socket.close()

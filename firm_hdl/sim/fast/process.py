@@ -42,6 +42,7 @@ class CxxrtlEngine(Channel):
     engine = "cxxrtl"
 
     def __init__(self, program: Path):
+        self._program = program
         own, other = socket.socketpair()
         command = [str(program), str(os.getpid())]
         try:
@@ -55,6 +56,9 @@ class CxxrtlEngine(Channel):
         super().__init__(own)
         # A simulation that nobody closed leaves no zombie.
         self._finalizer = weakref.finalize(self, _end, own, self.process)
+
+    def again(self) -> CxxrtlEngine:
+        return CxxrtlEngine(self._program)
 
     def close(self) -> None:
         self._finalizer()

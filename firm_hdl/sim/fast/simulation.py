@@ -7,7 +7,6 @@ import time
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Literal
 
 from amaranth.lib import wiring
@@ -15,6 +14,7 @@ from amaranth.lib import wiring
 from firm_hdl.sim.bench import DeadlineError
 from firm_hdl.sim.fast import protocol
 from firm_hdl.sim.fast.arrivals import Arrivals
+from firm_hdl.sim.fast.channel import Channel
 from firm_hdl.sim.fast.compilers import COMPILER_OPTIONS
 from firm_hdl.sim.fast.engines import EngineName, check_engine, start
 from firm_hdl.sim.fast.packing import Packet, Transfer, packed, packed_packets
@@ -106,13 +106,22 @@ class FastSimulation:
         self.cycle = 0
         self.is_live = False
         self._clear()
-        self._channel = start(Top(design, self.ports), engine, options=options, cache=cache)
+        self._stalls, top = stalls, Top(design, self.ports)
+        self._channel: Channel = start(top, engine, options=options, cache=cache)
         self.engine: Literal["cxxrtl", "amaranth"] = self._channel.engine
         try:
             self._prepare(stalls)
         except BaseException:
             self.close()
             raise
+
+    def restart(self) -> None:
+        """Start the engine again, also after it has ended; nothing is compiled for it."""
+        self.close()
+        self.cycle, self.is_live = 0, False
+        self._clear()
+        self._channel = self._channel.again()
+        self._prepare(self._stalls)
 
     def _prepare(self, stalls: StallPlan) -> None:
         for port in self.ports.inputs:
@@ -126,16 +135,11 @@ class FastSimulation:
     def __enter__(self) -> FastSimulation:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
-        """End the engine. A simulation that is closed cannot be used."""
+        """End the engine. A simulation that is closed can only be used after :meth:`restart`."""
         self._channel.close()
 
     # Inputs.
@@ -224,10 +228,7 @@ class FastSimulation:
         return port.view(int.from_bytes(body[at : at + port.bytes], "little"))
 
     def queued(self, name: str) -> int:
-        """Return the number of payloads of an input stream that were not taken.
-
-        The number is that at the end of the last run, or at the halt.
-        """
+        """Return how many payloads of an input stream the last run or halt had not taken."""
         return self._queued[self.ports.stream(name, is_input=True).number]
 
     # Time.
@@ -319,8 +320,7 @@ class FastSimulation:
     def fileno(self) -> int:
         """Return the file descriptor that can be read when something came in a live simulation.
 
-        Bytes that were read from it wait to be received, so receive everything before the next
-        `select`.
+        What was already read waits, so receive everything before the next `select`.
         """
         return self._channel.fileno()
 
@@ -339,8 +339,8 @@ class FastSimulation:
     def _send(self, port: StreamPort, payloads: bytes) -> None:
         step = max(1, _MOST_BYTES // port.bytes) * port.bytes
         for at in range(0, len(payloads), step):
-            part = payloads[at : at + step]
-            self._channel.send(protocol.numbered(Order.SEND, port.number, part))
+            order = protocol.numbered(Order.SEND, port.number, payloads[at : at + step])
+            self._channel.send(order)
 
     def _missing(self, counts: Mapping[str, int]) -> dict[str, int]:
         """Return how many transfers or packets must still come, by stream."""
@@ -355,11 +355,11 @@ class FastSimulation:
 
     def _run(self, cycles: int, quiet: int, counts: Mapping[str, int]) -> Done:
         self._not_live()
-        conditions = []
-        for name, count in counts.items():
-            port = self.ports.stream(name)
-            bit = protocol.ALL_TRANSFERS if port.last_bit is None else port.last_bit
-            conditions.append((port.number, bit, count))
+        ports = [(self.ports.stream(name), count) for name, count in counts.items()]
+        every = protocol.ALL_TRANSFERS
+        conditions = [
+            (p.number, every if p.last_bit is None else p.last_bit, count) for p, count in ports
+        ]
         self._channel.send(protocol.run(cycles, quiet, conditions))
         return self._done()
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 import time
 
 import pytest
 
+from firm_hdl.errors import UserError
 from firm_hdl.node.bridge import WrongBoardError, bridge
 from firm_hdl.node.bridge.status import account, status_line
 from firm_hdl.node.messages import NodeMessage
@@ -210,6 +212,20 @@ def test_run_ends_after_a_time_and_when_it_is_stopped(board, graph):
     made, _ = bridge_of(FakeBoard(), FakeGraph())
     threading.Timer(0.1, made.stop).start()
     made.run(seconds=60)
+
+
+@pytest.mark.parametrize("is_stopped", [False, True])
+def test_a_compiler_that_ctrl_c_ends_is_no_mistake(board, is_stopped):
+    made, _ = bridge_of(board)
+
+    def fail():
+        if is_stopped:
+            made.stop()
+        raise UserError("the compiler failed")
+
+    board.open = fail
+    with contextlib.nullcontext() if is_stopped else pytest.raises(UserError):
+        made.run()
 
 
 def test_people_can_read_how_it_does(running, board, graph):

@@ -198,6 +198,25 @@ def test_a_closed_simulation_cannot_be_used(start, engine):
             use()
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_simulation_that_starts_again_is_as_at_first(start, engine):
+    simulation = start(engine, {"echo_in.1": Stalls(0.3, max_cycles=3)})
+    seen = []
+    for end in (simulation.halt, simulation.close):
+        simulation.send("echo_in.1", bytes(range(20)))
+        simulation.run(200)
+        seen.append(simulation.transfers("echo_out.0"))
+        simulation.send("echo_in.1", b"not taken")
+        simulation.go_live()
+        end()
+        simulation.restart()
+        assert simulation.cycle == 0 and not simulation.is_live
+    simulation.send("echo_in.1", bytes(range(20)))
+    simulation.run(200)
+    seen.append(simulation.transfers("echo_out.0"))
+    assert len(seen[0]) == 20 and seen[0] == seen[1] == seen[2]
+
+
 def test_a_simulation_that_nobody_closed_leaves_no_process(start, programs):
     simulation = FastSimulation(Awkward(), engine="cxxrtl", options=["-O0"], cache=programs)
     process = simulation._channel.process  # type: ignore[union-attr]
