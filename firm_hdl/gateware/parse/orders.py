@@ -103,7 +103,8 @@ class OrderQueue(wiring.Component):
         has_second = Signal()
         first, valid, ready = self.o.payload, self.o.valid, self.o.ready
         if self.checks:
-            first, valid = Signal(first.shape(), reset_less=True), Signal(name="has_first")
+            shape = first.shape()
+            first, valid = Signal(shape, name="first", reset_less=True), Signal(name="has_first")
             ready = self._wait(m, first, valid, has_second)
         m.d.comb += [
             self.i.ready.eq(~has_second),
