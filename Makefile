@@ -10,7 +10,7 @@ VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 .DEFAULT_GOAL := help
 .PHONY: help demo test test-thorough test-live lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
   verify-corpus verify-languages report prove formal oracles oracles-ros2 fuzz fuzz-hardware mutate bench \
-  examples tools \
+  examples tools ros1 \
   ghdl verilog clean
 
 help: ## list the targets
@@ -30,7 +30,7 @@ pytest: $(VENV)/.compiled tools ## tests only; PYTEST_ARGS=tests/export takes so
 test-thorough: $(VENV)/.compiled tools ## all tests in full depth (half an hour); PYTEST_ARGS=-mthorough takes some
 	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
-test-live: $(VENV)/.installed-dev $(LIVE_PEERS) ## our nodes with rclpy and Cyclone DDS, in a network of their own (2 to 5 minutes)
+test-live: $(VENV)/.installed-dev $(LIVE_PEERS) ros1 ## our nodes and the bridge with rclpy, rospy and Cyclone DDS, in a network of their own (10 minutes)
 	FIRM_HDL_LIVE=1 $(BIN)/python -m pytest -n $(JOBS) $(or $(PYTEST_ARGS),tests/live)
 
 lint: $(VENV)/.installed-dev ## ruff and mypy only
@@ -159,6 +159,12 @@ oracles: oracles-ros2
 	  /usr/bin/python3 -c 'import em; import genmsg; import genpy; import rosidl_adapter; \
 	  import rosidl_parser; import rosmsg' 2>/dev/null)
 	@$(call need,g++ libfastcdr-dev,g++ -E -include fastcdr/Cdr.h -x c++ /dev/null >/dev/null 2>&1)
+
+# Peers of `make test-live` in ROS 1.
+ros1:
+	@$(call need,python3-rospy python3-rosmaster python3-sensor-msgs python3-std-srvs,\
+	  /usr/bin/python3 -c 'import rosmaster; import rospy; import sensor_msgs.msg; \
+	  import std_srvs.srv' 2>/dev/null)
 
 # Newer ones than Debian's, from PyPI, each release in an environment of its own: 9 s of processor
 # time and 106 MB. There are wheels for Linux on x86-64, CPython 3.10 to 3.13.

@@ -55,8 +55,9 @@ class Loop(wiring.Component):
 
     def elaborate(self, platform):
         m = Module()
-        for name in ("imu", "cloud"):
-            came, sent = getattr(self.subscribe, f"{name}_in"), getattr(self.publish, f"{name}_out")
+        for name in self.subscribe.signature.members:
+            came = getattr(self.subscribe, name)
+            sent = getattr(self.publish, name.replace("_in", "_out"))
             wiring.connect(m, wiring.flipped(came), wiring.flipped(sent))
         asked, answer = self.serve.mode.request.data, self.serve.mode.response
         leaves = [answer.success, answer.message.length, answer.message.items]

@@ -223,8 +223,8 @@ class Bridge:
         self._end_calls()
         if why is not None:
             self._restarts += 1
-            self._board_retry.failed(time.monotonic())
-            self._report(f"board {self.board.name}: {why}; trying again")
+            if self._board_retry.failed(time.monotonic(), why):
+                self._report(f"board {self.board.name}: {why}; trying again")
 
     def _from_board(self) -> None:
         """Take what has come."""
@@ -282,8 +282,8 @@ class Bridge:
         self.graph.close()
         # The callers are gone with it.
         self._end_calls()
-        self._graph_retry.failed(time.monotonic())
-        self._report(f"graph {self.graph.name}: {why}; trying again")
+        if self._graph_retry.failed(time.monotonic(), why):
+            self._report(f"graph {self.graph.name}: {why}; trying again")
 
     def _pass(self, message: NodeMessage) -> None:
         """Give a message of the board to the graph."""

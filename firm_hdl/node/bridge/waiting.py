@@ -132,13 +132,16 @@ class Retry:
     def __init__(self, first: float, longest: float) -> None:
         self._first, self._longest = first, longest
         self._pause = first
+        self._why = ""
         self.at = 0.0
 
-    def failed(self, now: float) -> None:
-        """It was tried, or has ended."""
+    def failed(self, now: float, why: str) -> bool:
+        """Note that it was tried, or has ended; return whether the reason is another one."""
         self.at = now + self._pause
         self._pause = min(2 * self._pause, self._longest)
+        before, self._why = self._why, why
+        return why != before
 
     def worked(self) -> None:
-        """It works again."""
-        self._pause = self._first
+        """Note that it works again."""
+        self._pause, self._why = self._first, ""

@@ -1,5 +1,6 @@
 """A peer in rospy, run by the Python of the system; arguments and output are those of `ros.py`."""
 
+import io
 import json
 import sys
 import threading
@@ -43,7 +44,9 @@ TYPES = {"imu": (Imu, imu), "cloud": (PointCloud2, cloud)}
 def content(message):
     """Return what has to be equal: rospy sets the number in the header when it sends."""
     message.header.seq = 0
-    return str(message)
+    buffer = io.BytesIO()
+    message.serialize(buffer)
+    return buffer.getvalue()
 
 
 def trip(options):

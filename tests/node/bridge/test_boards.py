@@ -182,12 +182,12 @@ def test_a_host_without_a_name_is_an_error_that_may_pass():
 def test_a_board_behind_tcp_and_its_restart():
     with socket.create_server(("127.0.0.1", 0)) as server:
         board = board_of(f"tcp://127.0.0.1:{server.getsockname()[1]}", ECHO)
-        accepted = []
+        accepted, nodes = [], []
 
         def accept():
             for _ in range(2):
                 accepted.append(server.accept()[0])
-                ByteNode(accepted[-1].fileno())
+                nodes.append(ByteNode(accepted[-1].fileno()))
 
         threading.Thread(target=accept, daemon=True).start()
         made, got, said = exchange(board, TEXTS)
@@ -198,8 +198,10 @@ def test_a_board_behind_tcp_and_its_restart():
         made.graph.say(HEARD, b"again")
         assert run_until(made, lambda: made.graph.got[-1][1] == b"again")
         made.close()
-        for each in accepted:
-            each.close()
+        # A thread that reads would read what has the number of a closed file next.
+        for node, connection in zip(nodes, accepted, strict=True):
+            node.stop()
+            connection.close()
 
 
 def test_a_board_behind_a_serial_line(serial):
@@ -227,7 +229,8 @@ def test_a_serial_line_that_ends(serial):
     node = serve()
     made, _, said = exchange(board_of(name, ECHO), [])
     node.stop()
-    os.close(node.file)
+    # Ends the pty; the fixture closes the file.
+    os.dup2(os.open(os.devnull, os.O_RDWR), node.file)
     assert run_until(made, lambda: not made.is_ready), said
     assert "serial:///dev/pts/" in said[-1] and said[-1].endswith("; trying again")
     made.close()
