@@ -9,7 +9,6 @@ import pytest
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.ts1.run import Ts1Run
 from firm_hdl.verify.ts1.universe import Universe
-from tests.depth import by_depth
 from tests.verify.ts1.conftest import judged_by, need
 
 JUDGED = ("passed", "failed", "known difference")
@@ -31,7 +30,7 @@ def differences(request, oracle):
         ("ros2", "rosidl_adapter", 20),
         ("ros2", "rosidl_parser", 100),
         # Includes hashes, which need all nested types.
-        ("ros2", "rosidl_parser-4.9", by_depth(300, 100)),
+        ("ros2", "rosidl_parser-4.9", 100),
     ],
 )
 def test_a_sample_is_read_as_oracles_read_it(corpus, dialect, oracle, step):
