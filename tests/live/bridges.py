@@ -57,8 +57,8 @@ class BridgeProcess:
         self._reader.join()
         self.process.stderr.close()
 
-    def wait_for(self, text, timeout=180.0):
-        """Wait for a line with a text; return it."""
+    def wait_for(self, text, timeout=1200.0):
+        """Wait for a line with a text, perhaps until a design is compiled; return it."""
         end = time.monotonic() + timeout
         while True:
             try:

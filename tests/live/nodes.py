@@ -9,7 +9,7 @@ from amaranth.lib import wiring
 
 from firm_hdl.node import accelerator_signature
 
-__all__ = ["LOOP", "LOOP_ROS1", "PACKAGES", "Loop"]
+__all__ = ["LOOP", "LOOP_ROS1", "PACKAGES", "Loop", "loop_file"]
 
 PACKAGES = Path(__file__).parents[2] / "examples" / "nodes" / "packages"
 
@@ -19,7 +19,6 @@ namespace: /fpga
 distro: {distro}
 paths: {paths}
 accelerator: tests.live.nodes:Loop
-link: {link}
 subscribe:
   /imu_in: {{type: sensor_msgs/msg/Imu, history: keep_all}}
   /cloud_in: {{type: sensor_msgs/msg/PointCloud2, history: keep_all, memory_bytes: 65536}}
@@ -45,6 +44,14 @@ publish:
 serve:
   /mode: {{type: std_srvs/SetBool, memory_bytes: 256}}
 """
+
+
+def loop_file(folder, text, clouds):
+    """Write a description into a folder; without clouds, it is compiled in a minute."""
+    lines = text.format(distro="jazzy", paths=PACKAGES).splitlines()
+    file = folder / "loop.yaml"
+    file.write_text("\n".join(line for line in lines if clouds or "cloud" not in line) + "\n")
+    return file
 
 
 class Loop(wiring.Component):

@@ -11,7 +11,7 @@ import pytest
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.jobs.programs import find_compiler
 from tests.live.bridges import BridgeProcess
-from tests.live.nodes import LOOP, PACKAGES
+from tests.live.nodes import LOOP, loop_file
 from tests.live.peer import Peer, python_of
 from tests.tools import need
 
@@ -35,15 +35,10 @@ def bridge(tmp_path):
     need("a C++ compiler", compiler())
     started = []
 
-    def start(release, graph="rtps", *arguments):
-        file = tmp_path / "loop.yaml"
-        file.write_text(LOOP.format(distro="jazzy", paths=PACKAGES, link="stream"))
-        options = [
-            "--graph",
-            graph,
-            *(["--interface", "lo"] if graph == "rtps" else []),
-            *arguments,
-        ]
+    def start(release, graph, clouds=False):
+        # The definitions of both releases are equal, so that one program serves both.
+        file = loop_file(tmp_path, LOOP, clouds)
+        options = ["--graph", graph, *(["--interface", "lo"] if graph == "rtps" else [])]
         python = {"python": python_of(release)} if graph == "ros2" else {}
         started.append(BridgeProcess(file, *options, **python))
         started[-1].wait_for("joined")
@@ -60,12 +55,24 @@ GRAPHS = pytest.mark.parametrize("graph", ["rtps", "ros2"])
 @GRAPHS
 @RELEASES
 def test_two_topics_at_once(release, graph, bridge):
-    running = bridge(release, graph)
+    running = bridge(release, graph, clouds=True)
     topics = [{**IMU, "count": 3000, "period": 0.001}, {**CLOUD, "count": 300, "period": 0.02}]
     with Peer(release, "trip", topics=topics) as peer:
         assert peer.next(90) == {"begins": True}
         result = peer.result(90)
     assert result["numbers"] == [list(range(3000)), list(range(300))]
+    account = running.stop()
+    assert not [line for line in account if "dropped" in line], account
+
+
+@GRAPHS
+@RELEASES
+def test_imu_at_1_khz(release, graph, bridge):
+    running = bridge(release, graph)
+    topics = [{**IMU, "count": 3000, "period": 0.001}]
+    with Peer(release, "trip", topics=topics) as peer:
+        assert peer.next(90) == {"begins": True}
+        assert peer.result(90)["numbers"] == [list(range(3000))]
     account = running.stop()
     assert not [line for line in account if "dropped" in line], account
 

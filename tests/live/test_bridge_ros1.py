@@ -10,7 +10,7 @@ import time
 import pytest
 
 from tests.live.bridges import BridgeProcess
-from tests.live.nodes import LOOP_ROS1, PACKAGES
+from tests.live.nodes import LOOP_ROS1, loop_file
 from tests.live.peer import Peer, python_of, ros1_variables
 from tests.live.test_bridge import CLOUD, IMU, compiler
 from tests.tools import need
@@ -39,12 +39,11 @@ class Master:
 
 
 @pytest.fixture
-def bridge(tmp_path):
+def bridge(tmp_path, request):
     """A bridge of `Loop` with a graph of ROS 1, and its master."""
     need("a C++ compiler", compiler())
     python = python_of("ros1")
-    file = tmp_path / "loop.yaml"
-    file.write_text(LOOP_ROS1.format(paths=PACKAGES))
+    file = loop_file(tmp_path, LOOP_ROS1, clouds="two_topics" in request.node.name)
     with Master(), BridgeProcess(file, python=python, variables=ros1_variables()) as running:
         running.wait_for("joined")
         yield running
@@ -56,6 +55,15 @@ def test_two_topics_at_once(bridge):
         assert peer.next(90) == {"begins": True}
         result = peer.result(90)
     assert result["numbers"] == [list(range(3000)), list(range(300))]
+    account = bridge.stop()
+    assert not [line for line in account if "dropped" in line], account
+
+
+def test_imu_at_1_khz(bridge):
+    topics = [{**IMU, "count": 3000, "period": 0.001}]
+    with Peer("ros1", "trip", topics=topics) as peer:
+        assert peer.next(90) == {"begins": True}
+        assert peer.result(90)["numbers"] == [list(range(3000))]
     account = bridge.stop()
     assert not [line for line in account if "dropped" in line], account
 
@@ -81,8 +89,7 @@ def test_the_board_is_killed_and_starts_again(bridge):
 
 
 def test_the_master_starts_again(tmp_path):
-    file = tmp_path / "loop.yaml"
-    file.write_text(LOOP_ROS1.format(paths=PACKAGES))
+    file = loop_file(tmp_path, LOOP_ROS1, clouds=False)
     topics = [{**IMU, "count": 100, "period": 0.002}]
     python = python_of("ros1")
     with BridgeProcess(file, python=python, variables=ros1_variables()) as running:

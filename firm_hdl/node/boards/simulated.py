@@ -17,6 +17,8 @@ from firm_hdl.sim.fast.ports import ports_of
 __all__ = ["SimulatedBoard"]
 
 _IN, _OUT = "link.frames_in", "link.frames_out"
+# A node has many converters, and with -O2 they take several minutes.
+_OPTIONS = ("-O1",)
 
 
 class SimulatedBoard(Board):
@@ -81,7 +83,7 @@ class SimulatedBoard(Board):
         node = Node(self._description, make(self._description) if make else None)
         outputs = (each.name for each in ports_of(node).streams if not each.is_input)
         ignored = [name for name in outputs if name != _OUT]
-        return FastSimulation(node, engine=self._engine, ignored=ignored)
+        return FastSimulation(node, engine=self._engine, options=_OPTIONS, ignored=ignored)
 
     def fileno(self) -> int:
         try:

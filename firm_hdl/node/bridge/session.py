@@ -44,8 +44,9 @@ _LATENCIES = 64
 _RESET_SECONDS = 10**8
 """A node whose time is before that of 1973 has started again since its time was set."""
 
-_DROPS = ("passed", "bytes_low", "bytes_high", "control", "unsent")
-"""Counters that do not count losses: before a host has spoken, all that a node sends is unsent."""
+_NO_LOSSES = ("passed", "bytes_low", "bytes_high", "control", "control_full", "unsent")
+"""Counters that do not count losses: a request of control without room was repeated, and before a
+host has spoken, all that a node sends is unsent."""
 
 
 class WrongBoardError(Exception):
@@ -305,5 +306,5 @@ class Session:
         return [
             (each, value)
             for each in self._counters
-            if each.name not in _DROPS and (value := self.values.get(each.number, 0))
+            if each.name not in _NO_LOSSES and (value := self.values.get(each.number, 0))
         ]
