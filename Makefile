@@ -22,7 +22,10 @@ demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
 LIVE_PEERS := $(patsubst tests/live/peers/%.txt,$(VENV)/live/%/.installed,\
   $(wildcard tests/live/peers/*.txt))
 
-test: lint pytest ## linters, types and all tests
+# The linters take one processor; what tests need is prepared beside them.
+test: $(VENV)/.installed-dev ## linters, types and all tests
+	@$(MAKE) --no-print-directory -j $(JOBS) lint $(VENV)/.compiled oracles-ros2
+	@$(MAKE) --no-print-directory pytest
 
 pytest: $(VENV)/.compiled tools ## tests only; PYTEST_ARGS=tests/export takes some
 	$(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)

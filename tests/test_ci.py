@@ -37,9 +37,12 @@ class Job:
 
 
 def targets(makefile: str) -> dict[str, set[str]]:
-    """Return the targets with a description, each with its dependencies."""
-    rules = re.findall(r"^([a-z0-9-]+):([^#=\n]*)", makefile, re.MULTILINE)
-    return {name: set(needs.split()) for name, needs in rules}
+    """Return the targets, each with its dependencies and with those that its recipe makes."""
+    rules = re.findall(r"^([a-z0-9-]+):([^#=\n]*).*\n((?:\t.*\n)*)", makefile, re.MULTILINE)
+    return {
+        name: {*needs.split(), *" ".join(re.findall(r"@\$\(MAKE\)(.*)", recipe)).split()}
+        for name, needs, recipe in rules
+    }
 
 
 def gitlab_jobs(text: str) -> Iterator[Job]:
@@ -106,6 +109,8 @@ def problems(jobs: list[Job], stages: list[str] | None, makefile: str) -> Iterat
         for word in named:
             if word in READS and READS[word] not in there:
                 yield f"{job.name}: nothing earlier makes {READS[word]}"
+    for word in sorted(run & known.keys()):
+        run.update(with_dependencies(word, known))
     for word in targets_of(last_line(ROOT / ".ci" / "run")):
         if word not in run and not known.get(word, set()) & known.keys() <= run:
             yield f"nothing runs 'make {word}', as .ci/run does"
@@ -113,6 +118,11 @@ def problems(jobs: list[Job], stages: list[str] | None, makefile: str) -> Iterat
 
 def earlier(job: Job, stages: list[str]) -> list[str]:
     return stages[: stages.index(job.stage)] if job.stage in stages else stages
+
+
+def with_dependencies(target: str, known: dict[str, set[str]]) -> set[str]:
+    needed = known.get(target, set())
+    return {target, *(each for need in needed for each in with_dependencies(need, known))}
 
 
 def targets_of(command: str) -> list[str]:
