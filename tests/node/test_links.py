@@ -7,6 +7,7 @@ import random
 
 import pytest
 from amaranth.hdl import Module
+from amaranth.sim import Simulator
 
 from firm_hdl.node import Link
 from firm_hdl.node.bytestream import ByteStreamReader, write_frame
@@ -196,6 +197,22 @@ def test_without_a_host_nothing_is_sent_and_all_is_counted():
         {"sent": link_beats(some(4, 2, (40,)), 8)}, {"sent": 20}, settle=400
     )
     assert seen.others["datagrams_out"] == [] and counters == {"unsent": 8}
+
+
+def test_the_port_of_the_node_is_there_while_nothing_is_sent():
+    # A raw port of LiteEth receives what has this port.
+    part = UdpLink(8, Link(kind="udp", memory_bytes=512, packets=8, datagram_bytes=48, port=77))
+    simulator = Simulator(part)
+    simulator.add_clock(1e-6)
+    seen = []
+
+    async def bench(ctx):
+        await ctx.tick().repeat(3)
+        seen.append(ctx.get(part.datagrams_out.payload.dst_port))
+
+    simulator.add_testbench(bench)
+    simulator.run()
+    assert seen == [77]
 
 
 def test_messages_larger_than_the_memory_are_dropped():

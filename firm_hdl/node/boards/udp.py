@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import socket
 from collections.abc import Sequence
+from typing import Any
 
 from firm_hdl.node.boards.board import Board, BoardError
 
@@ -26,7 +28,8 @@ class UdpBoard(Board):
     ----------
     name : str
     host, port
-        Address of the board; datagrams of others are ignored.
+        Address of the board; datagrams of others are ignored. If it is another machine, the host
+        uses the same port, where that is free: cores such as LiteEth have one for both directions.
     frame_bytes : int
         Most bytes of a datagram's payload: a multiple of 16.
     """
@@ -48,6 +51,7 @@ class UdpBoard(Board):
             # A message may be many datagrams. The system may give less.
             for option in (socket.SO_RCVBUF, socket.SO_SNDBUF):
                 found.setsockopt(socket.SOL_SOCKET, option, _BUFFER_BYTES)
+            _take_port(found, family, address)
             found.connect(address)
         except OSError as error:
             if found is not None:
@@ -97,3 +101,13 @@ class UdpBoard(Board):
         if self._socket is None:
             raise BoardError(f"{self.name} is closed")
         return self._socket
+
+
+def _take_port(own: socket.socket, family: int, address: tuple[Any, ...]) -> None:
+    """Take the port that the board has, if it is free and the board is another machine."""
+    with socket.socket(family, socket.SOCK_DGRAM) as probe:
+        probe.connect(address)
+        if probe.getsockname()[0] == address[0]:
+            return
+    with contextlib.suppress(OSError):
+        own.bind(("", address[1]))

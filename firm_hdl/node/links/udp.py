@@ -30,8 +30,12 @@ class UdpLink(wiring.Component):
     The node answers the address and the port that `link` names; if it names none, those from which
     the last whole message came. Until then, what is sent is dropped and counted as `unsent`.
 
-    The core below has to deliver only datagrams of the node's port. It has to take `ready` into
-    account: a datagram waits about 20 words for its header to be checked (with words of 1 byte).
+    The core below has to deliver only datagrams of the node's port. LiteEth delivers those of the
+    port that `datagrams_out` has as `dst_port`. So this is the node's own port while no datagram is
+    sent, and the host should have the same port: then nothing is missed while one is sent.
+
+    The core has to take `ready` into account: a datagram waits about 20 words for its header to be
+    checked (with words of 1 byte).
 
     Parameters
     ----------
@@ -127,7 +131,8 @@ class UdpLink(wiring.Component):
             out.payload.length.eq(fragments.size),
             out.payload.ip_address.eq(to),
             out.payload.src_port.eq(self.link.port),
-            out.payload.dst_port.eq(to_port),
+            # A raw port of LiteEth receives what comes for the port that is on `dst_port`.
+            out.payload.dst_port.eq(Mux(sends, to_port, self.link.port)),
         ]
         with m.If(~inside):
             m.d.sync += [
