@@ -225,8 +225,8 @@ void Bench::do_cycle(Random& random) {
 
 void Bench::check_progress(bool did_something) {
     idle_ = did_something ? 0 : idle_ + 1;
-    if (checker_->is_done() || checker_->tally.judged != judged_) waited_ = 0;
-    judged_ = checker_->tally.judged;
+    if (checker_->is_done() || checker_->progress() != progress_) waited_ = 0;
+    progress_ = checker_->progress();
     if (checker_->is_done() && next_ == sent_.size()) return;
     if (idle_ > MOST_IDLE)
         throw Broken("nothing has happened for long", checker_->oldest(), "a transfer",

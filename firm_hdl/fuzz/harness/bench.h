@@ -69,6 +69,6 @@ private:
     std::vector<std::vector<uint32_t>> payloads_;
     uint64_t start_ = 0;   // cycles before this episode
     uint64_t idle_ = 0;    // cycles without a transfer
-    uint64_t waited_ = 0;  // cycles since a status, in which nothing was stalled
-    uint64_t judged_ = 0;  // packets with a status, at the last cycle
+    uint64_t waited_ = 0;    // cycles since progress, in which nothing was stalled
+    uint64_t progress_ = 0;  // of the checker, at the last cycle
 };

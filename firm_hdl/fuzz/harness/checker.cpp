@@ -21,7 +21,7 @@ public:
         while (!packets_.empty() && open_.front() == 0) {
             packets_.pop_front();
             open_.pop_front();
-            ++first_;
+            ++first_, ++written_;
         }
     }
 
@@ -38,9 +38,17 @@ public:
     uint64_t budget() const override {
         if (queues_[status_].empty()) return 2 * SLACK_CYCLES;
         const Sent& sent = *queues_[status_].front().sent;
-        const size_t bytes = sent.bytes.size() + sent.expected.rewritten.size();
+        size_t bytes = sent.bytes.size();
+        // What a serializer has not yet written of the packets before this one comes first.
+        for (const SentPtr& each : packets_) {
+            bytes += each->expected.rewritten.size();
+            if (each.get() == &sent) break;
+        }
         return SLACK_CYCLES + 3 * (sent.beats + sent.expected.transfers.size()) + bytes;
     }
+
+    // Also grows when a packet is written as a whole, because the next one had to wait for it.
+    uint64_t progress() const override { return tally.judged + written_; }
 
     uint64_t oldest() const override {
         return packets_.empty() ? 0 : packets_.front()->number;
@@ -78,6 +86,7 @@ protected:
     // Transfers of each of these packets that have not come.
     std::deque<uint64_t> open_;
     uint64_t first_ = 0;
+    uint64_t written_ = 0;
 };
 
 // A deserializer: each leaf's transfers, and the status, which become valid in wire order.

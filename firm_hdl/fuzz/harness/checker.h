@@ -57,8 +57,10 @@ public:
     virtual uint64_t reset() = 0;
     // Nothing more is to come.
     virtual bool is_done() const = 0;
-    // Most cycles until the next status, without stalls.
+    // Most cycles until the next status, without stalls, since the last change of `progress`.
     virtual uint64_t budget() const = 0;
+    // Grows with each status.
+    virtual uint64_t progress() const { return tally.judged; }
     // The packet whose status is next, for messages.
     virtual uint64_t oldest() const = 0;
     // Checked when all is done.
