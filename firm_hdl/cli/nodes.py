@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from firm_hdl.arguments import add_path, number_between
+from firm_hdl.arguments import add_path, number_between, seconds
 
 __all__ = ["add_node"]
 
@@ -39,7 +39,7 @@ def add_node(command: argparse.ArgumentParser) -> None:
     command.add_argument("--domain", type=_domain, help="for run: domain of ROS 2 (ROS_DOMAIN_ID)")
     command.add_argument("--interface", help="for run: network interface of rtps, such as lo")
     command.add_argument(
-        "--seconds", type=_seconds, help="for run: end after so long (default: at Ctrl-C)"
+        "--seconds", type=seconds, help="for run: end after so long (default: at Ctrl-C)"
     )
     command.add_argument(
         "--engine",
@@ -54,16 +54,6 @@ def add_node(command: argparse.ArgumentParser) -> None:
 
 def _domain(text: str) -> int:
     return number_between(text, 0, 232)
-
-
-def _seconds(text: str) -> float:
-    try:
-        found = float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
-    if not 0 < found < float("inf"):
-        raise argparse.ArgumentTypeError(f"must be above 0, not {text}")
-    return found
 
 
 def _node(args: argparse.Namespace) -> None:
