@@ -39,6 +39,8 @@ from firm_hdl.verify.systems.tasks import UnknownTypeError
 
 __all__ = ["add_verify_arguments", "run_verify"]
 
+_USUAL_SYSTEMS = ("ts3",)
+
 # Arguments that cannot be combined with ``--sut``.
 _OTHERS = (
     *("bag", "bus_bytes", "executor", "golden", "mutations", "oracle", "reference"),
@@ -91,7 +93,7 @@ def _request(given: argparse.Namespace) -> Request:
         distros=distros_of(given),
         paths=(*given.path, *given.depends),
         depends=tuple(given.depends),
-        systems=tuple(given.systems or (("board",) if given.board else ("ts3",))),
+        systems=tuple(given.systems or (("board",) if given.board else _USUAL_SYSTEMS)),
         libraries=tuple(dict.fromkeys(given.sut)),
         wire=given.wire,
         widths=tuple(dict.fromkeys(given.bus_bytes or [8])),
@@ -127,7 +129,7 @@ def _check_replay(given: argparse.Namespace) -> None:
         return
     if given.path:
         given.usage_error("argument --bag: not allowed with argument --path")
-    if set(given.systems or ("ts3",)) != {"ts3"}:
+    if set(given.systems or _USUAL_SYSTEMS) != {"ts3"}:
         given.usage_error("--bag requires --systems ts3")
     if given.sut:
         given.usage_error("--bag is for firm-hdl's own converters, not for --sut")
@@ -144,7 +146,8 @@ def _check_libraries(given: argparse.Namespace) -> None:
     if not given.sut:
         return
     for name in _OTHERS:
-        if getattr(given, name) != given.default_of(name):
+        # The systems that run by default may also be named.
+        if getattr(given, name) not in (given.default_of(name), _USUAL_SYSTEMS):
             given.usage_error(f"--{name.replace('_', '-')} does not go with --sut")
     if not (given.stalls and given.broken):
         given.usage_error("--no-stalls and --no-broken do not go with --sut")

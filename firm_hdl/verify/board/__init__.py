@@ -4,4 +4,4 @@
 :mod:`judge` compares, and :mod:`system` is the test system of the command.
 """
 
-__all__: list[str] = []
+__all__ = []

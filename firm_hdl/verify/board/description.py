@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from urllib.parse import SplitResult, parse_qsl, urlsplit
 
-from firm_hdl.errors import DefinitionError, UserError
+from firm_hdl.errors import UserError
 from firm_hdl.frontend import open_library
-from firm_hdl.model import Message
 from firm_hdl.node import Description, Topic, read_description, read_description_text
 from firm_hdl.node.link_reading import NODE_BUS_BYTES
 from firm_hdl.verify.systems.options import Request
@@ -37,7 +36,7 @@ def loop_text(
     Parameters
     ----------
     names : iterable of str
-        Full names of messages.
+        Full names of messages, such as ``std_msgs/msg/String`` or ``std_srvs/srv/Trigger_Request``.
     paths : sequence of str
         Folders with ROS packages, as the user named them.
     folder : str
@@ -83,7 +82,7 @@ def described_board(request: Request, names: Iterable[str]) -> Description:
     DefinitionError
         If the description cannot be used.
     UserError
-        If it loops no type, or a name is not that of a message with a definition of its own.
+        If it loops no type, or no node has a bus of that width.
     """
     if request.node is not None:
         found = read_description(request.node, paths=request.paths)
@@ -138,27 +137,16 @@ def _text(request: Request, names: Iterable[str], folder: str) -> str:
     if bus_bytes not in NODE_BUS_BYTES:
         widths = ", ".join(map(str, NODE_BUS_BYTES))
         raise UserError(f"the bus of a node has {widths} bytes, not {bus_bytes}")
+    library = open_library(distro, request.paths)
     return loop_text(
-        _topics(names, distro, request.paths),
+        # The names of ROS 1, which have no ``msg``.
+        (library.interface(name).name for name in names),
         distro,
         paths=request.paths,
         folder=folder,
         bus_bytes=bus_bytes,
         board=request.board,
     )
-
-
-def _topics(names: Iterable[str], distro: str, paths: Sequence[str]) -> Iterator[str]:
-    """Yield the full names of messages; refuse parts of services and actions."""
-    library = open_library(distro, paths)
-    for name in names:
-        try:
-            found = library.interface(name)
-        except DefinitionError:
-            found = None
-        if not isinstance(found, Message):
-            raise UserError(f"'{name}' is no message of a topic, so no node can send it back")
-        yield found.name
 
 
 def _short(name: str) -> str:

@@ -154,15 +154,16 @@ class Talk:
         heard = time.monotonic()
         while len(values) < len(set(numbers)):
             now = time.monotonic()
-            if now > heard + self._patience(HEADER_BYTES * MOST_ASKED):
-                raise TalkError(self._silence())
-            left += [each for each, (due, _) in again.items() if due <= now and each not in left]
+            # What is repeated comes first: nothing new is asked before it is answered.
+            left.extendleft(each for each, (due, _) in again.items() if due <= now)
             while left and (left[0] in again or len(again) < MOST_ASKED):
                 number = left.popleft()
                 wait = 2 * again[number][1] if number in again else REPEAT_SECONDS
                 again[number] = (now + wait, wait)
                 asked[self._ask(number, begins=begins)] = number
             self._wait(min(due for due, _ in again.values()))
+            if not self._answers and now > heard + self._patience(HEADER_BYTES * MOST_ASKED):
+                raise TalkError(self._silence())
             while self._answers:
                 message = self._answers.popleft()
                 number = asked.get(message.tag, -1)
