@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 
 from firm_hdl.arguments import add_path, number_between, seconds
+from firm_hdl.model import Message
+from firm_hdl.plan import Plan
 
 __all__ = ["add_node"]
 
@@ -56,6 +58,13 @@ def _domain(text: str) -> int:
     return number_between(text, 0, 232)
 
 
+def _stimuli(message: Message, plan: Plan) -> list[bytes]:
+    # rosbags takes time to import, and only benches need it.
+    from firm_hdl.verify.cases.stimuli import stimuli
+
+    return stimuli(message, plan)
+
+
 def _node(args: argparse.Namespace) -> None:
     from firm_hdl.node import read_description
 
@@ -79,7 +88,7 @@ def _node(args: argparse.Namespace) -> None:
     if args.action == "build":
         from firm_hdl.node.build import build_node
 
-        built = build_node(description, args.out, force=args.force)
+        built = build_node(description, args.out, force=args.force, stimuli=_stimuli)
         print(f"{'current' if built.was_current else 'wrote':8}{built.folder}", flush=True)
         for old, new in sorted(built.renamed.items()):
             print(f"        your file {old} is now {new}", flush=True)

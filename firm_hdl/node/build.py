@@ -6,13 +6,12 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import yaml
 from amaranth.back import rtlil
 
 import firm_hdl
@@ -21,10 +20,11 @@ from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest
 from firm_hdl.export.manifest import MANIFEST, to_json
 from firm_hdl.export.verilog.yosys import to_verilog
 from firm_hdl.names.identifiers import identifier
+from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_files, link_script, node_core
 from firm_hdl.node.description import Description
 from firm_hdl.node.node import Node
 from firm_hdl.node.summary import facts_of, summary
-from firm_hdl.node.top import NodeTop, node_ports
+from firm_hdl.node.top import NodePort, NodeTop, node_ports
 from firm_hdl.vhdl.convert import convert
 
 __all__ = ["build_node"]
@@ -56,6 +56,7 @@ def build_node(
     *,
     accelerator: Any = None,
     force: bool = False,
+    stimuli: Stimuli | None = None,
 ) -> BuiltNode:
     """Write the design of a node into a folder of its own, ``out/NAME``.
 
@@ -67,6 +68,9 @@ def build_node(
         As for :class:`Node`.
     force : bool
         Write the folder even if it is current.
+    stimuli : callable or None
+        Returns good packets of a type for the test benches. `None`: these send control messages
+        only.
 
     Raises
     ------
@@ -83,12 +87,14 @@ def build_node(
     except ValueError as error:
         raise UserError(str(error)) from None
     design = rtlil.convert(NodeTop(node), name=name, emit_src=False)
-    inputs = _inputs(description, design)
+    has_accelerator = node.accelerator is not None
+    script = link_script(description, stimuli, has_accelerator=has_accelerator)
+    inputs = _inputs(description, design, script)
     try:
         clear_up(folder)
         if not force and is_current(folder, inputs):
             return BuiltNode(folder=folder, was_current=True)
-        files = _files(description, name, design)
+        files = _files(description, name, design, ports, script)
         listed = [
             {
                 "name": port.name,
@@ -99,19 +105,20 @@ def build_node(
             }
             for port in ports
         ]
-        files[MANIFEST] = _manifest(description, name, inputs, listed, files)
+        files[MANIFEST] = _manifest(description, name, inputs, listed, files, script)
         return BuiltNode(folder=folder, was_current=False, renamed=replace(folder, files))
     except OSError as error:
         where = error.filename or folder
         raise UserError(f"'{where}' cannot be written: {error.strerror}") from None
 
 
-def _inputs(description: Description, design: str) -> dict[str, Any]:
+def _inputs(description: Description, design: str, script: LinkScript | None) -> dict[str, Any]:
     """Return all that the files depend on; the accelerator's code is part of the design."""
     inputs = {
         "node": description.node,
         "facts": facts_of(description),
-        "design_sha256": hashlib.sha256(design.encode()).hexdigest(),
+        "design_sha256": _digest(design),
+        "frames_sha256": None if script is None else _digest(script.text),
         "generator": {
             "firm-hdl": firm_hdl.__version__,
             "amaranth": version("amaranth"),
@@ -123,8 +130,18 @@ def _inputs(description: Description, design: str) -> dict[str, Any]:
     return found
 
 
-def _files(description: Description, name: str, design: str) -> dict[str, str]:
-    """Write the design in each language."""
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _files(
+    description: Description,
+    name: str,
+    design: str,
+    ports: Sequence[NodePort],
+    script: LinkScript | None,
+) -> dict[str, str]:
+    """Write the design and its benches in each language."""
     header = (
         f"{name}: a node of ROS {description.distro}, made by firm-hdl {firm_hdl.__version__}\n"
     )
@@ -134,25 +151,34 @@ def _files(description: Description, name: str, design: str) -> dict[str, str]:
     files |= {f"vhdl/{file}": text for file, text in vhdl.files.items()}
     files["vhdl/files.txt"] = "".join(f"{file}\n" for file in vhdl.files)
     files[SUMMARY] = summary(description) + "\n"
-    files[f"{name}.core"] = _core(description, name, module, list(vhdl.files))
+    files[f"{name}.core"] = node_core(
+        description, name, module, list(vhdl.files), has_bench=script is not None
+    )
+    if script is not None:
+        files |= bench_files(
+            description,
+            name,
+            ports,
+            script,
+            module=module,
+            vhdl_ports=vhdl.entities[name].ports,
+            vhdl_files=list(vhdl.files),
+            header=header,
+        )
     return files
 
 
-def _core(description: Description, name: str, module: str, vhdl: list[str]) -> str:
-    """Write a core of FuseSoC: the VHDL by default, or the Verilog."""
-    document = {
-        "name": f"firm-hdl:node:{name}:{firm_hdl.__version__}",
-        "description": f"Node {description.node} of ROS {description.distro}",
-        "filesets": {
-            "vhdl": {"files": [f"vhdl/{file}" for file in vhdl], "file_type": "vhdlSource-2008"},
-            "verilog": {"files": [f"{module}.v"], "file_type": "verilogSource-2005"},
-        },
-        "targets": {
-            "default": {"filesets": ["vhdl"], "toplevel": name},
-            "verilog": {"filesets": ["verilog"], "toplevel": module},
-        },
+def _bench(name: str) -> dict[str, str]:
+    """Describe the benches for the manifest."""
+    return {
+        "frames": FRAMES,
+        "vhdl": f"{name}_tb",
+        "vhdl_files": "vhdl/bench_files.txt",
+        "run_ghdl": "vhdl/run_ghdl.sh",
+        "verilog": f"{name}_tb",
+        "verilog_file": f"{name}_tb.v",
+        "run_iverilog": "run_iverilog.sh",
     }
-    return "CAPI=2:\n" + yaml.safe_dump(document, sort_keys=False, width=1000)
 
 
 def _manifest(
@@ -161,22 +187,22 @@ def _manifest(
     inputs: dict[str, Any],
     ports: list[dict[str, Any]],
     files: Mapping[str, str],
+    script: LinkScript | None,
 ) -> str:
     """Write the manifest: what a host has to know, and what a folder needs to be replaced."""
-    digest = hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()
+    digest = _digest(json.dumps(inputs, sort_keys=True))
     return to_json(
         {
             "format": 1,
             **facts_of(description),
             "verilog": {"module": f"{name}_verilog", "file": f"{name}_verilog.v"},
             "vhdl": {"entity": name, "files": "vhdl/files.txt"},
+            "bench": None if script is None else _bench(name),
             "clock": "aclk",
             "reset": "aresetn",
             "ports": ports,
             "inputs_sha256": digest,
             "inputs": inputs,
-            "files": {
-                file: hashlib.sha256(text.encode()).hexdigest() for file, text in files.items()
-            },
+            "files": {file: _digest(text) for file, text in files.items()},
         }
     )
