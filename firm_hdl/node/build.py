@@ -18,11 +18,15 @@ import firm_hdl
 from firm_hdl.errors import UserError
 from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
 from firm_hdl.export.manifest import MANIFEST, to_json
+from firm_hdl.export.systemverilog.structs import package_name
+from firm_hdl.export.systemverilog.types import WORDS
+from firm_hdl.export.verilog.backend import waivers
 from firm_hdl.export.verilog.yosys import to_verilog
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_files, link_script, node_core
 from firm_hdl.node.description import Description
 from firm_hdl.node.node import Node
+from firm_hdl.node.records import MessagePort, message_ports, record_files, struct_files
 from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodePort, NodeTop, node_ports
 from firm_hdl.vhdl.convert import convert
@@ -30,6 +34,11 @@ from firm_hdl.vhdl.convert import convert
 __all__ = ["build_node"]
 
 SUMMARY = "summary.txt"
+
+_UNDRIVEN = """
+// Outputs of parts that the node does not use are wires without a driver.
+lint_off -rule UNDRIVEN -file "*{file}"
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,13 +97,14 @@ def build_node(
         raise UserError(str(error)) from None
     design = rtlil.convert(NodeTop(node), name=name, emit_src=False)
     has_accelerator = node.accelerator is not None
+    messages = [] if has_accelerator else message_ports(description, ports)
     script = link_script(description, stimuli, has_accelerator=has_accelerator)
     inputs = _inputs(description, design, script)
     try:
         clear_up(folder)
         if not force and is_current(folder, inputs):
             return BuiltNode(folder=folder, was_current=True)
-        files = _files(description, name, design, ports, script)
+        files = _files(description, name, design, ports, messages, script)
         listed = [
             {
                 "name": port.name,
@@ -105,7 +115,11 @@ def build_node(
             }
             for port in ports
         ]
-        files[MANIFEST] = _manifest(description, name, inputs, listed, files, script)
+        facts = {
+            "records": [_record(name, each) for each in messages],
+            "bench": None if script is None else _bench(name),
+        }
+        files[MANIFEST] = _manifest(description, name, inputs, listed, files, facts)
         return BuiltNode(folder=folder, was_current=False, renamed=replace(folder, files))
     except OSError as error:
         where = error.filename or folder
@@ -139,6 +153,7 @@ def _files(
     name: str,
     design: str,
     ports: Sequence[NodePort],
+    messages: Sequence[MessagePort],
     script: LinkScript | None,
 ) -> dict[str, str]:
     """Write the design and its benches in each language."""
@@ -148,11 +163,19 @@ def _files(
     module = f"{name}_verilog"
     vhdl = convert(design, name=name, header=header)
     files = {f"{module}.v": to_verilog(design, module=module, header=header)}
-    files |= {f"vhdl/{file}": text for file, text in vhdl.files.items()}
-    files["vhdl/files.txt"] = "".join(f"{file}\n" for file in vhdl.files)
+    files["waivers.vlt"] = waivers([module]) + _UNDRIVEN.format(file=f"{module}.v")
+    vhdl_files = dict(vhdl.files)
+    if messages:
+        vhdl_files |= record_files(
+            name, ports, messages, vhdl_ports=vhdl.entities[name].ports, header=header
+        )
+        structs = struct_files(name, module, ports, messages, header=header)
+        files |= {f"systemverilog/{file}": text for file, text in structs.items()}
+    files |= {f"vhdl/{file}": text for file, text in vhdl_files.items()}
+    files["vhdl/files.txt"] = "".join(f"{file}\n" for file in vhdl_files)
     files[SUMMARY] = summary(description) + "\n"
     files[f"{name}.core"] = node_core(
-        description, name, module, list(vhdl.files), has_bench=script is not None
+        description, name, module, list(vhdl_files), has_bench=script is not None
     )
     if script is not None:
         files |= bench_files(
@@ -162,10 +185,29 @@ def _files(
             script,
             module=module,
             vhdl_ports=vhdl.entities[name].ports,
-            vhdl_files=list(vhdl.files),
+            vhdl_files=list(vhdl_files),
             header=header,
         )
     return files
+
+
+def _record(name: str, port: MessagePort) -> dict[str, Any]:
+    """Describe a message port with records and structs for the manifest."""
+    tree, structs = port.tree(), port.tree(WORDS)
+    return {
+        "entity": f"{name}_records",
+        "module": f"{name}_sv",
+        "name": port.name,
+        "ready": port.ready,
+        "member": port.member,
+        "message": port.message.name,
+        "package": tree.package.name,
+        "message_type": tree.root.type,
+        "ready_type": tree.root.ready_type,
+        "sv_package": package_name(structs.package.name),
+        "sv_message_type": structs.root.type,
+        "sv_ready_type": structs.root.ready_type,
+    }
 
 
 def _bench(name: str) -> dict[str, str]:
@@ -187,7 +229,7 @@ def _manifest(
     inputs: dict[str, Any],
     ports: list[dict[str, Any]],
     files: Mapping[str, str],
-    script: LinkScript | None,
+    facts: Mapping[str, Any],
 ) -> str:
     """Write the manifest: what a host has to know, and what a folder needs to be replaced."""
     digest = _digest(json.dumps(inputs, sort_keys=True))
@@ -197,7 +239,7 @@ def _manifest(
             **facts_of(description),
             "verilog": {"module": f"{name}_verilog", "file": f"{name}_verilog.v"},
             "vhdl": {"entity": name, "files": "vhdl/files.txt"},
-            "bench": None if script is None else _bench(name),
+            **facts,
             "clock": "aclk",
             "reset": "aresetn",
             "ports": ports,
