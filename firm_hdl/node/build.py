@@ -90,48 +90,84 @@ def build_node(
     folder = Path(out, name)
     if read_manifest(folder) is None and folder.exists() and not is_empty(folder):
         raise UserError(f"'{folder}' is not a folder that firm-hdl made; move it away")
-    node = Node(description, accelerator)
-    try:
-        ports = node_ports(node)
-    except ValueError as error:
-        raise UserError(str(error)) from None
-    design = rtlil.convert(NodeTop(node), name=name, emit_src=False)
-    has_accelerator = node.accelerator is not None
-    messages = [] if has_accelerator else message_ports(description, ports)
-    script = link_script(description, stimuli, has_accelerator=has_accelerator)
-    inputs = _inputs(description, design, script)
+    design = _designed(description, name, accelerator, stimuli)
+    inputs = _inputs(design)
     try:
         clear_up(folder)
         if not force and is_current(folder, inputs):
             return BuiltNode(folder=folder, was_current=True)
-        files = _files(description, name, design, ports, messages, script)
-        listed = [
-            {
-                "name": port.name,
-                "direction": port.direction,
-                "width": port.width,
-                "signed": port.signed,
-                "member": port.member,
-            }
-            for port in ports
-        ]
-        facts = {
-            "records": [_record(name, each) for each in messages],
-            "bench": None if script is None else _bench(name),
-        }
-        files[MANIFEST] = _manifest(description, name, inputs, listed, files, facts)
+        files = _files(design)
+        files[MANIFEST] = _manifest(design, inputs, files)
         return BuiltNode(folder=folder, was_current=False, renamed=replace(folder, files))
     except OSError as error:
         where = error.filename or folder
         raise UserError(f"'{where}' cannot be written: {error.strerror}") from None
 
 
-def _inputs(description: Description, design: str, script: LinkScript | None) -> dict[str, Any]:
-    """Return all that the files depend on; the accelerator's code is part of the design."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Design:
+    """What all files are made of.
+
+    Attributes
+    ----------
+    description : Description
+    name : str
+        Name of the entity and of the folder.
+    rtlil : str
+        The circuit.
+    ports : sequence of NodePort
+    messages : sequence of MessagePort
+        The message ports with records; empty if there are none.
+    reason : str
+        Why there are none.
+    script : LinkScript or None
+        Frames of the benches, if there are some.
+    """
+
+    description: Description
+    name: str
+    rtlil: str
+    ports: Sequence[NodePort]
+    messages: Sequence[MessagePort]
+    reason: str
+    script: LinkScript | None
+
+
+def _designed(
+    description: Description, name: str, accelerator: Any, stimuli: Stimuli | None
+) -> _Design:
+    node = Node(description, accelerator)
+    try:
+        ports = node_ports(node)
+    except ValueError as error:
+        raise UserError(str(error)) from None
+    has_accelerator = node.accelerator is not None
+    messages: Sequence[MessagePort] = ()
+    reason = "The accelerator takes all messages" if has_accelerator else ""
+    if not has_accelerator:
+        try:
+            messages = message_ports(description, ports)
+        except UserError as error:
+            # The plain ports are there all the same.
+            reason = str(error)
+    return _Design(
+        description=description,
+        name=name,
+        rtlil=rtlil.convert(NodeTop(node), name=name, emit_src=False),
+        ports=ports,
+        messages=messages,
+        reason=reason,
+        script=link_script(description, stimuli, has_accelerator=has_accelerator),
+    )
+
+
+def _inputs(design: _Design) -> dict[str, Any]:
+    """Return all that the files depend on; the accelerator's code is part of the circuit."""
+    description, script = design.description, design.script
     inputs = {
         "node": description.node,
         "facts": facts_of(description),
-        "design_sha256": _digest(design),
+        "design_sha256": _digest(design.rtlil),
         "frames_sha256": None if script is None else _digest(script.text),
         "generator": {
             "firm-hdl": firm_hdl.__version__,
@@ -148,28 +184,24 @@ def _digest(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _files(
-    description: Description,
-    name: str,
-    design: str,
-    ports: Sequence[NodePort],
-    messages: Sequence[MessagePort],
-    script: LinkScript | None,
-) -> dict[str, str]:
+def _files(design: _Design) -> dict[str, str]:
     """Write the design and its benches in each language."""
+    description, name, ports = design.description, design.name, design.ports
+    script = design.script
     header = (
         f"{name}: a node of ROS {description.distro}, made by firm-hdl {firm_hdl.__version__}\n"
     )
     module = f"{name}_verilog"
-    vhdl = convert(design, name=name, header=header)
-    files = {f"{module}.v": to_verilog(design, module=module, header=header)}
+    vhdl = convert(design.rtlil, name=name, header=header)
+    vhdl_ports = vhdl.entities[name].ports
+    files = {f"{module}.v": to_verilog(design.rtlil, module=module, header=header)}
     files["waivers.vlt"] = waivers([module]) + _UNDRIVEN.format(file=f"{module}.v")
     vhdl_files = dict(vhdl.files)
-    if messages:
+    if design.messages:
         vhdl_files |= record_files(
-            name, ports, messages, vhdl_ports=vhdl.entities[name].ports, header=header
+            name, ports, design.messages, vhdl_ports=vhdl_ports, header=header
         )
-        structs = struct_files(name, module, ports, messages, header=header)
+        structs = struct_files(name, module, ports, design.messages, header=header)
         files |= {f"systemverilog/{file}": text for file, text in structs.items()}
     files |= {f"vhdl/{file}": text for file, text in vhdl_files.items()}
     files["vhdl/files.txt"] = "".join(f"{file}\n" for file in vhdl_files)
@@ -184,19 +216,30 @@ def _files(
             ports,
             script,
             module=module,
-            vhdl_ports=vhdl.entities[name].ports,
+            vhdl_ports=vhdl_ports,
             vhdl_files=list(vhdl_files),
             header=header,
         )
     return files
 
 
-def _record(name: str, port: MessagePort) -> dict[str, Any]:
-    """Describe a message port with records and structs for the manifest."""
-    tree, structs = port.tree(), port.tree(WORDS)
+def _records(design: _Design) -> dict[str, Any]:
+    """Describe the message ports with records and structs for the manifest."""
+    if not design.messages:
+        return {"built": False, "reason": design.reason}
+    name = design.name
     return {
+        "built": True,
         "entity": f"{name}_records",
         "module": f"{name}_sv",
+        "sv_files": "systemverilog/files.f",
+        "ports": [_record(each) for each in design.messages],
+    }
+
+
+def _record(port: MessagePort) -> dict[str, Any]:
+    tree, structs = port.tree(), port.tree(WORDS)
+    return {
         "name": port.name,
         "ready": port.ready,
         "member": port.member,
@@ -223,26 +266,30 @@ def _bench(name: str) -> dict[str, str]:
     }
 
 
-def _manifest(
-    description: Description,
-    name: str,
-    inputs: dict[str, Any],
-    ports: list[dict[str, Any]],
-    files: Mapping[str, str],
-    facts: Mapping[str, Any],
-) -> str:
+def _manifest(design: _Design, inputs: dict[str, Any], files: Mapping[str, str]) -> str:
     """Write the manifest: what a host has to know, and what a folder needs to be replaced."""
+    name = design.name
     digest = _digest(json.dumps(inputs, sort_keys=True))
     return to_json(
         {
             "format": 1,
-            **facts_of(description),
+            **facts_of(design.description),
             "verilog": {"module": f"{name}_verilog", "file": f"{name}_verilog.v"},
             "vhdl": {"entity": name, "files": "vhdl/files.txt"},
-            **facts,
+            "records": _records(design),
+            "bench": None if design.script is None else _bench(name),
             "clock": "aclk",
             "reset": "aresetn",
-            "ports": ports,
+            "ports": [
+                {
+                    "name": port.name,
+                    "direction": port.direction,
+                    "width": port.width,
+                    "signed": port.signed,
+                    "member": port.member,
+                }
+                for port in design.ports
+            ],
             "inputs_sha256": digest,
             "inputs": inputs,
             "files": {file: _digest(text) for file, text in files.items()},

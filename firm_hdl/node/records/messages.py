@@ -122,5 +122,5 @@ def _check_packages(messages: Sequence[MessagePort]) -> None:
             if owner != package.message.name:
                 raise UserError(
                     f"{package.message.name} and {owner} would have one package of VHDL, "
-                    f"'{package.name}'; they cannot be in one node"
+                    f"'{package.name}', so the node has no records"
                 )
