@@ -19,19 +19,9 @@ from firm_hdl.node.build import build_node
 from firm_hdl.verify.cases.stimuli import stimuli
 from tests.depth import by_depth
 from tests.node.accelerators import echo_text
-from tests.node.samples import read
+from tests.node.samples import RELAY, read
 from tests.tools import need
 
-RELAY = """\
-node: relay
-distro: jazzy
-bus_bytes: 4
-subscribe:
-  /in_1: {type: std_msgs/msg/UInt16}
-  /alone: {type: std_msgs/msg/UInt8}
-publish:
-  /out_1: {type: std_msgs/msg/UInt16}
-"""
 UDP = "{kind: udp, data_bytes: 1}"
 WIDE_UDP = "{kind: udp, data_bytes: 4, host: 10.0.0.7, datagram_bytes: 32}"
 # Changes of the description, and the words of the PASS line that say what was compared.
@@ -45,9 +35,9 @@ NODES = {
 
 
 @pytest.fixture(scope="module")
-def folders(tmp_path_factory):
+def folders(tmp_path_factory, relay):
     """Return a function that builds a node once."""
-    built = {}
+    built = {"stream": relay}
 
     def build(kind):
         if kind not in built:
@@ -101,6 +91,13 @@ def test_the_benches_pass(kind, folders, ghdl, iverilog, tmp_path):
             work = tmp_path / f"{tool.__name__}{seed}"
             status, output = tool(folder, command, work, seed=seed, stalls=stalls)
             assert status == 0 and re.fullmatch(line, output), output
+
+
+def test_a_node_with_an_accelerator_has_no_records(folders):
+    folder = folders("loop")
+    records = json.loads((folder / "manifest.json").read_text())["records"]
+    assert records == {"built": False, "reason": "The accelerator takes all messages"}
+    assert not (folder / "systemverilog").exists()
 
 
 def changed_byte(lines):
@@ -199,8 +196,8 @@ def test_frames_have_all_that_a_host_reads():
     assert link_script(read(RELAY, link="uart"), stimuli, has_accelerator=False) is None
 
 
-def test_the_manifest_and_the_core_have_the_benches(folders):
-    folder = folders("stream")
+def test_the_manifest_and_the_core_have_the_benches(relay):
+    folder = relay
     bench = json.loads((folder / "manifest.json").read_text())["bench"]
     files = [bench[key] for key in ("frames", "vhdl_files", "run_ghdl", "verilog_file")]
     assert all((folder / file).exists() for file in [*files, bench["run_iverilog"]])

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 
 import pytest
@@ -18,34 +19,27 @@ from firm_hdl.node.records.messages import other_ports
 from firm_hdl.node.top import node_ports
 from firm_hdl.verify.cases.stimuli import stimuli
 from tests.depth import by_depth
-from tests.node.samples import LIBRARY, PACKAGES, read
+from tests.node.samples import LIBRARY, RELAY, read
 from tests.node.test_benches import run
 
-TYPES = """\
-node: relay
-distro: jazzy
-bus_bytes: 4
-subscribe:
-  /in_1: {type: TYPE, memory_bytes: 1024}
-  /alone: {type: std_msgs/msg/UInt8}
-publish:
-  /out_1: {type: TYPE, memory_bytes: 1024}
-"""
-SMALL, LARGE = "std_msgs/msg/Int16", "sensor_msgs/msg/PointCloud2"
+SMALL, LARGE = "std_msgs/msg/UInt16", "sensor_msgs/msg/PointCloud2"
 TYPE = by_depth(SMALL, LARGE)
 
 
 def description_of(kind=TYPE):
-    return read(TYPES.replace("TYPE", kind))
+    return read(RELAY.replace(f"{SMALL}}}", f"{kind}, memory_bytes: 1024}}"))
 
 
-@pytest.fixture(scope="module")
-def built(tmp_path_factory):
-    return build_node(description_of(), tmp_path_factory.mktemp("out"), stimuli=stimuli).folder
+@pytest.fixture
+def built(relay, tmp_path):
+    """Return a folder of its own."""
+    if TYPE == SMALL:
+        return shutil.copytree(relay, tmp_path / "relay")
+    return build_node(description_of(), tmp_path, stimuli=stimuli).folder
 
 
 def test_names_of_records_do_not_collide():
-    description = read(TYPES.replace("TYPE", SMALL).replace("/alone", "/in_1/rdy"))
+    description = read(RELAY.replace("/alone", "/in_1/rdy"))
     ports = node_ports(Node(description))
     found = {each.member: each for each in message_ports(description, ports)}
     assert [(each.name, each.ready) for each in found.values()] == [
@@ -207,12 +201,3 @@ def test_structs_pass_messages_through_in_systemverilog(built, verilator, tmp_pa
     (tmp_path / "link.txt").write_text((built / "link.txt").read_text())
     done = subprocess.run([tmp_path / "made" / "Vlooped_tb"], **options, check=False)
     assert "PASS node looped: " in done.stdout, done.stdout + done.stderr
-
-
-def test_a_node_with_an_accelerator_has_no_records(tmp_path):
-    text = "node: loopback\naccelerator: firm_hdl.node.loop:Loop\n"
-    text += f"subscribe:\n  /a: {{type: {SMALL}}}\npublish:\n  /b: {{type: {SMALL}}}\n"
-    folder = build_node(read_description_text(text, paths=[PACKAGES]), tmp_path).folder
-    records = json.loads((folder / "manifest.json").read_text())["records"]
-    assert records == {"built": False, "reason": "The accelerator takes all messages"}
-    assert not (folder / "systemverilog").exists()

@@ -53,10 +53,10 @@ class UdpNode(threading.Thread):
 class ByteNode(threading.Thread):
     """A `FakeNode` behind a file descriptor that carries bytes, of which some are changed."""
 
-    def __init__(self, file, flips=0.0):
+    def __init__(self, file, flips=0.0, node=None):
         super().__init__(daemon=True)
         self.file, self.flips, self.random = file, flips, random.Random(1)
-        self.node, self.reader, self.ends = FakeNode(), ByteStreamReader(), False
+        self.node, self.reader, self.ends = node or FakeNode(), ByteStreamReader(), False
         self.flipped = 0
         self.start()
 

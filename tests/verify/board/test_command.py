@@ -3,6 +3,11 @@
 
 from __future__ import annotations
 
+import os
+import pty
+import re
+import tty
+
 import pytest
 
 from firm_hdl.cli import main
@@ -12,9 +17,9 @@ from firm_hdl.node.accelerator import load_accelerator
 from firm_hdl.verify.board.description import loop_text
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.verdict import Failed, Passed
-from tests.node.bridge.test_boards import UdpNode
+from tests.node.bridge.test_boards import ByteNode, UdpNode
 from tests.node.samples import read
-from tests.verify.board.fakes import BOTH, STRING, LoopNode
+from tests.verify.board.fakes import BOTH, STRING, LoopNode, described
 from tests.verify.samples import own_package
 
 BOOL = BOTH[0]
@@ -80,6 +85,25 @@ def test_a_board_behind_udp_with_a_description_of_its_own(served, tmp_path, caps
     # One type alone is another node.
     assert main([*command, BOOL]) == 1
     assert "its node is another one" in capsys.readouterr().out
+
+
+def test_a_board_behind_a_serial_line(capsys):
+    master, slave = pty.openpty()
+    tty.setraw(master)
+    name = f"serial://{os.ttyname(slave)}?baud=115200"
+    node = ByteNode(master, node=LoopNode(described(STRING, board=name)))
+    try:
+        assert main(["verify", "--board", name, "--silent-seconds", "60", *FEW, STRING]) == 0
+        # Half of the bytes have a flipped bit.
+        node.flips = 0.5
+        assert main(["verify", "--board", name, "--silent-seconds", "0.3", *FEW, STRING]) == 1
+    finally:
+        node.stop()
+        os.close(slave)
+        os.close(master)
+    output = capsys.readouterr().out
+    assert f"board {name}: 1 of 1 types passed, 13 packets sent" in output
+    assert re.search(r"the board does not answer for 0\.3 s", output)
 
 
 def test_a_board_that_is_not_there_fails(tmp_path, capsys):
