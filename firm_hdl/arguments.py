@@ -24,6 +24,7 @@ __all__ = [
     "check_types_or_all",
     "number_between",
     "positive",
+    "seconds",
 ]
 
 
@@ -53,6 +54,23 @@ def number_between(text: str, minimum: int, maximum: int | None) -> int:
         limits = f"at least {minimum}" if maximum is None else f"from {minimum} to {maximum}"
         raise argparse.ArgumentTypeError(f"must be {limits}, not {number}")
     return number
+
+
+def seconds(text: str) -> float:
+    """Read a finite number of seconds above 0, for `argparse`.
+
+    Raises
+    ------
+    argparse.ArgumentTypeError
+        If the text is no such number.
+    """
+    try:
+        found = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+    if not 0 < found < float("inf"):
+        raise argparse.ArgumentTypeError(f"must be above 0, not {text}")
+    return found
 
 
 def add_types_or_all(

@@ -57,7 +57,7 @@ MAY_IMPORT["covering"] = {
 }
 MAY_IMPORT["verify"] = {
     *(MAY_IMPORT["export"] - {"estimates"}),
-    *("arguments", "drawing", "export", "identity", "metrics", "sim", "terminal"),
+    *("arguments", "drawing", "export", "identity", "metrics", "node", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
     *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
@@ -103,14 +103,16 @@ VERIFY_MAY_IMPORT = {
         *("cases", "choices", "clients", "references", "results", "simulators", "systems"),
     },
     "bench": {"cases", "references", "results", "systems", "ts3"},
+    "board": {"cases", "references", "results", "systems", "ts3"},
     "report": {"results"},
 }
-VERIFY_MAY_IMPORT["request"] = {"systems", "ts3"}
+VERIFY_MAY_IMPORT["request"] = {"board", "systems", "ts3"}
+VERIFY_MAY_IMPORT["board_arguments"] = {"board", "request"}
 VERIFY_MAY_IMPORT["run"] = {
-    *("bench", "clients", "references", "report", "request", "results"),
+    *("bench", "board", "clients", "references", "report", "request", "results"),
     *("systems", "ts1", "ts2", "ts3"),
 }
-VERIFY_MAY_IMPORT["command"] = {"choices", "request", "run", "systems"}
+VERIFY_MAY_IMPORT["command"] = {"board_arguments", "choices", "request", "run", "systems"}
 VERIFY_MAY_IMPORT["__main__"] = {"command"}
 # The public interface of `firm_hdl.verify`.
 VERIFY_MAY_IMPORT["verify"] = {"cases", "references", "systems", "ts3"}

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-from firm_hdl.arguments import add_path, number_between
+from firm_hdl.arguments import add_path, number_between, seconds
+from firm_hdl.model import Message
+from firm_hdl.plan import Plan
 
 __all__ = ["add_node"]
 
@@ -39,7 +41,7 @@ def add_node(command: argparse.ArgumentParser) -> None:
     command.add_argument("--domain", type=_domain, help="for run: domain of ROS 2 (ROS_DOMAIN_ID)")
     command.add_argument("--interface", help="for run: network interface of rtps, such as lo")
     command.add_argument(
-        "--seconds", type=_seconds, help="for run: end after so long (default: at Ctrl-C)"
+        "--seconds", type=seconds, help="for run: end after so long (default: at Ctrl-C)"
     )
     command.add_argument(
         "--engine",
@@ -56,14 +58,11 @@ def _domain(text: str) -> int:
     return number_between(text, 0, 232)
 
 
-def _seconds(text: str) -> float:
-    try:
-        found = float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
-    if not 0 < found < float("inf"):
-        raise argparse.ArgumentTypeError(f"must be above 0, not {text}")
-    return found
+def _stimuli(message: Message, plan: Plan) -> list[bytes]:
+    # rosbags takes time to import, and only benches need it.
+    from firm_hdl.verify.cases.stimuli import stimuli
+
+    return stimuli(message, plan)
 
 
 def _node(args: argparse.Namespace) -> None:
@@ -89,7 +88,7 @@ def _node(args: argparse.Namespace) -> None:
     if args.action == "build":
         from firm_hdl.node.build import build_node
 
-        built = build_node(description, args.out, force=args.force)
+        built = build_node(description, args.out, force=args.force, stimuli=_stimuli)
         print(f"{'current' if built.was_current else 'wrote':8}{built.folder}", flush=True)
         for old, new in sorted(built.renamed.items()):
             print(f"        your file {old} is now {new}", flush=True)

@@ -50,7 +50,7 @@ def load_accelerator(description: Description) -> Any:
     ------
     DefinitionError
         At the name in the description, if there is no such module or class, or it cannot be made,
-        or its ports do not match.
+        or its ports do not match. A :class:`UserError` of the class gives its own text as reason.
     """
     module, _, path = description.accelerator.partition(":")
     try:
@@ -66,6 +66,9 @@ def load_accelerator(description: Description) -> Any:
         found = getattr(found, name)
     try:
         accelerator = found(description)
+    except UserError as error:
+        # The class has refused the description, and says why.
+        raise _refused(description, str(error)) from None
     except Exception as error:
         raise _refused(description, f"'{description.accelerator}' {_raised(error)}") from None
     try:

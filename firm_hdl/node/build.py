@@ -6,30 +6,39 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import yaml
 from amaranth.back import rtlil
 
 import firm_hdl
 from firm_hdl.errors import UserError
 from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
 from firm_hdl.export.manifest import MANIFEST, to_json
+from firm_hdl.export.systemverilog.structs import package_name
+from firm_hdl.export.systemverilog.types import WORDS
+from firm_hdl.export.verilog.backend import waivers
 from firm_hdl.export.verilog.yosys import to_verilog
 from firm_hdl.names.identifiers import identifier
+from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_files, link_script, node_core
 from firm_hdl.node.description import Description
 from firm_hdl.node.node import Node
+from firm_hdl.node.records import MessagePort, message_ports, record_files, struct_files
 from firm_hdl.node.summary import facts_of, summary
-from firm_hdl.node.top import NodeTop, node_ports
+from firm_hdl.node.top import NodePort, NodeTop, node_ports
 from firm_hdl.vhdl.convert import convert
 
 __all__ = ["build_node"]
 
 SUMMARY = "summary.txt"
+
+_UNDRIVEN = """
+// Outputs of parts that the node does not use are wires without a driver.
+lint_off -rule UNDRIVEN -file "*{file}"
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +65,7 @@ def build_node(
     *,
     accelerator: Any = None,
     force: bool = False,
+    stimuli: Stimuli | None = None,
 ) -> BuiltNode:
     """Write the design of a node into a folder of its own, ``out/NAME``.
 
@@ -67,6 +77,9 @@ def build_node(
         As for :class:`Node`.
     force : bool
         Write the folder even if it is current.
+    stimuli : callable or None
+        Returns good packets of a type for the test benches. `None`: these send control messages
+        only.
 
     Raises
     ------
@@ -77,41 +90,85 @@ def build_node(
     folder = Path(out, name)
     if read_manifest(folder) is None and folder.exists() and not is_empty(folder):
         raise UserError(f"'{folder}' is not a folder that firm-hdl made; move it away")
-    node = Node(description, accelerator)
-    try:
-        ports = node_ports(node)
-    except ValueError as error:
-        raise UserError(str(error)) from None
-    design = rtlil.convert(NodeTop(node), name=name, emit_src=False)
-    inputs = _inputs(description, design)
+    design = _designed(description, name, accelerator, stimuli)
+    inputs = _inputs(design)
     try:
         clear_up(folder)
         if not force and is_current(folder, inputs):
             return BuiltNode(folder=folder, was_current=True)
-        files = _files(description, name, design)
-        listed = [
-            {
-                "name": port.name,
-                "direction": port.direction,
-                "width": port.width,
-                "signed": port.signed,
-                "member": port.member,
-            }
-            for port in ports
-        ]
-        files[MANIFEST] = _manifest(description, name, inputs, listed, files)
+        files = _files(design)
+        files[MANIFEST] = _manifest(design, inputs, files)
         return BuiltNode(folder=folder, was_current=False, renamed=replace(folder, files))
     except OSError as error:
         where = error.filename or folder
         raise UserError(f"'{where}' cannot be written: {error.strerror}") from None
 
 
-def _inputs(description: Description, design: str) -> dict[str, Any]:
-    """Return all that the files depend on; the accelerator's code is part of the design."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Design:
+    """What all files are made of.
+
+    Attributes
+    ----------
+    description : Description
+    name : str
+        Name of the entity and of the folder.
+    rtlil : str
+        The circuit.
+    ports : sequence of NodePort
+    messages : sequence of MessagePort
+        The message ports with records; empty if there are none.
+    reason : str
+        Why there are none.
+    script : LinkScript or None
+        Frames of the benches, if there are some.
+    """
+
+    description: Description
+    name: str
+    rtlil: str
+    ports: Sequence[NodePort]
+    messages: Sequence[MessagePort]
+    reason: str
+    script: LinkScript | None
+
+
+def _designed(
+    description: Description, name: str, accelerator: Any, stimuli: Stimuli | None
+) -> _Design:
+    node = Node(description, accelerator)
+    try:
+        ports = node_ports(node)
+    except ValueError as error:
+        raise UserError(str(error)) from None
+    has_accelerator = node.accelerator is not None
+    messages: Sequence[MessagePort] = ()
+    reason = "The accelerator takes all messages" if has_accelerator else ""
+    if not has_accelerator:
+        try:
+            messages = message_ports(description, ports)
+        except UserError as error:
+            # The plain ports are there all the same.
+            reason = str(error)
+    return _Design(
+        description=description,
+        name=name,
+        rtlil=rtlil.convert(NodeTop(node), name=name, emit_src=False),
+        ports=ports,
+        messages=messages,
+        reason=reason,
+        script=link_script(description, stimuli, has_accelerator=has_accelerator),
+    )
+
+
+def _inputs(design: _Design) -> dict[str, Any]:
+    """Return all that the files depend on; the accelerator's code is part of the circuit."""
+    description, script = design.description, design.script
     inputs = {
         "node": description.node,
         "facts": facts_of(description),
-        "design_sha256": hashlib.sha256(design.encode()).hexdigest(),
+        "design_sha256": _digest(design.rtlil),
+        "frames_sha256": None if script is None else _digest(script.text),
         "generator": {
             "firm-hdl": firm_hdl.__version__,
             "amaranth": version("amaranth"),
@@ -123,60 +180,118 @@ def _inputs(description: Description, design: str) -> dict[str, Any]:
     return found
 
 
-def _files(description: Description, name: str, design: str) -> dict[str, str]:
-    """Write the design in each language."""
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _files(design: _Design) -> dict[str, str]:
+    """Write the design and its benches in each language."""
+    description, name, ports = design.description, design.name, design.ports
+    script = design.script
     header = (
         f"{name}: a node of ROS {description.distro}, made by firm-hdl {firm_hdl.__version__}\n"
     )
     module = f"{name}_verilog"
-    vhdl = convert(design, name=name, header=header)
-    files = {f"{module}.v": to_verilog(design, module=module, header=header)}
-    files |= {f"vhdl/{file}": text for file, text in vhdl.files.items()}
-    files["vhdl/files.txt"] = "".join(f"{file}\n" for file in vhdl.files)
+    vhdl = convert(design.rtlil, name=name, header=header)
+    vhdl_ports = vhdl.entities[name].ports
+    files = {f"{module}.v": to_verilog(design.rtlil, module=module, header=header)}
+    files["waivers.vlt"] = waivers([module]) + _UNDRIVEN.format(file=f"{module}.v")
+    vhdl_files = dict(vhdl.files)
+    if design.messages:
+        vhdl_files |= record_files(
+            name, ports, design.messages, vhdl_ports=vhdl_ports, header=header
+        )
+        structs = struct_files(name, module, ports, design.messages, header=header)
+        files |= {f"systemverilog/{file}": text for file, text in structs.items()}
+    files |= {f"vhdl/{file}": text for file, text in vhdl_files.items()}
+    files["vhdl/files.txt"] = "".join(f"{file}\n" for file in vhdl_files)
     files[SUMMARY] = summary(description) + "\n"
-    files[f"{name}.core"] = _core(description, name, module, list(vhdl.files))
+    files[f"{name}.core"] = node_core(
+        description, name, module, list(vhdl_files), has_bench=script is not None
+    )
+    if script is not None:
+        files |= bench_files(
+            description,
+            name,
+            ports,
+            script,
+            module=module,
+            vhdl_ports=vhdl_ports,
+            vhdl_files=list(vhdl_files),
+            header=header,
+        )
     return files
 
 
-def _core(description: Description, name: str, module: str, vhdl: list[str]) -> str:
-    """Write a core of FuseSoC: the VHDL by default, or the Verilog."""
-    document = {
-        "name": f"firm-hdl:node:{name}:{firm_hdl.__version__}",
-        "description": f"Node {description.node} of ROS {description.distro}",
-        "filesets": {
-            "vhdl": {"files": [f"vhdl/{file}" for file in vhdl], "file_type": "vhdlSource-2008"},
-            "verilog": {"files": [f"{module}.v"], "file_type": "verilogSource-2005"},
-        },
-        "targets": {
-            "default": {"filesets": ["vhdl"], "toplevel": name},
-            "verilog": {"filesets": ["verilog"], "toplevel": module},
-        },
+def _records(design: _Design) -> dict[str, Any]:
+    """Describe the message ports with records and structs for the manifest."""
+    if not design.messages:
+        return {"built": False, "reason": design.reason}
+    name = design.name
+    return {
+        "built": True,
+        "entity": f"{name}_records",
+        "module": f"{name}_sv",
+        "sv_files": "systemverilog/files.f",
+        "ports": [_record(each) for each in design.messages],
     }
-    return "CAPI=2:\n" + yaml.safe_dump(document, sort_keys=False, width=1000)
 
 
-def _manifest(
-    description: Description,
-    name: str,
-    inputs: dict[str, Any],
-    ports: list[dict[str, Any]],
-    files: Mapping[str, str],
-) -> str:
+def _record(port: MessagePort) -> dict[str, Any]:
+    tree, structs = port.tree(), port.tree(WORDS)
+    return {
+        "name": port.name,
+        "ready": port.ready,
+        "member": port.member,
+        "message": port.message.name,
+        "package": tree.package.name,
+        "message_type": tree.root.type,
+        "ready_type": tree.root.ready_type,
+        "sv_package": package_name(structs.package.name),
+        "sv_message_type": structs.root.type,
+        "sv_ready_type": structs.root.ready_type,
+    }
+
+
+def _bench(name: str) -> dict[str, str]:
+    """Describe the benches for the manifest."""
+    return {
+        "frames": FRAMES,
+        "vhdl": f"{name}_tb",
+        "vhdl_files": "vhdl/bench_files.txt",
+        "run_ghdl": "vhdl/run_ghdl.sh",
+        "verilog": f"{name}_tb",
+        "verilog_file": f"{name}_tb.v",
+        "run_iverilog": "run_iverilog.sh",
+    }
+
+
+def _manifest(design: _Design, inputs: dict[str, Any], files: Mapping[str, str]) -> str:
     """Write the manifest: what a host has to know, and what a folder needs to be replaced."""
-    digest = hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()
+    name = design.name
+    digest = _digest(json.dumps(inputs, sort_keys=True))
     return to_json(
         {
             "format": 1,
-            **facts_of(description),
+            **facts_of(design.description),
             "verilog": {"module": f"{name}_verilog", "file": f"{name}_verilog.v"},
             "vhdl": {"entity": name, "files": "vhdl/files.txt"},
+            "records": _records(design),
+            "bench": None if design.script is None else _bench(name),
             "clock": "aclk",
             "reset": "aresetn",
-            "ports": ports,
+            "ports": [
+                {
+                    "name": port.name,
+                    "direction": port.direction,
+                    "width": port.width,
+                    "signed": port.signed,
+                    "member": port.member,
+                }
+                for port in design.ports
+            ],
             "inputs_sha256": digest,
             "inputs": inputs,
-            "files": {
-                file: hashlib.sha256(text.encode()).hexdigest() for file, text in files.items()
-            },
+            "files": {file: _digest(text) for file, text in files.items()},
         }
     )

@@ -16,6 +16,7 @@ from firm_hdl.node.description import Description
 __all__ = [
     "CONTROL_BYTES",
     "COUNTERS_FROM",
+    "FIFO_COUNTERS",
     "GATE_COUNTERS",
     "IDENTITY",
     "LINK_COUNTERS",

@@ -216,6 +216,21 @@ class Description:
         """Yield the topics whose packets go to the host, and how they are stored."""
         return self._stores("out")
 
+    def loops(self) -> tuple[tuple[Topic, Topic], ...]:
+        """Pair subscriptions with publications of the same type, as :class:`.Loop` joins them.
+
+        The nth subscription of a type goes with its nth publication. Topics without a partner are
+        left out.
+        """
+        left = list(self.of_kind("publish"))
+        found: list[tuple[Topic, Topic]] = []
+        for topic in self.of_kind("subscribe"):
+            partner = next((each for each in left if each.type == topic.type), None)
+            if partner is not None:
+                left.remove(partner)
+                found.append((topic, partner))
+        return tuple(found)
+
     def _stores(self, direction: Direction) -> Iterator[tuple[Topic, Store]]:
         for topic in self.topics:
             store = topic.store(direction)

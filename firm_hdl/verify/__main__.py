@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from firm_hdl.errors import DefinitionError
+from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.terminal import printable_streams
 from firm_hdl.verify.command import add_verify_arguments, run_verify
 
@@ -19,11 +19,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m firm_hdl.verify", description=__doc__)
     add_verify_arguments(parser)
     given = parser.parse_args(arguments)
-    given.all = given.all or not given.types
+    given.all = given.all or not (given.types or given.node)
     try:
         return run_verify(given)
     except DefinitionError as error:
         print(error, file=sys.stderr)
+        return 1
+    except UserError as error:
+        print(f"error: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)

@@ -17,7 +17,7 @@ __all__ = [
     "WRITER_NAMES",
 ]
 
-SYSTEM_NAMES = ("ts1", "ts2", "ts3", "bench")
+SYSTEM_NAMES = ("ts1", "ts2", "ts3", "bench", "board")
 """Test systems: :data:`firm_hdl.verify.run.SYSTEMS`."""
 
 ORACLE_NAMES = (

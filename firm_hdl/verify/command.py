@@ -17,6 +17,12 @@ from firm_hdl.arguments import (
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.plan import BUS_BYTES
+from firm_hdl.verify.board_arguments import (
+    add_board_arguments,
+    check_board,
+    distros_of,
+    write_node,
+)
 from firm_hdl.verify.choices import (
     CLIENT_NAMES,
     LONGEST,
@@ -33,10 +39,13 @@ from firm_hdl.verify.systems.tasks import UnknownTypeError
 
 __all__ = ["add_verify_arguments", "run_verify"]
 
+_USUAL_SYSTEMS = ("ts3",)
+
 # Arguments that cannot be combined with ``--sut``.
 _OTHERS = (
     *("bag", "bus_bytes", "executor", "golden", "mutations", "oracle", "reference"),
     *("report", "results", "share_circuits", "simulator", "systems", "vcd"),
+    *("board", "node", "write_node"),
 )
 
 
@@ -53,6 +62,8 @@ def run_verify(given: argparse.Namespace) -> int:
     try:
         # Report a type that cannot be used before simulators and oracles are imported.
         work = resolve(request)
+        if given.write_node is not None:
+            return write_node(work, given.write_node)
     except UnknownTypeError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
@@ -65,9 +76,10 @@ def _request(given: argparse.Namespace) -> Request:
     """Check the arguments, and turn them into a request."""
     _check_replay(given)
     _check_libraries(given)
+    check_board(given)
     # Without named types, ``--bag`` means all types of the recordings.
     is_all = given.all or (bool(given.bag) and not given.types)
-    if bool(given.types) == is_all:
+    if bool(given.types) == is_all and not (given.node and not is_all):
         given.usage_error("name types, or all of them with --all")
     if given.report is not None and given.results is None:
         given.usage_error("--report needs --results")
@@ -78,10 +90,10 @@ def _request(given: argparse.Namespace) -> Request:
         references = tuple(name for name in dict.fromkeys(given.reference) if name != NO_REFERENCE)
     return Request(
         types=tuple(given.types),
-        distros=tuple(given.distro or ()),
+        distros=distros_of(given),
         paths=(*given.path, *given.depends),
         depends=tuple(given.depends),
-        systems=tuple(given.systems),
+        systems=tuple(given.systems or (("board",) if given.board else _USUAL_SYSTEMS)),
         libraries=tuple(dict.fromkeys(given.sut)),
         wire=given.wire,
         widths=tuple(dict.fromkeys(given.bus_bytes or [8])),
@@ -100,6 +112,10 @@ def _request(given: argparse.Namespace) -> Request:
         bags=tuple(given.bag),
         longest=given.max_message_bytes or LONGEST,
         share_circuits=given.share_circuits,
+        board=given.board,
+        node=given.node,
+        engine=given.engine,
+        silent_seconds=given.silent_seconds,
         results=given.results,
         report=given.report,
     )
@@ -113,7 +129,7 @@ def _check_replay(given: argparse.Namespace) -> None:
         return
     if given.path:
         given.usage_error("argument --bag: not allowed with argument --path")
-    if set(given.systems) != {"ts3"}:
+    if set(given.systems or _USUAL_SYSTEMS) != {"ts3"}:
         given.usage_error("--bag requires --systems ts3")
     if given.sut:
         given.usage_error("--bag is for firm-hdl's own converters, not for --sut")
@@ -130,7 +146,8 @@ def _check_libraries(given: argparse.Namespace) -> None:
     if not given.sut:
         return
     for name in _OTHERS:
-        if getattr(given, name) != given.default_of(name):
+        # The systems that run by default may also be named.
+        if getattr(given, name) not in (given.default_of(name), _USUAL_SYSTEMS):
             given.usage_error(f"--{name.replace('_', '-')} does not go with --sut")
     if not (given.stalls and given.broken):
         given.usage_error("--no-stalls and --no-broken do not go with --sut")
@@ -152,9 +169,8 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--systems",
         type=_systems,
-        default=("ts3",),
         metavar="NAME,...",
-        help=f"test systems: {', '.join(SYSTEM_NAMES)}; default: ts3",
+        help=f"test systems: {', '.join(SYSTEM_NAMES)}; default: ts3, or board with --board",
     )
     add_wire(parser)
     parser.add_argument(
@@ -173,6 +189,7 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
     ts3 = parser.add_argument_group("options of ts3")
     _add_cases(ts3)
     _add_replay(parser.add_argument_group("options of ts3 with recordings"))
+    add_board_arguments(parser.add_argument_group("boards"))
     _add_libraries(parser.add_argument_group("client libraries"), ts3)
     _add_results(parser.add_argument_group("results"))
     parser.set_defaults(default_of=parser.get_default)

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from firm_hdl.errors import Diagnostic
 from firm_hdl.frontend import DEFAULT_DISTRO
 from firm_hdl.frontend.search import workspace_folders
+from firm_hdl.node import Description
+from firm_hdl.verify.board.description import described_board
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.tasks import (
     TypeUnderTest,
@@ -31,11 +33,14 @@ class Workload:
         The types that are tested; empty if only TS1 runs, which looks up the types itself.
     problems : mapping of str to Diagnostic
         Errors by their texts. Types without errors are tested nevertheless.
+    board : Description or None
+        The node of the board, if there is one.
     """
 
     request: Request
     tasks: Sequence[TypeUnderTest]
     problems: Mapping[str, Diagnostic]
+    board: Description | None = None
 
 
 def resolve(request: Request) -> Workload:
@@ -49,10 +54,16 @@ def resolve(request: Request) -> Workload:
         If a definition that is named cannot be used.
     UnknownTypeError
         If a type that is named does not exist.
+    UserError
+        If the board or its node cannot be used.
     """
     problems: dict[str, Diagnostic] = {}
     if request.is_ts1_alone:
         return Workload(request=request, tasks=(), problems=problems)
+    if request.node is not None:
+        # The types are those of the node.
+        node = described_board(request, ())
+        return Workload(request=request, tasks=(), problems=problems, board=node)
     try:
         tasks = _collect(request, problems)
     except UnknownTypeError:
@@ -64,7 +75,10 @@ def resolve(request: Request) -> Workload:
         else:
             # Some of the types may exist: these are tested.
             tasks = collect_tasks(request.distros, request.types, problems=problems)
-    return Workload(request=request, tasks=tasks, problems=problems)
+    board = None
+    if request.board is not None:
+        board = described_board(request, [task.name for task in tasks])
+    return Workload(request=request, tasks=tasks, problems=problems, board=board)
 
 
 def _collect(request: Request, problems: dict[str, Diagnostic]) -> list[TypeUnderTest]:

@@ -18,6 +18,7 @@ from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.jobs.processes import unwound_when_terminated
 from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.verify.bench.system import Benches
+from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.clients.command import run_sut
 from firm_hdl.verify.references.client import ClientMissingError
 from firm_hdl.verify.report.command import write_report
@@ -114,7 +115,7 @@ def _run_systems(work: Workload) -> list[Judged]:
 def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWriter:
     """Open a new file of results, or one to continue."""
     request = work.request
-    read = [*request.paths, *request.bags, *filter(None, [request.golden])]
+    read = [*request.paths, *request.bags, *filter(None, [request.golden, request.node])]
     options = {
         "systems": [system.name for system in systems],
         "bus_bytes": list(request.widths),
@@ -137,10 +138,16 @@ def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWrit
     )
 
 
+def _boards(work: Workload) -> System:
+    assert work.board is not None
+    return Boards(work.board, work.request)
+
+
 SYSTEMS: dict[str, Callable[[Workload], System]] = {
     "ts1": lambda work: Ts1(each_distro(work.request)),
     "ts2": lambda work: Ts2(work.tasks, work.request),
     "ts3": lambda work: Ts3(work.tasks, work.request),
     "bench": lambda work: Benches(work.tasks, work.request),
+    "board": _boards,
 }
 """Test systems by the names that ``--systems`` takes."""

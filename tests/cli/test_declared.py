@@ -38,11 +38,12 @@ DEFAULTS = {
     "verify": (
         [],
         {"types": [], "all": False, "distro": None, "path": [], "depends": [], "bag": []}
-        | {"systems": ["ts3"], "wire": None, "bus_bytes": None, "seed": 0, "jobs": None}
+        | {"systems": None, "wire": None, "bus_bytes": None, "seed": 0, "jobs": None}
         | {"oracle": [], "mutations": 0, "golden": None, "simulator": "python", "cases": None}
         | {"stalls": True, "broken": True, "share_circuits": None, "vcd": None}
         | {"max_message_bytes": None, "sut": [], "reference": [], "results": None}
-        | {"report": None, "executor": "processes"},
+        | {"report": None, "executor": "processes", "board": None, "node": None}
+        | {"write_node": None, "engine": "auto", "silent_seconds": None},
     ),
     "report": (
         ["r.jsonl"],

@@ -7,7 +7,7 @@ from pathlib import Path
 from firm_hdl.frontend import Library
 from firm_hdl.node import Description, read_description_text
 
-__all__ = ["LIBRARY", "PACKAGES", "WHEELS", "read"]
+__all__ = ["LIBRARY", "PACKAGES", "RELAY", "WHEELS", "read"]
 
 PACKAGES = Path(__file__).parents[2] / "docs" / "packages"
 
@@ -23,6 +23,18 @@ publish:
 serve:
   ~/calibrate: {type: robot_msgs/srv/Calibrate, memory_bytes: 256}
 """
+
+RELAY = """\
+node: relay
+distro: jazzy
+bus_bytes: 4
+subscribe:
+  /in_1: {type: std_msgs/msg/UInt16}
+  /alone: {type: std_msgs/msg/UInt8}
+publish:
+  /out_1: {type: std_msgs/msg/UInt16}
+"""
+"""A node without accelerator, one of whose subscriptions has a publication of the same type."""
 
 LIBRARY = Library("jazzy", [PACKAGES])
 """The library of all descriptions of tests: it is opened once."""

@@ -17,6 +17,7 @@ from firm_hdl.node.build import build_node
 from firm_hdl.node.messages import NodeMessage
 from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodeTop, node_ports
+from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.vhdl.convert import Vhdl
 from tests.node.samples import PACKAGES, WHEELS, read
 from tests.node.traffic import frames_of
@@ -37,7 +38,7 @@ publish:
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
     out = tmp_path_factory.mktemp("out")
-    return build_node(read(RELAY), out).folder
+    return build_node(read(RELAY), out, stimuli=stimuli).folder
 
 
 def test_the_summary_has_topics_ids_cycles_and_clocks():
@@ -86,7 +87,7 @@ def test_the_vhdl_compiles_in_the_order_of_its_list(built, tmp_path):
 
 def test_a_folder_that_is_current_stays(built):
     before = (built / "relay_verilog.v").stat().st_mtime_ns
-    again = build_node(read(RELAY), built.parent)
+    again = build_node(read(RELAY), built.parent, stimuli=stimuli)
     assert again.was_current and (built / "relay_verilog.v").stat().st_mtime_ns == before
 
 

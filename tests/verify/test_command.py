@@ -25,7 +25,10 @@ BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool
     [
         ([], "name types, or all of them with --all"),
         (["--all", "std_msgs/msg/Bool"], "name types, or all of them with --all"),
-        (["--all", "--systems", "ts3,ts4"], "no test system 'ts4'; there are ts1, ts2, ts3, bench"),
+        (
+            ["--all", "--systems", "ts3,ts4"],
+            "no test system 'ts4'; there are ts1, ts2, ts3, bench, board",
+        ),
         (["--all", "--jobs", "0"], "must be at least 1, not 0"),
         (["--all", "--cases", "few"], "'few' is not a number"),
         (["--all", "--simulator", "abacus"], "invalid choice: 'abacus'"),

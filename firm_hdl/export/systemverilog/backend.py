@@ -6,15 +6,9 @@ from typing import Any
 
 from firm_hdl.export.backend import BackEnd, Converters, Output
 from firm_hdl.export.remarks import remark
-from firm_hdl.export.systemverilog.package import constants_of, message_package
+from firm_hdl.export.systemverilog.package import constants_of, shared_packages
 from firm_hdl.export.systemverilog.structs import package_name
-from firm_hdl.export.systemverilog.types import (
-    TYPES_NAME,
-    WORDS,
-    bus_name,
-    bus_package,
-    types_package,
-)
+from firm_hdl.export.systemverilog.types import WORDS, bus_name
 from firm_hdl.export.systemverilog.wrapper import wrapper
 from firm_hdl.export.top import DIRECTIONS, Direction
 from firm_hdl.export.tree import Tree, tree_of
@@ -27,7 +21,7 @@ FOLDER = "systemverilog"
 
 _LIST, _WAIVERS = "files.f", "waivers.vlt"
 
-_WAIVERS_TEXT = """\
+WAIVERS_TEXT = """\
 // Warnings of Verilator that are harmless here, each with the reason. To lint:
 // $ verilator --lint-only -Wall ../waivers.vlt waivers.vlt -F files.f --top-module MODULE
 
@@ -58,22 +52,14 @@ class SystemVerilog(BackEnd):
         if converters.options.ports == "flat":
             return Output(files={})
         tree = tree_of(converters.message, converters.plan, WORDS)
-        packages = {
-            TYPES_NAME: types_package(),
-            bus_name(converters.plan.bus_bytes): bus_package(converters.plan.bus_bytes),
-            **{
-                package_name(each.name): message_package(each, converters.plan)
-                for each in tree.packages
-            },
-        }
         modules = {way: wrapper_name(converters.name, way) for way in DIRECTIONS}
         cores = [f"../{module_name(converters.name, way)}.v" for way in DIRECTIONS]
-        texts = {f"{name}.sv": text for name, text in packages.items()}
+        texts = shared_packages(converters.plan, tree)
         shared = list(texts)
         for way, name in modules.items():
             texts[f"{name}.sv"] = _module(converters, tree, way, name)
         listed = [*shared, *cores, *(f"{name}.sv" for name in modules.values())]
-        files = {**texts, _LIST: "".join(f"{file}\n" for file in listed), _WAIVERS: _WAIVERS_TEXT}
+        files = {**texts, _LIST: "".join(f"{file}\n" for file in listed), _WAIVERS: WAIVERS_TEXT}
         return Output(
             files={f"{FOLDER}/{name}": text for name, text in files.items()},
             manifest={"systemverilog": _section(converters, tree, modules, listed)},

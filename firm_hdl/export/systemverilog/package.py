@@ -11,11 +11,17 @@ from collections.abc import Iterator
 from firm_hdl.export.constants import Declaration, NamedConstant, declarations, named_constants
 from firm_hdl.export.records import head_of, message_records
 from firm_hdl.export.systemverilog.structs import guarded, package_name, stream_structs
-from firm_hdl.export.systemverilog.types import TYPES_NAME, WORDS, bus_name
-from firm_hdl.export.tree import Package, taken_names
+from firm_hdl.export.systemverilog.types import (
+    TYPES_NAME,
+    WORDS,
+    bus_name,
+    bus_package,
+    types_package,
+)
+from firm_hdl.export.tree import Package, Tree, taken_names
 from firm_hdl.plan import Plan
 
-__all__ = ["constants_of", "message_package"]
+__all__ = ["constants_of", "message_package", "shared_packages"]
 
 
 def constants_of(package: Package, plan: Plan) -> list[NamedConstant]:
@@ -28,6 +34,28 @@ def _taken(package: Package, plan: Plan) -> frozenset[str]:
     return frozenset(
         {*taken_names(package, plan), *WORDS, bus_name(plan.bus_bytes), package_name(package.name)}
     )
+
+
+def shared_packages(plan: Plan, tree: Tree) -> dict[str, str]:
+    """Write the packages that other messages' folders have, too, by file name.
+
+    Parameters
+    ----------
+    plan : Plan
+    tree : Tree
+        The structs of the message.
+
+    Returns
+    -------
+    dict of str to str
+        Texts in compile order.
+    """
+    packages = {
+        TYPES_NAME: types_package(),
+        bus_name(plan.bus_bytes): bus_package(plan.bus_bytes),
+        **{package_name(each.name): message_package(each, plan) for each in tree.packages},
+    }
+    return {f"{name}.sv": text for name, text in packages.items()}
 
 
 def message_package(package: Package, plan: Plan) -> str:

@@ -11,7 +11,7 @@ from firm_hdl.export.top import Direction, Port, ports_of
 from firm_hdl.export.tree import Node, Tree
 from firm_hdl.plan import Plan
 
-__all__ = ["wrapper"]
+__all__ = ["leaf_actual", "wrapper"]
 
 _STATUS = "m_axis_status"
 
@@ -76,9 +76,15 @@ def _body(plan: Plan, tree: Tree, direction: Direction, core: str) -> Iterator[s
 def _actual(port: Port, nodes: Mapping[int | None, Node]) -> str:
     """Return the expression that a port of the core is connected to."""
     if port.leaf is not None:
-        access = nodes[port.leaf].access
-        return f"rdy.{access}" if port.member == "ready" else f"msg.{access}.{port.member}"
+        return leaf_actual(port, nodes[port.leaf])
     stream, _, member = port.name.rpartition("_")
     if not stream or member == "tready":
         return port.name
     return "status" if port.name == f"{_STATUS}_tdata" else f"{stream}.{member}"
+
+
+def leaf_actual(port: Port, node: Node, msg: str = "msg", rdy: str = "rdy") -> str:
+    """Return the expression for a port of a leaf; `msg` and `rdy` are names of structs."""
+    if port.member == "ready":
+        return f"{rdy}.{node.access}"
+    return f"{msg}.{node.access}.{port.member}"

@@ -11,7 +11,7 @@ from firm_hdl.export.verilog.template import template
 from firm_hdl.export.verilog.yosys import to_verilog
 from firm_hdl.plan import Plan
 
-__all__ = ["Verilog", "section"]
+__all__ = ["Verilog", "section", "waivers"]
 
 _WAIVERS = "waivers.vlt"
 """File with waivers of Verilator's warnings."""
@@ -32,7 +32,7 @@ class Verilog(BackEnd):
     def write(self, converters: Converters) -> Output:
         name = converters.name
         modules = {direction: module_name(name, direction) for direction in DIRECTIONS}
-        files = {_WAIVERS: _waivers(modules.values())}
+        files = {_WAIVERS: waivers(modules.values())}
         for direction, module in modules.items():
             header = converters.header(module, f"the {direction}")
             files[f"{module}.v"] = to_verilog(
@@ -44,7 +44,7 @@ class Verilog(BackEnd):
         return Output(files=files, manifest={"converters": section(converters.plan, name)})
 
 
-def _waivers(modules: Iterable[str]) -> str:
+def waivers(modules: Iterable[str]) -> str:
     """Write the waivers of some modules, each with its reason, for ``verilator --lint-only -Wall``.
 
     Parameters

@@ -36,7 +36,7 @@ from firm_hdl.export.vhdl.wrapper import (
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
-__all__ = ["RecordEntities", "UserLayer", "flat_package", "user_layer"]
+__all__ = ["RecordEntities", "UserLayer", "flat_package", "shared_packages", "user_layer"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -158,7 +158,7 @@ def user_layer(
         constants={package.name: constants_of(package, plan) for package in tree.packages},
         shared=_shared(plan, tree),
         packages={
-            **_shared_packages(plan, tree, values),
+            **shared_packages(plan, tree, values),
             f"{components}.vhd": head + _components(plan, tree, components, lines),
         },
         wrappers={f"{entity}.vhd": head + text for entity, text in wrappers.items()},
@@ -174,8 +174,22 @@ def _shared(plan: Plan, tree: Tree) -> tuple[Shared, ...]:
     return (Shared(name=bus), *own)
 
 
-def _shared_packages(plan: Plan, tree: Tree, values: Mapping[str, ValueType]) -> dict[str, str]:
-    """Write the packages that other messages' folders have, too, by file name."""
+def shared_packages(plan: Plan, tree: Tree, values: Mapping[str, ValueType]) -> dict[str, str]:
+    """Write the packages that other messages' folders have, too, by file name.
+
+    Parameters
+    ----------
+    plan : Plan
+    tree : Tree
+        The records of the message.
+    values : mapping of str to ValueType
+        The records of values that :func:`firm_hdl.export.vhdl.values.values_of` found.
+
+    Returns
+    -------
+    dict of str to str
+        Texts in compile order.
+    """
     texts = {TYPES_NAME: types_package(), bus_name(plan.bus_bytes): bus_package(plan.bus_bytes)}
     for each in tree.packages:
         texts[each.name] = message_package(each, plan, values.get(each.message.name))

@@ -16,9 +16,11 @@ from firm_hdl.plan import Plan
 __all__ = [
     "IEEE",
     "LIBRARIES",
+    "Conversions",
     "Core",
     "Line",
     "component",
+    "entity_around",
     "plain_lines",
     "record_lines",
     "record_wrapper",
@@ -128,22 +130,37 @@ def _port_clause(lines: list[Line], *, meanings: bool = True) -> Iterator[str]:
     yield "  );\n"
 
 
-def _entity(
+def entity_around(
     entity: str,
-    package: str,
+    packages: Iterable[str],
     lines: list[Line],
     core: Core,
     parts: Mapping[str, str],
     signals: list[tuple[str, str]],
     assignments: list[str],
 ) -> Iterator[str]:
-    """Yield an entity around a core; `parts` maps the core's ports to their actuals."""
+    """Yield the text of an entity around a core.
+
+    Parameters
+    ----------
+    packages : iterable of str
+        Packages to use, besides that of primitives.
+    lines : list of Line
+        Ports of the entity.
+    parts : mapping of str to str
+        Actuals of the core's ports, by the names that `core` may change.
+    signals : list of pairs of str
+        Names and types of signals.
+    assignments : list of str
+        Lines of the architecture.
+    """
     width = max(len(core.names.get(port, port)) for port in parts)
     names = max((len(name) for name, _ in signals), default=0)
     joined = ",\n".join(
         f"      {core.names.get(port, port):{width}} => {actual}" for port, actual in parts.items()
     )
-    yield f"\n{LIBRARIES}use work.{package}.all;\n\nentity {entity} is\n"
+    uses = "".join(f"use work.{package}.all;\n" for package in packages)
+    yield f"\n{LIBRARIES}{uses}\nentity {entity} is\n"
     yield from _port_clause(lines)
     yield f"end entity;\n\narchitecture wrapper of {entity} is\n"
     yield "\n" * bool(signals)
@@ -157,36 +174,67 @@ def _entity(
 def stream_wrapper(plan: Plan, tree: Tree, direction: Direction, *, entity: str, core: Core) -> str:
     """Write a converter with a record of streams, one for each leaf."""
     package = tree.package.name
-    conversions = _Conversions(plan, tree, direction)
+    conversions = Conversions(plan, tree, direction)
     ports = ports_of(plan, direction)
     parts = {port.name: conversions.actual(port) for port in ports}
     lines = stream_lines(plan, tree, direction)
     head = f"-- The {direction} of {plan.message} with records.\n-- {core.entity} has flat ports.\n"
     return head + "".join(
-        _entity(entity, package, lines, core, parts, conversions.signals, conversions.assignments)
+        entity_around(
+            entity, [package], lines, core, parts, conversions.signals, conversions.assignments
+        )
     )
 
 
-class _Conversions:
+class Conversions:
     """The actuals of a core's ports; a conversion gets a signal of its own.
 
     Some synthesis tools do not support a conversion in a port map.
+
+    Parameters
+    ----------
+    plan : Plan
+    tree : Tree
+        The records of the message.
+    direction : Direction
+    msg, rdy : str
+        Names of the records.
+    names : mapping of str to str
+        Names of signals, where they differ from those of ports.
+
+    Attributes
+    ----------
+    signals : list of pairs of str
+        Names and types.
+    assignments : list of str
+        Lines of an architecture.
     """
 
-    def __init__(self, plan: Plan, tree: Tree, direction: Direction) -> None:
+    def __init__(
+        self,
+        plan: Plan,
+        tree: Tree,
+        direction: Direction,
+        *,
+        msg: str = "msg",
+        rdy: str = "rdy",
+        names: Mapping[str, str] | None = None,
+    ) -> None:
         self.plan, self.direction = plan, direction
+        self.msg, self.rdy, self.names = msg, rdy, names or {}
         self.nodes = {node.leaf: node for node in tree.root.leaves()}
         self.signals: list[tuple[str, str]] = []
         self.assignments: list[str] = []
 
     def actual(self, port: Port) -> str:
+        """Return what a port of the core is connected to; add a signal if it takes one."""
         if port.leaf is None:
             return _packet_actual(port)
         leaf = self.plan.leaves[port.leaf]
         node = self.nodes[port.leaf]
         if port.member == "ready":
-            return f"rdy.{node.access}"
-        whole = f"msg.{node.access}.{port.member}"
+            return f"{self.rdy}.{node.access}"
+        whole = f"{self.msg}.{node.access}.{port.member}"
         if port.member != "data":
             return whole
         primitive = primitive_name(leaf)
@@ -194,10 +242,11 @@ class _Conversions:
             return f"{whole}(0)"
         if leaf.kind != "items" and (primitive == "bool" or primitive.startswith("float")):
             return whole
-        self.signals.append((port.name, _kind(port.width, vector=True)))
+        name = self.names.get(port.name, port.name)
+        self.signals.append((name, _kind(port.width, vector=True)))
         if self.direction == "serializer":
             convert = "to_slv" if leaf.kind == "items" else "std_logic_vector"
-            self.assignments.append(f"  {port.name} <= {convert}({whole});\n")
+            self.assignments.append(f"  {name} <= {convert}({whole});\n")
         else:
             convert = (
                 f"to_{primitive}_items"
@@ -206,8 +255,8 @@ class _Conversions:
                 if leaf.signed
                 else "unsigned"
             )
-            self.assignments.append(f"  {whole} <= {convert}({port.name});\n")
-        return port.name
+            self.assignments.append(f"  {whole} <= {convert}({name});\n")
+        return name
 
 
 def _packet_actual(port: Port) -> str:
@@ -234,4 +283,6 @@ def record_wrapper(
         f"-- The {direction} of {plan.message}: whole messages, as a record of values.\n"
         f"-- {core.entity} has flat ports.\n"
     )
-    return head + "".join(_entity(entity, values.package, lines, core, parts, signals, [convert]))
+    return head + "".join(
+        entity_around(entity, [values.package], lines, core, parts, signals, [convert])
+    )

@@ -26,6 +26,8 @@ class Board(ABC):
         Most bytes of a frame, header included. `None`: no limit.
     sample_seconds : float
         How often the time of the node is compared with that of the host.
+    bytes_per_second : float or None
+        How fast the way is; `None`: fast enough not to be waited for.
     counters : Counter of str
         What the way itself lost, by cause: ``damaged`` and ``large`` frames, ``full`` for messages
         that found no room in what waits to be sent. They go on when the board is opened again.
@@ -36,6 +38,7 @@ class Board(ABC):
     def __init__(self, name: str, frame_bytes: int | None = None) -> None:
         self.name = name
         self.frame_bytes = frame_bytes
+        self.bytes_per_second: float | None = None
         self.counters: Counter[str] = Counter()
 
     @abstractmethod

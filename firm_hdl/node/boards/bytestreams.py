@@ -148,6 +148,8 @@ class SerialBoard(ByteBoard):
     def __init__(self, name: str, path: str, baud: int) -> None:
         super().__init__(name)
         self._path, self._baud = path, baud
+        # A byte has a start bit and a stop bit.
+        self.bytes_per_second = baud / 10
 
     def _open(self) -> int:
         file = None

@@ -43,7 +43,7 @@ class Test:
     Attributes
     ----------
     system : str
-        ``ts1``, ``ts2``, ``ts3`` or ``bench``.
+        ``ts1``, ``ts2``, ``ts3``, ``bench`` or ``board``.
     distro, type : str
         The type is a message. For ``ts1``, the type is what a file defines, such as a service.
     same : tuple of str

@@ -89,6 +89,14 @@ class Request(Options):
     share_circuits : bool or None
         Whether one type is simulated for all that have the same circuit. `None`: only if all
         types are tested, and no recording.
+    board : str or None
+        Board for the test system ``board``, as :func:`firm_hdl.node.boards.board_of` takes it.
+    node : str or None
+        File with the description of the board's node; `None`: one that loops the named types.
+    engine : str
+        Engine of a simulated board.
+    silent_seconds : float or None
+        How long a board may be silent; `None`: the default of its kind.
     results, report : str or None
         Files to write.
     """
@@ -105,6 +113,10 @@ class Request(Options):
     mutations: int = 0
     golden: str | None = None
     share_circuits: bool | None = None
+    board: str | None = None
+    node: str | None = None
+    engine: str = "auto"
+    silent_seconds: float | None = None
     results: str | None = None
     report: str | None = None
 
@@ -116,7 +128,8 @@ class Request(Options):
     @property
     def is_named(self) -> bool:
         """Whether the user named what is tested. Mutations have no names."""
-        return bool(self.types) and not self.mutations
+        # The types of a description are named, too.
+        return bool(self.types or self.node) and not self.mutations
 
     @property
     def names_wires(self) -> bool:

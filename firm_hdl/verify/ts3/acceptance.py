@@ -54,7 +54,7 @@ from firm_hdl.verify.ts3.confirm import confirm
 from firm_hdl.verify.ts3.result import Result, command_of
 from firm_hdl.wire import Wire, lay_out
 
-__all__ = ["Acceptance", "accept", "accept_message", "measured"]
+__all__ = ["Acceptance", "accept", "accept_message", "confirm_cases", "measured"]
 
 
 def accept(distro: str, name: str, options: Options | None = None) -> Result:
@@ -114,7 +114,7 @@ def accept_message(
     bare = bare_packets(run.plan, cases)
     result.cases = len(cases)
     result.metrics = figures(message, run.plan, [case.packet for case in cases])
-    _confirm(message, run.plan.wire, cases, options, result, isinstance(oracle, WideOracle))
+    confirm_cases(message, run.plan.wire, cases, options, result, oracle)
     result.watch.enter("testing")
     taken = run.check_golden_model(cases, bare)
     if not options.simulated:
@@ -140,19 +140,22 @@ def accept_message(
     run.circuit.crosscheck()
 
 
-def _confirm(
+def confirm_cases(
     message: Message,
     wire: Wire,
     cases: Sequence[Case],
     options: Options,
     result: Result,
-    is_needed: bool,
+    oracle: RosbagsOracle,
 ) -> None:
-    """Compare other libraries' packets; `is_needed`: one of them must support the wide text."""
+    """Compare other libraries' packets, and add to `result`.
+
+    If the oracle is a :class:`.WideOracle`, one of the libraries must support the wide text.
+    """
     found = confirm(message, wire, cases, options.references)
     result.written_by, result.known = found.by, found.known
     result.failures += found.failures
-    if is_needed and not set(WIDE_REFERENCES) & set(found.by):
+    if isinstance(oracle, WideOracle) and not set(WIDE_REFERENCES) & set(found.by):
         result.failures.append(
             f"{WIDE_REFERENCES[0]} could not write wide text, which rosbags has not"
         )

@@ -26,15 +26,15 @@ TEXTS = [b"%d" % n * (n % 300) for n in range(200)]
 
 
 class UdpNode(threading.Thread):
-    """A `FakeNode` behind a UDP socket."""
+    """A `FakeNode`, or another one, behind a UDP socket."""
 
-    def __init__(self, port=0):
+    def __init__(self, port=0, node=None):
         super().__init__(daemon=True)
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.socket.bind(("127.0.0.1", port))
         self.socket.settimeout(0.05)
         self.port = self.socket.getsockname()[1]
-        self.node, self.ends = FakeNode(), False
+        self.node, self.ends = node or FakeNode(), False
         self.start()
 
     def run(self):
@@ -53,10 +53,10 @@ class UdpNode(threading.Thread):
 class ByteNode(threading.Thread):
     """A `FakeNode` behind a file descriptor that carries bytes, of which some are changed."""
 
-    def __init__(self, file, flips=0.0):
+    def __init__(self, file, flips=0.0, node=None):
         super().__init__(daemon=True)
         self.file, self.flips, self.random = file, flips, random.Random(1)
-        self.node, self.reader, self.ends = FakeNode(), ByteStreamReader(), False
+        self.node, self.reader, self.ends = node or FakeNode(), ByteStreamReader(), False
         self.flipped = 0
         self.start()
 

@@ -1,0 +1,13 @@
+"""Test benches of a node: frames go into its link, and those that come out are compared.
+
+:mod:`script` decides which frames, :mod:`write` writes the benches in VHDL and in Verilog, and
+:mod:`fusesoc` their targets.
+"""
+
+from __future__ import annotations
+
+from firm_hdl.node.benches.fusesoc import node_core
+from firm_hdl.node.benches.script import FRAMES, LinkScript, Stimuli, link_script
+from firm_hdl.node.benches.write import bench_files
+
+__all__ = ["FRAMES", "LinkScript", "Stimuli", "bench_files", "link_script", "node_core"]

@@ -1,0 +1,176 @@
+"""The text of the benches of a node, in VHDL for GHDL, and in Verilog for Icarus Verilog.
+
+Both do the same: they read the frames of a file, send them with random stalls, and compare what
+comes out. Between subscriptions and publications that come out of the node, they connect messages,
+with stalls on each stream. All other inputs are tied off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from firm_hdl.export.templates import text_of
+from firm_hdl.node.benches.script import FRAMES, LinkScript
+from firm_hdl.node.description import Description, Topic
+from firm_hdl.node.frame import HEADER_BYTES
+from firm_hdl.node.top import NodePort
+
+__all__ = ["bench_files"]
+
+_HELPERS = "firm_hdl_bench_pkg.vhd"
+
+HOST_ADDRESS, HOST_PORT = 0xC0A8_0164, 50_000
+"""Where the host of a bench is: 192.168.1.100:50000."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Channel:
+    """A stream that the bench connects: its ports at the subscription and at the publication."""
+
+    valid: tuple[str, str]
+    ready: tuple[str, str]
+    payload: tuple[tuple[str, str], ...]
+
+
+def bench_files(
+    description: Description,
+    name: str,
+    ports: Sequence[NodePort],
+    script: LinkScript,
+    *,
+    module: str,
+    vhdl_ports: Mapping[str, str],
+    vhdl_files: Sequence[str],
+    header: str,
+) -> dict[str, str]:
+    """Write the benches of a node, the frames, and the scripts that run them.
+
+    Parameters
+    ----------
+    name : str
+        Name of the entity; the benches are ``NAME_tb``.
+    ports : sequence of NodePort
+        All ports of the top level.
+    script : LinkScript
+    module : str
+        Name of the module in Verilog.
+    vhdl_ports : mapping of str to str
+        Names of ports in VHDL, by those of the netlist.
+    vhdl_files : sequence of str
+        Files of the node in compile order.
+    header : str
+        Lines of a comment at the head of each file.
+
+    Returns
+    -------
+    dict of str to str
+        Texts by paths in the folder of the node.
+    """
+    top = f"{name}_tb"
+    values = _values(description, ports, script) | {
+        "name": name,
+        "top": top,
+        "module": module,
+        "vhdl_ports": vhdl_ports,
+        "frames_file": FRAMES,
+        "header": header.splitlines(),
+    }
+    bench = [_HELPERS, f"{top}.vhd"]
+    return {
+        FRAMES: "".join(f"# {line}\n" for line in header.splitlines()) + script.text,
+        f"vhdl/{_HELPERS}": text_of(f"vhdl/{_HELPERS}"),
+        f"vhdl/{top}.vhd": _render("bench.vhd", **values),
+        "vhdl/bench_files.txt": "".join(f"{file}\n" for file in bench),
+        "vhdl/run_ghdl.sh": _render("run_ghdl.sh", files=[*vhdl_files, *bench], **values),
+        f"{top}.v": _render("bench.v", **values),
+        "run_iverilog.sh": _render("run_iverilog.sh", **values),
+    }
+
+
+def _values(
+    description: Description, ports: Sequence[NodePort], script: LinkScript
+) -> dict[str, Any]:
+    """Return what both languages have to know."""
+    channels = [each for loop in script.loops for each in _channels(ports, loop)]
+    driven = {each.ready[0] for each in channels}
+    used = set()
+    for each in channels:
+        driven |= {goes for _, goes in (each.valid, *each.payload)}
+        used |= {port for pair in (each.valid, each.ready, *each.payload) for port in pair}
+    used |= {port.name for port in ports if port.member.startswith("link.")}
+    others = [
+        port for port in ports[2:] if port.direction == "in" and port.name not in driven | used
+    ]
+    is_udp = description.link.kind == "udp"
+    return {
+        "udp": is_udp,
+        "word_bytes": description.link.data_bytes if is_udp else description.bus_bytes,
+        "signals": [each for each in ports[2:] if each.name in used or each in others],
+        # A stream that nobody connects is taken, and offers nothing.
+        "ties": {each.name: int(each.member.endswith(".ready")) for each in others},
+        "widths": {each.name: each.width for each in ports},
+        "channels": channels,
+        "most_bytes": _most_bytes(description, script),
+        "ignores_topics": script.ignores_topics,
+        "host": (HOST_ADDRESS, HOST_PORT),
+        "link": description.link,
+        "answers": _address(description.link.host) or HOST_ADDRESS,
+        "answers_port": description.link.host_port if description.link.host else HOST_PORT,
+    }
+
+
+def _most_bytes(description: Description, script: LinkScript) -> int:
+    """Return the size of the longest frame that may come, in bytes."""
+    if not script.ignores_topics:
+        return script.most_bytes
+    stores = [store for _, store in description.sent()]
+    return max(script.most_bytes, *(HEADER_BYTES + each.memory_bytes for each in stores))
+
+
+def _address(text: str) -> int:
+    """Return an IPv4 address as a number; 0 for none."""
+    number = 0
+    for part in filter(None, text.split(".")):
+        number = number << 8 | int(part)
+    return number
+
+
+def _channels(ports: Sequence[NodePort], loop: tuple[Topic, Topic]) -> list[_Channel]:
+    """Return the streams of a subscription with those of its publication."""
+    came, goes = (f"{topic.kind}.{topic.port}." for topic in loop)
+    names = {port.member: port.name for port in ports}
+    valids = [member for member in names if member.startswith(came) and member.endswith(".valid")]
+    found = []
+    for stream in (member.removesuffix(".valid") for member in valids):
+        other = goes + stream.removeprefix(came)
+        payload = [
+            m.removeprefix(stream)
+            for m in names
+            if m.startswith(f"{stream}.") and m.removeprefix(stream) not in (".valid", ".ready")
+        ]
+        found.append(
+            _Channel(
+                (names[f"{stream}.valid"], names[f"{other}.valid"]),
+                (names[f"{stream}.ready"], names[f"{other}.ready"]),
+                tuple((names[stream + each], names[other + each]) for each in payload),
+            )
+        )
+    return found
+
+
+_templates = Environment(
+    loader=FileSystemLoader(Path(__file__).parent),
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+    keep_trailing_newline=True,
+)
+
+
+def _render(template: str, **values: Any) -> str:
+    return _templates.get_template(f"{template}.j2").render(values)

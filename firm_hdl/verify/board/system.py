@@ -1,0 +1,215 @@
+"""The test system ``board`` for the command: opens a board, and sends it one type after the other.
+
+A test is one type. All of them go through the same board, one at a time. A board that does not
+answer fails all that are left at once, with the same text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from firm_hdl.errors import DefinitionError, UserError, described
+from firm_hdl.node import Description, Topic
+from firm_hdl.node.boards import Board, board_of
+from firm_hdl.verify.board.description import chosen_loops
+from firm_hdl.verify.board.judge import judge_loop
+from firm_hdl.verify.board.talk import SILENT_SECONDS, Talk, TalkError
+from firm_hdl.verify.references.choice import find_references
+from firm_hdl.verify.results.records import Record, Test, clipped_verdict
+from firm_hdl.verify.results.verdict import (
+    Failed,
+    KnownDifference,
+    NotJudged,
+    NotJudgedError,
+    Passed,
+)
+from firm_hdl.verify.systems.options import Request, command_again
+from firm_hdl.verify.systems.system import (
+    Judged,
+    Made,
+    Recorder,
+    System,
+    failure_of,
+    judged,
+    kept,
+)
+from firm_hdl.verify.ts3.result import Result
+
+__all__ = ["Boards"]
+
+SILENT_SECONDS_OF_SIMULATION = 60.0
+"""A simulation is slower than a board: a node with many fields does some 100 cycles per second."""
+
+
+class Boards(System):
+    """The types of a board; a test is one type.
+
+    Parameters
+    ----------
+    description : Description
+        Of the node on the board.
+    request : Request
+        `types`, `board`, `node`, `engine`, `silent_seconds` and the options of cases are used.
+    board : Board or None
+        A board in place of the one that the request names.
+
+    Raises
+    ------
+    UserError
+        If the name of the board is none, or no loop of the node has a type that is named.
+    """
+
+    name = "board"
+
+    def __init__(self, description: Description, request: Request, board: Board | None = None):
+        self._description, self._request = description, request
+        named = request.types if request.node is not None else ()
+        self._loops = chosen_loops(description, named)
+        if board is None:
+            more = {"engine": request.engine} if request.board == "sim" else {}
+            board = board_of(str(request.board), description, **more)
+        self._board = board
+
+    def __enter__(self) -> Boards:
+        for line in find_references(self._request.references, [self._description.wire]):
+            print(line)
+        return self
+
+    @property
+    def tests(self) -> Sequence[Test]:
+        """A test for each type that the node loops."""
+        return [self._test(loop) for loop in self._loops]
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """The options that determine the cases, and the board."""
+        request = self._request
+        return {
+            "board": request.board,
+            "node": request.node,
+            "fingerprint": f"{self._description.fingerprint:016x}",
+            "seed": request.seed,
+            "cases": request.most_cases,
+            "broken": request.broken,
+            "references": None if request.references is None else list(request.references),
+        }
+
+    def run(self, recorder: Recorder) -> list[Judged]:
+        """Open the board, and send the types that have no record."""
+        tests = {loop: self._test(loop) for loop in self._loops}
+        records = kept(tests, recorder, self._records, label="board")
+        for verdict in (Passed, KnownDifference, Failed, NotJudged):
+            found = [each for each in records.values() if isinstance(each.verdict, verdict)]
+            if found:
+                packets = sum(each.packets for each in found)
+                print(
+                    f"board {self._board.name}: {len(found)} of {len(records)} types "
+                    f"{verdict.name}, {packets} packets sent"
+                )
+        return judged(records.values())
+
+    def _records(self, left: list[tuple[Topic, Topic]]) -> Made[tuple[Topic, Topic]]:
+        if not left:
+            return
+        if self._request.board == "sim":
+            print("board sim: starts; to compile a new node takes up to a minute", flush=True)
+        silent = self._request.silent_seconds or (
+            SILENT_SECONDS_OF_SIMULATION if self._request.board == "sim" else SILENT_SECONDS
+        )
+        with Talk(self._board, self._description, silent) as talk:
+            is_open, gone = False, ""
+            for loop in left:
+                result = Result(distro=self._description.distro, name=loop[0].type)
+                result.command = self._command()
+                try:
+                    if gone:
+                        raise TalkError(gone)
+                    if not is_open:
+                        talk.open()
+                        is_open = True
+                except TalkError as error:
+                    gone = str(error)
+                    result.failures.append(gone)
+                else:
+                    is_open = self._judge(talk, loop, result)
+                record = self._record(self._test(loop), result)
+                yield [(loop, record, self._lines(record))]
+
+    def _judge(self, talk: Talk, loop: tuple[Topic, Topic], result: Result) -> bool:
+        """Judge a type; return whether the talk can go on."""
+        try:
+            judge_loop(talk, self._description, loop, self._request, result)
+        except TalkError as error:
+            result.failures.append(str(error))
+            return False
+        except NotJudgedError as error:
+            result.obstacle = NotJudged(str(error) or type(error).__name__)
+        except (UserError, DefinitionError):
+            # What is wrong with a node is wrong for all types.
+            raise
+        except Exception as error:  # The other types are tested in any case.
+            result.failures.append(described(error))
+        return True
+
+    def _test(self, loop: tuple[Topic, Topic]) -> Test:
+        request, description = self._request, self._description
+        own = [f"board={request.board}", f"seed={request.seed}"]
+        own += [] if request.node is None else [f"node={request.node}"]
+        own += [] if request.most_cases is None else [f"cases={request.most_cases}"]
+        own += [] if request.broken else ["no-broken"]
+        if request.references is not None:
+            own.append(f"references={'+'.join(request.references)}")
+        own += [f"path={path}" for path in request.paths]
+        return Test(
+            system=self.name,
+            distro=description.distro,
+            type=loop[0].type,
+            same=(description.distro,),
+            wire=description.wire,
+            bus_bytes=description.bus_bytes,
+            options=",".join(own),
+        )
+
+    def _command(self) -> str:
+        """Return the command that repeats the tests. The node depends on all of its types."""
+        request = self._request
+        node = request.node
+        return command_again(
+            *request.types,
+            board=request.board,
+            node=node,
+            engine=None if request.engine == "auto" else request.engine,
+            silent_seconds=request.silent_seconds,
+            distro=None if node else self._description.distro,
+            path=request.paths,
+            bus_bytes=None if node else self._description.bus_bytes,
+            seed=request.seed,
+            no_broken=not request.broken,
+            cases=request.most_cases,
+            reference=("none",) if request.references == () else request.references,
+        )
+
+    def _record(self, test: Test, result: Result) -> Record:
+        seconds, processor = result.watch.stop()
+        return Record(
+            test=test,
+            verdict=clipped_verdict(result.verdict),
+            note=result.note,
+            seconds=seconds,
+            cpu_seconds=processor,
+            cases=result.cases,
+            packets=result.packets,
+            metrics=result.metrics,
+            shape=result.shape,
+            written_by=("rosbags", *result.written_by) if result.cases else (),
+            command=result.command,
+        )
+
+    def _lines(self, record: Record) -> Iterator[str]:
+        """Yield the failures and the note of a type."""
+        yield from failure_of(f"{record.test.type} ({record.test.distro})", record)
+        if isinstance(record.verdict, Failed):
+            yield f"    again: {record.command}"
+        if record.note:
+            yield f"note: {record.test.type} ({record.test.distro}): {record.note}"

@@ -1,0 +1,17 @@
+# amaranth: UnusedElaboratable=no
+"""Fixtures that several tests of nodes share."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.node.build import build_node
+from firm_hdl.verify.cases.stimuli import stimuli
+from tests.node.samples import RELAY, read
+
+
+@pytest.fixture(scope="session")
+def relay(tmp_path_factory):
+    """The folder of `RELAY`; copy it before you change a file."""
+    out = tmp_path_factory.mktemp("with space")
+    return build_node(read(RELAY), out, stimuli=stimuli).folder

@@ -1,0 +1,227 @@
+# amaranth: UnusedElaboratable=no
+"""The benches of a node: they pass in GHDL and in Icarus Verilog, and find each fault."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+
+import pytest
+import yaml
+
+from firm_hdl.node.benches import link_script
+from firm_hdl.node.build import build_node
+from firm_hdl.verify.cases.stimuli import stimuli
+from tests.depth import by_depth
+from tests.node.accelerators import echo_text
+from tests.node.samples import RELAY, read
+from tests.tools import need
+
+UDP = "{kind: udp, data_bytes: 1}"
+WIDE_UDP = "{kind: udp, data_bytes: 4, host: 10.0.0.7, datagram_bytes: 32}"
+# Changes of the description, and the words of the PASS line that say what was compared.
+NODES = {
+    "stream": {},
+    **by_depth(
+        {}, {"udp": {"link": UDP}, "wide": {"link": WIDE_UDP}, "narrow": {"bus_bytes": "1"}}
+    ),
+    "loop": {"accelerator": "firm_hdl.node.loop:Loop", "link": UDP},
+}
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory, relay):
+    """Return a function that builds a node once."""
+    built = {"stream": relay}
+
+    def build(kind):
+        if kind not in built:
+            out = tmp_path_factory.mktemp("with space")
+            text = RELAY
+            if kind == "loop":
+                text = re.sub("  /alone.*\n", "", text)
+            description = read(text, **NODES[kind])
+            built[kind] = build_node(description, out, stimuli=stimuli).folder
+        return built[kind]
+
+    return build
+
+
+def run(folder, script, *arguments, **environment):
+    """Run a script from another folder; return its status and output."""
+    done = subprocess.run(
+        ["sh", str(folder / script), *arguments],
+        cwd="/",
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def in_ghdl(folder, ghdl, work, *, seed=1, stalls=40, patience=3000, frames=None):
+    more = {} if frames is None else {"FRAMES": str(frames)}
+    options = [f"-gseed={seed}", f"-gstalls={stalls}", f"-gpatience={patience}"]
+    return run(folder, "vhdl/run_ghdl.sh", *options, GHDL=ghdl, WORK=str(work), **more)
+
+
+def in_icarus(folder, iverilog, work, *, seed=1, stalls=40, patience=3000, frames=None):
+    more = {} if frames is None else {"FRAMES": str(frames)}
+    options = [f"+seed={seed}", f"+stalls={stalls}", f"+patience={patience}"]
+    path = os.pathsep.join([os.path.dirname(iverilog), os.environ["PATH"]])
+    return run(folder, "run_iverilog.sh", *options, PATH=path, WORK=str(work), **more)
+
+
+@pytest.mark.parametrize("kind", NODES)
+def test_the_benches_pass(kind, folders, ghdl, iverilog, tmp_path):
+    folder = folders(kind)
+    lines = (folder / "link.txt").read_text().splitlines()
+    sent, wanted = (sum(line.startswith(mark) for line in lines) for mark in "><")
+    assert wanted >= 15
+    line = rf"PASS node relay: {sent} frames sent, {wanted} frames compared, \d+ cycles\n"
+    for seed, stalls in by_depth([(7, 40)], [(7, 40), (8, 80), (9, 0)]):
+        for tool, command in ((in_ghdl, ghdl), (in_icarus, iverilog)):
+            work = tmp_path / f"{tool.__name__}{seed}"
+            status, output = tool(folder, command, work, seed=seed, stalls=stalls)
+            assert status == 0 and re.fullmatch(line, output), output
+
+
+def test_a_node_with_an_accelerator_has_no_records(folders):
+    folder = folders("loop")
+    records = json.loads((folder / "manifest.json").read_text())["records"]
+    assert records == {"built": False, "reason": "The accelerator takes all messages"}
+    assert not (folder / "systemverilog").exists()
+
+
+def changed_byte(lines):
+    """Change a byte of the message in the last frame of the loop."""
+    at = max(n for n, line in enumerate(lines) if line.startswith("< f10") and "0300" in line[:12])
+    lines[at] = lines[at][:-1] + ("0" if lines[at][-1] != "0" else "1")
+
+
+def changed_counter(lines):
+    """Change what the last gate has counted."""
+    at = max(n for n, line in enumerate(lines) if line.startswith("< "))
+    lines[at] = lines[at][:42] + "7f" + lines[at][44:]
+
+
+def one_more(lines):
+    """Expect the last frame twice."""
+    lines.append(max(line for line in lines if line.startswith("< ")))
+
+
+def one_fewer(lines):
+    """Do not expect the last frame."""
+    at = max(n for n, line in enumerate(lines) if line.startswith("< "))
+    del lines[at]
+
+
+def longer(lines):
+    """Expect a byte more."""
+    at = max(n for n, line in enumerate(lines) if line.startswith("< "))
+    lines[at] += "00"
+
+
+def not_sent(lines):
+    """Do not send a frame to the loop."""
+    del lines[next(n for n, line in enumerate(lines) if line.startswith("> f1010100"))]
+
+
+FAULTS = {
+    changed_byte: r"FAIL frame \d+ from the node \(line \d+ of the file\): byte 2[01] is \w\w inst",
+    changed_counter: r"FAIL frame \d+ from the node \(line \d+ of the file\): byte 20 is 0\d inst",
+    one_more: r"FAIL no frame in 3000 cycles: \d+ were sent, \d+ of \d+ came",
+    one_fewer: r"FAIL frame \d+ from the node.*: no such frame is expected",
+    longer: r"FAIL frame \d+ from the node \(line \d+ of the file\) has 32 bytes instead of 33",
+    not_sent: r"FAIL frame \d+ from the node",
+}
+
+
+@pytest.mark.parametrize("fault", by_depth([changed_byte, one_fewer], FAULTS))
+def test_each_fault_is_found(fault, folders, ghdl, iverilog, tmp_path):
+    folder = folders("stream")
+    lines = (folder / "link.txt").read_text().splitlines()
+    fault(lines)
+    frames = tmp_path / "frames.txt"
+    frames.write_text("\n".join([*lines, ""]))
+    for tool, command in ((in_ghdl, ghdl), (in_icarus, iverilog)):
+        status, output = tool(folder, command, tmp_path / tool.__name__, frames=frames)
+        assert status != 0 and "PASS" not in output, output
+        assert re.search(FAULTS[fault], output), output
+
+
+@pytest.mark.thorough
+def test_an_accelerator_with_a_fault_fails(folders, ghdl, iverilog, tmp_path):
+    """What the bench puts between subscription and publication changes a bit."""
+    folder = shutil.copytree(folders("stream"), tmp_path / "relay")
+    for name, before, after in (
+        ("relay_tb.v", "data = subscribe_in_1_data_data;", "data = ~subscribe_in_1_data_data;"),
+        ("vhdl/relay_tb.vhd", "<= subscribe_in_1_data_data;", "<= not subscribe_in_1_data_data;"),
+    ):
+        text = (folder / name).read_text()
+        assert text.count(before) == 1
+        (folder / name).write_text(text.replace(before, after))
+    for tool, command in ((in_ghdl, ghdl), (in_icarus, iverilog)):
+        status, output = tool(folder, command, tmp_path / tool.__name__)
+        assert status != 0 and "byte 20 is " in output, output
+
+
+@pytest.mark.thorough
+def test_what_an_accelerator_publishes_is_not_judged(ghdl, iverilog, tmp_path):
+    folder = build_node(read(echo_text()), tmp_path, stimuli=stimuli).folder
+    for tool, command in ((in_ghdl, ghdl), (in_icarus, iverilog)):
+        status, output = tool(folder, command, tmp_path / tool.__name__)
+        assert status == 0 and "frames compared, 0 not judged, " in output, output
+
+
+def test_frames_have_all_that_a_host_reads():
+    """Identity, messages of the loop, packets that are too short, and counters."""
+    description = read(RELAY)
+    script = link_script(description, stimuli, has_accelerator=False)
+    text = script.text
+    low = (description.fingerprint & 0xFFFF_FFFF).to_bytes(4, "little").hex()
+    assert f"01000000{low}" in text and "std_msgs/msg/UInt8" in text
+    assert script.loops == description.loops() and not script.ignores_topics
+    assert "'passed' of /in_1." in text and "'truncated' of /alone." in text
+    # Without a library of ROS there are control messages, and nothing else.
+    bare = link_script(description, None, has_accelerator=False).text
+    assert "/in_1" not in bare and bare.count("\n=") == 8
+    assert link_script(read(RELAY, link="uart"), stimuli, has_accelerator=False) is None
+
+
+def test_the_manifest_and_the_core_have_the_benches(relay):
+    folder = relay
+    bench = json.loads((folder / "manifest.json").read_text())["bench"]
+    files = [bench[key] for key in ("frames", "vhdl_files", "run_ghdl", "verilog_file")]
+    assert all((folder / file).exists() for file in [*files, bench["run_iverilog"]])
+    core = yaml.safe_load((folder / "relay.core").read_text().removeprefix("CAPI=2:\n"))
+    for target in core["targets"].values():
+        for each in target["filesets"]:
+            for file in core["filesets"][each]["files"]:
+                assert (folder / (file if isinstance(file, str) else next(iter(file)))).exists()
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("target", ["sim", "sim_verilog"])
+def test_fusesoc_runs_the_benches(target, folders, ghdl, iverilog, tmp_path):
+    need("FuseSoC", "here" if find_spec("fusesoc") else None)
+    command = [sys.executable, "-m", "fusesoc.main", "--cores-root", str(folders("stream"))]
+    path = os.pathsep.join([os.path.dirname(ghdl), os.path.dirname(iverilog), os.environ["PATH"]])
+    done = subprocess.run(
+        [*command, "run", f"--target={target}", "firm-hdl:node:relay"],
+        cwd=tmp_path,
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    output = done.stdout + done.stderr
+    assert done.returncode == 0 and "PASS node relay: " in output, output

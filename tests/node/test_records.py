@@ -1,0 +1,203 @@
+# amaranth: UnusedElaboratable=no
+"""A node with records of VHDL and structs of SystemVerilog: messages pass by their fields."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+
+import pytest
+
+from firm_hdl.errors import UserError
+from firm_hdl.node import Node, read_description_text
+from firm_hdl.node.benches import bench_files, link_script
+from firm_hdl.node.build import build_node
+from firm_hdl.node.records import message_ports
+from firm_hdl.node.records.messages import other_ports
+from firm_hdl.node.top import node_ports
+from firm_hdl.verify.cases.stimuli import stimuli
+from tests.depth import by_depth
+from tests.node.samples import LIBRARY, RELAY, read
+from tests.node.test_benches import run
+
+SMALL, LARGE = "std_msgs/msg/UInt16", "sensor_msgs/msg/PointCloud2"
+TYPE = by_depth(SMALL, LARGE)
+
+
+def description_of(kind=TYPE):
+    return read(RELAY.replace(f"{SMALL}}}", f"{kind}, memory_bytes: 1024}}"))
+
+
+@pytest.fixture
+def built(relay, tmp_path):
+    """Return a folder of its own."""
+    if TYPE == SMALL:
+        return shutil.copytree(relay, tmp_path / "relay")
+    return build_node(description_of(), tmp_path, stimuli=stimuli).folder
+
+
+def test_names_of_records_do_not_collide():
+    description = read(RELAY.replace("/alone", "/in_1/rdy"))
+    ports = node_ports(Node(description))
+    found = {each.member: each for each in message_ports(description, ports)}
+    assert [(each.name, each.ready) for each in found.values()] == [
+        ("subscribe_in_1", "subscribe_in_1_rdy_2"),
+        ("subscribe_in_1_rdy", "subscribe_in_1_rdy_rdy"),
+        ("publish_out_1", "publish_out_1_rdy"),
+    ]
+    own = {name for each in found.values() for name in each.ports}
+    others = [port.name for port in other_ports(ports, list(found.values()))]
+    assert sorted([*own, *others]) == sorted(port.name for port in ports)
+    assert found["publish.out_1"].direction == "serializer"
+
+
+def test_messages_of_services_are_ports_of_their_own():
+    text = "node: n\ndistro: jazzy\nserve:\n  /cal: {type: robot_msgs/srv/Calibrate}\n"
+    description = read_description_text(text, library=LIBRARY)
+    found = message_ports(description, node_ports(Node(description)))
+    assert [(each.name, each.member, each.direction) for each in found] == [
+        ("serve_cal_request", "serve.cal.request", "deserializer"),
+        ("serve_cal_response", "serve.cal.response", "serializer"),
+    ]
+
+
+def test_types_with_one_package_of_vhdl_are_refused(tmp_path):
+    for package, name in (("a_b", "C"), ("a", "b_C")):
+        folder = tmp_path / package / "msg"
+        folder.mkdir(parents=True)
+        (folder / f"{name}.msg").write_text("int8 x\n")
+    text = "node: n\nsubscribe:\n  /a: {type: a_b/C}\n  /b: {type: a/b_C}\ndistro: noetic\n"
+    description = read_description_text(text, paths=[tmp_path])
+    with pytest.raises(UserError, match="a/b_C and a_b/C would have one package of VHDL, 'a_"):
+        message_ports(description, node_ports(Node(description)))
+
+
+def looped(language, folder):
+    """Write a design around the node with records: `looped`, whose messages go back."""
+    description = description_of()
+    ports = node_ports(Node(description))
+    others = other_ports(ports, message_ports(description, ports))
+    records = json.loads((folder / "manifest.json").read_text())["records"]["ports"]
+    texts = {"vhdl": vhdl_text, "verilog": verilog_text}
+    script = link_script(description, stimuli, has_accelerator=False)
+    # The messages of the loop are inside.
+    script = type(script)(lines=script.lines, ignores_topics=False, loops=())
+    files = (folder / "vhdl" / "files.txt").read_text().split()
+    made = bench_files(
+        description,
+        "looped",
+        others,
+        script,
+        module="looped",
+        vhdl_ports={port.name: port.name for port in ports},
+        vhdl_files=[*files, "looped.vhd"],
+        header="",
+    )
+    name = {"vhdl": "vhdl/looped.vhd", "verilog": "looped.sv"}[language]
+    return {**made, name: texts[language](others, records)}
+
+
+def vhdl_text(others, records):
+    """Return the design in VHDL. The accelerator is an assignment of records."""
+    kinds = {1: "std_logic"}
+    lines = [
+        f"    {port.name} : {port.direction} "
+        + kinds.get(port.width, f"std_logic_vector({port.width - 1} downto 0)")
+        for port in others
+    ]
+    signals, ties = [], []
+    for each in records:
+        for name, kind in (("name", "message_type"), ("ready", "ready_type")):
+            signals.append(f"  signal {each[name]} : work.{each['package']}.{each[kind]};\n")
+        if each["message"] == "std_msgs/msg/UInt8":
+            base = each["message_type"].removesuffix("_t").upper()
+            ties.append(f"  {each['ready']} <= work.{each['package']}.{base}_ALL_READY;\n")
+    names = [port.name for port in others]
+    names += [each[key] for each in records for key in ("name", "ready")]
+    joined = ", ".join(f"{name} => {name}" for name in names)
+    return (
+        "library ieee;\nuse ieee.std_logic_1164.all;\nentity looped is\n  port (\n"
+        + ";\n".join(lines)
+        + ");\nend entity;\narchitecture sim of looped is\n"
+        + "".join(signals)
+        + f"begin\n  node : entity work.relay_records port map ({joined});\n"
+        + "  publish_out_1 <= subscribe_in_1;\n  subscribe_in_1_rdy <= publish_out_1_rdy;\n"
+        + "".join(ties)
+        + "end architecture;\n"
+    )
+
+
+def verilog_text(others, records):
+    """Return the design in SystemVerilog. The accelerator is an assignment of structs."""
+    ways = {"in": "input", "out": "output"}
+    lines = [f"{ways[port.direction]} logic [{port.width - 1}:0] {port.name}" for port in others]
+    text = "module looped (\n  " + ",\n  ".join(lines) + ");\n"
+    for each in records:
+        text += f"  {each['sv_package']}::{each['sv_message_type']} {each['name']};\n"
+        text += f"  {each['sv_package']}::{each['sv_ready_type']} {each['ready']};\n"
+        if each["message"] == "std_msgs/msg/UInt8":
+            text += f"  assign {each['ready']} = '1;\n"
+    text += "  assign publish_out_1 = subscribe_in_1;\n"
+    text += "  assign subscribe_in_1_rdy = publish_out_1_rdy;\n"
+    return text + "  relay_sv node (.*);\nendmodule\n"
+
+
+def write(folder, files):
+    for name, text in files.items():
+        (folder / name).write_text(text)
+
+
+def test_records_pass_messages_through_in_vhdl(built, ghdl, tmp_path):
+    files = looped("vhdl", built)
+    write(built, files)
+    work = {"GHDL": ghdl, "WORK": str(tmp_path / "work")}
+    status, output = run(built, "vhdl/run_ghdl.sh", "-gpatience=3000", **work)
+    assert status == 0 and output.startswith("PASS node looped: "), output
+    # A field that does not pass is found.
+    text = files["vhdl/looped.vhd"]
+    wrong = text.replace(
+        "  subscribe_in_1_rdy <=",
+        "  process (all) begin\n    publish_out_1 <= subscribe_in_1;\n"
+        "    publish_out_1.data.data <= (others => '1');\n  end process;\n"
+        "  subscribe_in_1_rdy <=",
+    ).replace("  publish_out_1 <= subscribe_in_1;\n  process", "  process")
+    if TYPE == SMALL:
+        assert wrong != text
+        write(built, {"vhdl/looped.vhd": wrong})
+        status, output = run(built, "vhdl/run_ghdl.sh", "-gpatience=3000", **work)
+        assert status != 0 and "byte 20 is ff instead of 00" in output, output
+
+
+def test_structs_have_no_warnings(built, verilator):
+    folder = built / "systemverilog"
+    command = [verilator, "--lint-only", "-Wall", "../waivers.vlt", "waivers.vlt"]
+    done = subprocess.run(
+        [*command, "-F", "files.f", "--top-module", "relay_sv"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert (done.returncode, done.stdout + done.stderr) == (0, "")
+
+
+@pytest.mark.thorough
+def test_structs_pass_messages_through_in_systemverilog(built, verilator, tmp_path):
+    write(built, looped("verilog", built))
+    sources = [str(built / name) for name in ("looped.sv", "looped_tb.v")]
+    command = [verilator, "--binary", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style", "-O0"]
+    command += ["-F", str(built / "systemverilog" / "files.f"), *sources]
+    options = {"cwd": tmp_path, "capture_output": True, "text": True, "timeout": 600}
+    done = subprocess.run(
+        [*command, "--top-module", "looped_tb", "-Mdir", "made"],
+        **options,
+        env={**os.environ, "OPT_FAST": "-O0"},
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    (tmp_path / "link.txt").write_text((built / "link.txt").read_text())
+    done = subprocess.run([tmp_path / "made" / "Vlooped_tb"], **options, check=False)
+    assert "PASS node looped: " in done.stdout, done.stdout + done.stderr
