@@ -64,7 +64,8 @@ MAY_IMPORT["equivalence"] = {
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
 MAY_IMPORT["formal"] = {
-    *("arguments", "equivalence", "frontend", "gateware", "jobs", "terminal"),
+    *("arguments", "equivalence", "jobs", "terminal"),
+    *("model", "frontend", "wire", "plan", "gateware"),
 }
 MAY_IMPORT["fuzz"] = {
     *("arguments", "errors", "jobs", "terminal"),

@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from firm_hdl.formal.blocks import converters, fifos, judges, serializers, slices
+from firm_hdl.formal.blocks import (
+    claims,
+    converters,
+    fifos,
+    judges,
+    records,
+    serializers,
+    slices,
+    tail_drop,
+)
 from firm_hdl.formal.catalog import Study
 
 __all__ = ["all_studies"]
@@ -10,5 +19,5 @@ __all__ = ["all_studies"]
 
 def all_studies() -> list[Study]:
     """Return all studies, in the order of the table."""
-    modules = (slices, fifos, converters, serializers, judges)
+    modules = (slices, fifos, tail_drop, claims, records, converters, serializers, judges)
     return [study for module in modules for study in module.studies()]
