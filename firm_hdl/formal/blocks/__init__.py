@@ -5,6 +5,7 @@ from __future__ import annotations
 from firm_hdl.formal.blocks import (
     claims,
     converters,
+    drop_gate,
     fifos,
     judges,
     records,
@@ -19,5 +20,15 @@ __all__ = ["all_studies"]
 
 def all_studies() -> list[Study]:
     """Return all studies, in the order of the table."""
-    modules = (slices, fifos, tail_drop, claims, records, converters, serializers, judges)
+    modules = (
+        slices,
+        fifos,
+        tail_drop,
+        claims,
+        records,
+        converters,
+        serializers,
+        judges,
+        drop_gate,
+    )
     return [study for module in modules for study in module.studies()]

@@ -33,7 +33,7 @@ from firm_hdl.gateware.parse.judge import Judge
 from firm_hdl.gateware.parser import PacketSizes, Parser
 from firm_hdl.gateware.signatures import Status
 
-__all__ = ["BITS", "MOST_MESSAGE", "Statuses", "judge_packets", "studies"]
+__all__ = ["studies"]
 
 _DATA = ("count", "one status", "statuses", "sizes", "order", "nothing extra")
 
@@ -42,7 +42,7 @@ MOST_MESSAGE = 7
 """`max_message_bytes` of strings: their longest has 3 bytes."""
 
 
-def judge_packets(scene: Scene, packets: Any, name: str) -> tuple[Value, Value]:
+def _judged(scene: Scene, packets: Any, name: str) -> tuple[Value, Value]:
     """Return the size of the packet whose last beat is offered, and its status.
 
     `std_msgs/Bool` and `std_msgs/String` of ROS 1 on a bus of a byte.
@@ -69,7 +69,7 @@ def judge_packets(scene: Scene, packets: Any, name: str) -> tuple[Value, Value]:
     return size, Value.cast(Mux(size < 4, Status.TRUNCATED, code))
 
 
-class Statuses:
+class _Statuses:
     """The status of one packet, which the surroundings choose as it ends."""
 
     def __init__(self, scene: Scene, ends: Value, port: Any, noted: Value):
@@ -100,9 +100,9 @@ def _parser(name: str, depth: int) -> Study:
         packet_source(scene, block.packets, "i")
         ready = sink(scene, block.status, "status")
         rules(scene, block.status, "status", Value.cast(block.sizes))
-        size, code = judge_packets(scene, block.packets, name)
+        size, code = _judged(scene, block.packets, name)
         ends = fires(block.packets) & block.packets.payload.last
-        status = Statuses(scene, ends, block.status, Cat(size, code))
+        status = _Statuses(scene, ends, block.status, Cat(size, code))
         got = Value.cast(block.status.payload)
         scene.claim("statuses", ~status.hits | (got == status.noted[BITS:]))
         scene.claim("sizes", ~status.hits | (block.sizes.packet == status.noted[:BITS]))
@@ -151,10 +151,10 @@ def _gate(name: str, depth: int, beats: int) -> Study:
         rules(scene, out, "o", block.size)
         rules(scene, block.status, "status")
         packet_rules(scene, out, "o")
-        size, code = judge_packets(scene, came, name)
+        size, code = _judged(scene, came, name)
         final = Mux((code == 0) & (size > beats), Value.cast(GateStatus.LARGE), code)
         ends = fires(came) & came.payload.last
-        status = Statuses(scene, ends, block.status, final)
+        status = _Statuses(scene, ends, block.status, final)
         scene.claim("statuses", ~status.hits | (Value.cast(block.status.payload) == status.noted))
         tracker = BeatTracker(scene, "beat", 63)
         beat, gone = Value.cast(came.payload), Value.cast(out.payload)
