@@ -47,7 +47,7 @@ MAY_IMPORT["export"] = {
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
-    *("firm_hdl", "errors", "files", "names", "vhdl", "rtps"),
+    *("firm_hdl", "errors", "files", "names", "rtps"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
     *("sim", "export"),
 }
@@ -81,7 +81,7 @@ MAY_IMPORT["bench"] = {
 }
 MAY_IMPORT["cli"] = {
     *("firm_hdl", "arguments", "errors", "terminal"),
-    *("model", "frontend", "plan", "estimates", "export"),
+    *("names", "model", "frontend", "plan", "estimates", "export"),
     *("identity", "metrics", "node", "covering", "verify", "equivalence", "bench"),
 }
 # The public interface of the package.
