@@ -17,7 +17,7 @@ FAST = [
     *("router/order", "router/counters", "fifo-wait-1/one-outcome", "width-1-4/count"),
     *("gate-bool/input-moves", "parser-string/one-status"),
     *("tail-drop/room", "claims-noetic/pending", "record-reader/order", "record-writer/one-each"),
-    "gate-drop/output-moves",
+    *("gate-drop/output-moves", "crossing/nothing-extra"),
 ]
 
 

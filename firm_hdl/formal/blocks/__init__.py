@@ -5,6 +5,7 @@ from __future__ import annotations
 from firm_hdl.formal.blocks import (
     claims,
     converters,
+    crossings,
     drop_gate,
     fifos,
     judges,
@@ -24,6 +25,7 @@ def all_studies() -> list[Study]:
         slices,
         fifos,
         tail_drop,
+        crossings,
         claims,
         records,
         converters,
