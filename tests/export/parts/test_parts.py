@@ -180,6 +180,55 @@ def test_a_crossing_has_two_clocks():
     assert names[:4] == ["s_axis_aclk", "s_axis_aresetn", "m_axis_aclk", "m_axis_aresetn"]
 
 
+def leaves_after_reset(cycles, phase):
+    """Return whether beats leave a crossing after a reset of some cycles of the writing clock.
+
+    The reading clock has a fifth of its rate; `phase` says when the reset begins.
+    """
+    top, seen = PartTop(make_part("crossing", bus_bytes=1, beats=8)), []
+    resets = (top.s_axis_aresetn, top.m_axis_aresetn)
+    number = 0
+
+    async def bench(ctx):
+        async def steps(count):
+            nonlocal number
+            for _ in range(count):
+                number += 1
+                ctx.set(top.s_axis_aclk, 1)
+                ctx.set(top.m_axis_aclk, number % 5 == 0)
+                await ctx.delay(1e-7)
+                ctx.set(top.s_axis_aclk, 0)
+                ctx.set(top.m_axis_aclk, 0)
+                await ctx.delay(1e-7)
+                seen.append(ctx.get(top.m_axis_tvalid))
+
+        for reset in resets:
+            ctx.set(reset, 1)
+        ctx.set(top.s_axis_tvalid, 1)
+        await steps(40 + phase)
+        assert any(seen)
+        ctx.set(top.s_axis_tvalid, 0)
+        for level, count in ((0, cycles), (1, 60)):
+            for reset in resets:
+                ctx.set(reset, level)
+            seen.clear()
+            await steps(count)
+
+    simulator = Simulator(top)
+    simulator.add_testbench(bench)
+    simulator.run()
+    return any(seen)
+
+
+@pytest.mark.parametrize("phase", range(5))
+def test_a_reset_of_two_edges_of_the_slower_clock_empties_a_crossing(phase):
+    assert not leaves_after_reset(10, phase)
+
+
+def test_a_shorter_reset_may_not_empty_a_crossing():
+    assert any(leaves_after_reset(4, phase) for phase in range(5))
+
+
 def test_the_command_writes_a_part_once(tmp_path, capsys):
     words = ["part", "crossing", "--bus-bytes", "1", "--out", str(tmp_path)]
     assert main(words) == 0 and main(words) == 0
