@@ -33,7 +33,7 @@ _PARAMETERS = {
 
 # Default, least and largest number, and the help text.
 _NUMBERS = {
-    "memory_bytes": (1 << 16, 1, 1 << 24, "size of the memory, a power of two"),
+    "memory_bytes": (1 << 16, 1, 1 << 20, "size of the memory, a power of two"),
     "packets": (64, 1, 1 << 12, "most packets that are stored"),
     "beats": (16, 1, 1 << 16, "beats in the FIFO, a power of two"),
     "inputs": (2, 1, 64, "number of inputs"),

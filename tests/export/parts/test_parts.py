@@ -262,7 +262,7 @@ def test_parameters_that_no_part_has_are_refused(words, message, tmp_path, capsy
     [
         ("width --in-bytes 3 --out-bytes 4", "invalid choice: 3"),
         ("width --in-bytes 4", "required: --out-bytes"),
-        ("fifo --memory-bytes 33554432", "must be from 1 to 16777216, not 33554432"),
+        ("fifo --memory-bytes 33554432", "must be from 1 to 1048576, not 33554432"),
         ("fifo --name entity", "'entity' is not a name in VHDL and Verilog"),
         ("gates a/B", "invalid choice: 'gates'"),
     ],
