@@ -47,7 +47,7 @@ MAY_IMPORT["export"] = {
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
-    *("firm_hdl", "errors", "files", "names", "vhdl", "rtps"),
+    *("firm_hdl", "errors", "files", "names", "rtps"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
     *("sim", "export"),
 }
@@ -64,7 +64,8 @@ MAY_IMPORT["equivalence"] = {
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
 MAY_IMPORT["formal"] = {
-    *("arguments", "equivalence", "frontend", "gateware", "jobs", "terminal"),
+    *("arguments", "equivalence", "jobs", "terminal"),
+    *("model", "frontend", "wire", "plan", "gateware"),
 }
 MAY_IMPORT["fuzz"] = {
     *("arguments", "errors", "jobs", "terminal"),
@@ -80,7 +81,7 @@ MAY_IMPORT["bench"] = {
 }
 MAY_IMPORT["cli"] = {
     *("firm_hdl", "arguments", "errors", "terminal"),
-    *("model", "frontend", "plan", "estimates", "export"),
+    *("names", "model", "frontend", "plan", "estimates", "export"),
     *("identity", "metrics", "node", "covering", "verify", "equivalence", "bench"),
 }
 # The public interface of the package.

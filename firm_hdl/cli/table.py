@@ -50,6 +50,11 @@ COMMANDS: dict[str, Command] = {
         help="print how many cycles packets take, and which clock a line rate needs",
         module="building",
     ),
+    "part": Command(
+        help="write a part that stores, checks, merges or routes packets",
+        module="parts",
+        has_origins=False,
+    ),
     "node": Command(
         help="write a design with several topics behind one link, print its figures, or run it "
         "in a graph of ROS",

@@ -31,6 +31,7 @@ __all__ = [
     "field_of",
     "leaf_names",
     "ports_of",
+    "trailing_ones",
 ]
 
 MAX_INPUT_BITS = MAX_CELL_BITS
@@ -239,7 +240,7 @@ class Top(wiring.Component):
 
     def _packets_in(self, m: Module) -> None:
         packets = self.core.packets
-        count = Mux(self.s_axis_tlast, _ones(self.s_axis_tkeep), self.core.plan.bus_bytes)
+        count = Mux(self.s_axis_tlast, trailing_ones(self.s_axis_tkeep), self.core.plan.bus_bytes)
         m.d.comb += [
             Value.cast(packets.payload.data).eq(self.s_axis_tdata),
             packets.payload.count.eq(count),
@@ -284,7 +285,7 @@ class Top(wiring.Component):
             yield connect(interface.ready, getattr(self, f"{base}_ready"), inwards=not inwards)
 
 
-def _ones(keep: Value) -> Value:
+def trailing_ones(keep: Value) -> Value:
     """Return the number of ones from bit 0 up to the first zero."""
     lanes = len(keep)
     # One-hot; bits above the first zero have no effect.

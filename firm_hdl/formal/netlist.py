@@ -33,7 +33,8 @@ def write_aiger(scene: Scene, folder: Path, tools: Tools, *, name: str = "scene"
     """Write a scene in binary AIGER; its outputs are the claims, in their order."""
     fragment = Fragment.get(scene, None)
     fragment.add_domains(ClockDomain("sync", reset_less=True))
-    _mark_undefined(fragment)
+    if not scene.is_configured:
+        _mark_undefined(fragment)
     text = rtlil.convert(fragment, name="scene", ports=scene.ports, emit_src=False)
     (folder / f"{name}.il").write_text(text, encoding="utf-8")
     script = _SCRIPT.format(name=name, undefined=_UNDEFINED, clocks="")

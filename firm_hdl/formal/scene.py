@@ -36,6 +36,9 @@ class Scene(Elaboratable):
         By name of the claim: 1 in a cycle that breaks it, while all that was assumed holds.
     first : Signal
         High in the first cycle.
+    is_configured : bool
+        Registers without a reset begin with their initial values, as after the configuration of an
+        FPGA. Else they begin with any value, as after a reset. `build` may set it.
     """
 
     def __init__(self, build: Build):
@@ -43,6 +46,7 @@ class Scene(Elaboratable):
         self.inputs: list[Signal] = []
         self.claims: dict[str, Signal] = {}
         self.first = Signal(init=1, name="first")
+        self.is_configured = False
         self._assumed: list[Value] = []
         self._wrong: dict[str, Value] = {}
         build(self)

@@ -77,7 +77,8 @@ def decide(
         return Answer(result="undecided", seconds=time.monotonic() - start)
     seconds = time.monotonic() - start
     found, frames = words[0], int(words[1])
-    if found == "snl_SAT" and frames >= 0:
+    # The number of frames is -1 if the counterexample has one cycle.
+    if found == "snl_SAT" and len(words) > 4:
         inputs = _inputs(answer_of("ABC", folder / f"{name}.cex"))
         return Answer(result="broken", cycles=int(words[4]) + 1, inputs=inputs, seconds=seconds)
     proved = found == "snl_UNSAT" if method == "PDR" else frames + 1 >= depth

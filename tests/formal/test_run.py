@@ -16,6 +16,8 @@ FAST = [
     *("slice/valid-stays", "slice/order", "arbiter/whole-packets", "arbiter/turns"),
     *("router/order", "router/counters", "fifo-wait-1/one-outcome", "width-1-4/count"),
     *("gate-bool/input-moves", "parser-string/one-status"),
+    *("tail-drop/room", "claims-noetic/pending", "record-reader/order", "record-writer/one-each"),
+    *("gate-drop/output-moves", "crossing/nothing-extra"),
 ]
 
 
@@ -72,6 +74,19 @@ def test_answers_count_cycles(monkeypatch, method, depth, result):
     if result == "broken":
         assert answer.cycles == 6
         assert answer.inputs.split()[0] == "go@0"
+
+
+def wrong_at_once(scene):
+    """A claim that an input breaks in the first cycle only."""
+    scene.claim("low", ~(scene.free(1, "go") & scene.first))
+
+
+@pytest.mark.parametrize("method", ["PDR", "BMC"])
+def test_a_counterexample_may_have_one_cycle(monkeypatch, method):
+    study = Study("wrong", "", wrong_at_once, (Claim("low", NO_BUG, method, 3),))
+    monkeypatch.setattr(run, "all_proofs", lambda: {"wrong": run.Proof(study, study.claims[0])})
+    answer = prove("wrong")
+    assert (answer.result, answer.cycles, answer.inputs) == ("broken", 1, "go@0")
 
 
 def test_bug_goes_away_again():

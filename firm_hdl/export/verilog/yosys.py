@@ -23,7 +23,7 @@ from amaranth.back import rtlil
 
 from firm_hdl.errors import UserError
 from firm_hdl.export.top import Top
-from firm_hdl.export.verilog.memories import settled_memories
+from firm_hdl.export.verilog.memories import settled_memories, short_initials
 from firm_hdl.export.verilog.ports import named_ports
 from firm_hdl.export.verilog.vectors import whole_vectors
 from firm_hdl.names.identifiers import first_free
@@ -145,7 +145,7 @@ def to_verilog(top: Top | str, *, module: str, header: str) -> str:
     # The first line names the version of Yosys, which is in the manifest.
     _, _, body = text.partition("\n")
     # A wire of width 0 is never used, and Verilog would read its range as two bits.
-    body = _named_choices(_EMPTY_WIRE.sub("", body))
+    body = short_initials(_named_choices(_EMPTY_WIRE.sub("", body)))
     comment = "".join(f"// {line}".rstrip() + "\n" for line in header.splitlines())
     return f"{comment}{body}"
 

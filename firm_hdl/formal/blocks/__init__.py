@@ -2,7 +2,18 @@
 
 from __future__ import annotations
 
-from firm_hdl.formal.blocks import converters, fifos, judges, serializers, slices
+from firm_hdl.formal.blocks import (
+    claims,
+    converters,
+    crossings,
+    drop_gate,
+    fifos,
+    judges,
+    records,
+    serializers,
+    slices,
+    tail_drop,
+)
 from firm_hdl.formal.catalog import Study
 
 __all__ = ["all_studies"]
@@ -10,5 +21,16 @@ __all__ = ["all_studies"]
 
 def all_studies() -> list[Study]:
     """Return all studies, in the order of the table."""
-    modules = (slices, fifos, converters, serializers, judges)
+    modules = (
+        slices,
+        fifos,
+        tail_drop,
+        crossings,
+        claims,
+        records,
+        converters,
+        serializers,
+        judges,
+        drop_gate,
+    )
     return [study for module in modules for study in module.studies()]

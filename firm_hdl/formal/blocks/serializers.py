@@ -11,6 +11,7 @@ from firm_hdl.formal.blocks.converters import (
     BOOL,
     DATA_DEPTH,
     JOY,
+    JOY_CDR,
     FixedType,
 )
 from firm_hdl.formal.bugs import Bug
@@ -63,7 +64,7 @@ _BUGS = {
     "layout": Bug(_Pack._send, "payload.last.eq(is_last)", "payload.last.eq(~is_last)"),
     "values": Bug(_Pack._send, "Value.cast(payload.data).eq(beat)", "payload.data.eq(~beat)"),
     "statuses": Bug(_Collect._judge, "c.status.valid.eq(1)", "c.status.valid.eq(c.status.valid)"),
-    "wire order": Bug(_Collect._serve, "state.free & ~any_of(missing) &", "state.free &"),
+    "wire order": Bug(_Collect._take, "state.free & ~earlier", "state.free"),
     "packets move": Bug(_Pack._send, "self.complete.eq(self.complete_next)", "self.complete.eq(0)"),
 }
 
@@ -152,4 +153,8 @@ def _check_statuses(scene: Scene, leaves: list[Any], block: Serializer) -> None:
 
 def studies() -> list[Study]:
     """Return the studies of serializers."""
-    return [_serializer(BOOL, 1, 15), _serializer(JOY, 2, 14)]
+    return [
+        _serializer(BOOL, 1, 15),
+        _serializer(JOY, 2, 14),
+        _serializer(JOY_CDR, 4, 16),
+    ]

@@ -24,7 +24,8 @@ class PacketCrossing(wiring.Component):
     All outputs depend on registers of their own clock domain only. A reset of the writing domain
     empties the FIFO and ends in the reading domain some cycles later. It cuts a packet that is
     being sent, without a last beat, so the reading side has to be reset, too. A reset of the
-    reading domain alone discards nothing.
+    reading domain alone discards nothing. A reset of the writing domain has to last for 2 edges of
+    the reading clock: after a shorter one, beats from before it may leave.
 
     Parameters
     ----------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import pytest
 
 from firm_hdl.equivalence import find_tools
 from firm_hdl.export.verilog import to_verilog
-from firm_hdl.export.verilog.memories import settled_memories
+from firm_hdl.export.verilog.memories import settled_memories, short_initials
 from firm_hdl.jobs import ProgramMissingError
 from tests.memory_designs import DESIGNS, WHOLE, Stores, rtlil_of, simulated
 from tests.tools import need
@@ -157,3 +158,34 @@ def _cells_on_ecp5(text: str, folder: Path) -> list[str]:
         if "top" in m["attributes"]
     )
     return [cell["type"] for cell in module["cells"].values()]
+
+
+def _words(count: int, last: str = "2'h0") -> str:
+    """Return a memory as Yosys writes it."""
+    words = [*["2'h0"] * (count - 1), last]
+    lines = "".join(f"    kept[{number}] = {word};\n" for number, word in enumerate(words))
+    return f"  reg [1:0] kept [{count - 1}:0];\n  initial begin\n{lines}  end\n"
+
+
+def _starts_at_zero(text: str, count: int, standard: str, folder: Path) -> bool:
+    (folder / "t.v").write_text(
+        f"module t;\n{text}  integer n, bad;\n  initial begin\n    #1 bad = 0;\n"
+        f"    for (n = 0; n < {count}; n = n + 1) if (kept[n] !== 0) bad = 1;\n"
+        "    $display(bad);\n  end\nendmodule\n"
+    )
+    _run(folder, need("iverilog", shutil.which("iverilog")), standard, "-Wall", "-o", "t", "t.v")
+    done = subprocess.run(["vvp", "t"], cwd=folder, capture_output=True, text=True, timeout=60)
+    return int(done.stdout) == 0
+
+
+@pytest.mark.parametrize("standard", STANDARDS)
+def test_a_loop_sets_all_words_of_a_large_memory(standard: str, tmp_path: Path) -> None:
+    text = short_initials(_words(65))
+    assert len(text.splitlines()) == 5
+    assert _starts_at_zero(text, 65, standard, tmp_path)
+    assert not _starts_at_zero(text.replace("< 65", "< 64"), 65, standard, tmp_path)
+
+
+@pytest.mark.parametrize("text", [_words(64), _words(65, last="2'h1")])
+def test_other_memories_have_a_line_for_each_word(text: str) -> None:
+    assert short_initials(text) == text

