@@ -115,7 +115,7 @@ def _parser(name: str, depth: int) -> Study:
             VerdictQueue.elaborate, "takes.eq(~first.ends | self", "takes.eq(1 | self"
         ),
         "payload stays": Bug(Parser.elaborate, "with m.If(verdicts.moves):", "with m.If(1):"),
-        "one status": Bug(Parser.elaborate, "valid.eq(verdicts.first.ends)", "valid.eq(1)"),
+        "one status": Bug(VerdictQueue.elaborate, "second.ends.eq(0)", "second.ends.eq(1)"),
         "statuses": Bug(PacketJudge._judge, "cut, Status.TRUNCATED", "cut, Status.LENGTH"),
         "sizes": Bug(PacketSizes.elaborate, "self.beats.eq(0), over", "self.beats.eq(1), over"),
         "status in time": Bug(Judge._find, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
