@@ -42,6 +42,9 @@ BITS = 6
 MOST_MESSAGE = 7
 """`max_message_bytes` of strings: their longest has 3 bytes."""
 
+GATE_DEPTH = DATA_DEPTH + 2
+"""Cycles of claims about a gate that compare data: a packet is inside longer than in a parser."""
+
 
 def _judged(scene: Scene, packets: Any, name: str) -> tuple[Value, Value]:
     """Return the size of the packet whose last beat is offered, and its status.
@@ -182,7 +185,7 @@ def _gate(name: str, depth: int, beats: int) -> Study:
         f"`PacketGate` of {name}, 1 byte, memory of {beats} bytes",
         build,
         tuple(
-            Claim(claim, bug, "BMC", DATA_DEPTH if claim in _DATA else depth)
+            Claim(claim, bug, "BMC", GATE_DEPTH if claim in _DATA else depth)
             for claim, bug in bugs.items()
         ),
     )
