@@ -24,7 +24,7 @@ from tests.node.test_core import CoreBench
 from tests.node.traffic import messages_of
 
 BUS = 8
-PASSED = 13
+PASSED = 14
 """Cycles from the last beat of a packet on `received` to its first beat at a subscription."""
 SENT = 7
 """Cycles from the last beat of a publication to its first beat on `sent`."""

@@ -172,7 +172,7 @@ def _gate(name: str, depth: int, beats: int) -> Study:
         "count": Bug(
             read, "packets.payload.eq(self.word)", "packets.payload.eq(~self.word.as_value())"
         ),
-        "one status": Bug(_Verdicts.give_statuses, "is_due.eq(enters)", "is_due.eq(1)"),
+        "one status": Bug(_Verdicts.give_statuses, "is_due.eq(leaves)", "is_due.eq(1)"),
         "statuses": Bug(_Verdicts._store, "status.ready.eq(self.ends)", "status.ready.eq(1)"),
         "order": Bug(write, "Mux(self.rewinds, self.kept, at + 1)", "at + 1"),
         "nothing extra": Bug(_Verdicts._store, "(status.payload != Status.OK)", "0"),

@@ -14,7 +14,7 @@ from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, che
 from firm_hdl.gateware.packets.status import GateStatus, GateStatusSignature
 from firm_hdl.gateware.packets.tail_drop import MOST_DROPPED, TailDrop, tail_drop_layout
 from firm_hdl.gateware.parser import Parser, parser_plan
-from firm_hdl.gateware.signatures import PacketSignature, Status
+from firm_hdl.gateware.signatures import PacketSignature, Status, packet_layout
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 from firm_hdl.plan.geometry import ring_beats
@@ -47,9 +47,9 @@ class PacketGate(wiring.Component):
     the packets that are not `OK`. Forwarded packets are unchanged and in order. So
     behind a gate, the status of a :class:`Deserializer` with the same parameters is always `OK`.
 
-    Both the first beat of a packet and its status are valid 4 cycles after the parser's status: 8
+    Both the first beat of a packet and its status are valid 5 cycles after the parser's status: 9
     cycles after the transfer of the last beat, if one step of the parser's plan ends in this beat,
-    and nothing is before the packet; 12 cycles with `"drop"`. A beat is taken per cycle and leaves
+    and nothing is before the packet; 13 cycles with `"drop"`. A beat is taken per cycle and leaves
     per cycle, without gaps between packets, as long as there are no more steps than beats.
 
     A bad packet occupies the gate for as many cycles as it has beats, or the parser has steps
@@ -220,6 +220,9 @@ class _Verdicts:
         # The first beat of a packet is next.
         self.starts = Signal(name="starts", init=1)
         self.ends = Signal(name="ends")
+        # The beat that the memory takes next, in a register: whether it has room depends on it.
+        self.judged = Signal(packet_layout(gate.bus_bytes), name="judged_beat", reset_less=True)
+        self.has_judged = Signal(name="has_judged")
         # A packet of which beats were dropped ends now.
         self.overrun = Signal(name="overrun")
         m.d.comb += waiting.r_en.eq(~self.has_head | self.takes)
@@ -230,17 +233,24 @@ class _Verdicts:
     def _store(self) -> None:
         """Give beats to the memory; the last one of a packet only with the verdict."""
         m, head, fifo, status = self.m, self.head, self.fifo, self.parser.status
-        store = fifo.packets_in
+        store, offers, aborts = fifo.packets_in, Signal(name="offers"), Signal(name="aborts")
         m.d.comb += [
-            store.payload.eq(head.beat),
-            store.valid.eq(
+            offers.eq(
                 self.has_head & ~self.report_due & (~head.beat.last | (status.valid & self.room))
             ),
-            fifo.abort.eq((status.payload != Status.OK) | self.aborted),
-            self.takes.eq(store.valid & store.ready),
+            store.payload.eq(self.judged),
+            store.valid.eq(self.has_judged),
+            fifo.abort.eq(aborts),
+            self.takes.eq(offers & (~self.has_judged | store.ready)),
             self.ends.eq(self.takes & head.beat.last),
             status.ready.eq(self.ends),
         ]
+        with m.If(~self.has_judged | store.ready):
+            m.d.sync += [
+                self.has_judged.eq(offers),
+                self.judged.eq(head.beat),
+                aborts.eq((status.payload != Status.OK) | self.aborted),
+            ]
         with m.If(self.takes):
             m.d.sync += self.starts.eq(head.beat.last)
 
@@ -283,17 +293,21 @@ class _Verdicts:
             ]
 
     def give_statuses(self) -> None:
-        """Join the parser's verdict with what the memory did, 2 cycles later."""
+        """Join the parser's verdict with what the memory did, 2 cycles after it took the packet."""
         m, gate, parsed = self.m, self.gate, self.parser.status.payload
         unsent = Signal(range(2 * STATUSES), name="unsent")
         enters, is_due, is_ready = Signal(name="enters"), Signal(name="is_due"), Signal(name="due")
         code, judged = Signal(GateStatus, name="code"), Signal(GateStatus, name="judged")
-        final = Signal(GateStatus, name="final")
+        final, given = Signal(GateStatus, name="final"), Signal(GateStatus, name="given")
+        reported, leaves = Signal(name="reported_before"), Signal(name="leaves")
+        store = self.fifo.packets_in
         bits = GateStatus.as_shape().width
         m.submodules.statuses = statuses = SyncFIFOBuffered(width=bits, depth=STATUSES + 1)
         m.d.comb += [
             self.room.eq(unsent < STATUSES),
             enters.eq(self.ends | self.reports),
+            # If packets are dropped whole, the memory never waits: `given` is of this packet.
+            leaves.eq(reported | (store.valid & store.ready & store.payload.last)),
             final.eq(judged),
             statuses.w_en.eq(is_ready),
             statuses.w_data.eq(Value.cast(final)),
@@ -303,13 +317,16 @@ class _Verdicts:
         ]
         m.d.sync += [
             unsent.eq(unsent + enters - (gate.status.valid & gate.status.ready)),
-            is_due.eq(enters),
-            Value.cast(code).eq(
-                Mux(self.reports | self.aborted, Value.cast(GateStatus.OVERRUN), Value.cast(parsed))
-            ),
+            reported.eq(self.reports),
+            is_due.eq(leaves),
+            code.eq(given),
             is_ready.eq(is_due),
             judged.eq(code),
         ]
+        with m.If(enters):
+            m.d.sync += Value.cast(given).eq(
+                Mux(self.reports | self.aborted, Value.cast(GateStatus.OVERRUN), Value.cast(parsed))
+            )
         # `outcome` is of this packet, if it was not aborted.
         with m.If((judged == GateStatus.OK) & (self.fifo.outcome == Outcome.FULL)):
             m.d.comb += final.eq(GateStatus.FULL)

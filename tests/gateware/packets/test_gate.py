@@ -138,7 +138,7 @@ def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_fe
     assert run.times[0] - run.taken[0] + 1 <= own + 16 + LATENCY
     if bus_bytes == 8:
         # The parser takes 15 cycles for a bomb, and 3 for the beats of the other packet.
-        assert run.times == [23, 26, 41, 56, 59]
+        assert run.times == [24, 27, 42, 57, 60]
     # The delays of many bombs do not add up.
     many = GateRun(gate, [BOMB] * 20 + [NO_BOMB])
     steps = len(BOMB) // 4 + 4
