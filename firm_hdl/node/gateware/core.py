@@ -10,8 +10,6 @@ from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware import PacketArbiter, PacketFifo, PacketGate, PacketRouter, PacketSignature
-from firm_hdl.gateware.packets.slice import StreamSlice
-from firm_hdl.gateware.signatures import packet_layout
 from firm_hdl.node.control import (
     CONTROL_BYTES,
     COUNTERS_FROM,
@@ -68,7 +66,7 @@ class NodeCore(wiring.Component):
 
     A beat is taken per cycle and leaves per cycle. From the last beat of a packet on `received` to
     its first one at a subscription: 1 cycle more than in a :class:`PacketGate`. From the last beat
-    of a publication to the first one on `sent`: 7 cycles, if it is the turn of the publication.
+    of a publication to the first one on `sent`: 6 cycles, if it is the turn of the publication.
 
     Outputs depend on registers only. One clock domain, `sync`; its reset discards all packets
     inside, and sets the time to 0.
@@ -240,28 +238,18 @@ class NodeCore(wiring.Component):
 
     def _collect(self, m: Module, control: ControlUnit) -> None:
         """Send the packets of all topics, in turn."""
-        bus, count = self.description.bus_bytes, 1 + len(self._outputs)
-        m.submodules.arbiter = arbiter = PacketArbiter(bus, count, side_bits=TAG_BITS + LENGTH_BITS)
+        count = 1 + len(self._outputs)
+        m.submodules.arbiter = arbiter = PacketArbiter(
+            self.description.bus_bytes, count, side_bits=TAG_BITS + LENGTH_BITS
+        )
         parts = [(control, control.tag_out, Const(CONTROL_BYTES, LENGTH_BITS))]
         parts += [(part, tag, part.size) for part, tag in self._outputs.values()]
         for number, (part, tag, size) in enumerate(parts):
-            # The FIFOs may be far from each other, and the output of a block RAM is late: so the
-            # register behind a block RAM is not the one that the arbiter selects from.
-            layout = data.StructLayout(
-                {"beat": packet_layout(bus), "tag": TAG_BITS, "length": LENGTH_BITS}
-            )
-            m.submodules[f"slice_{number}"] = near = StreamSlice(layout)
-            out, offered = part.packets_out, arbiter.packets_in[number]
+            length = Signal(LENGTH_BITS, name=f"length_{number}")
             m.d.comb += [
-                near.i.payload.beat.eq(out.payload),
-                near.i.payload.tag.eq(tag),
-                near.i.payload.length.eq(size),
-                near.i.valid.eq(out.valid),
-                out.ready.eq(near.i.ready),
-                offered.payload.eq(near.o.payload.beat),
-                offered.valid.eq(near.o.valid),
-                near.o.ready.eq(offered.ready),
-                arbiter.sides_in[number].eq(Cat(near.o.payload.tag, near.o.payload.length)),
+                *passes(part.packets_out, arbiter.packets_in[number]),
+                length.eq(size),
+                arbiter.sides_in[number].eq(Cat(tag, length)),
             ]
         topics = Array(Const(topic, 16) for topic in (CONTROL_TOPIC, *self._outputs))
         sent, out = self.sent, arbiter.packets_out
