@@ -75,7 +75,7 @@ MAY_IMPORT["fuzz"] = {
 }
 MAY_IMPORT["bench"] = {
     *("arguments", "drawing", "errors", "files", "jobs", "terminal"),
-    *("model", "frontend", "wire", "plan", "estimates", "gateware", "sim", "export"),
+    *("model", "frontend", "wire", "plan", "estimates", "gateware", "sim", "export", "node"),
     # `verify`: the client libraries that are compared with converters.
     "verify",
 }

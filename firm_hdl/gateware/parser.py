@@ -7,9 +7,9 @@ from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.memories import LutMemory
-from firm_hdl.gateware.parse import Buffer, Sequencer
+from firm_hdl.gateware.parse import Buffer, Sequencer, verdict_layout
 from firm_hdl.gateware.positions import Ring, beat_layout
-from firm_hdl.gateware.signatures import PacketSignature, Status, StatusSignature
+from firm_hdl.gateware.signatures import PacketSignature, StatusSignature
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, check_bus_bytes
 from firm_hdl.plan.outline import outline
@@ -57,7 +57,7 @@ class Parser(wiring.Component):
     """Judge packets, without extracting their messages.
 
     Each packet ends in one transfer on `status`, the same as from a :class:`Deserializer` with the
-    same parameters. `status` becomes valid 3 cycles after the transfer of the packet's last beat,
+    same parameters. `status` becomes valid 4 cycles after the transfer of the packet's last beat,
     if one step of `plan` ends in this beat. Each further step adds a cycle, and an error at most 4.
 
     Each step takes a cycle, and one beat per cycle is accepted. A bus word with several lengths has
@@ -68,8 +68,8 @@ class Parser(wiring.Component):
     bytes) wait in a buffer while the parser catches up; then `packets.ready` goes low.
 
     `packets.ready`, `status.valid`, `status.payload` and `sizes` are registers; no path leads from
-    an input to an output. While a status waits, only one more packet can end. One clock domain,
-    `sync`; its reset discards all packets inside.
+    an input to an output. While a status waits, only one more packet can end, or two in
+    consecutive cycles. One clock domain, `sync`; its reset discards all packets inside.
 
     Parameters
     ----------
@@ -121,12 +121,7 @@ class Parser(wiring.Component):
         m.submodules.buffer = buffer = Buffer(self.plan)
         m.submodules.sequencer = sequencer = Sequencer(self.plan, has_leaves=False)
         m.submodules.packet_sizes = sizes = PacketSizes(self.plan)
-        order = sequencer.orders.payload
-        # `second` holds the result of a packet that ends while `status` waits. So no path leads
-        # from `status.ready` to the sequencer.
-        layout = data.StructLayout({"status": Status, "trailing": 2})
-        judged, second = Signal(layout), Signal(layout, reset_less=True)
-        has_second, takes = Signal(), Signal()
+        m.submodules.verdicts = verdicts = VerdictQueue()
         m.d.comb += [
             buffer.packets.payload.eq(self.packets.payload),
             buffer.packets.valid.eq(self.packets.valid),
@@ -135,28 +130,76 @@ class Parser(wiring.Component):
             sequencer.limit.eq(buffer.limit),
             sequencer.ended.eq(buffer.ended),
             sequencer.following.eq(buffer.following),
+            sequencer.may_end.eq(verdicts.has_room),
             buffer.next.eq(sequencer.next),
             buffer.freed.eq(sequencer.oldest),
             sizes.beat.eq(buffer.beat),
-            judged.status.eq(order.status),
-            judged.trailing.eq(sequencer.trailing),
-            takes.eq(~self.status.valid | self.status.ready),
-            sizes.next.eq(takes & (has_second | sequencer.next)),
-            sequencer.orders.ready.eq(~(order.ends & has_second)),
+            sizes.next.eq(verdicts.moves),
+            verdicts.came.eq(sequencer.verdict),
+            verdicts.ready.eq(self.status.ready),
+            self.status.valid.eq(verdicts.first.ends),
+            self.status.payload.eq(verdicts.first.status),
+            self.sizes.trailing.eq(verdicts.first.trailing),
         ]
+        with m.If(verdicts.moves):
+            m.d.sync += self.sizes.packet.eq(sizes.bytes)
+        return m
+
+
+class VerdictQueue(wiring.Component):
+    """Three verdicts: one that is offered, and two that wait.
+
+    A verdict comes a cycle after the end of its packet. So when a verdict begins to wait, one more
+    packet is ending, and its verdict needs a place, too. No path leads from `ready` to `has_room`.
+
+    Members
+    -------
+    came : In(verdict_layout())
+        A verdict comes if `ends`.
+    has_room : Out(1)
+        A packet may end in this cycle. A register.
+    first : Out(verdict_layout())
+        The oldest verdict; it is offered if `ends`. Registers.
+    ready : In(1)
+    moves : Out(1)
+        The verdict that is offered in the next cycle is another one than in this cycle.
+    """
+
+    def __init__(self) -> None:
+        layout = verdict_layout()
+        super().__init__(
+            {
+                "came": In(layout),
+                "has_room": Out(1),
+                "first": Out(layout),
+                "ready": In(1),
+                "moves": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        came, first = self.came, self.first
+        second, third = Signal(came.shape()), Signal(came.shape())
+        takes = Signal()
+        m.d.comb += [
+            self.has_room.eq(~second.ends),
+            takes.eq(~first.ends | self.ready),
+            self.moves.eq(takes & (second.ends | came.ends)),
+        ]
+        # Nothing comes while three verdicts are inside.
         with m.If(takes):
             m.d.sync += [
-                has_second.eq(0),
-                self.status.valid.eq(has_second | sequencer.next),
-                Cat(Value.cast(self.status.payload), self.sizes.trailing).eq(
-                    Mux(has_second, Value.cast(second), Value.cast(judged))
-                ),
-                self.sizes.packet.eq(sizes.bytes),
+                first.eq(Mux(second.ends, Value.cast(second), Value.cast(came))),
+                second.eq(Mux(third.ends, Value.cast(third), Value.cast(came))),
+                third.ends.eq(0),
             ]
-        with m.Elif(sequencer.next):
-            m.d.sync += has_second.eq(1)
-        with m.If(~has_second):
-            m.d.sync += second.eq(judged)
+            with m.If(~second.ends):
+                m.d.sync += second.ends.eq(0)
+        with m.Elif(second.ends), m.If(~third.ends):
+            m.d.sync += third.eq(came)
+        with m.Else():
+            m.d.sync += second.eq(came)
         return m
 
 
@@ -189,7 +232,7 @@ class PacketSizes(wiring.Component):
         ring, beat = self.ring, self.beat
         # The counter of beats has overflowed.
         over, total = Signal(), Signal(SIZE_BITS + 1)
-        # A packet has at least one beat, so the ring holds at most `depth` packets. Two packets
+        # A packet has at least one beat, so the ring holds at most `depth` packets. Three packets
         # that are judged may wait as well.
         memory = LutMemory(m, "ends", SIZE_BITS, 2 * ring.depth)
         write, read = memory.write, memory.reader()

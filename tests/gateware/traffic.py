@@ -18,8 +18,16 @@ def is_quick(plan: Plan) -> bool:
     return len(plan.steps) * plan.bus_bytes <= MOST_LANES
 
 
-def random_packets(plan: Plan, count: int, seed: int = 0) -> list[bytes]:
-    """Return packets with strings of 0 to 12 characters and sequences of 0 to 4 elements."""
+def random_packets(
+    plan: Plan, count: int, seed: int = 0, *, sizes: tuple[range, range] = (range(13), range(5))
+) -> list[bytes]:
+    """Return packets with random values.
+
+    Parameters
+    ----------
+    sizes : pair of ranges
+        Possible lengths on the wire of strings, and of sequences.
+    """
     rng = random.Random(f"{plan.message}/{seed}")
     strings = {
         leaf.path[:-1] for leaf in plan.leaves if leaf.kind == "items" and leaf.item_bytes == 1
@@ -30,8 +38,8 @@ def random_packets(plan: Plan, count: int, seed: int = 0) -> list[bytes]:
         low = -(1 << (bits - 1)) if leaf.signed else 0
         while True:
             if leaf.kind == "length":
-                most = 12 if leaf.path[:-1] in strings else 4
-                yield rng.randint(0, min(most, plan.begins[index].limit))
+                possible = sizes[leaf.path[:-1] not in strings]
+                yield min(rng.choice(possible), plan.begins[index].limit)
             elif leaf.kind == "items":
                 yield tuple(rng.getrandbits(bits) + low for _ in range(leaf.lanes)), False
             else:

@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 from firm_hdl.bench.parts.run import PART_DEVICE, PartResult, run_parts
-from firm_hdl.bench.parts.standard import PARTS, Part
+from firm_hdl.bench.parts.standard import EIGHT_TOPICS, PARTS, Part
 from firm_hdl.bench.parts.table import part_table, parts_text
 
-__all__ = ["PARTS", "PART_DEVICE", "Part", "PartResult", "part_table", "parts_text", "run_parts"]
+__all__ = [
+    "EIGHT_TOPICS",
+    "PARTS",
+    "PART_DEVICE",
+    "Part",
+    "PartResult",
+    "part_table",
+    "parts_text",
+    "run_parts",
+]

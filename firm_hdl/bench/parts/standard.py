@@ -19,14 +19,32 @@ from firm_hdl.gateware.packets import (
 from firm_hdl.gateware.packets.memory import WhenFull
 from firm_hdl.gateware.parser import Parser
 from firm_hdl.model import Message
+from firm_hdl.node import read_description_text
+from firm_hdl.node.gateware import NodeCore
 
-__all__ = ["PARTS", "Part"]
+__all__ = ["EIGHT_TOPICS", "PARTS", "Part"]
 
 BUS_BYTES = 8
 MEMORY_BYTES = 1 << 16
 PACKETS = 64
 STREAMS = 8
 """Streams of the arbiter, and topics of the router."""
+
+EIGHT_TOPICS = """\
+node: eight
+clock_mhz: 156.25
+subscribe:
+  twist: {type: geometry_msgs/msg/Twist}
+  imu: {type: sensor_msgs/msg/Imu, memory_bytes: 4096}
+  scan: {type: sensor_msgs/msg/LaserScan}
+  text: {type: std_msgs/msg/String, memory_bytes: 4096}
+publish:
+  twist_out: {type: geometry_msgs/msg/Twist}
+  imu_out: {type: sensor_msgs/msg/Imu, memory_bytes: 4096}
+  scan_out: {type: sensor_msgs/msg/LaserScan}
+  text_out: {type: std_msgs/msg/String, memory_bytes: 4096}
+"""
+"""The description of the node whose core is measured. The gates drop; the FIFOs wait."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,6 +64,11 @@ class Part:
     name: str
     parameters: str
     make: Callable[[], Elaboratable]
+
+
+def _core() -> NodeCore:
+    library = open_library("lyrical", (), ())
+    return NodeCore(read_description_text(EIGHT_TOPICS, library=library))
 
 
 def _message(name: str) -> Message:
@@ -120,5 +143,10 @@ PARTS = (
     _width(1, BUS_BYTES),
     _width(BUS_BYTES, 1),
     Part(name="`PacketCrossing`", parameters="16 beats, both sides at one clock", make=_crossing),
+    Part(
+        name="`NodeCore`",
+        parameters='4 subscriptions, `"drop"`; 4 publications, `"wait"`',
+        make=_core,
+    ),
 )
 """The parts, in the order of the page."""

@@ -139,7 +139,7 @@ _DESERIALIZER_BUGS = {
     "statuses": Bug(Judge._judge, "cut, Status.TRUNCATED", "cut, Status.LENGTH"),
     "values": Bug(_Move._put, "self.m.If(good)", "self.m.If(~good)"),
     "wire order": Bug(_Move._report, "self.ends.eq(ends)", "self.ends.eq(self.c.orders.valid)"),
-    "status in time": Bug(Judge._judge, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
+    "status in time": Bug(Judge._find, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
     "input moves": Bug(Buffer._receive, "room.eq(~used[-1]", "room.eq(used[-1]"),
 }
 

@@ -48,8 +48,8 @@ BITS = 6
 MOST_PACKETS = 4
 """Packets that leave of which the surroundings keep a bit."""
 
-DEPTH = 26
-DEPTHS = {"order": 20, "statuses": 24, "status in time": 30}
+DEPTH = 28
+DEPTHS = {"order": 24, "statuses": 26, "status in time": 32}
 """Cycles of proofs; of those that take longer, or need more cycles."""
 
 
@@ -208,7 +208,7 @@ def studies() -> list[Study]:
         "count": Bug(
             _READ, "packets.payload.eq(self.word)", "packets.payload.eq(~self.word.as_value())"
         ),
-        "one status": Bug(_Verdicts.give_statuses, "is_due.eq(enters)", "is_due.eq(1)"),
+        "one status": Bug(_Verdicts.give_statuses, "is_due.eq(leaves)", "is_due.eq(1)"),
         "statuses": Bug(_Verdicts.give_statuses, "self.reports | self.aborted", "self.reports"),
         "order": Bug(PacketWriter._write, "Mux(self.rewinds, self.kept, at + 1)", "at + 1"),
         "nothing extra": Bug(_Verdicts._store, "(status.payload != Status.OK)", "0"),

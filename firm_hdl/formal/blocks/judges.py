@@ -30,7 +30,8 @@ from firm_hdl.gateware.packets.status import GateStatus
 from firm_hdl.gateware.packets.writer import PacketWriter
 from firm_hdl.gateware.parse.buffer import Buffer
 from firm_hdl.gateware.parse.judge import Judge
-from firm_hdl.gateware.parser import PacketSizes, Parser
+from firm_hdl.gateware.parse.packet_judge import PacketJudge
+from firm_hdl.gateware.parser import PacketSizes, Parser, VerdictQueue
 from firm_hdl.gateware.signatures import Status
 
 __all__ = ["studies"]
@@ -40,6 +41,9 @@ _DATA = ("count", "one status", "statuses", "sizes", "order", "nothing extra")
 BITS = 6
 MOST_MESSAGE = 7
 """`max_message_bytes` of strings: their longest has 3 bytes."""
+
+GATE_DEPTH = DATA_DEPTH + 2
+"""Cycles of claims about a gate that compare data: a packet is inside longer than in a parser."""
 
 
 def _judged(scene: Scene, packets: Any, name: str) -> tuple[Value, Value]:
@@ -111,17 +115,13 @@ def _parser(name: str, depth: int) -> Study:
 
     bugs = {
         "valid stays": Bug(
-            Parser.elaborate, "takes.eq(~self.status.valid | self", "takes.eq(1 | self"
+            VerdictQueue.elaborate, "takes.eq(~first.ends | self", "takes.eq(1 | self"
         ),
-        "payload stays": Bug(
-            Parser.elaborate,
-            "with m.If(~has_second):",
-            "m.d.sync += self.sizes.packet.eq(sizes.bytes)\n    with m.If(~has_second):",
-        ),
-        "one status": Bug(Parser.elaborate, "eq(has_second | sequencer.next)", "eq(1)"),
-        "statuses": Bug(Judge._judge, "cut, Status.TRUNCATED", "cut, Status.LENGTH"),
+        "payload stays": Bug(Parser.elaborate, "with m.If(verdicts.moves):", "with m.If(1):"),
+        "one status": Bug(VerdictQueue.elaborate, "second.ends.eq(0)", "second.ends.eq(1)"),
+        "statuses": Bug(PacketJudge._judge, "cut, Status.TRUNCATED", "cut, Status.LENGTH"),
         "sizes": Bug(PacketSizes.elaborate, "self.beats.eq(0), over", "self.beats.eq(1), over"),
-        "status in time": Bug(Judge._judge, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
+        "status in time": Bug(Judge._find, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
         "input moves": Bug(Buffer._receive, "room.eq(~used[-1]", "room.eq(used[-1]"),
     }
     return Study(
@@ -172,11 +172,11 @@ def _gate(name: str, depth: int, beats: int) -> Study:
         "count": Bug(
             read, "packets.payload.eq(self.word)", "packets.payload.eq(~self.word.as_value())"
         ),
-        "one status": Bug(_Verdicts.give_statuses, "is_due.eq(enters)", "is_due.eq(1)"),
+        "one status": Bug(_Verdicts.give_statuses, "is_due.eq(leaves)", "is_due.eq(1)"),
         "statuses": Bug(_Verdicts._store, "status.ready.eq(self.ends)", "status.ready.eq(1)"),
         "order": Bug(write, "Mux(self.rewinds, self.kept, at + 1)", "at + 1"),
         "nothing extra": Bug(_Verdicts._store, "(status.payload != Status.OK)", "0"),
-        "status in time": Bug(Judge._judge, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
+        "status in time": Bug(Judge._find, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
         "output moves": Bug(read, "more.eq(self.at != self.kept)", "more.eq(0)"),
         "input moves": Bug(Buffer._receive, "room.eq(~used[-1]", "room.eq(used[-1]"),
     }
@@ -185,7 +185,7 @@ def _gate(name: str, depth: int, beats: int) -> Study:
         f"`PacketGate` of {name}, 1 byte, memory of {beats} bytes",
         build,
         tuple(
-            Claim(claim, bug, "BMC", DATA_DEPTH if claim in _DATA else depth)
+            Claim(claim, bug, "BMC", GATE_DEPTH if claim in _DATA else depth)
             for claim, bug in bugs.items()
         ),
     )

@@ -18,7 +18,7 @@ from firm_hdl.gateware.packets.tail_drop import TailDrop
 
 __all__ = ["studies"]
 
-LATENCY = 0
+LATENCY = 1
 """Cycles from a beat on `packets_in` to the cycle that sends or drops the beat."""
 
 

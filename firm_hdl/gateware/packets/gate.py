@@ -7,14 +7,14 @@ from amaranth.lib import data, stream, wiring
 from amaranth.lib.fifo import SyncFIFO, SyncFIFOBuffered
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.packets.block_fifo import BlockFifo
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.fifo import PacketFifo
 from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
-from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.packets.status import GateStatus, GateStatusSignature
 from firm_hdl.gateware.packets.tail_drop import MOST_DROPPED, TailDrop, tail_drop_layout
 from firm_hdl.gateware.parser import Parser, parser_plan
-from firm_hdl.gateware.signatures import PacketSignature, Status
+from firm_hdl.gateware.signatures import PacketSignature, Status, packet_layout
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 from firm_hdl.plan.geometry import ring_beats
@@ -47,9 +47,9 @@ class PacketGate(wiring.Component):
     the packets that are not `OK`. Forwarded packets are unchanged and in order. So
     behind a gate, the status of a :class:`Deserializer` with the same parameters is always `OK`.
 
-    Both the first beat of a packet and its status are valid 4 cycles after the parser's status: 7
+    Both the first beat of a packet and its status are valid 5 cycles after the parser's status: 9
     cycles after the transfer of the last beat, if one step of the parser's plan ends in this beat,
-    and nothing is before the packet; 10 cycles with `"drop"`. A beat is taken per cycle and leaves
+    and nothing is before the packet; 13 cycles with `"drop"`. A beat is taken per cycle and leaves
     per cycle, without gaps between packets, as long as there are no more steps than beats.
 
     A bad packet occupies the gate for as many cycles as it has beats, or the parser has steps
@@ -87,7 +87,7 @@ class PacketGate(wiring.Component):
     counters : Out(counters_layout("passed", "truncated", ..., "full", "large", "overrun"))
         Packets by status, each with 32 bits; a counter stops at its largest value. A packet is
         counted when its status becomes valid, or would if those before it were taken; with
-        `OVERRUN`, 2 cycles after its last beat.
+        `OVERRUN`, 3 cycles after its last beat.
 
     Attributes
     ----------
@@ -158,26 +158,19 @@ class PacketGate(wiring.Component):
             ]
         else:
             m.submodules.tail_drop = tail_drop = TailDrop(self.bus_bytes)
-            m.submodules.backlog = backlog = SyncFIFOBuffered(
-                width=layout.size, depth=BACKLOG_BEATS - 2
-            )
-            # The output of the block RAM is late, and needs a register before any logic.
-            m.submodules.slice = after = StreamSlice(layout)
+            m.submodules.backlog = backlog = BlockFifo(layout, BACKLOG_BEATS)
             m.d.comb += [
                 tail_drop.packets_in.valid.eq(self.packets_in.valid),
                 tail_drop.packets_in.payload.eq(self.packets_in.payload),
                 self.packets_in.ready.eq(tail_drop.packets_in.ready),
-                backlog.w_data.eq(Value.cast(tail_drop.packets_out.payload)),
-                backlog.w_en.eq(tail_drop.packets_out.valid),
-                tail_drop.packets_out.ready.eq(backlog.w_rdy),
-                Value.cast(after.i.payload).eq(backlog.r_data),
-                after.i.valid.eq(backlog.r_rdy),
-                backlog.r_en.eq(after.i.ready),
-                beats.payload.eq(after.o.payload),
-                beats.valid.eq(after.o.valid),
-                after.o.ready.eq(beats.ready),
+                backlog.i.payload.eq(tail_drop.packets_out.payload),
+                backlog.i.valid.eq(tail_drop.packets_out.valid),
+                tail_drop.packets_out.ready.eq(backlog.i.ready),
+                beats.payload.eq(backlog.o.payload),
+                beats.valid.eq(backlog.o.valid),
+                backlog.o.ready.eq(beats.ready),
             ]
-            verdicts.report_dropped(tail_drop, (backlog.level == 0) & ~after.o.valid)
+            verdicts.report_dropped(tail_drop, backlog.is_empty)
         return m
 
 
@@ -212,7 +205,10 @@ class _Verdicts:
     ):
         self.m, self.gate, self.parser, self.fifo = m, gate, parser, fifo
         self.waiting = waiting
-        self.head = Signal(_layout(gate), name="head")
+        # The oldest beat is in a register, because it decides whether the parser's verdict leaves,
+        # and the memory of look-up tables is late.
+        self.head = Signal(_layout(gate), name="head", reset_less=True)
+        self.has_head, self.takes = Signal(name="has_head"), Signal(name="takes_head")
         # The beat is the end of a packet whose rest was dropped.
         self.aborted = Signal(name="aborted")
         # There is room for a status, with those on the way.
@@ -224,27 +220,38 @@ class _Verdicts:
         # The first beat of a packet is next.
         self.starts = Signal(name="starts", init=1)
         self.ends = Signal(name="ends")
+        # The beat that the memory takes next, in a register: whether it has room depends on it.
+        self.judged = Signal(packet_layout(gate.bus_bytes), name="judged_beat", reset_less=True)
+        self.has_judged = Signal(name="has_judged")
         # A packet of which beats were dropped ends now.
         self.overrun = Signal(name="overrun")
-        m.d.comb += self.head.eq(waiting.r_data)
+        m.d.comb += waiting.r_en.eq(~self.has_head | self.takes)
+        with m.If(waiting.r_en):
+            m.d.sync += [self.has_head.eq(waiting.r_rdy), self.head.eq(waiting.r_data)]
         self._store()
 
     def _store(self) -> None:
         """Give beats to the memory; the last one of a packet only with the verdict."""
-        m, head, waiting = self.m, self.head, self.waiting
-        fifo, status = self.fifo, self.parser.status
-        store = fifo.packets_in
+        m, head, fifo, status = self.m, self.head, self.fifo, self.parser.status
+        store, offers, aborts = fifo.packets_in, Signal(name="offers"), Signal(name="aborts")
         m.d.comb += [
-            store.payload.eq(head.beat),
-            store.valid.eq(
-                waiting.r_rdy & ~self.report_due & (~head.beat.last | (status.valid & self.room))
+            offers.eq(
+                self.has_head & ~self.report_due & (~head.beat.last | (status.valid & self.room))
             ),
-            fifo.abort.eq((status.payload != Status.OK) | self.aborted),
-            waiting.r_en.eq(store.valid & store.ready),
-            self.ends.eq(waiting.r_en & head.beat.last),
+            store.payload.eq(self.judged),
+            store.valid.eq(self.has_judged),
+            fifo.abort.eq(aborts),
+            self.takes.eq(offers & (~self.has_judged | store.ready)),
+            self.ends.eq(self.takes & head.beat.last),
             status.ready.eq(self.ends),
         ]
-        with m.If(waiting.r_en):
+        with m.If(~self.has_judged | store.ready):
+            m.d.sync += [
+                self.has_judged.eq(offers),
+                self.judged.eq(head.beat),
+                aborts.eq((status.payload != Status.OK) | self.aborted),
+            ]
+        with m.If(self.takes):
             m.d.sync += self.starts.eq(head.beat.last)
 
     def report_dropped(self, tail_drop: TailDrop, none_waits: Value) -> None:
@@ -255,7 +262,7 @@ class _Verdicts:
         none_waits : Value
             No beat is between the tail drop and the parser.
         """
-        m, head, waiting = self.m, self.head, self.waiting
+        m, head = self.m, self.head
         reported = Signal(range(MOST_DROPPED + 1), name="reported")
         # A register, because the number in the beat is late in the cycle.
         all_reported = Signal(name="all_reported")
@@ -266,33 +273,41 @@ class _Verdicts:
             self.report_due.eq(self.starts & head.any_dropped & ~all_reported),
             # No packet waits, and none comes.
             directly.eq(
-                none_waits & ~waiting.r_rdy & tail_drop.dropped.any() & ~tail_drop.packets_out.valid
+                none_waits
+                & ~self.waiting.r_rdy
+                & ~self.has_head
+                & tail_drop.dropped.any()
+                & ~tail_drop.packets_out.valid
             ),
             tail_drop.report.eq(directly & self.starts & self.room),
             self.reports.eq(
-                self.room & self.starts & (directly | (waiting.r_rdy & self.report_due))
+                self.room & self.starts & (directly | (self.has_head & self.report_due))
             ),
         ]
-        with m.If(waiting.r_en):
+        with m.If(self.takes):
             m.d.sync += [reported.eq(0), all_reported.eq(0)]
-        with m.Elif(waiting.r_rdy & self.report_due & self.room):
+        with m.Elif(self.has_head & self.report_due & self.room):
             m.d.sync += [
                 reported.eq(reported + 1),
                 all_reported.eq(reported + 1 == head.dropped),
             ]
 
     def give_statuses(self) -> None:
-        """Join the parser's verdict with what the memory did, 2 cycles later."""
+        """Join the parser's verdict with what the memory did, 2 cycles after it took the packet."""
         m, gate, parsed = self.m, self.gate, self.parser.status.payload
         unsent = Signal(range(2 * STATUSES), name="unsent")
         enters, is_due, is_ready = Signal(name="enters"), Signal(name="is_due"), Signal(name="due")
         code, judged = Signal(GateStatus, name="code"), Signal(GateStatus, name="judged")
-        final = Signal(GateStatus, name="final")
+        final, given = Signal(GateStatus, name="final"), Signal(GateStatus, name="given")
+        reported, leaves = Signal(name="reported_before"), Signal(name="leaves")
+        store = self.fifo.packets_in
         bits = GateStatus.as_shape().width
         m.submodules.statuses = statuses = SyncFIFOBuffered(width=bits, depth=STATUSES + 1)
         m.d.comb += [
             self.room.eq(unsent < STATUSES),
             enters.eq(self.ends | self.reports),
+            # If packets are dropped whole, the memory never waits: `given` is of this packet.
+            leaves.eq(reported | (store.valid & store.ready & store.payload.last)),
             final.eq(judged),
             statuses.w_en.eq(is_ready),
             statuses.w_data.eq(Value.cast(final)),
@@ -302,13 +317,16 @@ class _Verdicts:
         ]
         m.d.sync += [
             unsent.eq(unsent + enters - (gate.status.valid & gate.status.ready)),
-            is_due.eq(enters),
-            Value.cast(code).eq(
-                Mux(self.reports | self.aborted, Value.cast(GateStatus.OVERRUN), Value.cast(parsed))
-            ),
+            reported.eq(self.reports),
+            is_due.eq(leaves),
+            code.eq(given),
             is_ready.eq(is_due),
             judged.eq(code),
         ]
+        with m.If(enters):
+            m.d.sync += Value.cast(given).eq(
+                Mux(self.reports | self.aborted, Value.cast(GateStatus.OVERRUN), Value.cast(parsed))
+            )
         # `outcome` is of this packet, if it was not aborted.
         with m.If((judged == GateStatus.OK) & (self.fifo.outcome == Outcome.FULL)):
             m.d.comb += final.eq(GateStatus.FULL)

@@ -44,7 +44,9 @@ class TailDrop(wiring.Component):
 
     If `packets_out` is not ready for a beat of a packet that has begun, the packet is aborted: the
     rest of it is dropped, and a last beat with `aborted` is sent instead. Packets that begin before
-    this beat has been taken are dropped whole. The latency is 0.
+    this beat has been taken are dropped whole.
+
+    Latency 1 cycle: beats are registered first, because they may come from far away.
 
     Parameters
     ----------
@@ -55,14 +57,13 @@ class TailDrop(wiring.Component):
     packets_in : In(PacketSignature(bus_bytes))
         `ready` is constantly 1.
     packets_out : Out(stream.Signature(tail_drop_layout(bus_bytes)))
-        `valid` and `payload` depend on those of `packets_in`. The payload may change before the
-        transfer.
+        `valid` and `payload` depend on registers only. The payload may change before the transfer.
     dropped : Out(8)
         Packets that were dropped whole since the last one that was passed on. A register.
     report : In(1)
         One of `dropped` is reported, and no longer counts. Not if `packets_out` transfers.
     drops : Out(1)
-        A packet of which beats were dropped ends in this cycle.
+        A packet of which beats were dropped ended in the cycle before.
     """
 
     def __init__(self, bus_bytes: int):
@@ -79,25 +80,27 @@ class TailDrop(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        packets, out, beat = self.packets_in, self.packets_out, self.packets_in.payload
+        out = self.packets_out
+        came, beat = Signal(), Signal(packet_layout(self.bus_bytes), reset_less=True)
         # A packet was aborted, and its last beat has not been sent.
         abort_pending = Signal()
         # The rest of the arriving packet is dropped; a beat of the arriving packet was passed on.
         drops_rest, begun = Signal(), Signal()
         passes, refused = Signal(), Signal()
         m.d.comb += [
-            packets.ready.eq(1),
-            out.valid.eq(abort_pending | (packets.valid & ~drops_rest)),
+            self.packets_in.ready.eq(1),
+            out.valid.eq(abort_pending | (came & ~drops_rest)),
             out.payload.beat.eq(beat),
             out.payload.beat.last.eq(beat.last | abort_pending),
             out.payload.beat.count.eq(Mux(abort_pending, self.bus_bytes, beat.count)),
             out.payload.aborted.eq(abort_pending),
             out.payload.dropped.eq(self.dropped),
             out.payload.any_dropped.eq(self.dropped.any()),
-            passes.eq(packets.valid & ~drops_rest & ~abort_pending & out.ready),
-            refused.eq(packets.valid & ~passes),
+            passes.eq(came & ~drops_rest & ~abort_pending & out.ready),
+            refused.eq(came & ~passes),
             self.drops.eq(refused & beat.last),
         ]
+        m.d.sync += [came.eq(self.packets_in.valid), beat.eq(self.packets_in.payload)]
         with m.If(abort_pending & out.ready):
             m.d.sync += abort_pending.eq(0)
         with m.If(passes):

@@ -2,6 +2,7 @@
 
 from firm_hdl.gateware.parse.buffer import Buffer
 from firm_hdl.gateware.parse.orders import OrderQueue, order_layout
+from firm_hdl.gateware.parse.packet_judge import verdict_layout
 from firm_hdl.gateware.parse.sequencer import Sequencer
 
-__all__ = ["Buffer", "OrderQueue", "Sequencer", "order_layout"]
+__all__ = ["Buffer", "OrderQueue", "Sequencer", "order_layout", "verdict_layout"]

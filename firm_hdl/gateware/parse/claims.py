@@ -54,7 +54,7 @@ class Claims:
         starts = Signal(name="claim_starts")
         m.d.comb += starts.eq(state.issue & counted & ~state.bad)
         renews = any_of([state.step[i] for i, claim in self.claims.items() if claim.total])
-        loads, multiplies, subtracts = self._delayed("claim", starts)
+        loads, multiplies, subtracts = self._started(starts)
         *_, renewed = self._delayed("claim_renewed", renews)
         more, less = self._product(count)
         budget = Signal(self.width - 1, name="claim_budget", reset_less=True)
@@ -79,6 +79,17 @@ class Claims:
         stages = [Signal(name=f"{name}_{number}") for number in (1, 2, 3)]
         for stage, before in zip(stages, [value, *stages], strict=False):
             self.m.d.sync += stage.eq(before)
+        return stages
+
+    def _started(self, starts: Value) -> list[Signal]:
+        """Return whether a length started 1, 2 and 3 cycles ago.
+
+        Without leaves, an error before the length is found a cycle after its step. It is earlier in
+        wire order, so the length no longer counts.
+        """
+        stages = self._delayed("claim", starts)
+        if not self.state.has_leaves:
+            self.m.d.sync += stages[1].eq(stages[0] & ~self.state.fails)
         return stages
 
     def _product(self, count: Value) -> tuple[Value, Value]:

@@ -82,10 +82,16 @@ class Judge:
             # step is missing. So some of them are there unless the limit is at the step's start. In
             # a full ring, the distance between the two looks negative.
             m.d.comb += self.mismatch.eq(wrong_header & (self.limit != state.first_at))
-        m.d.comb += self.good.eq(state.present & ~self.wrong_nul & ~wrong_header)
+        m.d.comb += self.good.eq(self._is_good(wrong_header))
 
-    def _judge(self) -> None:
-        """Find the first error of the step in wire order."""
+    def _is_good(self, wrong_header: Value) -> Value:
+        return self.state.present & ~self.wrong_nul & ~wrong_header
+
+    def _find(self) -> tuple[Value, Value, Value]:
+        """Return whether a NUL is missing, the packet is cut, and a length is taken in this cycle.
+
+        These, a wrong header and trailing bytes are found while a step waits for its bytes, too.
+        """
         m, state = self.m, self.state
         within, cut = state.ring.position("nul_within"), Signal(name="cut")
         begins = Signal(name="begins")
@@ -96,6 +102,12 @@ class Judge:
         ]
         # The string's last byte is in the buffer, even if later bytes of the step are not.
         missing_nul = self.wrong_nul & (state.present | (~within[-1] & within.any()))
+        return missing_nul, cut, begins
+
+    def _judge(self) -> None:
+        """Find the first error of the step in wire order."""
+        m, state = self.m, self.state
+        missing_nul, cut, begins = self._find()
         overrun = state.ends_message & ~self.ended & self.has_trailing
         early = self.mismatch | missing_nul | cut | overrun
         claims = self.length.claims

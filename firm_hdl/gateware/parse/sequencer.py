@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import takewhile
+from typing import Any
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import stream, wiring
@@ -11,6 +12,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware.parse.judge import Judge
 from firm_hdl.gateware.parse.lengths import shift_of
 from firm_hdl.gateware.parse.orders import order_layout
+from firm_hdl.gateware.parse.packet_judge import PacketJudge, verdict_layout
 from firm_hdl.gateware.parse.places import NextPlace
 from firm_hdl.gateware.parse.state import ParseState
 from firm_hdl.gateware.parse.step_length import StepLength
@@ -41,14 +43,16 @@ class Sequencer(wiring.Component):
     A counted length (:class:`Claims`) holds the sequencer before the next step. Its order must
     wait, too (`holds`). If the length claims too much, the order must transfer it as 0 (`refuses`),
     and the sequencer goes back to the length's step, and leaves it with an order that has no step.
-    Without leaves, nothing is held but the end of the packet.
+
+    Without leaves, there are no orders, but a verdict per packet (:class:`PacketJudge`), and
+    nothing is held but the end of the packet.
 
     Parameters
     ----------
     plan : Plan
     has_leaves : bool
-        Whether orders write leaves. Without leaves, only the last order of a packet counts. So no
-        steps are executed after an error, and elements without bytes are skipped.
+        Whether there are orders, which write leaves. Without leaves, no steps are executed after an
+        error, and elements without bytes are skipped.
 
     Members
     -------
@@ -61,7 +65,7 @@ class Sequencer(wiring.Component):
     following : In(beat)
         First beat of the next packet, if `ended`.
     next : Out(1)
-        The packet's last order is taken; go to the next packet.
+        The packet's last order is taken, or its last step is executed; go to the next packet.
     trailing : Out(2)
         Bytes of the packet after the message, if `next` and the status is `OK`.
     oldest : Out(beat)
@@ -72,7 +76,12 @@ class Sequencer(wiring.Component):
     refuses : Out(1)
         The newest order must transfer its length as 0. Only in the last cycle of `holds`.
     orders : Out(stream.Signature(order_layout(plan)))
-        `valid` does not depend on `ready`; the payload is stable only with `valid`.
+        Only with leaves. `valid` does not depend on `ready`; the payload is stable only with
+        `valid`.
+    may_end : In(1)
+        Only without leaves: a packet may end in this cycle.
+    verdict : Out(verdict_layout())
+        Only without leaves. Depends on registers only.
     """
 
     def __init__(self, plan: Plan, *, has_leaves: bool = True):
@@ -80,6 +89,10 @@ class Sequencer(wiring.Component):
         ring = Ring(plan)
         has_holds = plan.has_claims and has_leaves
         checks = {"holds": Out(1), "refuses": Out(1)} if has_holds else {}
+        orders = stream.Signature(order_layout(plan))
+        results: dict[str, Any] = {"may_end": In(1), "verdict": Out(verdict_layout())}
+        if has_leaves:
+            results = {"orders": Out(orders)}
         super().__init__(
             {
                 "beat": In(beat_layout(plan)),
@@ -89,7 +102,7 @@ class Sequencer(wiring.Component):
                 "next": Out(1),
                 "trailing": Out(2),
                 "oldest": Out(ring.beat_bits),
-                "orders": Out(stream.Signature(order_layout(plan))),
+                **results,
                 **checks,
             }
         )
@@ -112,8 +125,18 @@ class _SequencerLogic:
         self.length = StepLength(state, c.beat)
         self.claims = self.length.claims
         self._decide()
-        self.judge = Judge(state, self.length, c.beat, c.limit, c.ended, c.orders.ready)
-        self._order()
+        given = state, self.length, c.beat, c.limit, c.ended
+        if sequencer.has_leaves:
+            self.judge = Judge(*given, c.orders.ready)
+            self._allow(c.orders.ready)
+            self._order()
+        else:
+            self.judge = late = PacketJudge(*given)
+            m.d.comb += [
+                c.verdict.eq(late.verdict),
+                c.oldest.eq(state.ring.beat(state.first_at)),
+            ]
+            self._allow((c.may_end | ~state.ends_packet) & ~late.stops)
         self._proceed()
         self._move_on()
 
@@ -145,17 +168,21 @@ class _SequencerLogic:
             state.items_at.eq(Mux(traits.rest, state.first_at, word_before)),
         ]
 
-    def _order(self) -> None:
-        m, c, state = self.m, self.c, self.state
-        ring, traits, flow = state.ring, state.traits, state.flow
-        order, bus, bad = c.orders.payload, self.plan.bus_bytes, state.bad
+    def _allow(self, ready: Value) -> None:
+        """Decide whether the step is executed.
+
+        Parameters
+        ----------
+        ready : Value
+            The order is taken if there is one.
+        """
+        m, c, state, traits = self.m, self.c, self.state, self.state.traits
         # Without an error, a step is ordered if it is allowed and its bytes are good. `good` is
         # late in the cycle; so it is a factor of its own, and all else is computed before it.
-        drains, allowed = state.drains, Signal(name="allowed")
-        ready, good, ends = c.orders.ready, self.judge.good, state.ends_packet
+        allowed = Signal(name="allowed")
+        drains, good, ends, bad = state.drains, self.judge.good, state.ends_packet, state.bad
         may_proceed = ~bad & (~state.ends_message | c.ended) & ~self._too_early()
         may_drain = bad & ~state.new_error & (~traits.end | c.ended)
-        blank = traits.end if state.refused is None else traits.end | state.refused
         if self.claims is not None:
             waits = self.claims.pending
             if c.has_leaves:
@@ -165,13 +192,20 @@ class _SequencerLogic:
                 # Only the end of the packet waits: the check may still find an error.
                 may_proceed = may_proceed & ~(waits & state.ends_message)
                 may_drain = may_drain & ~waits
+        offers = [c.orders.valid.eq(drains | (allowed & good))] if c.has_leaves else []
         m.d.comb += [
             drains.eq(may_drain),
             allowed.eq(may_proceed),
-            c.orders.valid.eq(drains | (allowed & good)),
+            *offers,
             state.issue.eq((drains & ready) | (allowed & ready & good)),
             c.next.eq((drains & ready & ends) | (allowed & ready & ends & good)),
         ]
+
+    def _order(self) -> None:
+        m, c, state = self.m, self.c, self.state
+        ring, traits, flow = state.ring, state.traits, state.flow
+        order, bus, bad = c.orders.payload, self.plan.bus_bytes, state.bad
+        blank = traits.end if state.refused is None else traits.end | state.refused
         wanted = Signal(range(bus + 1), name="items_wanted")
         fits = self.judge.items_room >= wanted
         m.d.comb += [

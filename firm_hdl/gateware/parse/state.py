@@ -57,6 +57,9 @@ class ParseState:
         An error was found in the packet.
     new_error : Signal(1)
         The error was found in the cycle before, in this step. The step has no order yet.
+    fails : Signal(1)
+        Without leaves only: an error was found in the packet up to the cycle before. Depends on
+        registers only.
     items_at, map_at : Signal(position)
         First byte of the word of items, and of the last word of the map. These signals, and all
         below, are combinational.
@@ -100,6 +103,7 @@ class ParseState:
             aligns = geometry(plan).aligns
             self.phase = Signal(3, name="phase", init=header) if aligns else Const(header, 3)
         self.bad, self.new_error = Signal(name="bad"), Signal(name="new_error")
+        self.fails = Signal(name="fails")
         self.items_at, self.map_at = ring.position("items_at"), ring.position("map_at")
         self.step_end, self.left = ring.position("step_end"), ring.position("left")
         self.present, self.done = Signal(name="present"), Signal(name="done")

@@ -12,11 +12,11 @@ from firm_hdl.sim.payloads import beats_of
 from firm_hdl.wire import lay_out
 from tests.gateware.packets.bench import PacketBench, beats
 
-LATENCY = 7
+LATENCY = 9
 """Cycles from the transfer of the last beat to the first beat, and to the status."""
 ERROR = 4
 """Cycles that an error adds at most."""
-BACKLOG = 3
+BACKLOG = 4
 """Cycles more for a link that cannot be held."""
 
 OK, FULL, LARGE, OVERRUN = GateStatus.OK, GateStatus.FULL, GateStatus.LARGE, GateStatus.OVERRUN
