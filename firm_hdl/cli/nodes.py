@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import sys
+import warnings
+from typing import TYPE_CHECKING
 
 from firm_hdl.arguments import add_path, number_between
+
+if TYPE_CHECKING:
+    from firm_hdl.node import Description
 
 __all__ = ["add_node"]
 
@@ -67,9 +73,20 @@ def _seconds(text: str) -> float:
 
 
 def _node(args: argparse.Namespace) -> None:
+    from firm_hdl.errors import DefinitionError
     from firm_hdl.node import read_description
 
     description = read_description(args.file, paths=args.path)
+    try:
+        _act(args, description)
+    except DefinitionError:
+        # A mistake of an accelerator leaves circuits unfinished. Amaranth would warn of each.
+        if (hdl := sys.modules.get("amaranth.hdl")) is not None:
+            warnings.simplefilter("ignore", hdl.UnusedElaboratable)
+        raise
+
+
+def _act(args: argparse.Namespace, description: Description) -> None:
     if args.action == "run":
         from firm_hdl.node.bridge.command import run_bridge
 

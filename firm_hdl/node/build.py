@@ -21,6 +21,7 @@ from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest
 from firm_hdl.export.manifest import MANIFEST, to_json
 from firm_hdl.export.verilog.yosys import to_verilog
 from firm_hdl.names.identifiers import identifier
+from firm_hdl.node.accelerator import conflicts_reported
 from firm_hdl.node.description import Description
 from firm_hdl.node.node import Node
 from firm_hdl.node.summary import facts_of, summary
@@ -82,7 +83,8 @@ def build_node(
         ports = node_ports(node)
     except ValueError as error:
         raise UserError(str(error)) from None
-    design = rtlil.convert(NodeTop(node), name=name, emit_src=False)
+    with conflicts_reported(description):
+        design = rtlil.convert(NodeTop(node), name=name, emit_src=False)
     inputs = _inputs(description, design)
     try:
         clear_up(folder)
