@@ -128,7 +128,7 @@ def test_200_calls(release, graph, bridge):
 def test_the_board_is_killed_and_starts_again(release, graph, bridge):
     running = bridge(release, graph)
     topics = [{**IMU, "count": 4000, "period": 0.002}]
-    with Peer(release, "trip", topics=topics, linger=3) as peer:
+    with Peer(release, "trip", topics=topics, linger=20) as peer:
         assert peer.next(90) == {"begins": True}
         time.sleep(1)
         os.kill(running.engine(), signal.SIGKILL)

@@ -121,7 +121,7 @@ def test_200_calls(bridge, persistent):
 
 def test_the_board_is_killed_and_starts_again(bridge):
     topics = [{**IMU, "count": 4000, "period": 0.002}]
-    with Peer("ros1", "trip", topics=topics, linger=3) as peer:
+    with Peer("ros1", "trip", topics=topics, linger=20) as peer:
         assert peer.next(90) == {"begins": True}
         time.sleep(1)
         os.kill(bridge.engine(), signal.SIGKILL)

@@ -143,7 +143,8 @@ def trip(node, options):
     seconds = time.monotonic() - begin
     end = time.monotonic() + options.get("linger", 10)
     while time.monotonic() < end and any(
-        len(got) < each["count"] for got, each in zip(numbers, options["topics"], strict=True)
+        got[-1:] != [each["count"] - 1]
+        for got, each in zip(numbers, options["topics"], strict=True)
     ):
         rclpy.spin_once(node, timeout_sec=0.1)
     return say(numbers=numbers, seconds=seconds)

@@ -97,7 +97,8 @@ def trip(options):
     seconds = time.monotonic() - begin
     end = time.monotonic() + options.get("linger", 20)
     while time.monotonic() < end and any(
-        len(got) < each["count"] for got, each in zip(numbers, options["topics"], strict=True)
+        got[-1:] != [each["count"] - 1]
+        for got, each in zip(numbers, options["topics"], strict=True)
     ):
         time.sleep(0.05)
     return say(numbers=numbers, seconds=seconds)
