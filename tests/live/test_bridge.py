@@ -139,7 +139,8 @@ def test_the_board_is_killed_and_starts_again(release, graph, bridge):
     assert numbers == sorted(set(numbers)) and numbers[0] == 0 and numbers[-1] == 3999
     assert len(numbers) < 4000
     account = "\n".join(running.stop())
-    assert "of /imu_in: no board" in account and "started again or lost 1 times" in account
+    # What waited for longer than a moment was dropped; a quick start leaves no such message.
+    assert "started again or lost 1 times" in account
 
 
 @GRAPHS
