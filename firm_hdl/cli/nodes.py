@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import sys
+import warnings
+from typing import TYPE_CHECKING
 
 from firm_hdl.arguments import add_path, number_between, seconds
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
+
+if TYPE_CHECKING:
+    from firm_hdl.node import Description
 
 __all__ = ["add_node"]
 
@@ -66,9 +72,20 @@ def _stimuli(message: Message, plan: Plan) -> list[bytes]:
 
 
 def _node(args: argparse.Namespace) -> None:
+    from firm_hdl.errors import DefinitionError
     from firm_hdl.node import read_description
 
     description = read_description(args.file, paths=args.path)
+    try:
+        _act(args, description)
+    except DefinitionError:
+        # A mistake of an accelerator leaves circuits unfinished. Amaranth would warn of each.
+        if (hdl := sys.modules.get("amaranth.hdl")) is not None:
+            warnings.simplefilter("ignore", hdl.UnusedElaboratable)
+        raise
+
+
+def _act(args: argparse.Namespace, description: Description) -> None:
     if args.action == "run":
         from firm_hdl.node.bridge.command import run_bridge
 

@@ -100,7 +100,10 @@ def find_compiler(user: str, *, with_zig: bool = False) -> tuple[str, ...]:
     ------
     ProgramMissingError
     """
-    given = shlex.split(os.environ.get("CXX", ""))
+    try:
+        given = shlex.split(os.environ.get("CXX", ""))
+    except ValueError as error:
+        raise ProgramMissingError(f"CXX is no command: {error}: {os.environ['CXX']}") from None
     for name in given[:1] or COMPILERS:
         if path := shutil.which(name):
             return (path, *given[1:])

@@ -8,8 +8,12 @@ import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
+import amaranth
+from amaranth.hdl import DriverConflict, Fragment
+from amaranth.hdl._xfrm import DomainCollector
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In
 
@@ -18,7 +22,19 @@ from firm_hdl.node.description import Description
 from firm_hdl.node.gateware.converters import message_groups
 from firm_hdl.node.gateware.streams import time_layout
 
-__all__ = ["accelerator_signature", "check_accelerator", "load_accelerator", "other_members"]
+__all__ = [
+    "accelerator_signature",
+    "check_accelerator",
+    "conflicts_reported",
+    "elaborate_accelerator",
+    "load_accelerator",
+    "other_members",
+]
+
+_OTHERS = tuple(
+    f"{folder}/" for folder in (Path(amaranth.__file__).parent, Path(__file__).parents[1])
+)
+"""The folders of code that is not the user's."""
 
 OF_THE_NODE = ("subscribe", "publish", "serve", "time")
 
@@ -57,8 +73,9 @@ def load_accelerator(description: Description) -> Any:
         with _searched_first(description.folder):
             found: Any = importlib.import_module(module)
     except ImportError as error:
-        raise _refused(description, f"cannot import '{module}': {error}") from None
-    except Exception as error:
+        hint = f"; write '{module[:-3]}:{path}'" if module.endswith(".py") else ""
+        raise _refused(description, f"cannot import '{module}': {error}{hint}") from None
+    except (Exception, SystemExit) as error:
         raise _refused(description, f"'{module}' {_raised(error)}") from None
     for name in path.split("."):
         if not hasattr(found, name):
@@ -69,7 +86,7 @@ def load_accelerator(description: Description) -> Any:
     except UserError as error:
         # The class has refused the description, and says why.
         raise _refused(description, str(error)) from None
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise _refused(description, f"'{description.accelerator}' {_raised(error)}") from None
     try:
         check_accelerator(description, accelerator)
@@ -112,6 +129,52 @@ def check_accelerator(description: Description, accelerator: Any) -> None:
             raise UserError(f"the description has no topic for '{name}.{more[0]}'")
 
 
+def elaborate_accelerator(description: Description, accelerator: Any, platform: object) -> Fragment:
+    """Elaborate an accelerator, with all that is inside it.
+
+    Raises
+    ------
+    DefinitionError
+        At the name in the description: if the code of the accelerator raises an exception, or if
+        it uses a clock domain that it does not have.
+    """
+    try:
+        fragment = Fragment.get(accelerator, platform)
+    except (Exception, SystemExit) as error:
+        if not description.accelerator:
+            raise
+        raise _refused(description, f"'{description.accelerator}' {_raised(error)}") from error
+    collector = DomainCollector()
+    collector(fragment)
+    # Amaranth would make ports of the node of such a clock, which no list of ports has.
+    if others := sorted(collector.used_domains - collector.defined_domains - {"comb", "sync"}):
+        raise _refused(
+            description,
+            f"the accelerator uses the clock domain '{others[0]}', which it does not have; the "
+            "node has 'sync' only",
+        )
+    return fragment
+
+
+@contextmanager
+def conflicts_reported(description: Description) -> Iterator[None]:
+    """Report two drivers of a signal as a mistake of the accelerator.
+
+    Amaranth finds them in the whole design, and says where both are.
+
+    Raises
+    ------
+    DefinitionError
+        At the name of the accelerator in the description.
+    """
+    try:
+        yield
+    except DriverConflict as error:
+        if not description.accelerator:
+            raise
+        raise _refused(description, f"'{description.accelerator}': {error}") from error
+
+
 def other_members(accelerator: Any) -> dict[str, wiring.Member]:
     """Return the members of an accelerator that are not of the node, such as pins."""
     members = accelerator.signature.members
@@ -121,17 +184,25 @@ def other_members(accelerator: Any) -> dict[str, wiring.Member]:
 @contextmanager
 def _searched_first(folder: str) -> Iterator[None]:
     before = list(sys.path)
-    sys.path.insert(0, folder or ".")
+    # Python remembers what it found in a folder by its name, and "." is another one later.
+    sys.path.insert(0, str(Path(folder).absolute()))
+    importlib.invalidate_caches()
     try:
         yield
     finally:
         sys.path[:] = before
 
 
-def _raised(error: Exception) -> str:
+def _raised(error: BaseException) -> str:
     """Say what went wrong in the user's code, and where."""
-    frames = traceback.extract_tb(error.__traceback__)
-    place = f" at {frames[-1].filename}:{frames[-1].lineno}" if len(frames) > 1 else ""
+    if isinstance(error, SyntaxError):
+        return f"has a mistake at {error.filename}:{error.lineno}: {error.msg}"
+    frames = [
+        f"{frame.filename}:{frame.lineno}"
+        for frame in traceback.extract_tb(error.__traceback__)
+        if not frame.filename.startswith((*_OTHERS, "<frozen"))
+    ]
+    place = f" at {frames[-1]}" if frames else ""
     return f"raised {type(error).__name__}{place}: {error}"
 
 

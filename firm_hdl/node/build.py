@@ -19,6 +19,7 @@ from firm_hdl.export.systemverilog.types import WORDS
 from firm_hdl.export.verilog.backend import waivers
 from firm_hdl.export.verilog.yosys import to_verilog
 from firm_hdl.names.identifiers import identifier
+from firm_hdl.node.accelerator import conflicts_reported
 from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_files, link_script, node_core
 from firm_hdl.node.description import Description
 from firm_hdl.node.node import Node
@@ -138,10 +139,12 @@ def _designed(
         except UserError as error:
             # The plain ports are there all the same.
             reason = str(error)
+    with conflicts_reported(description):
+        circuit = rtlil.convert(NodeTop(node), name=name, emit_src=False)
     return _Design(
         description=description,
         name=name,
-        rtlil=rtlil.convert(NodeTop(node), name=name, emit_src=False),
+        rtlil=circuit,
         ports=ports,
         messages=messages,
         reason=reason,

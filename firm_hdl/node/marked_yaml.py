@@ -75,10 +75,17 @@ class Marked:
             found = dict.fromkeys(self.problems)
             raise DefinitionError(sorted(found, key=lambda p: p.span.start if p.span else -1))
 
-    def mapping(self, node: yaml.Node, what: str) -> dict[str, Entry]:
-        """Read a mapping whose keys are texts; a key that occurs twice is a problem."""
+    def mapping(self, node: yaml.Node, what: str, example: str = "") -> dict[str, Entry]:
+        """Read a mapping whose keys are texts; a key that occurs twice is a problem.
+
+        Parameters
+        ----------
+        example : str
+            What such a mapping looks like, for the message.
+        """
         if not isinstance(node, yaml.MappingNode):
-            self.error(node, f"{what} must be a mapping of names to values, not {kind(node)}")
+            such = f", such as {example}" if example else ""
+            self.error(node, f"{what} must be a mapping of names to values{such}, not {kind(node)}")
             return {}
         entries: dict[str, Entry] = {}
         for key, value in node.value:
@@ -99,8 +106,9 @@ class Marked:
         """Return the entries with a key among `keys`; others are problems."""
         for name in entries.keys() - set(keys):
             close = get_close_matches(name, keys, n=1)
-            hint = f"did you mean '{close[0]}'?" if close else f"keys are {', '.join(keys)}"
-            self.error(entries[name].key, f"{what} has no '{name}'; {hint}")
+            known = f"; keys are {', '.join(keys)}" if keys else ""
+            hint = f"; did you mean '{close[0]}'?" if close else known
+            self.error(entries[name].key, f"{what} has no '{name}'{hint}")
         return {name: entry for name, entry in entries.items() if name in keys}
 
 
@@ -176,12 +184,13 @@ class Entry:
             self._wrong("a number")
             return default
         try:
-            number = float(str(value.value).replace("_", ""))
+            # PyYAML knows infinite numbers and those that are none, such as ``.inf`` and ``.nan``.
+            number = float(yaml.SafeLoader("").construct_yaml_float(value))
         except ValueError:
             self._wrong("a number")
             return default
         if not least <= number <= most:
-            self.error(f"'{self.name}' must be from {least:g} to {most:g}, not {number:g}")
+            self.error(f"'{self.name}' must be from {least:g} to {most:g}, not {value.value}")
             return default
         return number
 

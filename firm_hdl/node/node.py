@@ -8,7 +8,12 @@ from amaranth.hdl import Module, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import Out
 
-from firm_hdl.node.accelerator import check_accelerator, load_accelerator, other_members
+from firm_hdl.node.accelerator import (
+    check_accelerator,
+    elaborate_accelerator,
+    load_accelerator,
+    other_members,
+)
 from firm_hdl.node.description import Description
 from firm_hdl.node.gateware import NodeCore, time_layout
 from firm_hdl.node.gateware.converters import NodeConverters, message_groups
@@ -94,7 +99,8 @@ class Node(wiring.Component):
                 inner, outer = getattr(converters, name), getattr(self, name)
                 wiring.connect(m, inner, wiring.flipped(outer))
             return m
-        m.submodules.accelerator = accelerator = self.accelerator
+        accelerator = self.accelerator
+        m.submodules.accelerator = elaborate_accelerator(description, accelerator, platform)
         for name in groups:
             wiring.connect(m, getattr(converters, name), getattr(accelerator, name))
         if "time" in accelerator.signature.members:

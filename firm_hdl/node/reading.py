@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -82,7 +83,11 @@ def read_description_text(
     """
     # As universal newlines of Python: a carriage return is no part of a caret's line.
     marked, node = parse(Source(name=name, text=text.replace("\r\n", "\n")))
-    return _Reader(marked, folder, list(paths), library).read(marked.mapping(node, "a description"))
+    entries = marked.mapping(node, "a description")
+    if not entries:
+        # What is no mapping has no keys that could be missing.
+        marked.check()
+    return _Reader(marked, folder, list(paths), library).read(entries)
 
 
 class _Reader:
@@ -97,6 +102,7 @@ class _Reader:
     ) -> None:
         self.marked, self.folder, self.paths = marked, folder, paths
         self.library = library
+        self.renamed: dict[str, Entry] = {}
 
     def read(self, entries: dict[str, Entry]) -> Description:
         known = self.marked.known(entries, KEYS, "a description")
@@ -124,6 +130,7 @@ class _Reader:
         if "remap" in known:
             names.remap = self._remap(known["remap"], library, names)
         topics = self._topics(known, library, names, bus_bytes, link)
+        self._check_remap(names)
         if not topics and not self.marked.problems:
             self.marked.error_at_start(f"a node needs a topic: {', '.join(KINDS)}")
         accelerator = known["accelerator"].checked(_class_problem) if "accelerator" in known else ""
@@ -154,12 +161,12 @@ class _Reader:
             return self.library
         named = known["paths"].texts() if "paths" in known else []
         bags = known["bags"].texts() if "bags" in known else []
-        folders = [*self.paths, *(os.path.join(self.folder, each) for each in named)]
+        folders = [*self.paths, *map(self._place, named)]
         if bags and folders:
             known["bags"].error_at_key("recordings are read without any other definitions")
             bags = []
         try:
-            return open_library(distro, folders, [os.path.join(self.folder, b) for b in bags])
+            return open_library(distro, folders, list(map(self._place, bags)))
         except DefinitionError as error:
             # A folder or a recording that cannot be read has no place of its own.
             entry = known.get("bags" if bags else "paths")
@@ -170,6 +177,10 @@ class _Reader:
                     entry.error(problem.message)
             self.marked.check()
             raise
+
+    def _place(self, name: str) -> str:
+        """Return the path of a file or folder, which is relative to the description."""
+        return os.path.normpath(os.path.join(self.folder, name))
 
     def _bus_bytes(self, entry: Entry) -> int:
         width = entry.integer(8, 1)
@@ -188,7 +199,16 @@ class _Reader:
             new = each.checked(lambda text: topic_problem(text, library.dialect))
             if new:
                 remap[names.complete(name)] = names.complete(new)
+                self.renamed[names.complete(name)] = each
         return remap
+
+    def _check_remap(self, names: _Names) -> None:
+        """Report remappings of names that no topic has: nobody else could use them."""
+        for name, entry in self.renamed.items():
+            if name not in names.used:
+                close = get_close_matches(name, names.used, n=1)
+                hint = f"; did you mean '{close[0]}'?" if close else ""
+                entry.error_at_key(f"no topic has the name '{name}'{hint}")
 
     def _topics(
         self,
@@ -207,7 +227,10 @@ class _Reader:
             kind: Kind = section.name  # type: ignore[assignment]
             for written, entry in self.marked.mapping(section.value, f"'{kind}'").items():
                 name = self._name(entry, written, library, names)
-                keys = self.marked.mapping(entry.value, f"'{written}'")
+                before = len(self.marked.problems)
+                keys = self.marked.mapping(entry.value, f"'{written}'", "{type: std_msgs/msg/Bool}")
+                if not keys and len(self.marked.problems) > before:
+                    continue
                 options = self.marked.known(keys, TOPIC_KEYS[kind], f"a topic of '{kind}'")
                 if (name, kind) in places:
                     entry.error_at_key(f"'{name}' is already there, as '{places[name, kind]}'")
@@ -235,12 +258,14 @@ class _Names:
 
     def __init__(self, namespace: str, node: str, remap: dict[str, str]) -> None:
         self.namespace, self.node, self.remap = namespace, node, remap
+        self.used: set[str] = set()
 
     def complete(self, name: str) -> str:
         return expand(name, self.namespace, self.node)
 
     def final(self, name: str) -> str:
         complete = self.complete(name)
+        self.used.add(complete)
         return self.remap.get(complete, complete)
 
 

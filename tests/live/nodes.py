@@ -9,7 +9,7 @@ from amaranth.lib import wiring
 
 from firm_hdl.node import accelerator_signature
 
-__all__ = ["LOOP", "LOOP_ROS1", "PACKAGES", "Loop", "loop_file"]
+__all__ = ["LOOP", "LOOP_ROS1", "PACKAGES", "SERIAL", "Echo", "Loop", "loop_file"]
 
 PACKAGES = Path(__file__).parents[2] / "examples" / "nodes" / "packages"
 
@@ -46,12 +46,38 @@ serve:
 """
 
 
+SERIAL = """\
+node: echo
+distro: {distro}
+clock_mhz: 4
+link: {{kind: uart, baud: 1000000}}
+accelerator: tests.live.nodes:Echo
+subscribe:
+  /heard: {{type: std_msgs/msg/String, memory_bytes: 256}}
+publish:
+  /said: {{type: std_msgs/msg/String, memory_bytes: 256}}
+"""
+
+
 def loop_file(folder, text, clouds):
     """Write a description into a folder; without clouds, it is compiled in a minute."""
     lines = text.format(distro="jazzy", paths=PACKAGES).splitlines()
     file = folder / "loop.yaml"
     file.write_text("\n".join(line for line in lines if clouds or "cloud" not in line) + "\n")
     return file
+
+
+class Echo(wiring.Component):
+    """Publish what comes."""
+
+    def __init__(self, description):
+        super().__init__(accelerator_signature(description))
+
+    def elaborate(self, platform):
+        m = Module()
+        heard, said = self.subscribe.heard, self.publish.said
+        wiring.connect(m, wiring.flipped(heard), wiring.flipped(said))
+        return m
 
 
 class Loop(wiring.Component):

@@ -11,8 +11,10 @@ import pytest
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.jobs.programs import find_compiler
 from tests.live.bridges import BridgeProcess
-from tests.live.nodes import LOOP, loop_file
+from tests.live.load import load
+from tests.live.nodes import LOOP, SERIAL, loop_file
 from tests.live.peer import Peer, python_of
+from tests.live.serial import check_serial
 from tests.tools import need
 
 pytestmark = pytest.mark.live
@@ -79,6 +81,40 @@ def test_imu_at_1_khz(release, graph, bridge):
 
 @GRAPHS
 @RELEASES
+def test_clouds_at_50_hz(release, graph, bridge):
+    running = bridge(release, graph, clouds=True)
+    topics = [{**CLOUD, "count": 300, "period": 0.02}]
+    with Peer(release, "trip", topics=topics) as peer:
+        assert peer.next(90) == {"begins": True}
+        assert peer.result(90)["numbers"] == [list(range(300))]
+    account = running.stop()
+    assert not [line for line in account if "dropped" in line], account
+
+
+@GRAPHS
+@RELEASES
+def test_the_host_is_under_load(release, graph, bridge):
+    """Nothing is wrong, in disorder or twice, and all comes, if late."""
+    running = bridge(release, graph)
+    topics = [{**IMU, "count": 1000, "period": 0.005}]
+    with load(), Peer(release, "trip", topics=topics, linger=40) as peer:
+        assert peer.next(90) == {"begins": True}
+        assert peer.result(90)["numbers"] == [list(range(1000))]
+    account = running.stop()
+    assert not [line for line in account if "dropped" in line], account
+
+
+@RELEASES
+def test_a_serial_line_with_flipped_bytes(release, tmp_path):
+    """Of the bytes of both directions, 1 % are flipped; what is delivered is right."""
+    need("a C++ compiler", compiler())
+    file = tmp_path / "echo.yaml"
+    file.write_text(SERIAL.format(distro="jazzy"))
+    check_serial(file, release, "/heard", "/said", options=["--graph", "rtps", "--interface", "lo"])
+
+
+@GRAPHS
+@RELEASES
 def test_200_calls(release, graph, bridge):
     running = bridge(release, graph)
     with Peer(release, "call", name="/mode", count=200) as peer:
@@ -88,10 +124,11 @@ def test_200_calls(release, graph, bridge):
 
 
 @GRAPHS
-def test_the_board_is_killed_and_starts_again(graph, bridge):
-    running = bridge("kilted", graph)
+@RELEASES
+def test_the_board_is_killed_and_starts_again(release, graph, bridge):
+    running = bridge(release, graph)
     topics = [{**IMU, "count": 4000, "period": 0.002}]
-    with Peer("kilted", "trip", topics=topics, linger=3) as peer:
+    with Peer(release, "trip", topics=topics, linger=20) as peer:
         assert peer.next(90) == {"begins": True}
         time.sleep(1)
         os.kill(running.engine(), signal.SIGKILL)
@@ -102,20 +139,22 @@ def test_the_board_is_killed_and_starts_again(graph, bridge):
     assert numbers == sorted(set(numbers)) and numbers[0] == 0 and numbers[-1] == 3999
     assert len(numbers) < 4000
     account = "\n".join(running.stop())
-    assert "of /imu_in: no board" in account and "started again or lost 1 times" in account
+    # What waited for longer than a moment was dropped; a quick start leaves no such message.
+    assert "started again or lost 1 times" in account
 
 
 @GRAPHS
-def test_the_peer_is_killed_and_starts_again(graph, bridge):
-    running = bridge("kilted", graph)
+@RELEASES
+def test_the_peer_is_killed_and_starts_again(release, graph, bridge):
+    running = bridge(release, graph)
     endless = [{**IMU, "count": 100_000, "period": 0.002}]
-    with Peer("kilted", "trip", topics=endless) as peer:
+    with Peer(release, "trip", topics=endless) as peer:
         assert peer.next(90) == {"begins": True}
         time.sleep(1)
         peer.kill()
     # The dead reader takes nothing, and does not hold up others.
     topics = [{**IMU, "count": 500, "period": 0.002}]
-    with Peer("kilted", "trip", topics=topics) as peer:
+    with Peer(release, "trip", topics=topics) as peer:
         assert peer.next(90) == {"begins": True}
         (numbers,) = peer.result(90)["numbers"]
     assert numbers == list(range(500))

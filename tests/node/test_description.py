@@ -76,7 +76,7 @@ def test_the_fingerprint_is_that_of_the_topics():
 
 
 def test_remapping_replaces_complete_names():
-    node = read(remap="{odom: /wheel/odom, /nobody: /x}")
+    node = read(remap="{odom: /wheel/odom}")
     assert [t.name for t in node.of_kind("publish")] == ["/wheel/odom"]
     assert node.of_kind("publish")[0].written == "odom"
 
@@ -113,7 +113,8 @@ def test_names_are_completed_as_ros_does():
         ("node: a\naccelerator: x.Y", "an accelerator is named as 'module:Class'"),
         ("node: a\nlink: tcp", "2:7: error: 'link' must be 'stream', 'udp' or 'uart', not 'tcp'"),
         ("node: a\nlink: {baud: 1}", "2:1: error: 'link' needs a 'kind': stream, udp, uart"),
-        ("node: a\nlink: {kind: udp, baud: 1}", "a link of kind 'udp' has no 'baud'"),
+        ("node: a\nlink: {kind: udp, baud: 1}", "a link of kind 'udp' has no 'baud'; keys are mem"),
+        ("node: a\nlink: {kind: stream, baud: 1}", "a link of kind 'stream' has no 'baud'\nlink"),
         ("node: a\nlink: {kind: udp, host: x}", "'x' is not an IPv4 address"),
         ("node: a\nlink: {kind: udp, host_port: 1}", "'host_port' counts only beside a 'host'"),
         ("node: a\nlink: {kind: udp, datagram_bytes: 1000}", "a multiple of 16, such as 992"),
@@ -121,6 +122,12 @@ def test_names_are_completed_as_ros_does():
         (
             "node: a\nlink: {kind: uart, baud: 12000000}",
             "gives 12500000 baud, which is more than 2 %",
+        ),
+        ("node: a\nclock_mhz: .nan", "2:12: error: 'clock_mhz' must be from 1 to 1000, not .nan"),
+        ("node: a\nclock_mhz: .inf", "2:12: error: 'clock_mhz' must be from 1 to 1000, not .inf"),
+        (
+            "remap: {/scam: /c}\n" + body(**{"/scan": "type: std_msgs/msg/Bool"}),
+            "1:9: error: no topic has the name '/scam'; did you mean '/scan'?",
         ),
         ("node: a\nremap: {/a//b: /b}", "2:9: error: the name of a topic has no '//'"),
         ("node: a\nsubscribe:", "'subscribe' must be a mapping of names to values, not empty"),
@@ -158,6 +165,23 @@ def test_a_mistake_is_reported_at_its_place(text, message):
     text_of_error = error_of(text)
     assert message in text_of_error
     assert text_of_error.startswith("<description>:")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("- x", "1:1: error: a description must be a mapping of names to values, not a list"),
+        (
+            "node: n\nsubscribe: {/a: std_msgs/msg/Bool}",
+            "2:17: error: '/a' must be a mapping of names to values, such as "
+            "{type: std_msgs/msg/Bool}, not text",
+        ),
+        ("node: n\npaths: ./nowhere\n" + body(a="type: x/y")[8:], "2:8: error: 'nowhere' is not a"),
+    ],
+)
+def test_a_mistake_has_one_message(text, message):
+    found = error_of(text, library=None)
+    assert found.count("error: ") == 1 and message in found
 
 
 def test_ros_1_has_rules_of_its_own():

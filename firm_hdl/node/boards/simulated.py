@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from firm_hdl.errors import UserError
+from firm_hdl.node.accelerator import conflicts_reported
 from firm_hdl.node.boards.board import Board, BoardError
 from firm_hdl.node.description import Description, Link
 from firm_hdl.node.node import Node
@@ -83,7 +84,8 @@ class SimulatedBoard(Board):
         node = Node(self._description, make(self._description) if make else None)
         outputs = (each.name for each in ports_of(node).streams if not each.is_input)
         ignored = [name for name in outputs if name != _OUT]
-        return FastSimulation(node, engine=self._engine, options=_OPTIONS, ignored=ignored)
+        with conflicts_reported(self._description):
+            return FastSimulation(node, engine=self._engine, options=_OPTIONS, ignored=ignored)
 
     def fileno(self) -> int:
         try:

@@ -63,6 +63,8 @@ class Bridge:
     counters : BridgeCounters
     session : Session or None
         The talk with the board while it is open.
+    is_opening, was_ready, was_stopped : bool
+        The board is being opened, which :meth:`stop` does not end; it was ready; `stop` was called.
     """
 
     def __init__(
@@ -83,8 +85,8 @@ class Bridge:
         self._drops: list[tuple[Register, int]] = []
         self._queue = MessageQueue(_MOST_QUEUED_BYTES)
         self._calls = Calls(_MOST_CALLS)
-        self._stops = False
-        self._has_graph = self._was_ready = False
+        self.was_stopped = False
+        self._has_graph = self.was_ready = self._was_tried = self.is_opening = False
         self._board_retry, self._graph_retry = Retry(*RETRY_SECONDS), Retry(*RETRY_SECONDS)
         self._next_check = 0.0
         self._wake_receiver, self._wake_sender = socket.socketpair()
@@ -95,7 +97,7 @@ class Bridge:
 
     def stop(self) -> None:
         """Let :meth:`run` end soon."""
-        self._stops = True
+        self.was_stopped = True
         self._wake()
 
     def on_message(self, topic: Topic, packet: bytes, caller: object) -> None:
@@ -120,7 +122,7 @@ class Bridge:
         Parameters
         ----------
         seconds : float or None
-            The longest time, from when the board has answered first.
+            The longest time, from when the board was opened first (compiled) or could not be.
         each_second : callable or None
             Called about once a second.
 
@@ -134,10 +136,11 @@ class Bridge:
         """
         end, next_second = float("inf"), 0.0
         try:
-            while not self._stops and (now := time.monotonic()) < end:
-                if self._was_ready and seconds is not None:
+            while not self.was_stopped and (now := time.monotonic()) < end:
+                if self._was_tried and seconds is not None:
                     end, seconds = now + seconds, None
-                if self._has_graph and self.graph.has_ended and self._is_done():
+                is_done = self._queue.oldest() is None and not self._calls
+                if self._has_graph and self.graph.has_ended and is_done:
                     # What the board makes of the last message is still to come.
                     end = min(end, now + _LINGER_SECONDS)
                 if each_second is not None and now >= next_second:
@@ -146,7 +149,7 @@ class Bridge:
                 self.step(end)
         except UserError:
             # Ctrl-C also ends a compiler that makes a simulation, which is no mistake then.
-            if not self._stops:
+            if not self.was_stopped:
                 raise
         finally:
             self.close()
@@ -199,7 +202,12 @@ class Bridge:
             if self.session is None:
                 if now < self._board_retry.at:
                     return
-                self.board.open()
+                self._was_tried = True
+                self.is_opening = True
+                try:
+                    self.board.open()
+                finally:
+                    self.is_opening = False
                 self.session = Session(
                     self.description,
                     self.board.frame_bytes,
@@ -238,7 +246,7 @@ class Bridge:
         except BoardError as error:
             self._lose_board(str(error))
         except WrongBoardError as error:
-            if not self._was_ready:
+            if not self.was_ready:
                 raise
             self._lose_board(str(error))
 
@@ -252,7 +260,7 @@ class Bridge:
             self._report(f"board {self.board.name}: it has started again")
             self._end_calls()
         if session.is_ready and not was_ready:
-            self._was_ready = True
+            self.was_ready = True
             self._board_retry.worked()
             self._report(f"board {self.board.name}: ready")
         for message in messages:
@@ -261,7 +269,7 @@ class Bridge:
     # The graph.
 
     def _care_for_graph(self, now: float) -> None:
-        if not self._was_ready:
+        if not self.was_ready:
             return
         try:
             if not self._has_graph:
@@ -384,13 +392,9 @@ class Bridge:
 
     def _next_due(self) -> float:
         found = self.session.next_due() if self.session else self._board_retry.at
-        if self._was_ready and not self._has_graph:
+        if self.was_ready and not self._has_graph:
             found = min(found, self._graph_retry.at)
         oldest = self._queue.oldest()
         if oldest is not None and not self.is_ready:
             found = min(found, oldest + HOLD_SECONDS)
         return found
-
-    def _is_done(self) -> bool:
-        """Whether nothing is under way from the graph to the board and back."""
-        return self._queue.oldest() is None and not self._calls

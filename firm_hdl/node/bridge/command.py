@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import TYPE_CHECKING
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.boards import board_of
@@ -16,7 +17,13 @@ from firm_hdl.node.bridge.status import Status, account
 from firm_hdl.node.description import Description
 from firm_hdl.node.graphs import graph_of
 
+if TYPE_CHECKING:
+    from firm_hdl.sim.fast import EngineName
+
 __all__ = ["run_bridge"]
+
+_ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+"""Ctrl-C, `kill`, and a terminal that is closed: peers are told that the node leaves."""
 
 
 def run_bridge(
@@ -27,7 +34,7 @@ def run_bridge(
     domain: int | None = None,
     interface: str | None = None,
     seconds: float | None = None,
-    engine: str = "auto",
+    engine: EngineName = "auto",
     quiet: bool = False,
 ) -> None:
     """Run a bridge until Ctrl-C (SIGINT) or SIGTERM; print to standard error.
@@ -48,36 +55,60 @@ def run_bridge(
     Raises
     ------
     UserError, DefinitionError
-        If board or graph cannot be used, or the board has another description.
+        If board or graph cannot be used, if the board has another description, or if it has not
+        answered in `seconds`.
     """
     status = Status(sys.stderr, quiet=quiet)
+    if board == "sim":
+        status.report(f"board sim: starts; {_engine(engine)}")
     bridge = Bridge(
         description,
         board_of(board, description, engine=engine),
         graph_of(graph, description, domain=domain, interface=interface),
         report=status.report,
     )
-    if board == "sim":
-        status.report("board sim: starts; to compile a new node takes up to a minute")
     with _signals(bridge):
         try:
             bridge.run(seconds=seconds, each_second=lambda: status.show(bridge))
         except WrongBoardError as error:
             raise UserError(str(error)) from None
+        except KeyboardInterrupt:
+            # The board was being opened when a signal came.
+            if not bridge.was_stopped:
+                raise
     if not quiet:
         for line in account(bridge):
             status.report(line)
+    if not (bridge.was_ready or bridge.was_stopped):
+        raise UserError(f"the board {board} did not answer in {seconds:g} s")
+
+
+def _engine(name: EngineName) -> str:
+    """Say what runs a simulation, and how long a user has to wait."""
+    # Amaranth takes seconds to import, and a host of a real board does not need it.
+    from firm_hdl.sim.fast.engines import expected_engine
+
+    found, why = expected_engine(name)
+    if found == "cxxrtl":
+        return "to compile a new node takes up to a minute"
+    slow = "Amaranth's simulator takes a few messages per second"
+    return f"{slow} ({why})" if why else slow
 
 
 @contextmanager
 def _signals(bridge: Bridge) -> Iterator[None]:
-    """Let signals end the bridge; a second Ctrl-C interrupts whatever it does."""
+    """Let signals end the bridge; a second Ctrl-C interrupts whatever it does.
+
+    The start of a board may take a minute, if it is compiled, and is interrupted at once.
+    """
 
     def stop(number: int, frame: FrameType | None) -> None:
         bridge.stop()
         signal.signal(signal.SIGINT, signal.default_int_handler)
+        if bridge.is_opening:
+            raise KeyboardInterrupt
 
-    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.signal(number, stop) for number in _ENDING}
     try:
         yield
     finally:

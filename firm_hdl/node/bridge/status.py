@@ -86,7 +86,9 @@ def account(bridge: Bridge) -> Iterator[str]:
     yield from summary_lines(bridge.description, bridge.counters)
     for name, value in _drops(bridge):
         yield f"dropped: {value} {name}"
-    if bridge.restarts:
+    if not bridge.was_ready:
+        yield "the board has never answered"
+    elif bridge.restarts:
         yield f"the board was started again or lost {bridge.restarts} times"
 
 

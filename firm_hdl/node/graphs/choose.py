@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import sys
+from typing import TextIO
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.description import Description
@@ -13,6 +15,16 @@ __all__ = ["GRAPHS", "graph_of"]
 GRAPHS = ("ros2", "ros1", "rtps", "none")
 """The names of graphs: ROS 2 through rclpy, or `rtps` without it; ROS 1 through rospy; ROS 2
 through firm-hdl's own participant; lines of JSON."""
+
+
+def _standard_input() -> TextIO:
+    """Return standard input, whose bytes may be any: a line of rubbish is no reason to end."""
+    if sys.stdin is None:
+        # A process may be started without.
+        return io.StringIO()
+    if isinstance(sys.stdin, io.TextIOWrapper):
+        sys.stdin.reconfigure(encoding="utf-8", errors="replace")
+    return sys.stdin
 
 
 def graph_of(
@@ -49,7 +61,7 @@ def graph_of(
     if name == "none":
         from firm_hdl.node.graphs.lines import LinesGraph
 
-        return LinesGraph(description, sys.stdin, sys.stdout)
+        return LinesGraph(description, _standard_input(), sys.stdout)
     if name == "ros1":
         from firm_hdl.node.graphs.ros1 import RospyGraph
 

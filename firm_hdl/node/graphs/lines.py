@@ -12,12 +12,16 @@ from firm_hdl.node.graphs.graph import Graph, OnMessage
 __all__ = ["LinesGraph"]
 
 
+class _LineError(Exception):
+    """A line is no message; the text is the cause that is counted."""
+
+
 class LinesGraph(Graph):
     """Lines from standard input go to the board, and what it publishes goes to standard output.
 
     A line is an object with `topic`, the complete name, and `packet`, the serialized message in
-    hexadecimal; of a request and its response also `call`, any value of JSON. A line that is none
-    of these is counted as ``malformed``. The end of the input ends the bridge.
+    hexadecimal; of a request and its response also `call`, any value of JSON. Other lines are
+    counted by what is wrong with them. The end of the input ends the bridge.
 
     Parameters
     ----------
@@ -45,15 +49,30 @@ class LinesGraph(Graph):
 
     def _read(self, on_message: OnMessage) -> None:
         for line in self._source:
-            try:
-                found: Any = json.loads(line)
-                topic = self._topics[found["topic"]]
-                packet = bytes.fromhex(found["packet"])
-                caller = found.get("call")
-            except (ValueError, KeyError, TypeError, AttributeError):
-                self.counters["malformed"] += bool(line.strip())
+            if not line.strip():
                 continue
-            on_message(topic, packet, caller)
+            try:
+                on_message(*self._parsed(line))
+            except _LineError as error:
+                self.counters[str(error)] += 1
+
+    def _parsed(self, line: str) -> tuple[Topic, bytes, object]:
+        """Return topic, packet and caller of a line."""
+        try:
+            found: Any = json.loads(line)
+        except (ValueError, RecursionError):
+            found = None
+        if not isinstance(found, dict):
+            raise _LineError("a line that is no object of JSON")
+        name, packet = found.get("topic"), found.get("packet")
+        topic = self._topics.get(name) if isinstance(name, str) else None
+        if topic is None:
+            raise _LineError("a line without the name of a subscription or a service")
+        try:
+            text = packet if isinstance(packet, str) else "none"
+            return topic, bytes.fromhex(text), found.get("call")
+        except ValueError:
+            raise _LineError("a line without a packet in hexadecimal") from None
 
     def publish(self, topic: Topic, packet: bytes) -> bool:
         self._write({"topic": topic.name, "packet": packet.hex()})

@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from firm_hdl.jobs import ProgramMissingError
+from firm_hdl.jobs.programs import find_compiler
 from firm_hdl.sim.fast.amaranth_engine import AmaranthEngine
 from firm_hdl.sim.fast.compilers import program_of
 from firm_hdl.sim.fast.cxxrtl import cxxrtl_source
 from firm_hdl.sim.fast.process import CxxrtlEngine
 from firm_hdl.sim.fast.top import Top
 
-__all__ = ["EngineName", "check_engine", "start"]
+__all__ = ["EngineName", "check_engine", "expected_engine", "start"]
 
 EngineName: TypeAlias = Literal["auto", "cxxrtl", "amaranth"]
 
@@ -22,6 +23,25 @@ def check_engine(engine: str) -> None:
     """Raise a ValueError unless there is an engine of that name."""
     if engine not in ("auto", "cxxrtl", "amaranth"):
         raise ValueError(f"Engine must be 'auto', 'cxxrtl' or 'amaranth', not {engine!r}")
+
+
+def expected_engine(engine: EngineName) -> tuple[EngineName, str]:
+    """Return the engine that :func:`start` takes, and why if ``"auto"`` is not the compiled one.
+
+    Raises
+    ------
+    ProgramMissingError
+        If the engine is ``"cxxrtl"`` and there is no compiler.
+    """
+    if engine == "amaranth":
+        return engine, ""
+    try:
+        find_compiler("A fast simulation", with_zig=True)
+    except ProgramMissingError as error:
+        if engine == "cxxrtl":
+            raise
+        return "amaranth", str(error)
+    return "cxxrtl", ""
 
 
 def start(

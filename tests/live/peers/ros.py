@@ -11,7 +11,7 @@ import time
 import rclpy
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Imu, PointCloud2, PointField
-from std_msgs.msg import String, UInt8MultiArray
+from std_msgs.msg import Int32, String, UInt8MultiArray
 from std_srvs.srv import SetBool
 
 
@@ -143,7 +143,8 @@ def trip(node, options):
     seconds = time.monotonic() - begin
     end = time.monotonic() + options.get("linger", 10)
     while time.monotonic() < end and any(
-        len(got) < each["count"] for got, each in zip(numbers, options["topics"], strict=True)
+        got[-1:] != [each["count"] - 1]
+        for got, each in zip(numbers, options["topics"], strict=True)
     ):
         rclpy.spin_once(node, timeout_sec=0.1)
     return say(numbers=numbers, seconds=seconds)
@@ -207,6 +208,31 @@ def gone(node, options):
     return None
 
 
+def double(node, options):
+    """Publish numbers, take their doubles, and say who publishes them."""
+    doubles = []
+    publisher = node.create_publisher(Int32, "/number", 10)
+    node.create_subscription(Int32, "/double", lambda message: doubles.append(message.data), 10)
+    say(ready=True)
+    end = time.monotonic() + options.get("patience", 20)
+    while not (publisher.get_subscription_count() and node.count_publishers("/double")):
+        if time.monotonic() > end:
+            return say(failed="no bridge")
+        rclpy.spin_once(node, timeout_sec=0.02)
+    time.sleep(options.get("settle", 0.3))
+    for number in options["numbers"]:
+        publisher.publish(Int32(data=number))
+        waits = time.monotonic() + 5
+        before = len(doubles)
+        while len(doubles) == before and time.monotonic() < waits:
+            rclpy.spin_once(node, timeout_sec=0.1)
+    return say(
+        doubles=doubles,
+        nodes=node.get_node_names_and_namespaces(),
+        topics=node.get_topic_names_and_types(),
+    )
+
+
 def call(node, options):
     client = node.create_client(SetBool, options["name"])
     say(ready=True)
@@ -249,6 +275,7 @@ if __name__ == "__main__":
         "graph": graph,
         "gone": gone,
         "call": call,
+        "double": double,
         "serve": serve,
     }[what](node, options)
     node.destroy_node()

@@ -8,6 +8,7 @@ import time
 
 import rospy
 from sensor_msgs.msg import Imu, PointCloud2, PointField
+from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
 
@@ -38,12 +39,21 @@ def cloud(number, size):
     return message
 
 
-TYPES = {"imu": (Imu, imu), "cloud": (PointCloud2, cloud)}
+def string(number, size):
+    return String(data=f"m{number}")
+
+
+TYPES = {"imu": (Imu, imu), "cloud": (PointCloud2, cloud), "string": (String, string)}
+
+
+def stamped(message):
+    return message.header.stamp.secs
 
 
 def content(message):
     """Return what has to be equal: rospy sets the number in the header when it sends."""
-    message.header.seq = 0
+    if hasattr(message, "header"):
+        message.header.seq = 0
     buffer = io.BytesIO()
     message.serialize(buffer)
     return buffer.getvalue()
@@ -59,7 +69,7 @@ def trip(options):
         publishers.append(rospy.Publisher(each["to"], kind, queue_size=10_000, tcp_nodelay=True))
 
         def take(message, got=got, make=make, each=each):
-            number = message.header.stamp.secs
+            number = int(message.data[1:]) if each["type"] == "string" else stamped(message)
             wanted = make(number, each.get("bytes", 0))
             got.append(number if content(message) == content(wanted) else -1)
 
@@ -87,7 +97,8 @@ def trip(options):
     seconds = time.monotonic() - begin
     end = time.monotonic() + options.get("linger", 20)
     while time.monotonic() < end and any(
-        len(got) < each["count"] for got, each in zip(numbers, options["topics"], strict=True)
+        got[-1:] != [each["count"] - 1]
+        for got, each in zip(numbers, options["topics"], strict=True)
     ):
         time.sleep(0.05)
     return say(numbers=numbers, seconds=seconds)

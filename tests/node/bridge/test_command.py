@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import io
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import threading
+import time
 
 import pytest
 
 from firm_hdl.cli import main
+from firm_hdl.node.boards.simulated import SimulatedBoard
+from firm_hdl.node.bridge import Bridge, command
 from tests.node.accelerators import echo_text
-from tests.node.bridge.fakes import FakeNode
+from tests.node.bridge.fakes import ECHO, FakeNode
 from tests.node.bridge.test_boards import UdpNode
 from tests.node.samples import PACKAGES
 
@@ -44,6 +48,65 @@ def test_lines_go_to_a_board_and_back(file, board, capsys, monkeypatch):
     assert lines[:2] == [f"board {address}: ready", "graph none: joined"]
     rows = [each.split() for each in lines]
     assert ["/heard", "subscribe", "3", "0"] in rows and ["/said", "publish", "0", "3"] in rows
+
+
+@pytest.mark.parametrize("stdin", [b'\xff\xfe\n{"topic": "/heard", "packet": "01"}\n', None])
+def test_standard_input_may_be_anything(file, board, capsys, monkeypatch, stdin):
+    """Bytes that are no text are one bad line; without standard input, there is no line."""
+    wrapped = None if stdin is None else io.TextIOWrapper(io.BytesIO(stdin), encoding="utf-8")
+    monkeypatch.setattr(sys, "stdin", wrapped)
+    address = f"udp://127.0.0.1:{board.port}"
+    assert main(["node", "run", file, "--board", address, "--graph", "none"]) == 0
+    out, err = capsys.readouterr()
+    assert out == ("" if stdin is None else '{"topic": "/said", "packet": "01"}\n')
+    lost = "dropped: 1 in the graph: a line that is no object of JSON"
+    assert (lost in err) == (stdin is not None) and "Traceback" not in err
+
+
+def test_a_board_that_never_answers_ends_with_an_error(file, capsys):
+    options = ["--board", "tcp://127.0.0.1:1", "--graph", "none", "--seconds", "0.3"]
+    assert main(["node", "run", file, *options]) == 1
+    err = capsys.readouterr().err
+    assert "the board has never answered" in err
+    assert "error: the board tcp://127.0.0.1:1 did not answer in 0.3 s" in err
+
+
+class SlowBoard(SimulatedBoard):
+    """A simulation that takes a minute to compile."""
+
+    def open(self):
+        time.sleep(60)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_the_start_of_a_board(file, capsys, monkeypatch, number):
+    monkeypatch.setattr(command, "board_of", lambda name, *_, **__: SlowBoard(ECHO))
+    threading.Timer(0.3, lambda: os.kill(os.getpid(), number)).start()
+    before = time.monotonic()
+    assert main(["node", "run", file, "--graph", "none"]) == 0
+    # Nothing else would end it within a minute.
+    assert time.monotonic() - before < 50
+    assert "the board has never answered" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("engine", "compiler", "message"),
+    [
+        ("auto", "", "board sim: starts; to compile a new node takes up to a minute"),
+        ("auto", "nothing-there", "a few messages per second (CXX is 'nothing-there' in the"),
+        ("auto", "'g++", "a few messages per second (CXX is no command: No closing quotation"),
+        ("amaranth", "", "board sim: starts; Amaranth's simulator takes a few messages per second"),
+        ("cxxrtl", "nothing-there", "error: CXX is 'nothing-there' in the environment, but there"),
+    ],
+)
+def test_the_engine_is_named(file, capsys, monkeypatch, engine, compiler, message):
+    if compiler:
+        monkeypatch.setenv("CXX", compiler)
+    elif engine == "auto" and shutil.which("g++") is None:
+        pytest.skip("there is no g++")
+    monkeypatch.setattr(Bridge, "run", lambda self, **_: (self.stop(), self.close()))
+    main(["node", "run", file, "--graph", "none", "--engine", engine])
+    assert message in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -43,9 +43,11 @@ def test_lines_are_messages():
         {"topic": "/said", "packet": ""},
         {"topic": "/heard", "packet": "0"},
         {"topic": "/heard"},
+        {"topic": "/heard", "packet": 10},
         [],
     ]
-    text = "\n".join([*map(json.dumps, rows), "", "no JSON"])
+    deep = "[" * 100_000
+    text = "\n".join([*map(json.dumps, rows), "", "no JSON", deep, '{"topic": ["/heard"]}'])
     sink, got = io.StringIO(), []
     graph = LinesGraph(ECHO, io.StringIO(text), sink)
     assert not graph.has_ended
@@ -53,7 +55,11 @@ def test_lines_are_messages():
     assert wait(lambda: graph.has_ended)
     assert got == [(HEARD, b"\0\1", None), (CAL, b"", [1])]
     # The board publishes `/said`, so nobody sends it there.
-    assert graph.counters == {"malformed": 5}
+    assert graph.counters == {
+        "a line that is no object of JSON": 3,
+        "a line without the name of a subscription or a service": 2,
+        "a line without a packet in hexadecimal": 3,
+    }
     assert graph.publish(SAID, b"\1") and graph.respond(CAL, [1], b"\2")
     assert [json.loads(line) for line in sink.getvalue().splitlines()] == [
         {"topic": "/said", "packet": "01"},

@@ -1,0 +1,112 @@
+# amaranth: UnusedElaboratable=no
+"""Mistakes of accelerators, as users make them in a file beside a description."""
+
+from __future__ import annotations
+
+import gc
+import sys
+from pathlib import Path
+
+import pytest
+from amaranth.hdl import Fragment
+
+from firm_hdl.cli import main
+from firm_hdl.node import Node, read_description
+
+NAME = "mistaken"
+TEXT = f"""\
+node: double
+distro: jazzy
+accelerator: {NAME}:Double
+subscribe:
+  /number: {{type: std_msgs/msg/Int32}}
+publish:
+  /double: {{type: std_msgs/msg/Int32}}
+"""
+
+
+def double():
+    """Return the accelerator of the tutorial."""
+    page = Path(__file__).parents[2] / "docs" / "tutorial.md"
+    return page.read_text(encoding="utf-8").split("```py\n")[1].split("```")[0]
+
+
+MISTAKES = {
+    "elaborate raises": (
+        ("m = Module()", "m = Module(); [][1]"),
+        "'mistaken:Double' raised IndexError at FILE:12: list index out of range",
+    ),
+    "no such field": (
+        ("number.data", "number.dat"),
+        "raised AttributeError at FILE:13: 'PureInterface' object has no attribute 'dat'",
+    ),
+    "returns nothing": (
+        ("        return m", ""),
+        "'mistaken:Double' raised ",
+    ),
+    "two drivers": (
+        ("return m", "m.submodules.n = n = Module(); n.d.comb += sent.valid.eq(1); return m"),
+        "'mistaken:Double': Signal (sig publish__double__data__valid) bit 0 driven from",
+    ),
+    "another clock": (
+        ("return m", "m.d.fast += __import__('amaranth.hdl').hdl.Signal().eq(1); return m"),
+        "the accelerator uses the clock domain 'fast', which it does not have",
+    ),
+    "syntax": (("class Double(", "class Double(("), "'mistaken' has a mistake at FILE:7: "),
+    "ends Python": (
+        ("class Double", "raise SystemExit(3)\nclass Double"),
+        "'mistaken' raised SystemExit at FILE:7: 3",
+    ),
+    "zero": (("class Double", "1 / 0\nclass Double"), "raised ZeroDivisionError at FILE:7: "),
+}
+
+
+def run(*arguments):
+    """Run the command; what a mistake left unfinished is collected before warnings count again."""
+    status = main(["node", *arguments])
+    gc.collect()
+    return status
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder with the description; modules are forgotten after the test."""
+    (tmp_path / "double.yaml").write_text(TEXT)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    yield tmp_path
+    sys.modules.pop(NAME, None)
+
+
+# Amaranth's simulator does not look for two drivers.
+@pytest.mark.parametrize(
+    ("action", "mistake"),
+    [("build", each) for each in MISTAKES] + [("run", each) for each in list(MISTAKES)[:2]],
+)
+def test_a_mistake_is_an_error_at_the_name(folder, capsys, action, mistake):
+    change, message = MISTAKES[mistake]
+    text = double()
+    assert text.count(change[0]) == 1
+    (folder / f"{NAME}.py").write_text(text.replace(*change))
+    options = ["--engine", "amaranth", "--graph", "none"] if action == "run" else []
+    assert run(action, "double.yaml", *options) == 1
+    said = [line for line in capsys.readouterr().err.splitlines() if "error" in line]
+    assert len(said) == 1 and said[0].startswith("double.yaml:3:14: error: ")
+    assert message in said[0].replace(str(folder / f"{NAME}.py"), "FILE").replace(
+        f"{NAME}.py:", "FILE:"
+    )
+
+
+def test_a_clock_of_its_own_is_no_mistake(folder):
+    """The accelerator has the domain, and drives its clock."""
+    text = double().replace("import Module\n", "import ClockDomain, Module, Signal\n")
+    own = "m.domains.fast = ClockDomain(); m.d.fast += Signal().eq(1); return m"
+    (folder / f"{NAME}.py").write_text(text.replace("return m", own))
+    assert Fragment.get(Node(read_description("double.yaml")), None)
+
+
+def test_a_file_in_place_of_a_module(folder, capsys):
+    (folder / "double.yaml").write_text(TEXT.replace(f"{NAME}:", f"{NAME}.py:"))
+    (folder / f"{NAME}.py").write_text(double())
+    assert run("build", "double.yaml") == 1
+    assert f"; write '{NAME}:Double'" in capsys.readouterr().err
