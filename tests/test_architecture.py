@@ -47,7 +47,7 @@ MAY_IMPORT["export"] = {
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
-    *("firm_hdl", "errors", "files", "names", "rtps"),
+    *("firm_hdl", "errors", "files", "names", "rtps", "vhdl"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
     *("sim", "export"),
 }
