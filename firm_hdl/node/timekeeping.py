@@ -76,7 +76,8 @@ class ClockKeeper:
         offset = node_ns - (sent_ns + received_ns) / 2
         if abs(offset) > max(STEP_NS, delay):
             self._last_ns = None
-            seconds, nanoseconds = divmod(received_ns + delay // 2, SECOND_NS)
+            # A time further ahead would have to be set back if the next delay is shorter.
+            seconds, nanoseconds = divmod(received_ns + min(self._delays) // 2, SECOND_NS)
             return ControlRequest(
                 operation=Operation.SET_TIME,
                 seconds=seconds % (1 << 32),

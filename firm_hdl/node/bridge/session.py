@@ -115,6 +115,8 @@ class Session:
         self._late = 0
         self._next_sample = self._next_round = now
         self._todo: deque[ControlRequest] = deque()
+        # Of the clock; a newer one takes its place, because the time of an older one has passed.
+        self._clock_request: ControlRequest | None = None
         self._identity: dict[int, int] = {}
         self.values: dict[int, int] = {}
         self.is_ready = False
@@ -161,7 +163,7 @@ class Session:
 
     def next_due(self) -> float:
         """Return when :meth:`due` should be called next, if nothing comes."""
-        if not self.is_ready or self._todo or self._is_unanswered:
+        if not self.is_ready or self._todo or self._clock_request or self._is_unanswered:
             return self._waits_until
         return max(self._waits_until, min(self._next_sample, self._next_round))
 
@@ -170,6 +172,9 @@ class Session:
         if not self.is_ready:
             number = 2 if 1 in self._identity else 1
             return ControlRequest(operation=Operation.READ, argument=number), False
+        if self._clock_request is not None and not self._is_unanswered:
+            request, self._clock_request = self._clock_request, None
+            return request, False
         if now >= self._next_sample or self._is_unanswered:
             self._next_sample = now + self._sample_seconds
             return ControlRequest(operation=Operation.READ, argument=0), True
@@ -236,6 +241,7 @@ class Session:
         self.is_ready = self._is_set = False
         self._asked.clear()
         self._todo.clear()
+        self._clock_request = None
         self._waits_until = now
         self._keeper = ClockKeeper(nominal_rate(self._description.clock_hz))
         self._next_sample = self._next_round = now
@@ -260,7 +266,7 @@ class Session:
         if asked.is_sample:
             more = self._keeper.sample(asked.wall_ns, response, wall_ns)
             if more is not None:
-                self._todo.appendleft(more)
+                self._clock_request = more
 
     def _keep(self, number: int, value: int) -> None:
         if self.is_ready:

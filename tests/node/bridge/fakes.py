@@ -30,7 +30,7 @@ class FakeNode:
         self.receiver, self.sender = MessageReceiver(), MessageSender()
         self.fingerprint, self.seconds, self.rate = fingerprint, seconds, None
         self.is_mute = self.answers_no_calls = False
-        self.read = []
+        self.read, self.set_ns = [], []
 
     def take(self, frame):
         """Take a frame; return the frames of the answer."""
@@ -56,6 +56,8 @@ class FakeNode:
             value = halves.get(argument, 7 if argument == 17 else 0)
         elif operation == 2:
             self.seconds = int.from_bytes(packet[8:12], "little")
+            nanoseconds = int.from_bytes(packet[12:], "little")
+            self.set_ns.append(self.seconds * 10**9 + nanoseconds)
         else:
             self.rate = argument
         numbers = b"".join(n.to_bytes(4, "little") for n in (value, before, 0))

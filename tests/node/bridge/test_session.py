@@ -23,8 +23,9 @@ EPOCH_NS = 1_800_000_000_000_000_000
 class Talk:
     """A session and a node, with a clock of their own."""
 
-    def __init__(self, node=None, loses=lambda: False, **options):
+    def __init__(self, node=None, loses=lambda: False, delay=lambda: 0.001, **options):
         self.node, self.loses, self.now = node or FakeNode(), loses, 100.0
+        self.delay = delay
         self.session = Session(ECHO, None, self.now, **options)
         self.got = []
 
@@ -35,9 +36,9 @@ class Talk:
         self.now += seconds
 
     def say(self, frame):
-        self.now += 0.001
+        self.now += self.delay()
         answers = [] if self.loses() else self.node.take(frame)
-        self.now += 0.001
+        self.now += self.delay()
         for answer in answers:
             if not self.loses():
                 self.got += self.session.take(answer, self.now, self.wall)
@@ -108,6 +109,15 @@ def test_the_clock_is_set_and_the_rate_corrected():
     assert 0 <= talk.node.seconds - EPOCH_NS // 10**9 < 3
     # A clock that stands still is set again and again, and never a reason to think of a restart.
     assert talk.session.restarts == 0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_clock_of_a_slow_simulation_is_never_set_back(seed):
+    # More requests are due than it answers.
+    rng = random.Random(seed)
+    talk = Talk(delay=lambda: rng.uniform(0.02, 0.12), sample_seconds=0.1)
+    talk.run(20)
+    assert len(talk.node.set_ns) > 30 and talk.node.set_ns == sorted(talk.node.set_ns)
 
 
 def test_all_counters_are_read_in_turn():
