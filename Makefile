@@ -4,8 +4,6 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 JOBS   ?= 2
-# Tests wait for processes and timeouts at times; one more worker keeps all processors busy.
-WORKERS ?= $(shell expr $(JOBS) + 1)
 # What `make verify` runs; `VERIFY_ARGS='--bus-bytes 1 sensor_msgs/msg/Imu'` runs one type.
 VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 
@@ -30,7 +28,7 @@ test: $(VENV)/.installed-dev ## linters, types and all tests
 	@$(MAKE) --no-print-directory pytest
 
 pytest: $(VENV)/.compiled tools ## tests only; PYTEST_ARGS=tests/export takes some
-	$(BIN)/python -m pytest -n $(WORKERS) $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
 test-thorough: $(VENV)/.compiled tools ## all tests in full depth (half an hour); PYTEST_ARGS=-mthorough takes some
 	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)

@@ -1,6 +1,7 @@
 """The contract of decoding, restated primitive by primitive over the message model.
 
-It shares only the limits of lengths with layout and plan, and has no steps or bus words.
+It shares only the limits of lengths, and what they claim, with layout and plan. It has no steps
+or bus words.
 """
 
 from __future__ import annotations
@@ -33,6 +34,8 @@ class Reference:
         self.packet = packet
         self.lanes = {str(leaf): leaf.lanes for leaf in plan.leaves}
         self.limits = {str(plan.leaves[n]): begin.limit for n, begin in plan.begins.items()}
+        self.claims = {str(plan.leaves[n]): begin.claim for n, begin in plan.begins.items()}
+        self.budget = 0
         self.position = 0
         self.status = "OK"
         self.transfers: list[tuple[str, Payload]] = []
@@ -116,11 +119,22 @@ class Reference:
         self.align(LENGTH, path)
         wire = self.read(LENGTH)
         count = max(0, wire - 1) if terminated else wire
-        if count > self.limits[".".join(path)]:
+        if count > self.limits[".".join(path)] or not self.pay(path, wire):
             self.status = "LENGTH"
             wire = count = 0
         self.send(path, count)
         return count, terminated and wire > 0
+
+    def pay(self, path: tuple[str, ...], wire: int) -> bool:
+        """Take what a nested length claims from the budget; return whether the budget suffices."""
+        claim = self.claims[".".join(path)]
+        if claim is None:
+            return True
+        if claim.total is not None:
+            self.budget = claim.total
+        if wire >= claim.least:
+            self.budget -= wire * claim.bytes - claim.saved
+        return self.budget >= 0
 
     def items(
         self, item: Primitive, count: int, path: tuple[str, ...], *, aligned: bool = True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from typing import Any
 
 import pytest
@@ -13,7 +14,7 @@ from firm_hdl.plan import Plan, build_plan, check, decode, encode, from_yaml, to
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import lay_out
 from tests.plan.reference import Reference
-from tests.strategies import BUS_WIDTHS, Definition, definitions, to_rosbags, values
+from tests.strategies import BUS_WIDTHS, Definition, definitions, make, to_rosbags, values
 
 slow = settings(
     deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
@@ -98,6 +99,19 @@ def test_any_packet_decodes_as_the_contract_says_on_every_bus(wire, case, data):
     for plan in plans:
         reference = Reference(plan, definition.message, packet)
         assert named(plan, packet) == (reference.transfers, reference.status)
+
+
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@pytest.mark.parametrize(("letters", "status"), [(600, "LENGTH"), (300, "TRUNCATED")])
+def test_nested_lengths_share_a_budget_as_the_contract_says(letters, status, bus_bytes):
+    element = make("ros1", {"x": "uint32", "s": "string"}, "Element")
+    message = make("ros1", {"e": (element, "[]")})
+    # Of 700 bytes, 40 elements claim 320.
+    plan = plan_of(message, "ros1", bus_bytes, max_message_bytes=4 + 700)
+    packet = struct.pack("<III", 40, 0, letters)
+    reference = Reference(plan, message, packet)
+    assert reference.status == status
+    assert named(plan, packet) == (reference.transfers, status)
 
 
 @st.composite
