@@ -222,6 +222,7 @@ def test_yosys_makes_the_same_registers_of_a_memory(
     assert _as_yosys_maps_it(rtlil_of(DESIGNS[name]), rtlil_of(DESIGNS[name]), tools, tmp_path)
 
 
+@pytest.mark.thorough
 def test_yosys_makes_other_registers_of_another_memory(tools: Tools, tmp_path: Path) -> None:
     text = rtlil_of(FULL | {"mem": replace(FULL["mem"], depth=8)})
     assert _as_yosys_maps_it(text, text, tools, tmp_path)

@@ -143,6 +143,7 @@ def test_verilog_linters_find_nothing(folders):
                 assert (done.returncode, done.stdout + done.stderr) == (0, ""), command
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("verilator")
 def test_each_waiver_is_needed_and_has_its_reason(folders, tmp_path):
     # Several lengths in one bus word need one-hot choices.
