@@ -91,7 +91,7 @@ def account(bridge: Bridge) -> Iterator[str]:
     elif bridge.restarts:
         yield f"the board was started again or lost {bridge.restarts} times"
     if bridge.was_ready and not bridge.side.has_read_last:
-        yield "the counters on the board could not be read at the end"
+        yield "not all counters on the board could be read at the end"
 
 
 def _drops(bridge: Bridge) -> Iterator[tuple[str, int]]:
