@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import time
 
@@ -15,13 +14,12 @@ from tests.live.load import load
 from tests.live.nodes import LOOP, SERIAL, loop_file
 from tests.live.peer import Peer, python_of
 from tests.live.serial import check_serial
+from tests.live.trips import CLOUD, IMU, check_killed_board, check_trips, named
 from tests.tools import need
 
 pytestmark = pytest.mark.live
 
 RELEASES = pytest.mark.parametrize("release", ["jazzy", "kilted"])
-IMU = {"type": "imu", "to": "/imu_in", "back": "/imu_out", "depth": 0}
-CLOUD = {"type": "cloud", "bytes": 20_000, "to": "/cloud_in", "back": "/cloud_out", "depth": 0}
 
 
 def compiler():
@@ -57,38 +55,21 @@ GRAPHS = pytest.mark.parametrize("graph", ["rtps", "ros2"])
 @GRAPHS
 @RELEASES
 def test_two_topics_at_once(release, graph, bridge):
-    running = bridge(release, graph, clouds=True)
-    topics = [{**IMU, "count": 3000, "period": 0.001}, {**CLOUD, "count": 300, "period": 0.02}]
-    with Peer(release, "trip", topics=topics) as peer:
-        assert peer.next(90) == {"begins": True}
-        result = peer.result(90)
-    assert result["numbers"] == [list(range(3000)), list(range(300))]
-    account = running.stop()
-    assert not [line for line in account if "dropped" in line], account
+    imu, cloud = {**IMU, "count": 3000, "period": 0.001}, {**CLOUD, "count": 300, "period": 0.02}
+    check_trips(bridge(release, graph, clouds=True), release, imu, cloud)
 
 
 @GRAPHS
 @RELEASES
 def test_imu_at_1_khz(release, graph, bridge):
-    running = bridge(release, graph)
-    topics = [{**IMU, "count": 3000, "period": 0.001}]
-    with Peer(release, "trip", topics=topics) as peer:
-        assert peer.next(90) == {"begins": True}
-        assert peer.result(90)["numbers"] == [list(range(3000))]
-    account = running.stop()
-    assert not [line for line in account if "dropped" in line], account
+    check_trips(bridge(release, graph), release, {**IMU, "count": 3000, "period": 0.001})
 
 
 @GRAPHS
 @RELEASES
 def test_clouds_at_50_hz(release, graph, bridge):
-    running = bridge(release, graph, clouds=True)
-    topics = [{**CLOUD, "count": 300, "period": 0.02}]
-    with Peer(release, "trip", topics=topics) as peer:
-        assert peer.next(90) == {"begins": True}
-        assert peer.result(90)["numbers"] == [list(range(300))]
-    account = running.stop()
-    assert not [line for line in account if "dropped" in line], account
+    cloud = {**CLOUD, "count": 300, "period": 0.02}
+    check_trips(bridge(release, graph, clouds=True), release, cloud)
 
 
 @GRAPHS
@@ -96,12 +77,8 @@ def test_clouds_at_50_hz(release, graph, bridge):
 def test_the_host_is_under_load(release, graph, bridge):
     """Nothing is wrong, in disorder or twice, and all comes, if late."""
     running = bridge(release, graph)
-    topics = [{**IMU, "count": 1000, "period": 0.005}]
-    with load(), Peer(release, "trip", topics=topics, linger=40) as peer:
-        assert peer.next(90) == {"begins": True}
-        assert peer.result(90)["numbers"] == [list(range(1000))]
-    account = running.stop()
-    assert not [line for line in account if "dropped" in line], account
+    with load():
+        check_trips(running, release, {**IMU, "count": 1000, "period": 0.005}, linger=40)
 
 
 @RELEASES
@@ -126,21 +103,7 @@ def test_200_calls(release, graph, bridge):
 @GRAPHS
 @RELEASES
 def test_the_board_is_killed_and_starts_again(release, graph, bridge):
-    running = bridge(release, graph)
-    topics = [{**IMU, "count": 4000, "period": 0.002}]
-    with Peer(release, "trip", topics=topics, linger=20) as peer:
-        assert peer.next(90) == {"begins": True}
-        time.sleep(1)
-        os.kill(running.engine(), signal.SIGKILL)
-        running.wait_for("killed by SIGKILL; trying again")
-        running.wait_for("ready")
-        (numbers,) = peer.result(90)["numbers"]
-    # In order, none twice, none wrong (-1); and the last ones came.
-    assert numbers == sorted(set(numbers)) and numbers[0] == 0 and numbers[-1] == 3999
-    assert len(numbers) < 4000
-    account = "\n".join(running.stop())
-    # What waited for longer than a moment was dropped; a quick start leaves no such message.
-    assert "started again or lost 1 times" in account
+    check_killed_board(bridge(release, graph), release)
 
 
 @GRAPHS
@@ -159,3 +122,15 @@ def test_the_peer_is_killed_and_starts_again(release, graph, bridge):
         (numbers,) = peer.result(90)["numbers"]
     assert numbers == list(range(500))
     running.stop()
+
+
+def test_what_an_account_names():
+    lines = [
+        "/imu_in   subscribe      4000         0",
+        "dropped: 5 of /imu_in: board lost",
+        "dropped: 2 on the board, /imu_out out: full",
+        "dropped: 3 of /imu_input: board lost",
+        "dropped: 4 on the way from the board: damaged",
+    ]
+    assert named(lines, IMU) == 7
+    assert named([lines[0], *lines[3:]], IMU) == 0

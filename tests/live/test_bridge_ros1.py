@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import subprocess
 import time
 
@@ -14,7 +12,8 @@ from tests.live.load import load
 from tests.live.nodes import LOOP_ROS1, SERIAL, loop_file
 from tests.live.peer import Peer, python_of, ros1_variables
 from tests.live.serial import check_serial
-from tests.live.test_bridge import CLOUD, IMU, compiler
+from tests.live.test_bridge import compiler
+from tests.live.trips import CLOUD, IMU, check_killed_board, check_trips
 from tests.tools import need
 
 pytestmark = pytest.mark.live
@@ -54,38 +53,21 @@ def bridge(tmp_path, request):
 
 
 def test_two_topics_at_once(bridge):
-    topics = [{**IMU, "count": 3000, "period": 0.001}, {**CLOUD, "count": 300, "period": 0.02}]
-    with Peer("ros1", "trip", topics=topics) as peer:
-        assert peer.next(90) == {"begins": True}
-        result = peer.result(90)
-    assert result["numbers"] == [list(range(3000)), list(range(300))]
-    account = bridge.stop()
-    assert not [line for line in account if "dropped" in line], account
+    imu, cloud = {**IMU, "count": 3000, "period": 0.001}, {**CLOUD, "count": 300, "period": 0.02}
+    check_trips(bridge, "ros1", imu, cloud)
 
 
 def test_imu_at_1_khz(bridge):
-    topics = [{**IMU, "count": 3000, "period": 0.001}]
-    with Peer("ros1", "trip", topics=topics) as peer:
-        assert peer.next(90) == {"begins": True}
-        assert peer.result(90)["numbers"] == [list(range(3000))]
-    account = bridge.stop()
-    assert not [line for line in account if "dropped" in line], account
+    check_trips(bridge, "ros1", {**IMU, "count": 3000, "period": 0.001})
 
 
 def test_clouds_at_50_hz(bridge):
-    topics = [{**CLOUD, "count": 300, "period": 0.02}]
-    with Peer("ros1", "trip", topics=topics) as peer:
-        assert peer.next(90) == {"begins": True}
-        assert peer.result(90)["numbers"] == [list(range(300))]
-    account = bridge.stop()
-    assert not [line for line in account if "dropped" in line], account
+    check_trips(bridge, "ros1", {**CLOUD, "count": 300, "period": 0.02})
 
 
 def test_the_host_is_under_load(bridge):
-    topics = [{**IMU, "count": 1000, "period": 0.005}]
-    with load(), Peer("ros1", "trip", topics=topics, linger=40) as peer:
-        assert peer.next(90) == {"begins": True}
-        assert peer.result(90)["numbers"] == [list(range(1000))]
+    with load():
+        check_trips(bridge, "ros1", {**IMU, "count": 1000, "period": 0.005}, linger=40)
 
 
 def test_a_serial_line_with_flipped_bytes(tmp_path):
@@ -120,16 +102,7 @@ def test_200_calls(bridge, persistent):
 
 
 def test_the_board_is_killed_and_starts_again(bridge):
-    topics = [{**IMU, "count": 4000, "period": 0.002}]
-    with Peer("ros1", "trip", topics=topics, linger=20) as peer:
-        assert peer.next(90) == {"begins": True}
-        time.sleep(1)
-        os.kill(bridge.engine(), signal.SIGKILL)
-        bridge.wait_for("killed by SIGKILL; trying again")
-        bridge.wait_for("ready")
-        (numbers,) = peer.result(90)["numbers"]
-    assert numbers == sorted(set(numbers)) and numbers[0] == 0 and numbers[-1] == 3999
-    assert len(numbers) < 4000
+    check_killed_board(bridge, "ros1")
 
 
 def test_the_master_starts_again(tmp_path):

@@ -29,8 +29,8 @@ class Board(ABC):
     bytes_per_second : float or None
         How fast the way is; `None`: fast enough not to be waited for.
     counters : Counter of str
-        What the way itself lost, by cause: ``damaged`` and ``large`` frames, ``full`` for messages
-        that found no room in what waits to be sent. They go on when the board is opened again.
+        What the way itself lost, by cause: ``damaged`` and ``large`` frames, ``unreachable`` for
+        datagrams. They go on when the board is opened again.
     """
 
     sample_seconds = 1.0
@@ -59,6 +59,14 @@ class Board(ABC):
         """Whether :meth:`flush` has something to do once the file descriptor can be written to."""
         return False
 
+    @property
+    def has_room(self) -> bool:
+        """Whether a message that is sent now is soon on its way.
+
+        If not, :meth:`send` takes it all the same, and it waits behind others.
+        """
+        return True
+
     @abstractmethod
     def send(self, frames: Sequence[bytes]) -> bool:
         """Send the frames of one message, or none of them.
@@ -66,7 +74,7 @@ class Board(ABC):
         Returns
         -------
         bool
-            Whether they were taken; if not, they are counted.
+            Whether they were taken.
 
         Raises
         ------

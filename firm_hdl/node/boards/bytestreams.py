@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import socket
 import stat
+import sys
 import termios
 from abc import abstractmethod
 from collections.abc import Sequence
@@ -16,8 +18,13 @@ from firm_hdl.node.bytestream import ByteStreamReader, write_frame
 __all__ = ["BAUD_RATES", "SerialBoard", "TcpBoard"]
 
 _CHUNK = 1 << 16
-_MOST_WAITING_BYTES = 1 << 20
-"""What may wait to be sent. Further messages are dropped, so that they do not arrive too late."""
+_WAIT_SECONDS = 0.25
+"""How long a message may wait for a line of known speed: as long as for a board that is gone."""
+
+_TCP_BYTES = 1 << 16
+"""What may wait for a connection, whose speed is unknown, and once more in the system.
+
+A network carries so much in a few milliseconds, and a line of 1 Mbaud behind a server in 1.3 s."""
 
 _CONNECT_SECONDS = 3.0
 
@@ -35,13 +42,15 @@ class ByteBoard(Board):
     Parameters
     ----------
     name : str
+    room_bytes : int
+        What may wait before there is no more room; one message always may.
     max_bytes : int
         Largest frame that is received.
     """
 
-    def __init__(self, name: str, max_bytes: int = 1 << 24) -> None:
+    def __init__(self, name: str, room_bytes: int, max_bytes: int = 1 << 24) -> None:
         super().__init__(name)
-        self._max_bytes = max_bytes
+        self._room_bytes, self._max_bytes = room_bytes, max_bytes
         self._reader = ByteStreamReader(max_bytes=max_bytes)
         self._waiting = bytearray()
         self._file: int | None = None
@@ -65,10 +74,16 @@ class ByteBoard(Board):
     def waits_to_send(self) -> bool:
         return bool(self._waiting)
 
+    @property
+    def has_room(self) -> bool:
+        waits = len(self._waiting) + self._held_by_system()
+        return not waits or waits < self._room_bytes
+
+    def _held_by_system(self) -> int:
+        """Return how many bytes the system has taken and not yet sent, as far as this counts."""
+        return 0
+
     def send(self, frames: Sequence[bytes]) -> bool:
-        if len(self._waiting) > _MOST_WAITING_BYTES:
-            self.counters["full"] += 1
-            return False
         for frame in frames:
             self._waiting += write_frame(frame)
         self.flush()
@@ -119,7 +134,7 @@ class TcpBoard(ByteBoard):
     """
 
     def __init__(self, name: str, host: str, port: int) -> None:
-        super().__init__(name)
+        super().__init__(name, _TCP_BYTES)
         self._address = (host, port)
 
     def _open(self) -> int:
@@ -129,6 +144,8 @@ class TcpBoard(ByteBoard):
             raise BoardError(f"cannot reach {self.name}: {error.strerror or error}") from None
         # A message is sent as a whole, and should not wait for the next one.
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        # The system would else hold several MB for a peer that is slow.
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _TCP_BYTES)
         connection.setblocking(False)
         return connection.detach()
 
@@ -146,10 +163,11 @@ class SerialBoard(ByteBoard):
     """
 
     def __init__(self, name: str, path: str, baud: int) -> None:
-        super().__init__(name)
-        self._path, self._baud = path, baud
         # A byte has a start bit and a stop bit.
-        self.bytes_per_second = baud / 10
+        rate = baud / 10
+        super().__init__(name, int(_WAIT_SECONDS * rate))
+        self._path, self._baud = path, baud
+        self.bytes_per_second = rate
 
     def _open(self) -> int:
         file = None
@@ -178,6 +196,15 @@ class SerialBoard(ByteBoard):
         termios.tcsetattr(file, termios.TCSANOW, [0, 0, flags, 0, speed, speed, control])
         # Bytes of before belong to nobody.
         termios.tcflush(file, termios.TCIOFLUSH)
+
+    def _held_by_system(self) -> int:
+        # The 4 KiB of a driver are 4 s at 9,600 baud. A pty says 0.
+        try:
+            found = fcntl.ioctl(self.fileno(), termios.TIOCOUTQ, bytes(4))
+        except OSError:
+            # Not all drivers know.
+            return 0
+        return int.from_bytes(found, sys.byteorder)
 
     @staticmethod
     def _drop(file: int | None) -> None:

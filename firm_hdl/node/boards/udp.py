@@ -68,7 +68,6 @@ class UdpBoard(Board):
             try:
                 own.send(frame)
             except BlockingIOError:
-                self.counters["full"] += 1
                 return False
             except OSError as error:
                 self._judge(error)

@@ -15,10 +15,10 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from firm_hdl.errors import UserError
-from firm_hdl.node.boards.board import Board, BoardError
+from firm_hdl.node.boards.board import Board
+from firm_hdl.node.bridge.boardside import BoardSide
 from firm_hdl.node.bridge.counters import BridgeCounters
-from firm_hdl.node.bridge.session import Session, SilentBoardError, WrongBoardError
-from firm_hdl.node.bridge.waiting import Call, Calls, MessageQueue, Retry, Waiting
+from firm_hdl.node.bridge.waiting import RETRY_SECONDS, Call, Calls, MessageQueue, Retry, Waiting
 from firm_hdl.node.control import Register
 from firm_hdl.node.description import Description, Topic
 from firm_hdl.node.graphs.graph import Graph, GraphError
@@ -32,11 +32,11 @@ HOLD_SECONDS = 0.25
 CALL_SECONDS = 10.0
 """How long a request waits for its response."""
 
-RETRY_SECONDS = (0.2, 2.0)
-"""Time until a board or a graph that is gone is tried again: the first, and the longest one."""
-
 CHECK_SECONDS = 1.0
 """How often a graph is looked after."""
+
+END_SECONDS = 1.0
+"""How long, at most, the bridge asks the board at the end what has arrived and what it lost."""
 
 _MOST_QUEUED_BYTES = 1 << 26
 _MOST_CALLS = 1 << 16
@@ -61,10 +61,10 @@ class Bridge:
     Attributes
     ----------
     counters : BridgeCounters
-    session : Session or None
-        The talk with the board while it is open.
-    is_opening, was_ready, was_stopped : bool
-        The board is being opened, which :meth:`stop` does not end; it was ready; `stop` was called.
+    side : BoardSide
+        The side of the board, with its figures.
+    was_stopped : bool
+        :meth:`stop` was called.
     """
 
     def __init__(
@@ -77,17 +77,15 @@ class Bridge:
     ) -> None:
         self.description, self.board, self.graph = description, board, graph
         self.counters = BridgeCounters()
-        self.session: Session | None = None
-        self._restarts = 0
         self._report = report or (lambda _: None)
+        self.side = BoardSide(description, board, self.counters, self._report, self._end_calls)
         self._topics = {topic.id: topic for topic in description.topics}
-        self._past: Counter[str] = Counter()
-        self._drops: list[tuple[Register, int]] = []
         self._queue = MessageQueue(_MOST_QUEUED_BYTES)
+        # What comes later is not sent any more.
+        self._last = float("inf")
         self._calls = Calls(_MOST_CALLS)
-        self.was_stopped = False
-        self._has_graph = self.was_ready = self._was_tried = self.is_opening = False
-        self._board_retry, self._graph_retry = Retry(*RETRY_SECONDS), Retry(*RETRY_SECONDS)
+        self.was_stopped = self._has_graph = False
+        self._graph_retry = Retry(*RETRY_SECONDS)
         self._next_check = 0.0
         self._wake_receiver, self._wake_sender = socket.socketpair()
         for each in (self._wake_receiver, self._wake_sender):
@@ -119,6 +117,9 @@ class Bridge:
     ) -> None:
         """Pass messages on until :meth:`stop`, or until the graph has ended; then close both.
 
+        Before, a board that is ready is asked for its last figures, for `END_SECONDS` at most. A
+        `KeyboardInterrupt` closes both at once.
+
         Parameters
         ----------
         seconds : float or None
@@ -137,7 +138,7 @@ class Bridge:
         end, next_second = float("inf"), 0.0
         try:
             while not self.was_stopped and (now := time.monotonic()) < end:
-                if self._was_tried and seconds is not None:
+                if self.side.was_tried and seconds is not None:
                     end, seconds = now + seconds, None
                 is_done = self._queue.oldest() is None and not self._calls
                 if self._has_graph and self.graph.has_ended and is_done:
@@ -147,6 +148,7 @@ class Bridge:
                     next_second = now + CHECK_SECONDS
                     each_second()
                 self.step(end)
+            self._finish()
         except UserError:
             # Ctrl-C also ends a compiler that makes a simulation, which is no mistake then.
             if not self.was_stopped:
@@ -157,7 +159,7 @@ class Bridge:
     def step(self, end: float = float("inf")) -> None:
         """Do what is due, and wait for what comes: until `end`, or half a second."""
         now = time.monotonic()
-        self._care_for_board(now)
+        self.side.care(now)
         self._care_for_graph(now)
         self._to_board(now)
         self._end_calls(now)
@@ -165,105 +167,64 @@ class Bridge:
         self._from_board()
         self._wait(end)
 
+    def _finish(self) -> None:
+        """Send what waits, and let the board say what has arrived and what it lost."""
+        self._last = time.monotonic()
+        end, session = self._last + END_SECONDS, self.side.session
+        has_asked = False
+        # A board that is lost now is not tried again.
+        while self.is_ready and self.side.session is session and time.monotonic() < end:
+            self._to_board(time.monotonic())
+            if not has_asked and not self._has_waiting:
+                has_asked = True
+                self.side.finish()
+            self.side.care(time.monotonic())
+            self._from_board()
+            if self.side.has_read_last:
+                return
+            self._wait(end)
+
     def close(self) -> None:
         """Leave the graph, and close the board, for good; the counters stay."""
         if self._has_graph:
             self._has_graph = False
             self.graph.close()
-        self._lose_board(None)
+        while (waiting := self._queue.take()) is not None:
+            if waiting.at < self._last:
+                self.counters.drop(waiting.topic.name, "bridge ended")
+            if waiting.topic.kind == "serve":
+                self.graph.abandon(waiting.topic, waiting.caller)
+        self.side.lose(None)
         for each in (self._wake_receiver, self._wake_sender):
             each.close()
 
     @property
     def on_the_way(self) -> Counter[str]:
         """What was lost between the board and here, in all sessions."""
-        now = self.session.lost_on_the_way() if self.session else Counter()
-        return +(self._past + now + self.board.counters)
+        return self.side.on_the_way
 
     @property
     def last_drops(self) -> list[tuple[Register, int]]:
         """What the node says that it dropped; see :meth:`.Session.drops`."""
-        return self.session.drops() if self.session else self._drops
+        return self.side.drops()
 
     @property
     def restarts(self) -> int:
         """How often the board, or the way to it, started again or was gone."""
-        return self._restarts + (self.session.restarts if self.session else 0)
+        return self.side.restarts
 
     @property
     def is_ready(self) -> bool:
         """Whether the board is there and the right one."""
-        return self.session is not None and self.session.is_ready
+        return self.side.is_ready
 
-    # The board.
-
-    def _care_for_board(self, now: float) -> None:
-        try:
-            if self.session is None:
-                if now < self._board_retry.at:
-                    return
-                self._was_tried = True
-                self.is_opening = True
-                try:
-                    self.board.open()
-                finally:
-                    self.is_opening = False
-                self.session = Session(
-                    self.description,
-                    self.board.frame_bytes,
-                    time.monotonic(),
-                    sample_seconds=self.board.sample_seconds,
-                )
-            frames = self.session.due(time.monotonic(), time.time_ns())
-            if frames:
-                self.board.send(frames)
-        except (BoardError, SilentBoardError) as error:
-            self._lose_board(str(error))
-
-    def _lose_board(self, why: str | None) -> None:
-        """Close the board. With a reason, it is tried again later."""
-        if self.session is not None:
-            self._past += self.session.lost_on_the_way()
-            self._restarts += self.session.restarts
-            self._drops = self.session.drops()
-            self.session = None
-        self.board.close()
-        self._end_calls()
-        if why is not None:
-            self._restarts += 1
-            if self._board_retry.failed(time.monotonic(), why):
-                self._report(f"board {self.board.name}: {why}; trying again")
+    @property
+    def was_ready(self) -> bool:
+        """Whether the board was ready once."""
+        return self.side.was_ready
 
     def _from_board(self) -> None:
-        """Take what has come."""
-        if self.session is None:
-            return
-        try:
-            for frame in self.board.receive():
-                self._take(frame)
-            if self.board.waits_to_send:
-                self.board.flush()
-        except BoardError as error:
-            self._lose_board(str(error))
-        except WrongBoardError as error:
-            if not self.was_ready:
-                raise
-            self._lose_board(str(error))
-
-    def _take(self, frame: bytes) -> None:
-        session = self.session
-        if session is None:
-            return
-        was_ready, restarts = session.is_ready, session.restarts
-        messages = session.take(frame, time.monotonic(), time.time_ns())
-        if session.restarts > restarts:
-            self._report(f"board {self.board.name}: it has started again")
-            self._end_calls()
-        if session.is_ready and not was_ready:
-            self.was_ready = True
-            self._board_retry.worked()
-            self._report(f"board {self.board.name}: ready")
-        for message in messages:
+        for message in self.side.receive():
             self._pass(message)
 
     # The graph.
@@ -328,7 +289,7 @@ class Bridge:
         """Send what waits; drop what has waited for too long."""
         for _ in range(_MOST_AT_ONCE):
             old = now if self.is_ready else now - HOLD_SECONDS
-            waiting = self._queue.take(before=old)
+            waiting = self._queue.take(before=min(old, self._last))
             if waiting is None:
                 return
             cause = self._send(waiting)
@@ -341,25 +302,17 @@ class Bridge:
 
     def _send(self, waiting: Waiting) -> str | None:
         """Send a message to the board; return why it was dropped, or `None`."""
-        topic, session = waiting.topic, self.session
-        if session is None or not session.is_ready:
-            return "no board"
-        tag = 0
-        if topic.kind == "serve":
-            if self._calls.is_full:
-                return "queue full"
-            tag = self._calls.next_tag()
-        message = NodeMessage(topic=topic.id, packet=waiting.packet, tag=tag)
-        try:
-            if not self.board.send(session.frames(message)):
-                return "board full"
-        except BoardError as error:
-            self._lose_board(str(error))
-            return "no board"
-        if topic.kind == "serve":
+        topic = waiting.topic
+        if topic.kind != "serve":
+            return self.side.send(topic, waiting.packet)
+        if self._calls.is_full:
+            return "queue full"
+        tag = self._calls.next_tag()
+        cause = self.side.send(topic, waiting.packet, tag)
+        if cause is None:
             until = time.monotonic() + CALL_SECONDS
             self._calls.add(tag, Call(topic, waiting.caller, until))
-        return None
+        return cause
 
     def _end_calls(self, now: float = float("inf")) -> None:
         """Forget requests that were not answered in time; without a time, all."""
@@ -371,27 +324,26 @@ class Bridge:
 
     def _wait(self, end: float) -> None:
         """Wait until the board or the graph has something, or something is due."""
+        reads, writes = self.side.files()
         now = time.monotonic()
         until = min(now + _MOST_SLEEP, self._next_due(), end)
-        reads: list[socket.socket | int] = [self._wake_receiver]
-        writes: list[int] = []
-        if self.session is not None:
-            try:
-                own = self.board.fileno()
-            except BoardError as error:
-                self._lose_board(str(error))
-                return
-            reads.append(own)
-            writes += [own] if self.board.waits_to_send else []
         # Without a board, what waits is looked at again when it is too old.
-        waits = self.is_ready and self._queue.oldest() is not None
-        readable, _, _ = select.select(reads, writes, [], 0.0 if waits else max(0.0, until - now))
-        if self._wake_receiver in readable:
+        if self.is_ready and self._has_waiting:
+            until = now
+        wakes = self._wake_receiver.fileno()
+        readable, _, _ = select.select([*reads, wakes], writes, [], max(0.0, until - now))
+        if wakes in readable:
             with suppress(BlockingIOError):
                 self._wake_receiver.recv(4096)
 
+    @property
+    def _has_waiting(self) -> bool:
+        """Whether a message waits that may still be sent."""
+        oldest = self._queue.oldest()
+        return oldest is not None and oldest < self._last
+
     def _next_due(self) -> float:
-        found = self.session.next_due() if self.session else self._board_retry.at
+        found = self.side.next_due()
         if self.was_ready and not self._has_graph:
             found = min(found, self._graph_retry.at)
         oldest = self._queue.oldest()

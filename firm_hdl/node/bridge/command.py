@@ -105,7 +105,7 @@ def _signals(bridge: Bridge) -> Iterator[None]:
     def stop(number: int, frame: FrameType | None) -> None:
         bridge.stop()
         signal.signal(signal.SIGINT, signal.default_int_handler)
-        if bridge.is_opening:
+        if bridge.side.is_opening:
             raise KeyboardInterrupt
 
     before = {number: signal.signal(number, stop) for number in _ENDING}

@@ -12,6 +12,7 @@ import random
 from collections import Counter, deque
 from dataclasses import dataclass
 
+from firm_hdl.node.bridge.unconfirmed import PASS_SECONDS, Unconfirmed
 from firm_hdl.node.control import (
     ControlRequest,
     ControlResponse,
@@ -79,6 +80,9 @@ class Session:
         Seconds of a clock that never jumps.
     sample_seconds : float
         How often the clocks are compared.
+    before : Session or None
+        The last session with the same board. Its counters go on, or are kept if the board has
+        started again since.
 
     Attributes
     ----------
@@ -89,7 +93,9 @@ class Session:
     held_back : int
         Messages of the board that were dropped because it was not known to be the right one.
     values : dict of int to int
-        Registers by their numbers, as they were read last.
+        Registers by their numbers, as they were read last since the board started.
+    unconfirmed : Unconfirmed
+        Messages for the board. Who sends them notes them there.
     """
 
     def __init__(
@@ -99,6 +105,7 @@ class Session:
         now: float,
         *,
         sample_seconds: float = 1.0,
+        before: Session | None = None,
     ) -> None:
         self._description, self._frame_bytes = description, frame_bytes
         self._sample_seconds = sample_seconds
@@ -111,14 +118,20 @@ class Session:
         self._held: deque[NodeMessage] = deque()
         self._latencies: deque[float] = deque(maxlen=_LATENCIES)
         self._heard = self._waits_until = now
-        self._is_set = self._is_unanswered = False
+        self._is_set: bool = before is not None and before._is_set
+        self._is_unanswered = self._is_finishing = False
+        # Until when the last messages may still be in the node.
+        self._passes_until = now
         self._late = 0
         self._next_sample = self._next_round = now
         self._todo: deque[ControlRequest] = deque()
         # Of the clock; a newer one takes its place, because the time of an older one has passed.
         self._clock_request: ControlRequest | None = None
         self._identity: dict[int, int] = {}
-        self.values: dict[int, int] = {}
+        self.values: dict[int, int] = dict(before.values) if before else {}
+        # Counters of a board before it started again.
+        self._past: Counter[int] = Counter(before._past) if before else Counter()
+        self.unconfirmed = Unconfirmed()
         self.is_ready = False
         self.restarts = self.held_back = 0
 
@@ -170,19 +183,44 @@ class Session:
     def _next(self, now: float) -> tuple[ControlRequest | None, bool]:
         """Return the next request, and whether its answer compares the clocks."""
         if not self.is_ready:
-            number = 2 if 1 in self._identity else 1
-            return ControlRequest(operation=Operation.READ, argument=number), False
+            return _read(2 if 1 in self._identity else 1), False
+        if self._is_finishing:
+            return (self._todo[0] if self._todo else None), False
         if self._clock_request is not None and not self._is_unanswered:
             request, self._clock_request = self._clock_request, None
             return request, False
         if now >= self._next_sample or self._is_unanswered:
             self._next_sample = now + self._sample_seconds
-            return ControlRequest(operation=Operation.READ, argument=0), True
-        if now >= self._next_round:
+            return _read(0), True
+        if now >= self._next_round and not self._todo:
             self._next_round = now + ROUND_SECONDS
-            numbers = (each.number for each in self._counters)
-            self._todo.extend(ControlRequest(operation=Operation.READ, argument=n) for n in numbers)
-        return (self._todo.popleft(), False) if self._todo else (None, False)
+            self._todo.extend(_read(each.number) for each in self._counters)
+        return (self._todo[0] if self._todo else None), False
+
+    # The end.
+
+    def finish(self, now: float) -> None:
+        """Let what is due be a last round: of all counters of losses, and of nothing else.
+
+        A first answer shows that all messages have arrived. `PASS_SECONDS` later they have passed,
+        and the counters are final. The answer to the first of them confirms all messages.
+        """
+        self._is_finishing = True
+        # An answer to a request of before shows nothing of the last messages.
+        self._asked.clear()
+        self._todo = deque([_read(0)])
+        self._todo.extend(_read(each.number) for each in self._counters if _is_loss(each))
+        self._waits_until = now
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether all counters of losses were read after :meth:`finish`."""
+        return self._is_finishing and self.is_ready and not self._todo
+
+    def end(self) -> None:
+        """Count the messages of the board that still wait until it is known."""
+        self.held_back += len(self._held)
+        self._held.clear()
 
     # From the board.
 
@@ -235,10 +273,14 @@ class Session:
     def _begin_again(self, now: float) -> None:
         """The board has started again, perhaps with another design."""
         self._identity.clear()
+        # Also of the board that a session before has left.
+        self._past.update(self.values)
+        self.values.clear()
+        self._is_set = False
         if not self.is_ready:
             return
         self.restarts += 1
-        self.is_ready = self._is_set = False
+        self.is_ready = False
         self._asked.clear()
         self._todo.clear()
         self._clock_request = None
@@ -254,12 +296,17 @@ class Session:
             return
         if asked is None or response.operation != asked.request.operation:
             return
-        self._waits_until = now
+        self._waits_until = max(now, self._passes_until)
         self._latencies.append(now - asked.at)
         if self._is_set and response.seconds < _RESET_SECONDS:
-            # Its first message, which says so, did not come.
+            # Its first message, which says so, did not come, or came to a session before.
             self._begin_again(now)
             return
+        self.unconfirmed.answered(asked.at, now)
+        if self._todo and asked.request == self._todo[0]:
+            self._todo.popleft()
+            if self._is_finishing and asked.request.argument == 0:
+                self._waits_until = self._passes_until = now + PASS_SECONDS
         self._is_set |= asked.request.operation == Operation.SET_TIME
         if response.result == Result.OK and asked.request.operation == Operation.READ:
             self._keep(asked.request.argument, response.value)
@@ -277,8 +324,7 @@ class Session:
             return
         found = self._identity[1] | self._identity[2] << 32
         if found != self._description.fingerprint:
-            self.held_back += len(self._held)
-            self._held.clear()
+            self.end()
             raise WrongBoardError(
                 f"the board's fingerprint is {found:016x}, and that of the description is "
                 f"{self._description.fingerprint:016x}: one of them is older"
@@ -308,9 +354,21 @@ class Session:
         return found
 
     def drops(self) -> list[tuple[Register, int]]:
-        """Return the counters of losses in the node that are not 0, as they were read last."""
+        """Return the losses in the node that are not 0, as they were read last.
+
+        Those that a board had counted before it started again are added.
+        """
         return [
             (each, value)
             for each in self._counters
-            if each.name not in _NO_LOSSES and (value := self.values.get(each.number, 0))
+            if _is_loss(each)
+            and (value := self._past[each.number] + self.values.get(each.number, 0))
         ]
+
+
+def _read(number: int) -> ControlRequest:
+    return ControlRequest(operation=Operation.READ, argument=number)
+
+
+def _is_loss(register: Register) -> bool:
+    return register.name not in _NO_LOSSES

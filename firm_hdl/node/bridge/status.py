@@ -73,7 +73,7 @@ def status_line(bridge: Bridge, rates: tuple[float, ...]) -> str:
         f"to graph {rates[1]:.0f}/s",
         f"dropped {dropped + sum(value for _, value in _drops(bridge))}",
     ]
-    session = bridge.session
+    session = bridge.side.session
     if session is not None and session.latency is not None:
         parts.append(f"round trip {1000 * session.latency:.2f} ms")
     if session is not None and session.offset_ns is not None:
@@ -90,6 +90,8 @@ def account(bridge: Bridge) -> Iterator[str]:
         yield "the board has never answered"
     elif bridge.restarts:
         yield f"the board was started again or lost {bridge.restarts} times"
+    if bridge.was_ready and not bridge.side.has_read_last:
+        yield "not all counters on the board could be read at the end"
 
 
 def _drops(bridge: Bridge) -> Iterator[tuple[str, int]]:

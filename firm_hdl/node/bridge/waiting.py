@@ -9,7 +9,10 @@ from dataclasses import dataclass
 
 from firm_hdl.node.description import Topic
 
-__all__ = ["Call", "Calls", "MessageQueue", "Retry", "Waiting"]
+__all__ = ["RETRY_SECONDS", "Call", "Calls", "MessageQueue", "Retry", "Waiting"]
+
+RETRY_SECONDS = (0.2, 2.0)
+"""Time until a board or a graph that is gone is tried again: the first, and the longest one."""
 
 _TAGS = 1 << 32
 

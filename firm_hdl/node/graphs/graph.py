@@ -5,11 +5,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable
+from concurrent.futures import Future, InvalidStateError
+from contextlib import suppress
 from typing import TypeAlias
 
 from firm_hdl.node.description import Topic
 
-__all__ = ["Graph", "GraphError", "OnMessage"]
+__all__ = ["FutureGraph", "Graph", "GraphError", "OnMessage"]
 
 OnMessage: TypeAlias = Callable[[Topic, bytes, object], None]
 """Takes a message of a subscription, or a request of a service: topic, packet and, of a request,
@@ -85,3 +87,21 @@ class Graph(ABC):
     @abstractmethod
     def close(self) -> None:
         """Leave the graph. May be called at any time, and again."""
+
+
+class FutureGraph(Graph):
+    """A graph in which the caller of a request is a `Future`, which gets the response's packet.
+
+    A future is cancelled if its request will not be answered.
+    """
+
+    def respond(self, topic: Topic, caller: object, packet: bytes) -> bool:
+        assert isinstance(caller, Future)
+        with suppress(InvalidStateError):
+            caller.set_result(packet)
+            return True
+        return False
+
+    def abandon(self, topic: Topic, caller: object) -> None:
+        assert isinstance(caller, Future)
+        caller.cancel()

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import threading
 import time
-from concurrent.futures import CancelledError, Future, InvalidStateError
+from concurrent.futures import CancelledError, Future
 from concurrent.futures import TimeoutError as NoAnswer
 from contextlib import suppress
 from importlib import import_module
@@ -20,7 +20,7 @@ from firm_hdl.errors import UserError
 from firm_hdl.identity import md5sum
 from firm_hdl.model import Message, Service, closure
 from firm_hdl.node.description import Description, Topic
-from firm_hdl.node.graphs.graph import Graph, GraphError, OnMessage
+from firm_hdl.node.graphs.graph import FutureGraph, GraphError, OnMessage
 
 __all__ = ["RospyGraph", "definitions"]
 
@@ -30,7 +30,7 @@ _ANSWER_SECONDS = 15.0
 _WATCH_SECONDS = 1.0
 
 
-class RospyGraph(Graph):
+class RospyGraph(FutureGraph):
     """A node of rospy. A process can have one, whose name it keeps.
 
     The master is that of the environment (``ROS_MASTER_URI``). If it ends or starts again, topics
@@ -159,17 +159,6 @@ class RospyGraph(Graph):
         except self._rospy.ROSException as error:
             raise GraphError(f"rospy: {error}") from None
         return True
-
-    def respond(self, topic: Topic, caller: object, packet: bytes) -> bool:
-        assert isinstance(caller, Future)
-        with suppress(InvalidStateError):
-            caller.set_result(packet)
-            return True
-        return False
-
-    def abandon(self, topic: Topic, caller: object) -> None:
-        assert isinstance(caller, Future)
-        caller.cancel()
 
     def close(self) -> None:
         self._ends.set()

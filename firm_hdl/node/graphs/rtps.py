@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-from concurrent.futures import Future, InvalidStateError
-from contextlib import suppress
+from concurrent.futures import Future
 from typing import Any
 
 from firm_hdl.errors import UserError
 from firm_hdl.identity import type_hash
 from firm_hdl.node.description import Description, Qos, Topic
-from firm_hdl.node.graphs.graph import Graph, GraphError, OnMessage
+from firm_hdl.node.graphs.graph import FutureGraph, GraphError, OnMessage
 from firm_hdl.rtps import (
     DataReader,
     DataWriter,
@@ -29,7 +28,7 @@ _ROOM_SECONDS = 0.1
 """How long a writer that keeps all samples waits for room, as ROS 2 does by default."""
 
 
-class RtpsGraph(Graph):
+class RtpsGraph(FutureGraph):
     """A node in the graph of ROS 2 by :mod:`firm_hdl.rtps`.
 
     Parameters
@@ -108,17 +107,6 @@ class RtpsGraph(Graph):
             return False
         self._full.discard(topic.id)
         return True
-
-    def respond(self, topic: Topic, caller: object, packet: bytes) -> bool:
-        assert isinstance(caller, Future)
-        with suppress(InvalidStateError):
-            caller.set_result(packet)
-            return True
-        return False
-
-    def abandon(self, topic: Topic, caller: object) -> None:
-        assert isinstance(caller, Future)
-        caller.cancel()
 
     def check(self) -> None:
         self.counters["lost"] = sum(reader.lost for reader in self._readers)

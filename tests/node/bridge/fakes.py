@@ -23,13 +23,16 @@ HEARD, SAID, STAMP, CAL = ECHO.topics
 class FakeNode:
     """A node of `ECHO`: it publishes each string on topic 2, and answers requests with themselves.
 
-    Its control messages are written down here after docs/node.md.
+    `values` are those of its registers that are not 0; `holds` lets it keep strings. Its control
+    messages are written down here after docs/node.md.
     """
 
     def __init__(self, fingerprint=ECHO.fingerprint, seconds=0):
         self.receiver, self.sender = MessageReceiver(), MessageSender()
         self.fingerprint, self.seconds, self.rate = fingerprint, seconds, None
-        self.is_mute = self.answers_no_calls = False
+        self.is_mute = self.answers_no_calls = self.holds = False
+        self.values = {17: 7}
+        self.held = []
         self.read, self.set_ns = [], []
 
     def take(self, frame):
@@ -40,6 +43,10 @@ class FakeNode:
         if message.topic == 0:
             packet = self._control(message.packet)
             return self.sender.frames(NodeMessage(topic=0, packet=packet, tag=message.tag))
+        if message.topic == 1 and self.holds:
+            # It is still in the accelerator.
+            self.held.append(message)
+            return []
         if message.topic == 1:
             return self.sender.frames(NodeMessage(topic=2, packet=message.packet))
         if message.topic == 4 and not self.answers_no_calls:
@@ -53,7 +60,7 @@ class FakeNode:
         if operation == 1:
             self.read.append(argument)
             halves = {1: self.fingerprint & 0xFFFF_FFFF, 2: self.fingerprint >> 32}
-            value = halves.get(argument, 7 if argument == 17 else 0)
+            value = halves.get(argument, self.values.get(argument, 0))
         elif operation == 2:
             self.seconds = int.from_bytes(packet[8:12], "little")
             nanoseconds = int.from_bytes(packet[12:], "little")

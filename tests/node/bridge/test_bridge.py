@@ -5,11 +5,13 @@ from __future__ import annotations
 import contextlib
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.bridge import WrongBoardError, bridge
+from firm_hdl.node.bridge.counters import CAUSES
 from firm_hdl.node.bridge.status import account, status_line
 from firm_hdl.node.messages import NodeMessage
 from tests.node.bridge.fakes import (
@@ -138,6 +140,142 @@ def test_a_board_that_starts_again_gets_what_comes_meanwhile(running, board, gra
     assert not made.counters.dropped
 
 
+@pytest.fixture
+def asked_often(board):
+    """Let the bridge compare the clocks often, so that messages are soon confirmed."""
+    board.sample_seconds = 0.02
+
+
+def die(board):
+    board.is_dead = True
+
+
+def start_again(board):
+    board.node = FakeNode()
+    board.come(board.node.sender.frames(NodeMessage(topic=2, packet=b"first")))
+
+
+@pytest.mark.parametrize("end", [die, start_again])
+def test_what_a_board_took_with_it_is_named(asked_often, running, board, graph, end):
+    made, _ = running
+    graph.say(HEARD, *packets(10))
+    assert run_until(made, lambda: len(graph.got) == 10)
+    # These are confirmed after a while. What the accelerator keeps is not.
+    assert run_until(made, lambda: not len(made.side.session.unconfirmed))
+    board.node.holds = True
+    graph.say(HEARD, *packets(5))
+    assert run_until(made, lambda: len(board.node.held) == 5)
+    end(board)
+    assert run_until(made, lambda: made.restarts == 1)
+    assert made.counters.dropped == {("/heard", "board lost"): 5}
+    assert "dropped: 5 of /heard: board lost" in account(made)
+    # A message that was sent is named once, and one of the next board is not among them.
+    board.is_dead = False
+    assert run_until(made, lambda: made.is_ready)
+    graph.say(HEARD, b"new")
+    made.run(seconds=0.05)
+    assert made.counters.dropped == {("/heard", "board lost"): 5}
+
+
+def test_a_board_that_falls_silent_may_have_lost_all_since(asked_often, running, board, graph):
+    made, said = running
+    graph.say(HEARD, b"x")
+    assert run_until(made, lambda: graph.got and not len(made.side.session.unconfirmed))
+    board.node.is_mute = True
+    graph.say(HEARD, *packets(8))
+    assert run_until(made, lambda: made.counters.to_board["/heard"] == 9)
+    made.side.session._heard -= 60
+    assert run_until(made, lambda: made.restarts == 1), said
+    assert made.counters.dropped == {("/heard", "board lost"): 8}
+
+
+def test_counters_of_a_dead_board_stay_in_the_account(running, board):
+    made, _ = running
+    assert run_until(made, lambda: made.last_drops)
+    board.is_dead = True
+    assert run_until(made, lambda: made.restarts == 1)
+    board.node, board.is_dead = FakeNode(), False
+    board.node.values = {17: 2}
+    made.run(seconds=0.5)
+    assert [value for _, value in made.last_drops] == [9]
+
+
+def test_the_end_names_the_last_drops_of_a_working_board(running, board, graph):
+    made, _ = running
+    assert run_until(made, lambda: made.last_drops)
+    threading.Timer(0.05, made.stop).start()
+    graph.say(HEARD, *packets(50))
+    # It is seconds until the next round of counters.
+    board.node.values = {17: 8}
+    made.run()
+    assert [value for _, value in made.last_drops] == [8]
+    assert len(graph.got) == 50 and not made.counters.dropped
+    assert not [line for line in account(made) if "counters" in line]
+
+
+def test_the_end_of_a_board_that_answers_no_more(running, board, graph, monkeypatch):
+    """The twin: without a last answer, nobody knows, and the account says so."""
+    monkeypatch.setattr(bridge, "END_SECONDS", 0.1)
+    made, _ = running
+    board.node.is_mute = True
+    graph.say(HEARD, *packets(50))
+    assert run_until(made, lambda: made.counters.to_board["/heard"] == 50)
+    made.run(seconds=0.01)
+    assert made.counters.dropped == {("/heard", "unconfirmed"): 50}
+    assert "not all counters on the board could be read at the end" in account(made)
+
+
+def test_a_board_that_is_lost_at_the_end_is_not_tried_again(running, board, graph):
+    made, said = running
+    graph.say(HEARD, *packets(5))
+    assert run_until(made, lambda: len(graph.got) == 5)
+    made.stop()
+    made.side.finish = lambda finish=made.side.finish: (finish(), die(board))
+    made.run()
+    assert said[-1] == "board fake: it is dead" and board.opened == 1
+    assert made.counters.dropped == {("/heard", "board lost"): 5}
+
+
+def test_ctrl_c_ends_the_end(running, board):
+    made, _ = running
+
+    def interrupt():
+        raise KeyboardInterrupt
+
+    made.stop()
+    made.side.finish = interrupt
+    with pytest.raises(KeyboardInterrupt):
+        made.run()
+    assert made.side.session is None and made._wake_receiver.fileno() < 0
+
+
+def test_what_waits_at_the_end_is_named(board, graph):
+    """Also requests, which are given up; what comes after `stop` is for nobody."""
+    made, _ = bridge_of(board, graph)
+    assert run_until(made, lambda: graph.opened)
+    board.is_dead = True
+    assert run_until(made, lambda: made.restarts == 1)
+    graph.say(HEARD, b"x")
+    graph.on_message(CAL, b"", "early")
+    made.close()
+    assert made.counters.dropped == {("/heard", "bridge ended"): 1, ("/cal", "bridge ended"): 1}
+    assert graph.abandoned == ["early"]
+
+
+def test_what_comes_after_the_end_is_not_sent(running, board, graph):
+    made, _ = running
+
+    def finish():
+        finish_side()
+        graph.say(HEARD, b"late")
+        graph.on_message(CAL, b"", "late")
+
+    finish_side, made.side.finish = made.side.finish, finish
+    made.stop()
+    made.run()
+    assert graph.got == [] and graph.abandoned == ["late"] and not made.counters.dropped
+
+
 def test_requests_without_an_answer_are_given_up(running, board, graph, monkeypatch):
     made, _ = running
     board.node.answers_no_calls = True
@@ -242,3 +380,8 @@ def test_people_can_read_how_it_does(running, board, graph):
     assert "dropped: 4 of /heard: no board" in text
     assert "dropped: 7 on the board, link link: lost" in text
     assert SAID.name in text
+
+
+def test_all_causes_are_documented():
+    text = (Path(__file__).parents[3] / "docs" / "node.md").read_text()
+    assert [cause for cause in CAUSES if f"`{cause}`" not in text] == []

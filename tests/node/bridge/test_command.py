@@ -15,7 +15,8 @@ import pytest
 
 from firm_hdl.cli import main
 from firm_hdl.node.boards.simulated import SimulatedBoard
-from firm_hdl.node.bridge import Bridge, command
+from firm_hdl.node.bridge import Bridge, bridge, command
+from firm_hdl.node.bridge.status import Status
 from tests.node.accelerators import echo_text
 from tests.node.bridge.fakes import ECHO, FakeNode
 from tests.node.bridge.test_boards import UdpNode
@@ -150,6 +151,26 @@ def test_signals_end_it(file, board, capsys):
     assert main(["node", "run", file, *options, "--domain", "161", "--quiet"]) == 0
     assert signal.getsignal(signal.SIGTERM) is before
     assert "ready" in capsys.readouterr().err
+
+
+def test_a_second_ctrl_c_ends_the_last_questions(file, board, capsys, monkeypatch):
+    """The board answers no more; without the second one, it is gone after 5 s."""
+    monkeypatch.setattr(bridge, "END_SECONDS", 60)
+    report = Status.report
+
+    def said(self, line):
+        report(self, line)
+        if line.endswith("joined"):
+            board.node.is_mute = True
+            for seconds in (0.3, 0.6):
+                threading.Timer(seconds, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+
+    monkeypatch.setattr(Status, "report", said)
+    options = ["--board", f"udp://127.0.0.1:{board.port}", "--graph", "rtps", "--interface", "lo"]
+    assert main(["node", "run", file, *options, "--domain", "162"]) == 0
+    err = capsys.readouterr().err
+    assert "joined" in err and "no answer" not in err and "Traceback" not in err
+    assert "not all counters on the board could be read at the end" in err
 
 
 def test_ctrl_c_ends_it_while_there_is_no_board(file):

@@ -202,3 +202,73 @@ def test_an_answer_that_nobody_asked_for_is_ignored():
     short = NodeMessage(topic=0, packet=b"\1", tag=5)
     talk.session.take(talk.node.sender.frames(short)[0], talk.now, talk.wall)
     assert talk.session.values == before
+
+
+def next_talk(talk, node):
+    """Open the way again, to the same node or to another one."""
+    talk.node = node
+    talk.session = Session(ECHO, None, talk.now, before=talk.session)
+
+
+@pytest.mark.parametrize("starts_again", [False, True])
+@pytest.mark.parametrize("loses_first", [False, True])
+def test_counters_of_a_board_that_starts_again_are_kept(starts_again, loses_first):
+    talk = Talk()
+    talk.run(6)
+    node = FakeNode() if starts_again else talk.node
+    node.values = {17: 9}
+    if loses_first:
+        published(node)
+    next_talk(talk, node)
+    talk.run(6)
+    (found,) = talk.session.drops()
+    # The 7 are part of the 9 unless the board began at 0 again.
+    assert found[1] == (16 if starts_again else 9) and talk.session.restarts == 0
+
+
+def test_counters_are_kept_in_the_same_session():
+    talk = Talk()
+    talk.run(6)
+    talk.node = FakeNode()
+    talk.run(7)
+    assert talk.session.restarts == 1
+    assert [value for _, value in talk.session.drops()] == [14]
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.3])
+def test_at_the_end_all_has_arrived_and_the_counters_are_the_last_ones(loss):
+    rng = random.Random(2)
+    talk = Talk(loses=lambda: rng.random() < loss)
+    talk.run(6)
+    for _ in range(10):
+        talk.session.unconfirmed.sent("/heard", talk.now)
+    talk.node.values = {17: 12, 19: 3}
+    talk.session.finish(talk.now + 0.001)
+    begin = talk.now
+    while not talk.session.is_finished and talk.now < begin + 60:
+        talk.step(0.01)
+    assert talk.session.is_finished and not len(talk.session.unconfirmed)
+    assert [value for _, value in talk.session.drops()] == [12, 3]
+    # Nothing more is asked, until the other side is thought to be gone.
+    count = len(talk.node.read)
+    talk.run(4)
+    assert len(talk.node.read) == count
+
+
+def test_at_the_end_the_counters_are_read_once_what_was_sent_has_passed():
+    talk = Talk()
+    talk.run(6)
+    talk.session.finish(talk.now)
+    count = len(talk.node.read)
+    talk.step(0.04)
+    talk.step(0.001)
+    assert talk.node.read[count:] == [0]
+    talk.run(0.1)
+    assert len(talk.node.read) > count + 1
+
+
+def test_messages_that_wait_when_a_session_ends_are_counted():
+    talk = Talk()
+    talk.session.take(published(talk.node), talk.now, talk.wall)
+    talk.session.end()
+    assert talk.session.lost_on_the_way()["held back"] == 1
