@@ -18,8 +18,8 @@ from firm_hdl.node.bytestream import ByteStreamReader, write_frame
 __all__ = ["BAUD_RATES", "SerialBoard", "TcpBoard"]
 
 _CHUNK = 1 << 16
-_WAIT_SECONDS = 0.25
-"""How long a message may wait for a line of known speed: as long as for a board that is gone."""
+_WAIT_SECONDS = 0.05
+"""How long a message may wait behind others for a line of known speed."""
 
 _TCP_BYTES = 1 << 16
 """What may wait for a connection, whose speed is unknown, and once more in the system.

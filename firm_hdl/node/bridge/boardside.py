@@ -72,6 +72,11 @@ class BoardSide:
         return self.session is not None and self.session.is_ready
 
     @property
+    def has_room(self) -> bool:
+        """Whether a message can be sent now, and is soon on its way."""
+        return self.is_ready and self._board.has_room
+
+    @property
     def restarts(self) -> int:
         """How often the board, or the way to it, started again or was gone."""
         return self._restarts + (self.session.restarts if self.session else 0)

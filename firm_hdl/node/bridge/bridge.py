@@ -27,7 +27,7 @@ from firm_hdl.node.messages import NodeMessage
 __all__ = ["Bridge"]
 
 HOLD_SECONDS = 0.25
-"""How long a message for a board waits that is not there."""
+"""How long a message waits for a board that is not there, or has no room."""
 
 CALL_SECONDS = 10.0
 """How long a request waits for its response."""
@@ -42,6 +42,7 @@ _MOST_QUEUED_BYTES = 1 << 26
 _MOST_CALLS = 1 << 16
 _MOST_AT_ONCE = 256
 _MOST_SLEEP = 0.5
+_POLL_SECONDS = 0.005
 _LINGER_SECONDS = 1.0
 
 
@@ -288,7 +289,7 @@ class Bridge:
     def _to_board(self, now: float) -> None:
         """Send what waits; drop what has waited for too long."""
         for _ in range(_MOST_AT_ONCE):
-            old = now if self.is_ready else now - HOLD_SECONDS
+            old = now if self.side.has_room else now - HOLD_SECONDS
             waiting = self._queue.take(before=min(old, self._last))
             if waiting is None:
                 return
@@ -327,8 +328,7 @@ class Bridge:
         reads, writes = self.side.files()
         now = time.monotonic()
         until = min(now + _MOST_SLEEP, self._next_due(), end)
-        # Without a board, what waits is looked at again when it is too old.
-        if self.is_ready and self._has_waiting:
+        if self.side.has_room and self._has_waiting:
             until = now
         wakes = self._wake_receiver.fileno()
         readable, _, _ = select.select([*reads, wakes], writes, [], max(0.0, until - now))
@@ -347,6 +347,9 @@ class Bridge:
         if self.was_ready and not self._has_graph:
             found = min(found, self._graph_retry.at)
         oldest = self._queue.oldest()
-        if oldest is not None and not self.is_ready:
+        if oldest is not None and not self.side.has_room:
             found = min(found, oldest + HOLD_SECONDS)
+            if self.is_ready:
+                # Of a driver that holds bytes, nothing tells when it has sent them.
+                found = min(found, time.monotonic() + _POLL_SECONDS)
         return found

@@ -13,7 +13,7 @@ __all__ = ["CAUSES", "BridgeCounters", "summary_lines"]
 CAUSES = {
     "no board": "messages for the board while it was not there for longer than a moment",
     "queue full": "messages for the board that found no room in the bridge",
-    "board full": "messages for the board that found no room on the way to it",
+    "board full": "messages for the board that waited for room for longer than a moment",
     "board lost": "messages sent before the board was lost, which it may not have passed on",
     "unconfirmed": "messages whose arrival the board had not confirmed when the bridge ended",
     "bridge ended": "messages for the board that still waited when the bridge ended",

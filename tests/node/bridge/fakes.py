@@ -72,7 +72,12 @@ class FakeNode:
 
 
 class FakeBoard(Board):
-    """A board with a `FakeNode`; `loses` says which frames do not come, in either direction."""
+    """A board with a `FakeNode`; `loses` says which frames do not come, in either direction.
+
+    Without a file to write to, nothing tells a bridge when there is room again.
+    """
+
+    has_room = True
 
     def __init__(self, node=None, loses=lambda frame: False):
         super().__init__("fake", 272)

@@ -259,12 +259,12 @@ def full(board):
 
 
 @pytest.mark.parametrize("baud", [9600, 115_200, 1_000_000])
-def test_a_quarter_of_a_second_of_a_line_may_wait(serial, baud):
+def test_a_twentieth_of_a_second_of_a_line_may_wait(serial, baud):
     name, _ = serial
     board = board_of(name.replace("1000000", str(baud)), ECHO)
     board.open()
     # Nobody reads the other end of the pty, whose 4 KiB are not counted.
-    assert 0 <= full(board) - baud / 10 / 4 < 200
+    assert 0 <= full(board) - baud / 10 / 20 < 200
     # One message always has room, however large it is.
     board.open()
     assert board.has_room and board.send([b"x" * 300_000])
@@ -276,7 +276,7 @@ def test_what_a_driver_holds_takes_room(serial, monkeypatch):
     name, _ = serial
     board = board_of(name.replace("1000000", "9600"), ECHO)
     board.open()
-    for held, has_room in [(0, True), (239, True), (240, False), (4096, False)]:
+    for held, has_room in [(0, True), (47, True), (48, False), (4096, False)]:
         monkeypatch.setattr(fcntl, "ioctl", lambda *_, held=held: held.to_bytes(4, sys.byteorder))
         assert board.has_room == has_room
 
@@ -312,7 +312,7 @@ def test_a_slow_line_loses_messages_and_names_them(serial, room):
     assert run_until(made, lambda: made._queue.oldest() is None)
     sent, dropped = made.counters.to_board["/heard"], made.counters.dropped
     assert sent + dropped["/heard", "board full"] == 600
-    assert (len(board._waiting) / board.bytes_per_second < 0.26) == (room is None)
+    assert (len(board._waiting) / board.bytes_per_second < 0.06) == (room is None)
     # Nothing of it arrived, as far as the bridge can know.
     made.close()
     assert dropped["/heard", "unconfirmed"] == sent
