@@ -34,6 +34,7 @@ from firm_hdl.node.node import Node
 from firm_hdl.node.records import MessagePort, message_ports, record_files, struct_files
 from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodePort, NodeTop, node_ports
+from firm_hdl.node.units import check_units
 from firm_hdl.vhdl.convert import convert
 
 __all__ = ["build_node"]
@@ -71,7 +72,8 @@ def build_node(
     Raises
     ------
     DefinitionError, UserError
-        If the accelerator cannot be used, the node is too large, or the folder cannot be written.
+        If the accelerator cannot be used, the node is too large, two design units would have one
+        name, or the folder cannot be written.
     """
     name = identifier(description.node)
     folder = design_folder(out, name)
@@ -188,6 +190,8 @@ def _files(design: _Design) -> dict[str, str]:
             vhdl_files=list(vhdl),
             header=header,
         )
+    owners = {"the node": node.files, "its messages": records, "its structs": structs}
+    check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     return {
         **verilog_file(design.rtlil, name=name, header=header),
         "waivers.vlt": waivers([module]) + _UNDRIVEN.format(file=f"{module}.v"),
