@@ -15,6 +15,7 @@ from firm_hdl.model import Wire
 __all__ = [
     "add_bus_bytes",
     "add_depends",
+    "add_engine",
     "add_jobs",
     "add_options",
     "add_origins",
@@ -116,6 +117,23 @@ def add_path(command: argparse._ActionsContainer) -> None:
         default=[],
         metavar="DIR",
         help="folder with ROS packages, searched before the distribution's types; repeatable",
+    )
+
+
+def add_engine(command: argparse._ActionsContainer, use: str) -> None:
+    """Add ``--engine``, what runs a fast simulation.
+
+    Parameters
+    ----------
+    use : str
+        When the option counts, such as ``"run --board sim"``.
+    """
+    command.add_argument(
+        "--engine",
+        choices=["auto", "cxxrtl", "amaranth"],
+        default="auto",
+        help=f"for {use}: compiled by CXXRTL, or Amaranth's slow simulator (%(default)s: "
+        "the former if there is a C++ compiler)",
     )
 
 

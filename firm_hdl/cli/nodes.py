@@ -7,7 +7,7 @@ import sys
 import warnings
 from typing import TYPE_CHECKING
 
-from firm_hdl.arguments import add_path, number_between, seconds
+from firm_hdl.arguments import add_engine, add_path, number_between, seconds
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
@@ -49,13 +49,7 @@ def add_node(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--seconds", type=seconds, help="for run: end after so long (default: at Ctrl-C)"
     )
-    command.add_argument(
-        "--engine",
-        choices=["auto", "cxxrtl", "amaranth"],
-        default="auto",
-        help="for run --board sim: compiled by CXXRTL, or Amaranth's slow simulator (%(default)s: "
-        "the former if there is a C++ compiler)",
-    )
+    add_engine(command, "run --board sim")
     command.add_argument("--quiet", action="store_true", help="for run: print no figures")
     command.set_defaults(run=_node)
 

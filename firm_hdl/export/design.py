@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
@@ -16,11 +15,19 @@ import yaml
 import firm_hdl
 from firm_hdl.errors import UserError
 from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
-from firm_hdl.export.manifest import FORMAT, MANIFEST, to_json
+from firm_hdl.export.manifest import FORMAT, MANIFEST, digest, to_json
 from firm_hdl.export.verilog.yosys import to_verilog
-from firm_hdl.vhdl.convert import convert
 
-__all__ = ["BuiltDesign", "design_files", "design_folder", "inputs_of_design", "write_design"]
+__all__ = [
+    "BuiltDesign",
+    "core_file",
+    "design_folder",
+    "inputs_of_design",
+    "verilog_file",
+    "verilog_module",
+    "vhdl_folder",
+    "write_design",
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,40 +62,65 @@ def design_folder(out: str | os.PathLike[str], name: str) -> Path:
     return folder
 
 
-def design_files(
-    design: str, *, name: str, header: str, kind: str, description: str
-) -> dict[str, str]:
-    """Write a design in each language, and a core of FuseSoC.
+def verilog_module(name: str) -> str:
+    """Return the name of a design's module; `name` is that of its VHDL entity."""
+    return f"{name}_verilog"
+
+
+def verilog_file(design: str, *, name: str, header: str) -> dict[str, str]:
+    """Write a design in Verilog.
 
     Parameters
     ----------
     design : str
         The design, as RTLIL of Amaranth.
     name : str
-        Name of the VHDL entity; the Verilog module is ``NAME_verilog``.
+        Name of the VHDL entity; the module is ``NAME_verilog``.
     header : str
-        Lines of the comment at the head of each file, without comment marks.
-    kind, description : str
-        Library of the core, such as ``"node"``, and what the design is, for people.
+        Lines of the comment at the head of the file, without comment marks.
 
     Returns
     -------
     dict of str to str
-        Texts by file name. ``vhdl/files.txt`` lists the VHDL in an order in which it compiles.
+        The text, by the file's path in the folder of the design, as for all files here.
     """
-    module = f"{name}_verilog"
-    vhdl = convert(design, name=name, header=header)
-    files = {f"{module}.v": to_verilog(design, module=module, header=header)}
-    files |= {f"vhdl/{file}": text for file, text in vhdl.files.items()}
-    files["vhdl/files.txt"] = "".join(f"{file}\n" for file in vhdl.files)
-    core = {
+    module = verilog_module(name)
+    return {f"{module}.v": to_verilog(design, module=module, header=header)}
+
+
+def vhdl_folder(files: Mapping[str, str]) -> dict[str, str]:
+    """Put files of VHDL, in compile order, into ``vhdl/``, with their list, ``vhdl/files.txt``."""
+    texts = {f"vhdl/{file}": text for file, text in files.items()}
+    return {**texts, "vhdl/files.txt": "".join(f"{file}\n" for file in files)}
+
+
+def core_file(
+    name: str,
+    vhdl: Iterable[str],
+    *,
+    kind: str,
+    description: str,
+    more: Mapping[str, Mapping[str, Any]] | None = None,
+) -> dict[str, str]:
+    """Write a core of FuseSoC: the VHDL by default, or the Verilog.
+
+    Parameters
+    ----------
+    name : str
+        Name of the VHDL entity, and of the core.
+    vhdl : iterable of str
+        Files in ``vhdl/``, in compile order.
+    kind, description : str
+        Library of the core, such as ``"node"``, and what the design is, for people.
+    more : mapping or None
+        More entries of the core by section, such as ``targets``.
+    """
+    module = verilog_module(name)
+    core: dict[str, Any] = {
         "name": f"firm-hdl:{kind}:{name}:{firm_hdl.__version__}",
         "description": description,
         "filesets": {
-            "vhdl": {
-                "files": [f"vhdl/{file}" for file in vhdl.files],
-                "file_type": "vhdlSource-2008",
-            },
+            "vhdl": {"files": [f"vhdl/{file}" for file in vhdl], "file_type": "vhdlSource-2008"},
             "verilog": {"files": [f"{module}.v"], "file_type": "verilogSource-2005"},
         },
         "targets": {
@@ -96,8 +128,9 @@ def design_files(
             "verilog": {"filesets": ["verilog"], "toplevel": module},
         },
     }
-    files[f"{name}.core"] = "CAPI=2:\n" + yaml.safe_dump(core, sort_keys=False, width=1000)
-    return files
+    for section, entries in (more or {}).items():
+        core[section] = {**core.get(section, {}), **entries}
+    return {f"{name}.core": "CAPI=2:\n" + yaml.safe_dump(core, sort_keys=False, width=1000)}
 
 
 def inputs_of_design(facts: Mapping[str, Any], design: str) -> dict[str, Any]:
@@ -112,7 +145,7 @@ def inputs_of_design(facts: Mapping[str, Any], design: str) -> dict[str, Any]:
     """
     inputs = {
         **facts,
-        "design_sha256": hashlib.sha256(design.encode()).hexdigest(),
+        "design_sha256": digest(design),
         "generator": {
             "firm-hdl": firm_hdl.__version__,
             "amaranth": version("amaranth"),
@@ -144,7 +177,7 @@ def write_design(
     facts, ports
         What the manifest says of the design and of its ports.
     make_files : callable
-        Returns all files but the manifest, of :func:`design_files` and others.
+        Returns all files but the manifest: texts by paths in the folder.
     force : bool
         Write the folder even if it is current.
 
@@ -173,18 +206,16 @@ def _manifest(
     files: Mapping[str, str],
 ) -> str:
     """Write the manifest: what tools have to know, and what a folder needs to be replaced."""
-    digest = hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()
+    module = verilog_module(name)
     return to_json(
         {
             "format": FORMAT,
             **facts,
-            "verilog": {"module": f"{name}_verilog", "file": f"{name}_verilog.v"},
+            "verilog": {"module": module, "file": f"{module}.v"},
             "vhdl": {"entity": name, "files": "vhdl/files.txt"},
             "ports": list(ports),
-            "inputs_sha256": digest,
+            "inputs_sha256": digest(json.dumps(inputs, sort_keys=True)),
             "inputs": dict(inputs),
-            "files": {
-                file: hashlib.sha256(text.encode()).hexdigest() for file, text in files.items()
-            },
+            "files": {file: digest(text) for file, text in files.items()},
         }
     )

@@ -23,7 +23,7 @@ from firm_hdl.model import Constant, Message, closure
 from firm_hdl.plan import Leaf, Plan, to_yaml
 from firm_hdl.plan.timing import LINE_RATES, Cost, Timing, clock_mhz
 
-__all__ = ["FORMAT", "MANIFEST", "inputs_of", "make_manifest", "to_json"]
+__all__ = ["FORMAT", "MANIFEST", "digest", "inputs_of", "make_manifest", "to_json"]
 
 FORMAT = 1
 """Version of the manifest's format."""
@@ -47,7 +47,7 @@ def inputs_of(
             "max_message_bytes": plan.max_message_bytes,
             "ports": ports,
         },
-        "plan_sha256": _digest(to_yaml(plan)),
+        "plan_sha256": digest(to_yaml(plan)),
         "generator": {
             "firm-hdl": firm_hdl.__version__,
             "amaranth": version("amaranth"),
@@ -80,14 +80,14 @@ def make_manifest(
     return {
         "format": FORMAT,
         "inputs": dict(inputs),
-        "inputs_sha256": _digest(to_json(inputs)),
+        "inputs_sha256": digest(to_json(inputs)),
         "timing": _timing(figures),
         "estimates": {name: asdict(found) for name, found in estimates_of(plan).items()},
         "status": {status.name: status.value for status in statuses},
         **sections,
         "leaves": list(_leaves(message, plan)),
         "constants": [_constant(constant) for constant in message.constants],
-        "files": {name: _digest(text) for name, text in sorted(files.items())},
+        "files": {name: digest(text) for name, text in sorted(files.items())},
     }
 
 
@@ -96,7 +96,8 @@ def to_json(value: Any) -> str:
     return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def _digest(text: str) -> str:
+def digest(text: str) -> str:
+    """Return the SHA-256 of a text, in hexadecimal."""
     return hashlib.sha256(text.encode()).hexdigest()
 
 

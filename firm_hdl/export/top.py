@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from amaranth.hdl import Cat, ClockDomain, Module, Mux, Shape, Value
+from amaranth.hdl import Cat, ClockDomain, Module, Mux, Shape, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -28,6 +28,7 @@ __all__ = [
     "Direction",
     "Port",
     "Top",
+    "add_domain",
     "field_of",
     "leaf_names",
     "ports_of",
@@ -220,11 +221,7 @@ class Top(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        # Use the port itself as the clock: an assignment would delay the clock by a delta cycle.
-        domain = ClockDomain("sync", local=True)
-        domain.clk = self.aclk
-        m.domains += domain
-        m.d.comb += domain.rst.eq(~self.aresetn)
+        add_domain(m, "sync", self.aclk, self.aresetn)
         m.submodules.core = self.core
         if self.direction == "deserializer":
             self._packets_in(m)
@@ -283,6 +280,15 @@ class Top(wiring.Component):
             yield connect(Value.cast(payload), getattr(self, f"{base}_data"))
             yield connect(interface.valid, getattr(self, f"{base}_valid"))
             yield connect(interface.ready, getattr(self, f"{base}_ready"), inwards=not inwards)
+
+
+def add_domain(m: Module, name: str, clock: Signal, resetn: Value) -> None:
+    """Give a top level the clock domain of its ports: a clock, and a reset that is active low."""
+    # The port itself is the clock: an assignment would delay the clock by a delta cycle.
+    domain = ClockDomain(name, local=True)
+    domain.clk = clock
+    m.domains += domain
+    m.d.comb += domain.rst.eq(~resetn)
 
 
 def trailing_ones(keep: Value) -> Value:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -13,19 +12,29 @@ from amaranth.back import rtlil
 
 import firm_hdl
 from firm_hdl.errors import UserError
-from firm_hdl.export.design import BuiltDesign, design_folder, inputs_of_design, write_design
+from firm_hdl.export.design import (
+    BuiltDesign,
+    core_file,
+    design_folder,
+    inputs_of_design,
+    verilog_file,
+    verilog_module,
+    vhdl_folder,
+    write_design,
+)
+from firm_hdl.export.manifest import digest
 from firm_hdl.export.systemverilog.structs import package_name
 from firm_hdl.export.systemverilog.types import WORDS
 from firm_hdl.export.verilog.backend import waivers
-from firm_hdl.export.verilog.yosys import to_verilog
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.node.accelerator import conflicts_reported
-from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_files, link_script, node_core
+from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_core, bench_files, link_script
 from firm_hdl.node.description import Description
 from firm_hdl.node.node import Node
 from firm_hdl.node.records import MessagePort, message_ports, record_files, struct_files
 from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodePort, NodeTop, node_ports
+from firm_hdl.node.units import check_units
 from firm_hdl.vhdl.convert import convert
 
 __all__ = ["build_node"]
@@ -63,7 +72,8 @@ def build_node(
     Raises
     ------
     DefinitionError, UserError
-        If the accelerator cannot be used, the node is too large, or the folder cannot be written.
+        If the accelerator cannot be used, the node is too large, two design units would have one
+        name, or the folder cannot be written.
     """
     name = identifier(description.node)
     folder = design_folder(out, name)
@@ -76,7 +86,7 @@ def build_node(
                 "node": description.node,
                 "facts": facts,
                 # The accelerator's code is part of the circuit; packets of the benches are not.
-                "frames_sha256": None if script is None else _digest(script.text),
+                "frames_sha256": None if script is None else digest(script.text),
             },
             design.rtlil,
         ),
@@ -152,10 +162,6 @@ def _designed(
     )
 
 
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
 def _files(design: _Design) -> dict[str, str]:
     """Write the design and its benches in each language."""
     description, name, ports = design.description, design.name, design.ports
@@ -163,36 +169,44 @@ def _files(design: _Design) -> dict[str, str]:
     header = (
         f"{name}: a node of ROS {description.distro}, made by firm-hdl {firm_hdl.__version__}\n"
     )
-    module = f"{name}_verilog"
-    vhdl = convert(design.rtlil, name=name, header=header)
-    vhdl_ports = vhdl.entities[name].ports
-    files = {f"{module}.v": to_verilog(design.rtlil, module=module, header=header)}
-    files["waivers.vlt"] = waivers([module]) + _UNDRIVEN.format(file=f"{module}.v")
-    vhdl_files = dict(vhdl.files)
+    module = verilog_module(name)
+    node = convert(design.rtlil, name=name, header=header)
+    vhdl_ports = node.entities[name].ports
+    records: dict[str, str] = {}
+    structs: dict[str, str] = {}
     if design.messages:
-        vhdl_files |= record_files(
-            name, ports, design.messages, vhdl_ports=vhdl_ports, header=header
-        )
+        records = record_files(name, ports, design.messages, vhdl_ports=vhdl_ports, header=header)
         structs = struct_files(name, module, ports, design.messages, header=header)
-        files |= {f"systemverilog/{file}": text for file, text in structs.items()}
-    files |= {f"vhdl/{file}": text for file, text in vhdl_files.items()}
-    files["vhdl/files.txt"] = "".join(f"{file}\n" for file in vhdl_files)
-    files[SUMMARY] = summary(description) + "\n"
-    files[f"{name}.core"] = node_core(
-        description, name, module, list(vhdl_files), has_bench=script is not None
-    )
+    vhdl = {**node.files, **records}
+    benches: dict[str, str] = {}
     if script is not None:
-        files |= bench_files(
+        benches = bench_files(
             description,
             name,
             ports,
             script,
             module=module,
             vhdl_ports=vhdl_ports,
-            vhdl_files=list(vhdl_files),
+            vhdl_files=list(vhdl),
             header=header,
         )
-    return files
+    owners = {"the node": node.files, "its messages": records, "its structs": structs}
+    check_units(description, name, top=node.top, files={**owners, "its benches": benches})
+    return {
+        **verilog_file(design.rtlil, name=name, header=header),
+        "waivers.vlt": waivers([module]) + _UNDRIVEN.format(file=f"{module}.v"),
+        **{f"systemverilog/{file}": text for file, text in structs.items()},
+        **vhdl_folder(vhdl),
+        SUMMARY: summary(description) + "\n",
+        **core_file(
+            name,
+            vhdl,
+            kind="node",
+            description=f"Node {description.node} of ROS {description.distro}",
+            more=None if script is None else bench_core(name),
+        ),
+        **benches,
+    }
 
 
 def _records(design: _Design) -> dict[str, Any]:

@@ -190,6 +190,8 @@ class Description:
         ``module:Class``; empty if the message ports come out of the node.
     folder : str
         The folder of the file, in which the module of the accelerator is searched, too.
+    accelerator_span, node_span : Span or None
+        The names of the accelerator and of the node in the file.
     """
 
     node: str
@@ -203,6 +205,7 @@ class Description:
     accelerator: str = ""
     folder: str = field(default="", compare=False)
     accelerator_span: Span | None = field(default=None, compare=False, repr=False)
+    node_span: Span | None = field(default=None, compare=False, repr=False)
 
     def of_kind(self, kind: Kind) -> tuple[Topic, ...]:
         """Return the topics of a kind, in the order of their ids."""

@@ -148,6 +148,7 @@ class _Reader:
             accelerator_span=(
                 self.marked.span(known["accelerator"].value) if accelerator else None
             ),
+            node_span=self.marked.span(known["node"].value),
         )
 
     def _library(self, known: dict[str, Entry]) -> Library:

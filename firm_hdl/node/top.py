@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from amaranth.hdl import Cat, ClockDomain, Module, Mux, Shape, Value
+from amaranth.hdl import Cat, Module, Mux, Shape, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.export.top import MAX_INPUT_BITS
+from firm_hdl.export.top import MAX_INPUT_BITS, add_domain
 from firm_hdl.names.identifiers import flat_names
 from firm_hdl.node.node import Node
 
@@ -80,11 +80,7 @@ class NodeTop(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        # The port itself is the clock: an assignment would delay the clock by a delta cycle.
-        domain = ClockDomain("sync", local=True)
-        domain.clk = self.aclk
-        m.domains += domain
-        m.d.comb += domain.rst.eq(~self.aresetn)
+        add_domain(m, "sync", self.aclk, self.aresetn)
         m.submodules.node = self.node
         bus = self.node.description.bus_bytes
         for name, part in self._parts.items():

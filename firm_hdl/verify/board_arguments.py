@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from firm_hdl.arguments import seconds
+from firm_hdl.arguments import add_engine, seconds
 from firm_hdl.frontend import DEFAULT_DISTRO
 from firm_hdl.verify.request import Workload
 
@@ -31,13 +31,7 @@ def add_board_arguments(group: argparse._ArgumentGroup) -> None:
         help="test nothing, but write the description of a node that sends the types back, for "
         "firm-hdl node build",
     )
-    group.add_argument(
-        "--engine",
-        choices=["auto", "cxxrtl", "amaranth"],
-        default="auto",
-        help="for --board sim: compiled by CXXRTL, or Amaranth's slow simulator (%(default)s: "
-        "the former if there is a C++ compiler)",
-    )
+    add_engine(group, "--board sim")
     group.add_argument(
         "--silent-seconds",
         type=seconds,

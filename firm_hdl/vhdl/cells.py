@@ -20,6 +20,10 @@ __all__ = ["Cells"]
 NATURAL_BITS = 31
 """Widest number that is written in decimal: VHDL's integers have 31 bits and a sign."""
 
+EXTENSIBLE_BITS = 32
+"""Widest constant that an operator of numeric_std may extend: where one extends a wider constant,
+the synthesis of GHDL 2.0 ends with an internal error (``netlists-utils.adb:163``)."""
+
 COMPARISONS = {"$eq": "=", "$ne": "/=", "$lt": "<", "$le": "<=", "$gt": ">", "$ge": ">="}
 _INVERSE = {"=": "/=", "/=": "=", "<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 _MIRRORED = {"=": "=", "/=": "/=", "<": ">", "<=": ">=", ">": "<", ">=": "<="}
@@ -180,18 +184,31 @@ class Cells:
             return infix(operator, atom(str(value)), values.unsigned(b, width))
         if signed or (spec_width(a) < width and spec_width(b) < width):
             left = values.extended(a, width, signed=signed)
-            right = values.extended(b, width, signed=True) if signed else self._short(b)
+            right = values.extended(b, width, signed=True) if signed else self._short(b, width)
             return infix(operator, left, right)
         if spec_width(a) == 1 and operator == "+":
             a, b = b, a
         if spec_width(a) == 1:
-            return infix(operator, values.unsigned(a, width), self._short(b))
+            return infix(operator, values.unsigned(a, width), self._short(b, width))
         # The operators of numeric_std extend the shorter operand.
-        return infix(operator, self._short(a), self._short(b))
+        return infix(operator, self._short(a, width), self._short(b, width))
 
-    def _short(self, spec: Spec) -> Expression:
-        """Write an operand that numeric_std may extend; in VHDL-2008, also a single bit."""
-        return self._values.logic(spec) if spec_width(spec) == 1 else self._values.unsigned(spec)
+    def _short(self, spec: Spec, width: int) -> Expression:
+        """Write an operand that numeric_std may extend to `width`; in VHDL-2008, also one bit."""
+        if spec_width(spec) == 1:
+            return self._values.logic(spec)
+        return self._values.unsigned(spec, self._extensible(spec, width))
+
+    def _extensible(self, spec: Spec, width: int) -> int:
+        """Return the bits with which an operand is written that an operator extends to `width`."""
+        natural = spec_width(spec)
+        if natural <= EXTENSIBLE_BITS or self._values.constant(spec) is None:
+            return max(natural, 1)
+        return max(natural, width)
+
+    def _signed(self, spec: Spec, width: int) -> Expression:
+        """Write a signed operand as `signed` of `width` bits."""
+        return call("signed", self._values.extended(spec, width, signed=True))
 
     def _product(self, cell: Cell, width: int, signed: bool) -> Expression:
         values = self._values
@@ -211,18 +228,18 @@ class Cells:
     def _division(self, cell: Cell, width: int, signed: bool) -> Expression:
         values = self._values
         a, b = cell.ports["A"], cell.ports["B"]
+        most = max(spec_width(a), spec_width(b))
+        a_bits, b_bits = (self._extensible(spec, most) for spec in (a, b))
         function = "floor_div" if cell.kind == "$divfloor" else "floor_mod"
         if signed:
-            inner = call(function, values.signed(a), values.signed(b))
-            natural = spec_width(b)
-            if function == "floor_div":
-                natural = max(spec_width(a), spec_width(b)) + 1
+            inner = call(function, self._signed(a, a_bits), self._signed(b, b_bits))
+            natural = max(a_bits, b_bits) + 1 if function == "floor_div" else b_bits
             text = call("unsigned", inner)
             if width > natural:
                 return call("sign_extend", text, width)
         else:
-            text = call(function, values.unsigned(a), values.unsigned(b))
-            natural = max(spec_width(a if function == "floor_div" else b), 1)
+            text = call(function, values.unsigned(a, a_bits), values.unsigned(b, b_bits))
+            natural = a_bits if function == "floor_div" else b_bits
         return text if natural == width else call("resize", text, width)
 
     def _shift(self, cell: Cell, width: int, signed: bool) -> Expression:
@@ -282,7 +299,11 @@ class Cells:
             return infix(operator, left, values.signed(b) if signed else values.unsigned(b))
         if -(1 << NATURAL_BITS) < value < 1 << NATURAL_BITS:
             return infix(operator, left, atom(str(value)))
-        right = call("signed", values.unsigned(b)) if signed else values.unsigned(b)
-        if not signed and value.bit_length() == spec_width(b):
-            right = atom(literal(f"{value:b}"))
+        width = self._extensible(b, spec_width(a))
+        if signed:
+            right = self._signed(b, width)
+        elif value.bit_length() == spec_width(b):
+            right = atom(literal(f"{value:0{width}b}"))
+        else:
+            right = values.unsigned(b, width)
         return infix(operator, left, right)

@@ -22,7 +22,7 @@ from firm_hdl.vhdl.convert import Vhdl
 from tests.node.samples import PACKAGES, WHEELS, read
 from tests.node.traffic import frames_of
 from tests.tools import need
-from tests.vhdl.ghdl import GHDL, analyse
+from tests.vhdl.ghdl import GHDL, synthesize
 
 RELAY = """\
 node: relay
@@ -78,11 +78,12 @@ def test_the_verilog_compiles_in_both_languages(built, tmp_path):
         assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_the_vhdl_compiles_in_the_order_of_its_list(built, tmp_path):
+def test_the_vhdl_compiles_in_the_order_of_its_list_and_ghdl_synthesizes_it(built, tmp_path):
     need("ghdl", GHDL)
     names = (built / "vhdl" / "files.txt").read_text().split()
     files = {name: (built / "vhdl" / name).read_text() for name in names}
-    analyse(Vhdl(top="relay", files=files, entities={}), tmp_path)
+    made = synthesize(Vhdl(top="relay_records", files=files, entities={}), tmp_path)
+    assert "entity relay_records" in made and "latch" not in made.lower()
 
 
 def test_a_folder_that_is_current_stays(built):

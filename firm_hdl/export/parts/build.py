@@ -11,14 +11,17 @@ from amaranth.back import rtlil
 import firm_hdl
 from firm_hdl.export.design import (
     BuiltDesign,
-    design_files,
+    core_file,
     design_folder,
     inputs_of_design,
+    verilog_file,
+    vhdl_folder,
     write_design,
 )
 from firm_hdl.export.parts.catalog import Part
 from firm_hdl.export.parts.top import PartTop, clocks_of, part_ports
 from firm_hdl.gateware.packets import GateStatus, Outcome
+from firm_hdl.vhdl.convert import convert
 
 __all__ = ["build_part"]
 
@@ -40,20 +43,21 @@ def build_part(
     UserError
         If the part is too large, or the folder cannot be written.
     """
-    folder = design_folder(out, part.name)
+    name = part.name
+    folder = design_folder(out, name)
     ports = part_ports(part)
-    design = rtlil.convert(PartTop(part), name=part.name, emit_src=False)
-    settings = ", ".join(f"{name} {value}" for name, value in part.parameters.items())
+    design = rtlil.convert(PartTop(part), name=name, emit_src=False)
+    settings = ", ".join(f"{key} {value}" for key, value in part.parameters.items())
     what = f"packet {part.kind}: {settings}"
 
     def make_files() -> dict[str, str]:
-        return design_files(
-            design,
-            name=part.name,
-            header=f"{part.name}: {what}\nMade by firm-hdl {firm_hdl.__version__}\n",
-            kind="part",
-            description=what,
-        )
+        header = f"{name}: {what}\nMade by firm-hdl {firm_hdl.__version__}\n"
+        vhdl = convert(design, name=name, header=header).files
+        return {
+            **verilog_file(design, name=name, header=header),
+            **vhdl_folder(vhdl),
+            **core_file(name, vhdl, kind="part", description=what),
+        }
 
     facts = _facts(part)
     return write_design(

@@ -20,6 +20,7 @@ from firm_hdl.gateware.packets import (
 )
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import plain
+from firm_hdl.vhdl.names import legal
 
 __all__ = ["Part", "make_part"]
 
@@ -84,8 +85,10 @@ def make_part(
     Raises
     ------
     UserError
-        If the part cannot have these parameters.
+        If the part cannot have these parameters or this name.
     """
+    if name is not None and legal(name) != name:
+        raise UserError(f"The VHDL of every part uses the name '{name}' itself")
     given = dict(parameters)
     try:
         if message is None:

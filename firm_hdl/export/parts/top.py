@@ -11,13 +11,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from amaranth.hdl import Cat, ClockDomain, Module, Mux, Shape, Value
+from amaranth.hdl import Cat, Module, Mux, Shape, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.errors import UserError
 from firm_hdl.export.parts.catalog import Part
-from firm_hdl.export.top import MAX_INPUT_BITS, Port, trailing_ones
+from firm_hdl.export.top import MAX_INPUT_BITS, Port, add_domain, trailing_ones
 
 __all__ = ["PartTop", "clocks_of", "part_ports"]
 
@@ -97,11 +97,7 @@ class PartTop(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         for name, (clock, reset) in clocks_of(self.part).items():
-            # The port itself is the clock: an assignment would delay the clock by a delta cycle.
-            domain = ClockDomain(name, local=True)
-            domain.clk = getattr(self, clock)
-            m.domains += domain
-            m.d.comb += domain.rst.eq(~getattr(self, reset))
+            add_domain(m, name, getattr(self, clock), getattr(self, reset))
         m.submodules.part = self.part.component
         for pin in _pins(self.part):
             port = getattr(self, pin.port.name)

@@ -25,6 +25,7 @@ from firm_hdl.gateware.mover import _MoverLogic as _Move
 from firm_hdl.gateware.parse.buffer import Buffer
 from firm_hdl.gateware.parse.judge import Judge
 from firm_hdl.gateware.signatures import Status, leaf_streams
+from firm_hdl.plan.yaml import counted
 
 __all__ = ["BITS", "BOOL", "DATA_DEPTH", "JOY", "FixedType", "studies"]
 
@@ -159,7 +160,7 @@ def _deserializer(kind: FixedType, bus_bytes: int, depth: int) -> Study:
     name = f"deserializer-{kind.name.split('/')[-1].lower()}-{kind.distro}-{bus_bytes}"
     return Study(
         name,
-        f"`Deserializer` of {kind.name} ({kind.distro}), {bus_bytes} bytes",
+        f"`Deserializer` of {kind.name} ({kind.distro}), {counted(bus_bytes, 'byte')}",
         build,
         tuple(
             Claim(claim, bug, "BMC", DATA_DEPTH if claim in _DATA else depth)

@@ -23,6 +23,7 @@ from firm_hdl.gateware.collect.collector import _CollectorLogic as _Collect
 from firm_hdl.gateware.packer import _PackerLogic as _Pack
 from firm_hdl.gateware.serializer import Serializer
 from firm_hdl.gateware.signatures import Status, leaf_streams
+from firm_hdl.plan.yaml import counted
 
 __all__ = ["studies"]
 
@@ -48,7 +49,7 @@ def _serializer(kind: FixedType, bus_bytes: int, depth: int) -> Study:
     name = f"serializer-{kind.name.split('/')[-1].lower()}-{kind.distro}-{bus_bytes}"
     return Study(
         name,
-        f"`Serializer` of {kind.name} ({kind.distro}), {bus_bytes} bytes",
+        f"`Serializer` of {kind.name} ({kind.distro}), {counted(bus_bytes, 'byte')}",
         build,
         tuple(
             Claim(claim, bug, "BMC", DATA_DEPTH if claim == "values" else depth)

@@ -6,8 +6,8 @@
 
 from __future__ import annotations
 
-from firm_hdl.node.benches.fusesoc import node_core
+from firm_hdl.node.benches.fusesoc import bench_core
 from firm_hdl.node.benches.script import FRAMES, LinkScript, Stimuli, link_script
 from firm_hdl.node.benches.write import bench_files
 
-__all__ = ["FRAMES", "LinkScript", "Stimuli", "bench_files", "link_script", "node_core"]
+__all__ = ["FRAMES", "LinkScript", "Stimuli", "bench_core", "bench_files", "link_script"]

@@ -1,53 +1,26 @@
-"""The core of FuseSoC for a node: the design, and its benches as targets."""
+"""The benches of a node in its core of FuseSoC, as targets."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import yaml
-
-import firm_hdl
 from firm_hdl.node.benches.script import FRAMES
-from firm_hdl.node.description import Description
 
-__all__ = ["node_core"]
+__all__ = ["bench_core"]
 
 
-def node_core(
-    description: Description, name: str, module: str, vhdl: list[str], *, has_bench: bool
-) -> str:
-    """Write a core of FuseSoC: the VHDL by default, or the Verilog, and the benches.
+def bench_core(name: str) -> dict[str, dict[str, Any]]:
+    """Return the entries of the benches, by section of the core.
+
+    The target `sim` runs the bench in GHDL, and `sim_verilog` that in Icarus Verilog.
 
     Parameters
     ----------
     name : str
-        Name of the entity.
-    module : str
-        Name of the module in Verilog.
-    vhdl : list of str
-        Files of the node in compile order, in the folder ``vhdl/``.
-    has_bench : bool
-        Then the target `sim` runs the bench in GHDL, and `sim_verilog` that in Icarus Verilog.
+        Name of the node's entity.
     """
-    document: dict[str, Any] = {
-        "name": f"firm-hdl:node:{name}:{firm_hdl.__version__}",
-        "description": f"Node {description.node} of ROS {description.distro}",
-        "filesets": {
-            "vhdl": {"files": [f"vhdl/{file}" for file in vhdl], "file_type": "vhdlSource-2008"},
-            "verilog": {"files": [f"{module}.v"], "file_type": "verilogSource-2005"},
-        },
-        "targets": {
-            "default": {"filesets": ["vhdl"], "toplevel": name},
-            "verilog": {"filesets": ["verilog"], "toplevel": module},
-        },
-    }
-    if has_bench:
-        _add_benches(document, f"{name}_tb")
-    return "CAPI=2:\n" + yaml.safe_dump(document, sort_keys=False, width=1000)
-
-
-def _add_benches(document: dict[str, Any], top: str) -> None:
-    document["filesets"] |= {
+    top = f"{name}_tb"
+    filesets: dict[str, Any] = {
         "bench": {
             "files": ["vhdl/firm_hdl_bench_pkg.vhd", f"vhdl/{top}.vhd"],
             "file_type": "vhdlSource-2008",
@@ -60,7 +33,7 @@ def _add_benches(document: dict[str, Any], top: str) -> None:
         "seed": (1, "Seed of the random stalls"),
         "stalls": (40, "Percent of the cycles in which a stream stalls, 0 to 99"),
     }
-    document["targets"] |= {
+    targets: dict[str, Any] = {
         "sim": {
             "description": f"Run {top} in GHDL",
             "default_tool": "ghdl",
@@ -77,7 +50,7 @@ def _add_benches(document: dict[str, Any], top: str) -> None:
             "tools": {"icarus": {"iverilog_options": ["-g2005"]}},
         },
     }
-    document["parameters"] = {
+    parameters: dict[str, Any] = {
         name: {
             "datatype": "int",
             "default": default,
@@ -86,3 +59,4 @@ def _add_benches(document: dict[str, Any], top: str) -> None:
         }
         for name, (default, text) in texts.items()
     }
+    return {"filesets": filesets, "targets": targets, "parameters": parameters}

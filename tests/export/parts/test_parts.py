@@ -245,6 +245,7 @@ def test_the_command_writes_a_part_once(tmp_path, capsys):
         ("fifo --memory-bytes 100", "Memory size must be a power of two from 16 bytes on, not 100"),
         ("crossing --beats 5", "Number of beats must be a power of two from 4 on, not 5"),
         ("router --topics 3 --topic-bits 1", "3 topics do not fit into 1 bits"),
+        ("fifo --name mux", "The VHDL of every part uses the name 'mux' itself"),
         (
             "arbiter --inputs 64 --bus-bytes 64 --side-bits 1000",
             "The part has 100995 input bits, and Amaranth elaborates at most 65535",

@@ -9,14 +9,11 @@ import sys
 import time
 
 import rclpy
+from numbered import cloud, imu, say, stamped
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from sensor_msgs.msg import Imu, PointCloud2, PointField
+from sensor_msgs.msg import Imu, PointCloud2
 from std_msgs.msg import Int32, String, UInt8MultiArray
 from std_srvs.srv import SetBool
-
-
-def say(**what):
-    print(json.dumps(what), flush=True)
 
 
 def qos_of(options):
@@ -33,33 +30,10 @@ def qos_of(options):
     )
 
 
-def imu(number):
-    message = Imu()
-    message.header.stamp.sec = number
-    message.header.frame_id = f"imu{number % 7}"
-    message.orientation.x = number * 0.5
-    message.angular_velocity_covariance[8] = number
-    message.linear_acceleration.z = -float(number)
-    return message
-
-
 def block(number, size):
     return UInt8MultiArray(
         data=bytes((number + i * 7) & 0xFF for i in range(251)) * (size // 251 & ~3)
     )
-
-
-def cloud(number, size):
-    message = PointCloud2(height=1, width=size // 16, point_step=16, row_step=size // 16 * 16)
-    message.header.stamp.sec = number
-    message.header.frame_id = "lidar"
-    message.fields = [
-        PointField(name=name, offset=4 * at, datatype=PointField.FLOAT32, count=1)
-        for at, name in enumerate(["x", "y", "z", "intensity"])
-    ]
-    message.data = (number.to_bytes(4, "little") * 4) * (size // 16)
-    message.is_dense = True
-    return message
 
 
 def message_of(options, number):
@@ -74,7 +48,7 @@ def message_of(options, number):
 def number_of(options, message):
     """Return the number of a message, or -1 if its content is not what that number's has to be."""
     if options["type"] in ("imu", "cloud"):
-        number = message.header.stamp.sec
+        number = stamped(message)
     elif options["type"] == "block":
         number = message.data[0] if message.data else -1
     else:

@@ -7,47 +7,19 @@ import threading
 import time
 
 import rospy
-from sensor_msgs.msg import Imu, PointCloud2, PointField
+from numbered import cloud, imu, say, stamped
+from sensor_msgs.msg import Imu, PointCloud2
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
 
-def say(**what):
-    print(json.dumps(what), flush=True)
+def make(kind, number, size):
+    if kind == "cloud":
+        return cloud(number, size)
+    return imu(number) if kind == "imu" else String(data=f"m{number}")
 
 
-def imu(number, size):
-    message = Imu()
-    message.header.stamp.secs = number
-    message.header.frame_id = f"imu{number % 7}"
-    message.orientation.x = number * 0.5
-    message.angular_velocity_covariance[8] = number
-    message.linear_acceleration.z = -float(number)
-    return message
-
-
-def cloud(number, size):
-    message = PointCloud2(height=1, width=size // 16, point_step=16, row_step=size // 16 * 16)
-    message.header.stamp.secs = number
-    message.header.frame_id = "lidar"
-    message.fields = [
-        PointField(name=name, offset=4 * at, datatype=PointField.FLOAT32, count=1)
-        for at, name in enumerate(["x", "y", "z", "intensity"])
-    ]
-    message.data = (number.to_bytes(4, "little") * 4) * (size // 16)
-    message.is_dense = True
-    return message
-
-
-def string(number, size):
-    return String(data=f"m{number}")
-
-
-TYPES = {"imu": (Imu, imu), "cloud": (PointCloud2, cloud), "string": (String, string)}
-
-
-def stamped(message):
-    return message.header.stamp.secs
+TYPES = {"imu": Imu, "cloud": PointCloud2, "string": String}
 
 
 def content(message):
@@ -64,16 +36,18 @@ def trip(options):
     numbers = [[] for _ in options["topics"]]
     publishers, subscribers, messages = [], [], []
     for got, each in zip(numbers, options["topics"], strict=True):
-        kind, make = TYPES[each["type"]]
-        messages.append([make(n, each.get("bytes", 0)) for n in range(each["count"])])
-        publishers.append(rospy.Publisher(each["to"], kind, queue_size=10_000, tcp_nodelay=True))
+        kind, size = each["type"], each.get("bytes", 0)
+        messages.append([make(kind, n, size) for n in range(each["count"])])
+        publishers.append(
+            rospy.Publisher(each["to"], TYPES[kind], queue_size=10_000, tcp_nodelay=True)
+        )
 
-        def take(message, got=got, make=make, each=each):
-            number = int(message.data[1:]) if each["type"] == "string" else stamped(message)
-            wanted = make(number, each.get("bytes", 0))
+        def take(message, got=got, kind=kind, size=size):
+            number = int(message.data[1:]) if kind == "string" else stamped(message)
+            wanted = make(kind, number, size)
             got.append(number if content(message) == content(wanted) else -1)
 
-        subscribers.append(rospy.Subscriber(each["back"], kind, take, tcp_nodelay=True))
+        subscribers.append(rospy.Subscriber(each["back"], TYPES[kind], take, tcp_nodelay=True))
     say(ready=True)
     end = time.monotonic() + options.get("patience", 60)
     while not all(each.get_num_connections() for each in (*publishers, *subscribers)):

@@ -182,11 +182,11 @@ def comparisons() -> Design:
 begin
 
   o0 <= '1' when unsigned(p) = x"FFFFFFFFFF" else '0';
-  o1 <= '1' when unsigned(p) < 34x"200000000" else '0';
+  o1 <= '1' when unsigned(p) < x"0200000000" else '0';
   o2 <= '1' when unsigned(p) = 5 else '0';
   o3 <= '1' when unsigned(s) = x"FFFFFFFFFF" else '0';
   o4 <= '1' when unsigned(q) > 5 else '0';
-  o5 <= '1' when signed(unsigned(s)) < signed(unsigned'(x"800000000")) else '0';
+  o5 <= '1' when signed(unsigned(s)) < signed(unsigned'(x"F800000000")) else '0';
   o6 <= '1' when unsigned(p) >= 2147483647 else '0';
   o7 <= '1' when unsigned(p) > x"80000000" else '0';
   o8 <= '1' when unsigned(q) <= 3 else '0';
