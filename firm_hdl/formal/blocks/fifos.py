@@ -125,7 +125,7 @@ _RECEIVE = PacketWriter._receive
 def _fifo_claims(when_full: WhenFull) -> tuple[Claim, ...]:
     if when_full == "wait":
         outcome = Bug(_RECEIVE, "self.aborts.eq(self.abort)", "self.aborts.eq(0)")
-        moves = Bug(_WRITE, "fails.eq(discarded | words.all())", "fails.eq(discarded)")
+        moves = Bug(_RECEIVE, "fails.eq(lost | self.fills)", "fails.eq(lost)")
     else:
         outcome = Bug(_WRITE, "large.eq(self.fits)", "large.eq(1)")
         moves = None  # `ready` is the constant 1.
@@ -140,7 +140,7 @@ def _fifo_claims(when_full: WhenFull) -> tuple[Claim, ...]:
             "count",
             Bug(
                 _RECEIVE,
-                "Mux(packets.payload.last, packets.payload.count, shape.bus_bytes)",
+                "Mux(last, packets.payload.count, shape.bus_bytes)",
                 "packets.payload.count",
             ),
             "BMC",
@@ -164,7 +164,7 @@ def _fifo_claims(when_full: WhenFull) -> tuple[Claim, ...]:
         ),
         Claim(
             "size",
-            Bug(PacketFifo._store_sizes, "read.addr + reader.begins", "read.addr + 1"),
+            Bug(PacketFifo._store_sizes, "read.addr + 1", "read.addr"),
             "BMC",
             12,
         ),

@@ -106,7 +106,8 @@ def _width(in_bytes: int, out_bytes: int) -> Study:
 
 
 _ARBITER = PacketArbiter.elaborate
-_HOPS = Bug(_ARBITER, "Mux(valid, fires & last, ~inside)", "Mux(valid, fires, ~inside)")
+_TURNS = PacketArbiter._take_turns
+_HOPS = Bug(_TURNS, "Mux(valid, fires & last, ~inside)", "Mux(valid, fires, ~inside)")
 
 
 def _arbiter(scene: Scene) -> None:
@@ -224,7 +225,7 @@ def _arbiter_study() -> Study:
             Claim("valid stays", _FALLS),
             Claim("payload stays", _CHANGES),
             Claim("count", Bug(_SLICE, "out.eq(Mux(ready, incoming, second))", "out.eq(0)")),
-            Claim("order", Bug(_ARBITER, "payload.source.eq(turn)", "payload.source.eq(chosen)")),
+            Claim("order", Bug(_ARBITER, "source.eq(turn.number)", "source.eq(~turn.number)")),
             Claim("nothing extra", Bug(_ARBITER, "out.i.valid.eq(valid)", "out.i.valid.eq(1)")),
             Claim("whole packets", _HOPS),
             Claim(
@@ -235,10 +236,13 @@ def _arbiter_study() -> Study:
                     "other = distance % count",
                 ),
             ),
-            Claim("input moves", Bug(_ARBITER, "(turn == number)", "(turn == number + 1)")),
+            Claim(
+                "input moves",
+                Bug(_TURNS, "Mux(opens, following.bits, 0)", "readies & following.bits"),
+            ),
             Claim(
                 "output moves",
-                Bug(_ARBITER, "out.i.valid.eq(valid)", "out.i.valid.eq(fires & last)"),
+                Bug(_ARBITER, "out.i.valid.eq(valid)", "out.i.valid.eq(valid & last)"),
             ),
         ),
     )

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Array, Cat, Module, Mux, Signal, Value
+from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.packets.slice import StreamSlice
+from firm_hdl.gateware.positions import any_of
 from firm_hdl.gateware.signatures import PacketSignature, packet_layout
 
 __all__ = ["PacketArbiter"]
@@ -64,26 +65,26 @@ class PacketArbiter(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        turn, chosen = Signal(range(self.inputs)), Signal(range(self.inputs))
+        # The number selects payloads, because that takes the fewest look-up tables. The bits, one
+        # for each input, decide all else, because they need no decoder.
+        code = data.StructLayout({"number": range(self.inputs), "bits": self.inputs})
+        turn = Signal(code, init={"bits": 1})
         layout = data.StructLayout(
             {
                 "beat": packet_layout(self.bus_bytes),
-                "source": turn.shape(),
+                "source": code["number"].shape,
                 **({"side": self.side_bits} if self.side_bits else {}),
             }
         )
         m.submodules.slice = out = StreamSlice(layout)
-        valid, last, fires = Signal(), Signal(), Signal()
-        # A packet has begun and not ended.
-        inside = Signal()
+        valid, last = Signal(), Signal()
         beats = Array(Value.cast(port.payload) for port in self.packets_in)
         m.d.comb += [
-            valid.eq(Cat(port.valid for port in self.packets_in).bit_select(turn, 1)),
-            Value.cast(out.i.payload.beat).eq(beats[turn]),
-            out.i.payload.source.eq(turn),
+            valid.eq((Cat(port.valid for port in self.packets_in) & turn.bits).any()),
+            Value.cast(out.i.payload.beat).eq(beats[turn.number]),
+            out.i.payload.source.eq(turn.number),
             out.i.valid.eq(valid),
-            last.eq(out.i.payload.beat.last),
-            fires.eq(valid & out.i.ready),
+            last.eq((Cat(port.payload.last for port in self.packets_in) & turn.bits).any()),
             self.packets_out.payload.eq(out.o.payload.beat),
             self.packets_out.valid.eq(out.o.valid),
             self.source.eq(out.o.payload.source),
@@ -91,27 +92,53 @@ class PacketArbiter(wiring.Component):
         ]
         if self.side_bits:
             m.d.comb += [
-                out.i.payload.side.eq(Array(self.sides_in)[turn]),
+                out.i.payload.side.eq(Array(self.sides_in)[turn.number]),
                 self.side_out.eq(out.o.payload.side),
             ]
-        for number, port in enumerate(self.packets_in):
-            m.d.comb += port.ready.eq(out.i.ready & (turn == number))
+        self._take_turns(m, turn, out, valid, last)
+        return m
+
+    def _take_turns(
+        self, m: Module, turn: data.View, out: StreamSlice, valid: Signal, last: Signal
+    ) -> None:
+        """Go on to the next input after the end of a packet, or while none is offered."""
+        chosen, following = Signal.like(turn), Signal.like(turn)
+        fires, opens = Signal(), Signal()
+        # A packet has begun and not ended.
+        inside = Signal()
+        # `ready` of each input. These are registers of their own, because much follows `ready` in
+        # the same cycle, and the inputs are far from each other.
+        readies = Signal(self.inputs, init=1)
         self._choose(m, turn, chosen)
+        m.d.comb += [
+            fires.eq(valid & out.i.ready),
+            following.eq(turn),
+            # The slice is ready in the next cycle if its register moves now, or if nothing comes.
+            opens.eq(~out.o.valid | out.o.ready | (out.i.ready & ~valid)),
+        ]
         with m.If(fires):
             m.d.sync += inside.eq(~last)
         with m.If(Mux(valid, fires & last, ~inside)):
-            m.d.sync += turn.eq(chosen)
-        return m
+            m.d.comb += following.eq(chosen)
+        m.d.sync += [turn.eq(following), readies.eq(Mux(opens, following.bits, 0))]
+        for number, port in enumerate(self.packets_in):
+            m.d.comb += port.ready.eq(readies[number])
 
-    def _choose(self, m: Module, turn: Signal, chosen: Signal) -> None:
+    def _choose(self, m: Module, turn: data.View, chosen: data.View) -> None:
         """Choose the next input after `turn` that offers a packet; else `turn` itself."""
         count = self.inputs
-        m.d.comb += chosen.eq(turn)
-        with m.Switch(turn):
-            for number in range(count):
-                with m.Case(number):
-                    # The last assignment wins, so the nearest input comes last.
-                    for distance in reversed(range(1, count)):
-                        other = (number + distance) % count
-                        with m.If(self.packets_in[other].valid):
-                            m.d.comb += chosen.eq(other)
+        # By input: the cases in which the input is chosen.
+        cases: list[list[Value]] = [[] for _ in range(count)]
+        for number in range(count):
+            nearer: Value = Const(0, 1)
+            for distance in range(1, count):
+                other = (number + distance) % count
+                offers = self.packets_in[other].valid
+                cases[other].append(turn.bits[number] & offers & ~nearer)
+                nearer = nearer | offers
+            cases[number].append(turn.bits[number] & ~nearer)
+        for number, each in enumerate(cases):
+            m.d.comb += chosen.bits[number].eq(any_of(each))
+        for bit in range(len(chosen.number)):
+            ones = [chosen.bits[number] for number in range(count) if number >> bit & 1]
+            m.d.comb += chosen.number[bit].eq(any_of(ones))

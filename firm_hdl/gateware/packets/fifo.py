@@ -123,7 +123,8 @@ class PacketFifo(wiring.Component):
     def _store_sizes(self, m: Module, writer: PacketWriter, reader: PacketReader) -> None:
         """Store the sizes of packets whose first beat was not sent."""
         packets = self.shape.packets
-        stored = Signal(range(packets + 1), name="stored")
+        # Whether a packet began in the cycle before; `stored` still counts the packet.
+        stored, begun = Signal(range(packets + 2), name="stored"), Signal(name="begun")
         sizes = LutMemory(m, "sizes", writer.size.shape(), 1 << max(1, ceil_log2(packets)))
         write, read = sizes.write, sizes.reader()
         m.d.comb += [
@@ -131,9 +132,13 @@ class PacketFifo(wiring.Component):
             write.en.eq(writer.keeps),
             reader.next_size.eq(read.data),
             writer.stored.eq(stored),
+            writer.begun.eq(begun),
         ]
+        # `begins` is late in the cycle, so no sum depends on it.
         m.d.sync += [
+            begun.eq(reader.begins),
             write.addr.eq(write.addr + writer.keeps),
-            read.addr.eq(read.addr + reader.begins),
-            stored.eq(stored + writer.keeps - reader.begins),
+            stored.eq(stored + writer.keeps - begun),
         ]
+        with m.If(reader.begins):
+            m.d.sync += read.addr.eq(read.addr + 1)

@@ -30,6 +30,9 @@ class PacketWriter(wiring.Component):
     whether the packet is kept. At most one packet in the memory is undecided, and it is the newest
     one. So to drop a packet, the writer goes back to the first word of it.
 
+    What becomes of a beat is decided when the beat comes, and registered with it. So the look-ahead
+    for the beat after it begins with registers.
+
     `packets.ready` is a register, or constantly 1 with the policy `"drop"`.
 
     Parameters
@@ -47,16 +50,20 @@ class PacketWriter(wiring.Component):
     at : Out(address)
         Where the word is written.
     writes : Out(1)
+        A register.
     kept : Out(position)
         All words before this position are of packets that are kept.
     keeps : Out(1)
-        A packet is kept; the next value of `kept` is the end of it.
+        A packet is kept; the next value of `kept` is the end of it. A register.
     size : Out(range(memory_bytes + 1))
         Bytes of the packet, if `keeps`.
     freed : In(position)
         All words before this position are free.
-    stored : In(range(packets + 1))
-        Number of packets that are kept and whose first beat was not sent.
+    stored : In(range(packets + 2))
+        Number of packets that are kept and whose first beat was not sent, or only in the cycle
+        before.
+    begun : In(1)
+        In the cycle before, the first beat of a packet was sent.
     ended : Out(1)
         A packet was decided: 2 cycles after the transfer of its last beat. A register.
     outcome : Out(Outcome)
@@ -76,7 +83,8 @@ class PacketWriter(wiring.Component):
                 "keeps": Out(1),
                 "size": Out(range(shape.memory_bytes + 1)),
                 "freed": In(shape.position_bits),
-                "stored": In(range(shape.packets + 1)),
+                "stored": In(range(shape.packets + 2)),
+                "begun": In(1),
                 "ended": Out(1),
                 "outcome": Out(Outcome),
             }
@@ -87,8 +95,10 @@ class PacketWriter(wiring.Component):
         self.aborts = Signal(reset_less=True)
         # The rest of the packet is dropped, after the beat in the register.
         self.drops = Signal()
-        # The packet goes back to its first word.
+        # The packet of the beat in the register goes back to its first word.
         self.rewinds = Signal()
+        # With the next beat, its packet has as many words as the memory.
+        self.fills = Signal()
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -101,15 +111,27 @@ class PacketWriter(wiring.Component):
         shape, packets = self.shape, self.packets
         # The position of the next beat that is received, if no packet were dropped.
         arrived = Signal(shape.position_bits)
-        room, counts, ends = Signal(init=1), Signal(), Signal()
+        room, comes, last = Signal(init=1), Signal(), packets.payload.last
+        lost, fails, counts, ends = Signal(), Signal(), Signal(), Signal()
         m.d.comb += [
             packets.ready.eq(room if self.waits else 1),
+            comes.eq(packets.valid & packets.ready),
             # Beats that are dropped need no room.
-            counts.eq(packets.valid & room & ~self.drops),
-            ends.eq(counts & packets.payload.last & ~self.abort),
+            lost.eq(self.drops | ~room),
+            # A beat that fills the memory, and does not end its packet, is one too many.
+            fails.eq(lost | self.fills),
+            counts.eq(packets.valid & ~lost),
+            ends.eq(counts & last & ~self.abort),
         ]
-        # Whether the packet goes back, and whether a beat comes, are known late in the cycle. So
-        # all that follows from a position is computed for both positions.
+        m.d.sync += [
+            self.writes.eq(counts),
+            self.keeps.eq(ends),
+            self.rewinds.eq(comes & Mux(last, lost | self.abort, fails)),
+        ]
+        with m.If(comes):
+            m.d.sync += self.drops.eq(~last & fails)
+        # The difference of positions takes most of a cycle. So all that follows from a position is
+        # computed for both positions, and for both cases of whether a beat comes.
         stays, goes_back = self._after(m, arrived), self._after(m, self.kept)
         # What becomes free in this cycle is seen in the next one.
         m.d.sync += [
@@ -128,9 +150,9 @@ class PacketWriter(wiring.Component):
                 )
                 & self._may_store(ends)
             ),
-            self.has_beat.eq(packets.valid & packets.ready),
+            self.has_beat.eq(comes),
             self.beat.eq(packets.payload),
-            self.beat.count.eq(Mux(packets.payload.last, packets.payload.count, shape.bus_bytes)),
+            self.beat.count.eq(Mux(last, packets.payload.count, shape.bus_bytes)),
             self.aborts.eq(self.abort),
             self.fits.eq(room),
         ]
@@ -147,28 +169,33 @@ class PacketWriter(wiring.Component):
 
     def _may_store(self, ends: Value) -> Value:
         """Return whether one more packet may be stored; `ends`: a packet that may be kept ends."""
-        left = [self.stored < self.shape.packets - more for more in range(3)]
-        return Mux(self.keeps, Mux(ends, left[2], left[1]), Mux(ends, left[1], left[0]))
+        # By how many packets more than `stored` there will be.
+        left = {more: self.stored < self.shape.packets - more for more in (-1, 0, 1, 2)}
+        fewer, same, more = (Mux(ends, left[n + 1], left[n]) for n in (-1, 0, 1))
+        return Mux(self.begun, Mux(self.keeps, same, fewer), Mux(self.keeps, more, same))
 
     def _write(self, m: Module) -> None:
-        """Write the beat in the register, and decide on the packet with its last beat."""
+        """Write the beat in the register, and say what became of the packet with its last beat."""
         shape, beat = self.shape, self.beat
-        # Words of the packet that are written. With all bits set, the beat takes the last word.
+        # Words of the packet that are written, before the beat.
         words = Signal(shape.address_bits)
         # The packet lost a beat before the current one, because it is larger than the memory.
         dropping, large = Signal(), Signal(reset_less=True)
-        discarded, fails, ends = Signal(), Signal(), Signal()
+        ends = Signal()
         at = Signal(shape.position_bits)
+        # Words of the packet before the beat that fills the memory.
+        most = shape.beats - 1
         m.d.comb += [
             ends.eq(self.has_beat & beat.last),
-            discarded.eq(dropping | ~self.fits),
-            fails.eq(discarded | words.all()),
-            self.keeps.eq(ends & ~discarded & ~self.aborts),
-            self.drops.eq(Mux(self.has_beat, ~beat.last & fails, dropping)),
-            self.rewinds.eq(self.has_beat & ~self.keeps & (beat.last | fails)),
+            self.fills.eq(
+                Mux(
+                    self.has_beat,
+                    (words == most - 1) & ~(beat.last | self.drops),
+                    words == most,
+                )
+            ),
             self.word.eq(beat),
             self.at.eq(at),
-            self.writes.eq(self.has_beat & ~discarded),
             self.size.eq(Cat(Const(0, shape.lane_bits), words) + beat.count),
         ]
         m.d.sync += [
@@ -181,7 +208,7 @@ class PacketWriter(wiring.Component):
                     Mux(
                         dropping & large,
                         Outcome.LARGE,
-                        Mux(discarded, Outcome.FULL, Outcome.KEPT),
+                        Mux(self.writes, Outcome.KEPT, Outcome.FULL),
                     ),
                 )
             ),

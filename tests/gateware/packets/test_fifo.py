@@ -201,6 +201,41 @@ def test_the_number_of_packets_is_a_limit(packets):
     assert run.outcomes == [KEPT] * (packets + 1) + [FULL] * (19 - packets)
 
 
+def check_room(fifo):
+    """Check in each cycle that a beat is taken if, and only if, one more packet may be stored."""
+    sizes = [1] * 20 + [1, 1, 2, 1, 3, 1, 1, 1, 5, 1, 1] * 2
+    packets = [of_beats(size, 4, seed) for seed, size in enumerate(sizes)]
+    run = Run(fifo, packets)
+    firsts = [run.left[sum(sizes[:number])] for number in range(len(sizes))]
+    limited = 0
+    for cycle in range(run.taken[0], run.taken[-1] + 1):
+        ended = sum(last < cycle for last in run.lasts)
+        begun = sum(first < cycle for first in firsts)
+        has_room = ended - begun < fifo.shape.packets
+        assert (cycle in run.taken) == has_room
+        limited += not has_room
+    assert limited
+
+
+@pytest.mark.parametrize("packets", [1, 2, 3, 4])
+def test_a_packet_that_begins_to_leave_makes_room_in_the_next_cycle(packets):
+    check_room(PacketFifo(4, 1024, packets))
+
+
+class _SeesRoomLate(PacketWriter):
+    """A packet that left in the cycle before is still counted."""
+
+    def _may_store(self, ends):
+        self.begun = Const(0)
+        return super()._may_store(ends)
+
+
+def test_room_that_comes_a_cycle_late_is_found(monkeypatch):
+    monkeypatch.setattr("firm_hdl.gateware.packets.fifo.PacketWriter", _SeesRoomLate)
+    with pytest.raises(AssertionError):
+        check_room(PacketFifo(4, 1024, 2))
+
+
 def test_a_link_that_cannot_be_held_loses_whole_packets():
     fifo = PacketFifo(8, 16 * 8, 16, when_full="drop")
     sizes = [5, 5, 5, 5, 1, 1, 7, 2, 40, 1]
@@ -296,24 +331,35 @@ class _Broken(PacketWriter):
 
 class _ForgetsToAbort(_Broken):
     def inject_fault(self, m):
-        m.d.sync += self.aborts.eq(0)
+        came = self.packets
+        ends = came.valid & came.ready & came.payload.last
+        m.d.sync += [self.aborts.eq(0), self.keeps.eq(ends & ~self.drops)]
+        with m.If(ends & ~self.drops):
+            m.d.sync += self.rewinds.eq(0)
 
 
 class _NeverGoesBack(_Broken):
     def inject_fault(self, m):
-        m.d.comb += self.rewinds.eq(0)
+        m.d.sync += self.rewinds.eq(0)
 
 
 class _HasAlwaysRoom(_Broken):
     def inject_fault(self, m):
-        m.d.comb += self.packets.ready.eq(1)
-        m.d.sync += self.fits.eq(1)
+        came = self.packets
+        stores = came.valid & ~self.drops
+        m.d.comb += came.ready.eq(1)
+        m.d.sync += [
+            self.fits.eq(1),
+            self.writes.eq(stores),
+            self.keeps.eq(stores & came.payload.last & ~self.abort),
+        ]
 
 
 class _HasNeverALargePacket(_Broken):
     def inject_fault(self, m):
-        m.d.comb += self.drops.eq(0)
-        m.d.comb += self.rewinds.eq(self.has_beat & self.beat.last & self.aborts)
+        came = self.packets
+        ends = came.valid & came.ready & came.payload.last
+        m.d.sync += [self.drops.eq(0), self.rewinds.eq(ends & self.abort)]
 
 
 class _CommitsEarly(_Broken):
