@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
@@ -11,6 +14,27 @@ from firm_hdl.gateware.positions import any_of
 from firm_hdl.gateware.signatures import PacketSignature, packet_layout
 
 __all__ = ["PacketArbiter"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Turn:
+    """Whose turn it is, in two codes: the number of the input, and a bit for each input.
+
+    The number selects payloads, because that takes the fewest look-up tables. The bits decide all
+    else, because they need no decoder.
+    """
+
+    number: Signal
+    bits: Signal
+
+    @staticmethod
+    def named(name: str, inputs: int) -> _Turn:
+        """Return new signals; at the reset, it is the turn of input 0."""
+        number = Signal(range(inputs), name=f"{name}_number")
+        return _Turn(number, Signal(inputs, name=f"{name}_bits", init=1))
+
+    def eq(self, other: _Turn) -> list[Any]:
+        return [self.number.eq(other.number), self.bits.eq(other.bits)]
 
 
 class PacketArbiter(wiring.Component):
@@ -65,14 +89,11 @@ class PacketArbiter(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        # The number selects payloads, because that takes the fewest look-up tables. The bits, one
-        # for each input, decide all else, because they need no decoder.
-        code = data.StructLayout({"number": range(self.inputs), "bits": self.inputs})
-        turn = Signal(code, init={"bits": 1})
+        turn = _Turn.named("turn", self.inputs)
         layout = data.StructLayout(
             {
                 "beat": packet_layout(self.bus_bytes),
-                "source": code["number"].shape,
+                "source": turn.number.shape(),
                 **({"side": self.side_bits} if self.side_bits else {}),
             }
         )
@@ -99,10 +120,11 @@ class PacketArbiter(wiring.Component):
         return m
 
     def _take_turns(
-        self, m: Module, turn: data.View, out: StreamSlice, valid: Signal, last: Signal
+        self, m: Module, turn: _Turn, out: StreamSlice, valid: Signal, last: Signal
     ) -> None:
         """Go on to the next input after the end of a packet, or while none is offered."""
-        chosen, following = Signal.like(turn), Signal.like(turn)
+        chosen = _Turn.named("chosen", self.inputs)
+        following = _Turn.named("following", self.inputs)
         fires, opens = Signal(), Signal()
         # A packet has begun and not ended.
         inside = Signal()
@@ -112,7 +134,7 @@ class PacketArbiter(wiring.Component):
         self._choose(m, turn, chosen)
         m.d.comb += [
             fires.eq(valid & out.i.ready),
-            following.eq(turn),
+            *following.eq(turn),
             # The slice is ready in the next cycle if its register moves now, or if nothing comes.
             opens.eq(~out.o.valid | out.o.ready | (out.i.ready & ~valid)),
         ]
@@ -120,11 +142,11 @@ class PacketArbiter(wiring.Component):
             m.d.sync += inside.eq(~last)
         with m.If(Mux(valid, fires & last, ~inside)):
             m.d.comb += following.eq(chosen)
-        m.d.sync += [turn.eq(following), readies.eq(Mux(opens, following.bits, 0))]
+        m.d.sync += [*turn.eq(following), readies.eq(Mux(opens, following.bits, 0))]
         for number, port in enumerate(self.packets_in):
             m.d.comb += port.ready.eq(readies[number])
 
-    def _choose(self, m: Module, turn: data.View, chosen: data.View) -> None:
+    def _choose(self, m: Module, turn: _Turn, chosen: _Turn) -> None:
         """Choose the next input after `turn` that offers a packet; else `turn` itself."""
         count = self.inputs
         # By input: the cases in which the input is chosen.
