@@ -115,12 +115,16 @@ def trip(node, options):
             rclpy.spin_once(node, timeout_sec=left)
         publishers[index].publish(messages[index][number])
     seconds = time.monotonic() - begin
-    end = time.monotonic() + options.get("linger", 10)
+    # Seconds since a message came: a slow simulation ends its work late.
+    linger = options.get("linger", 10)
+    end, came = time.monotonic() + linger, 0
     while time.monotonic() < end and any(
         got[-1:] != [each["count"] - 1]
         for got, each in zip(numbers, options["topics"], strict=True)
     ):
         rclpy.spin_once(node, timeout_sec=0.1)
+        if came < (came := sum(map(len, numbers))):
+            end = time.monotonic() + linger
     return say(numbers=numbers, seconds=seconds)
 
 

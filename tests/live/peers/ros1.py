@@ -69,12 +69,16 @@ def trip(options):
     for each in threads:
         each.join()
     seconds = time.monotonic() - begin
-    end = time.monotonic() + options.get("linger", 20)
+    # Seconds since a message came: a slow simulation ends its work late.
+    linger = options.get("linger", 20)
+    end, came = time.monotonic() + linger, 0
     while time.monotonic() < end and any(
         got[-1:] != [each["count"] - 1]
         for got, each in zip(numbers, options["topics"], strict=True)
     ):
         time.sleep(0.05)
+        if came < (came := sum(map(len, numbers))):
+            end = time.monotonic() + linger
     return say(numbers=numbers, seconds=seconds)
 
 
