@@ -18,6 +18,11 @@ from firm_hdl.sim.fast.ports import ports_of
 __all__ = ["SimulatedBoard"]
 
 _IN, _OUT = "link.frames_in", "link.frames_out"
+_STALLS = (False, True)
+"""The link is idle in every second cycle.
+
+Gates drop what comes while they are behind. Links of boards are seldom full; a simulation that is
+slower than its messages would always be."""
 # A node has many converters, and with -O2 they take several minutes.
 _OPTIONS = ("-O1",)
 
@@ -28,7 +33,8 @@ class SimulatedBoard(Board):
     The node has the link `stream`, whatever the description says: a frame is a packet, and the
     signals of a medium are not simulated. Core, gates, converters and accelerator are those of the
     hardware. The clock of a simulation is slower than that of the board, and slower still while
-    nothing comes, so the time of the node is set several times per second.
+    nothing comes, so the time of the node is set several times per second. Frames come at half the
+    rate of the bus.
 
     Parameters
     ----------
@@ -72,6 +78,7 @@ class SimulatedBoard(Board):
                 self._simulation = self._start()
             else:
                 self._simulation.restart()
+            self._simulation.stall(_IN, _STALLS)
             self._simulation.go_live()
         except BuildError as error:
             raise UserError(str(error)) from None

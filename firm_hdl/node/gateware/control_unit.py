@@ -120,10 +120,7 @@ class ControlUnit(wiring.Component):
         """Do the oldest request, and send the response."""
         asked, response = Signal(layout), Signal(_layout(RESPONSE))
         cycles, is_known = Signal(range(READ_CYCLES + 1)), Signal()
-        # A register of its own, because the arbiter decides by it in the same cycle.
-        offers = Signal()
         m.d.comb += [
-            self.packets_out.valid.eq(offers),
             self.tag_out.eq(asked.tag),
             self.to.sec.eq(asked.request.seconds),
             self.to.nanosec.eq(asked.request.nanoseconds),
@@ -141,15 +138,14 @@ class ControlUnit(wiring.Component):
                 self._check(m, asked, response, is_known)
                 m.next = "DO"
             with m.State("DO"):
-                self._do(m, asked, response, is_known, offers)
+                self._do(m, asked, response, is_known)
                 m.d.sync += cycles.eq(READ_CYCLES)
             with m.State("READ"):
                 m.d.sync += [cycles.eq(cycles - 1), response.value.eq(self.value)]
                 with m.If(cycles == 0):
-                    m.d.sync += offers.eq(1)
                     m.next = "SEND"
             with m.State("SEND"):
-                self._send(m, response, offers)
+                self._send(m, response)
 
     def _check(self, m: Module, asked: data.View, response: data.View, is_known: Signal) -> None:
         """Compare the numbers of a request with their limits."""
@@ -173,9 +169,7 @@ class ControlUnit(wiring.Component):
             ),
         ]
 
-    def _do(
-        self, m: Module, asked: data.View, response: data.View, is_known: Signal, offers: Signal
-    ) -> None:
+    def _do(self, m: Module, asked: data.View, response: data.View, is_known: Signal) -> None:
         """Do a request; go on to the state that follows."""
         request, does = asked.request, Signal()
         m.d.comb += does.eq(is_known & (response.result == Result.OK))
@@ -187,33 +181,31 @@ class ControlUnit(wiring.Component):
             response.value.eq(0),
             response.seconds.eq(self.time.sec),
             response.nanoseconds.eq(self.time.nanosec),
-            offers.eq(1),
         ]
         m.next = "SEND"
         with m.If(~is_known):
             m.d.sync += response.result.eq(Result.OPERATION)
         with m.Elif(does & (request.operation == Operation.READ)):
-            m.d.sync += offers.eq(0)
             m.next = "READ"
 
-    def _send(self, m: Module, response: data.View, offers: Signal) -> None:
+    def _send(self, m: Module, response: data.View) -> None:
         """Send the response, its first bytes first, and go back to the next request."""
         beats = CONTROL_BYTES // self.bus_bytes
         out, number = self.packets_out, Signal(range(max(2, beats)))
-        bits, last = 8 * self.bus_bytes, Signal(init=beats == 1)
+        bits = 8 * self.bus_bytes
         m.d.comb += [
+            out.valid.eq(1),
             Value.cast(out.payload.data).eq(Value.cast(response)[:bits]),
             out.payload.count.eq(self.bus_bytes),
-            out.payload.last.eq(last),
+            out.payload.last.eq(number == beats - 1),
         ]
         with m.If(out.ready):
             m.d.sync += [
                 Value.cast(response).eq(Value.cast(response)[bits:]),
                 number.eq(number + 1),
-                last.eq(number + 2 == beats),
             ]
-            with m.If(last):
-                m.d.sync += [offers.eq(0), number.eq(0), last.eq(beats == 1)]
+            with m.If(out.payload.last):
+                m.d.sync += number.eq(0)
                 m.next = "IDLE"
 
 

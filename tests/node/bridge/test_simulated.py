@@ -8,8 +8,11 @@ import struct
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.node.boards import BoardError
+from firm_hdl.frontend import Library
+from firm_hdl.node import read_description_text
+from firm_hdl.node.boards import BoardError, simulated
 from firm_hdl.node.boards.simulated import SimulatedBoard
+from firm_hdl.node.bridge import session
 from tests.depth import by_depth
 from tests.node.accelerators import echo_text
 from tests.node.bridge.fakes import FakeGraph, bridge_of, run_until
@@ -37,7 +40,8 @@ def test_messages_and_calls_go_through_gateware(link):
         graph.on_message(cal, request, "caller")
         assert run_until(made, lambda: graph.answers or graph.abandoned, 60)
     finally:
-        made.close()
+        # The board also confirms at the end what has arrived.
+        made.run(seconds=0)
     assert [packet for name, packet in graph.got if name == "/said"] == [
         string(text) for text in texts
     ]
@@ -45,6 +49,40 @@ def test_messages_and_calls_go_through_gateware(link):
     # The clock of the node was set before the graph was joined, or soon after.
     assert len(stamps) == 6 and stamps == sorted(stamps)
     assert not made.counters.dropped and not made.on_the_way
+
+
+NAMES = """\
+node: names
+distro: noetic
+accelerator: tests.live.nodes:Echo
+subscribe:
+  /heard: {type: sensor_msgs/JointState, memory_bytes: 8192}
+publish:
+  /said: {type: sensor_msgs/JointState, memory_bytes: 8192}
+"""
+
+
+@pytest.mark.parametrize("stalls", [simulated._STALLS, ()])
+def test_many_short_parts_do_not_overrun_a_gate(stalls, monkeypatch):
+    """Each beat has two names, and a parser takes one per cycle. The twin's link is full."""
+    monkeypatch.setattr(simulated, "_STALLS", stalls)
+    monkeypatch.setattr(session, "ROUND_SECONDS", 0.1)
+    description = read_description_text(NAMES, library=Library("noetic"))
+    graph = FakeGraph()
+    board = SimulatedBoard(description, engine="amaranth")
+    made, said = bridge_of(board, graph, description)
+    count = 1300
+    packet = struct.pack("<IIIII", 0, 0, 0, 0, count) + bytes(4 * count) + bytes(12)
+    try:
+        assert run_until(made, lambda: graph.opened, 60), said
+        graph.say(description.topics[0], packet)
+        assert run_until(made, lambda: graph.got or made.last_drops, 60)
+    finally:
+        made.close()
+    if stalls:
+        assert graph.got == [("/said", packet)]
+    else:
+        assert [(each.name, value) for each, value in made.last_drops] == [("overrun", 1)]
 
 
 def test_a_simulation_that_is_killed_is_started_again():
