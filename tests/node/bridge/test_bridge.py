@@ -49,26 +49,6 @@ def packets(count):
     return [b"%d" % n * (n % 40) for n in range(count)]
 
 
-def test_messages_wait_for_room_for_a_moment(running, board, graph):
-    made, _ = running
-    board.has_room = False
-    graph.say(HEARD, b"0", b"1")
-    begin = time.monotonic()
-    assert not run_until(made, lambda: graph.got, bridge.HOLD_SECONDS / 2)
-    board.has_room = True
-    assert run_until(made, lambda: len(graph.got) == 2)
-    assert not made.counters.dropped
-    # The twin: the room comes too late, and the old messages give way to new ones.
-    board.has_room = False
-    graph.say(HEARD, b"2", b"3")
-    assert run_until(made, lambda: made.counters.dropped.total() == 2)
-    assert time.monotonic() - begin >= bridge.HOLD_SECONDS
-    graph.say(HEARD, b"4")
-    board.has_room = True
-    assert run_until(made, lambda: len(graph.got) == 3)
-    assert made.counters.dropped == {("/heard", "board full"): 2}
-
-
 def test_messages_pass_in_order_both_ways(running, graph):
     made, said = running
     graph.say(HEARD, *packets(600))

@@ -71,7 +71,7 @@ def test_many_short_parts_do_not_overrun_a_gate(stalls, monkeypatch):
     graph = FakeGraph()
     board = SimulatedBoard(description, engine="amaranth")
     made, said = bridge_of(board, graph, description)
-    count = 1300
+    count = 1100
     packet = struct.pack("<IIIII", 0, 0, 0, 0, count) + bytes(4 * count) + bytes(12)
     try:
         assert run_until(made, lambda: graph.opened, 60), said
