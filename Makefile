@@ -33,7 +33,7 @@ pytest: $(VENV)/.compiled tools ## tests only; PYTEST_ARGS=tests/export takes so
 test-thorough: $(VENV)/.compiled tools ## all tests in full depth (half an hour); PYTEST_ARGS=-mthorough takes some
 	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
-test-live: $(VENV)/.installed-dev $(LIVE_PEERS) verilog ros1 ## our nodes and the bridge with rclpy, rospy and Cyclone DDS, in a network of their own (10 minutes)
+test-live: $(VENV)/.installed-dev $(LIVE_PEERS) verilog ros1 ## our nodes and the bridge with rclpy, rospy and Cyclone DDS, in a network of their own (25 minutes at first)
 	FIRM_HDL_LIVE=1 $(BIN)/python -m pytest -n $(JOBS) $(or $(PYTEST_ARGS),tests/live)
 
 lint: $(VENV)/.installed-dev ## ruff and mypy only
