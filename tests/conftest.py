@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.depth import LIVE, THOROUGH
+from tests.depth import LIVE, THOROUGH, not_sampled
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL
 
@@ -24,8 +24,10 @@ for _name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Deselect thorough tests, except in `make test-thorough`; live ones likewise."""
     markers = [*([] if THOROUGH else ["thorough"]), *([] if LIVE else ["live"])]
-    left_out = [item for item in items if any(map(item.get_closest_marker, markers))]
-    config.hook.pytest_deselected(items=left_out)
+    left_out = {item for item in items if any(map(item.get_closest_marker, markers))}
+    if not THOROUGH:
+        left_out |= not_sampled(items)
+    config.hook.pytest_deselected(items=[item for item in items if item in left_out])
     items[:] = [item for item in items if item not in left_out]
 
 

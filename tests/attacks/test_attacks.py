@@ -78,6 +78,7 @@ def check_end(
 
 
 @pytest.mark.parametrize("attack", ATTACKS, ids=lambda attack: attack.name)
+@pytest.mark.sampled(2)
 def test_attack(attack, tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     for name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):

@@ -48,6 +48,7 @@ def test_a_design_is_proved_equal(tools: Tools) -> None:
 
 
 @pytest.mark.parametrize(("what", "rtlil", "vhdl"), _twins()[::EVERY])
+@pytest.mark.sampled(2)
 def test_one_changed_thing_is_found(what: str, rtlil: str, vhdl: Vhdl, tools: Tools) -> None:
     try:
         proof = prove(rtlil, vhdl, tools=tools)
@@ -157,6 +158,7 @@ def test_random_designs_are_proved_equal(
         ("std_msgs/Empty", "noetic"),
     ],
 )
+@pytest.mark.sampled(2)
 def test_converters_are_proved_equal(
     name: str, distro: str, direction: Direction, tools: Tools
 ) -> None:

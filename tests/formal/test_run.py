@@ -22,11 +22,13 @@ FAST = [
 
 
 @pytest.mark.parametrize("key", FAST)
+@pytest.mark.sampled(2)
 def test_claim_holds(key):
     assert prove(key).result == "proved"
 
 
 @pytest.mark.parametrize("key", FAST)
+@pytest.mark.sampled(2)
 def test_twin_is_found(key):
     answer = refute(key)
     assert answer.result == "broken"

@@ -206,6 +206,7 @@ def test_cdr_packets_may_be_padded_by_up_to_three_bytes(slack):
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 2, 4, 8]))
 @pytest.mark.parametrize("slack", range(5))
+@pytest.mark.sampled(2)
 def test_padding_may_come_long_after_the_message(bus_bytes, slack):
     # The step that ends the message does not see where the packet ends, and its own end is where no
     # step starts.

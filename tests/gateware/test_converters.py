@@ -68,6 +68,7 @@ ENDS = {
 
 @pytest.mark.parametrize("bus_bytes", [1, 8, 16])
 @pytest.mark.parametrize("end", ENDS)
+@pytest.mark.sampled(2)
 def test_a_packet_may_end_with_a_length_or_a_step_without_bytes(end, bus_bytes):
     rx, tx = (kind(ENDS[end], bus_bytes=bus_bytes) for kind in (Deserializer, Serializer))
     # Strings of 0 and 3 characters, after a whole number of beats and not.

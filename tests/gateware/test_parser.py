@@ -198,6 +198,7 @@ def test_another_status_is_noticed():
         ("std_msgs/Empty", "noetic"),
     ],
 )
+@pytest.mark.sampled(2)
 def test_damaged_packets_of_ros_types(name, distro, bus_bytes):
     message = load_message(name, distro=distro)
     plan, packets = random_packets(message, bus_bytes, by_depth(4, 16))
@@ -276,6 +277,7 @@ def test_elements_without_bytes_take_no_time():
 
 @pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
 @pytest.mark.parametrize("kind", ["uint8", "float64"])
+@pytest.mark.sampled(2)
 def test_a_beat_per_cycle_through_long_arrays(kind, bus_bytes):
     fields = (Field(name="data", type=Sequence(element=PRIMITIVES["ros1"][kind])),)
     message = Message(name="p/Long", dialect="ros1", fields=fields)

@@ -172,6 +172,7 @@ def check_reading(message, table, bus_bytes, **options):
 
 
 @every_bus
+@pytest.mark.sampled(2)
 def test_first_error_of_a_packet_in_wire_order_is_reported(bus_bytes):
     check_reading(MESSAGE, READ, bus_bytes)
 
@@ -280,6 +281,7 @@ def lanes_of(items, lanes, last, noise):
 
 
 @every_bus
+@pytest.mark.sampled(2)
 def test_first_error_of_a_message_is_reported_and_marks_its_packet(bus_bytes):
     tx = Serializer(SENT, bus_bytes=bus_bytes)
     leaves = {str(leaf): number for number, leaf in enumerate(tx.plan.leaves)}

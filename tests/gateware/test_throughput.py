@@ -64,6 +64,7 @@ def fixed_types():
 
 
 @pytest.mark.parametrize("message", list(fixed_types())[:: by_depth(4, 1)])
+@pytest.mark.sampled(2)
 def test_types_of_fixed_size_run_at_line_rate(message):
     packets = fixed_packets(message, PACKETS)
     found = packet_of(build_plan(lay_out(message), bus_bytes=8), packets[0])
@@ -225,6 +226,7 @@ VARIED = [
         (*VARIED[2], 64),
     ],
 )
+@pytest.mark.sampled(2)
 def test_each_packet_takes_the_cycles_of_the_plan(name, distro, bus_bytes):
     message = load_message(name, distro=distro)
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
@@ -310,6 +312,7 @@ TABLE = [
 @pytest.mark.parametrize(
     ("name", "bus_bytes", "beats", "steps", "cycles", "read", "write"), TABLE[:: by_depth(2, 1)]
 )
+@pytest.mark.sampled(2)
 def test_table_of_cycles(name, bus_bytes, beats, steps, cycles, read, write):
     message = load_message(name)
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)

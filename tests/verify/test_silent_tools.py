@@ -64,6 +64,7 @@ def test_bench_does_not_pass_with_a_silent_ghdl(fake, capsys, status):
     ("simulator", "names"),
     [("ghdl", ["ghdl"]), ("iverilog", ["vvp", "iverilog"]), ("verilator", ["verilator"])],
 )
+@pytest.mark.sampled(2)
 def test_cross_check_does_not_pass_with_a_silent_simulator(fake, status, simulator, names):
     fake(SILENT[status], *names)
     few = {"most_cases": 1, "stalled": False, "broken": False, "references": ()}

@@ -96,6 +96,7 @@ def test_whole_messages_come_back(ghdl, tmp_path, name, distro, bus_bytes):
 @pytest.mark.parametrize(
     ("distro", "bus_bytes"), [("noetic", 1), ("noetic", 16), ("lyrical", 4), ("lyrical", 8)]
 )
+@pytest.mark.sampled(2)
 def test_arrays_and_nasty_names_come_back(ghdl, tmp_path, distro, bus_bytes):
     check(ghdl, tmp_path / "vhdl", arrays(tmp_path, distro), bus_bytes)
 

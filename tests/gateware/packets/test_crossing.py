@@ -75,6 +75,7 @@ CLOCKS = [(1, 1, 0.3), (1, 1.01, 0), (1, 3.7, 0.1), (5.3, 1, 0.4), (1, 2, 0)]
 
 @pytest.mark.parametrize(("write", "read", "phase"), CLOCKS)
 @pytest.mark.parametrize("bus_bytes", [1, 8, 64])
+@pytest.mark.sampled(2)
 def test_packets_are_the_same_in_the_other_domain(bus_bytes, write, read, phase):
     for stall in (0, 0.4):
         crossing = PacketCrossing(bus_bytes, 8)

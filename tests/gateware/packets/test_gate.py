@@ -44,6 +44,7 @@ TYPES = [
 
 @pytest.mark.parametrize("bus_bytes", [2, 8])
 @pytest.mark.parametrize(("name", "distro"), TYPES)
+@pytest.mark.sampled(2)
 def test_only_good_packets_pass_whole_and_in_order_under_any_stall(name, distro, bus_bytes):
     message = load_message(name, distro=distro)
     most = 10_000
@@ -147,6 +148,7 @@ def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_fe
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 8, 64]))
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
+@pytest.mark.sampled(2)
 def test_a_packet_as_large_as_the_memory_passes_and_a_larger_one_does_not(bus_bytes, when_full):
     fields = (Field(name="data", type=Sequence(element=PRIMITIVES["ros1"]["uint8"])),)
     message = Message(name="p/Long", dialect="ros1", fields=fields)

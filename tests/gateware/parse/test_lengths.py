@@ -135,6 +135,7 @@ def compare(plan, tamper=lambda name, value: value):
 
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 16])
 @pytest.mark.parametrize("name", MESSAGES)
+@pytest.mark.sampled(2)
 def test_lengths_are_decoded(name, bus_bytes):
     assert compare(plan_of(name, bus_bytes)) >= 100
 

@@ -45,6 +45,7 @@ SAMPLE = [
 
 
 @pytest.mark.parametrize(("distro", "name", "bus_bytes"), SAMPLE)
+@pytest.mark.sampled(2)
 def test_bench_passes_with_the_bytes_and_transfers_of_rosbags(ghdl, distro, name, bus_bytes):
     result = run_bench(ghdl, name, distro, bus_bytes)
     assert assert_passed(result) == result.packets >= 3
@@ -113,6 +114,7 @@ def change(monkeypatch, file: str, before: str, after: str) -> None:
         (RUN_SCRIPT, 'exec "$ghdl"', 'echo nothing; exit 0\nexec "$ghdl"', "nothing"),
     ],
 )
+@pytest.mark.sampled(2)
 def test_faults_are_found(ghdl, monkeypatch, file, before, after, output):
     change(monkeypatch, file, before, after)
     result = run_bench(ghdl, HEADER)

@@ -33,6 +33,7 @@ def accepted(distro: str, name: str, bus_bytes: int = 8, **options) -> Result:
 
 
 @pytest.mark.parametrize(("distro", "name", "bus_bytes"), SAMPLE)
+@pytest.mark.sampled(2)
 def test_vhdl_equals_the_simulation_in_each_cycle(ghdl, distro, name, bus_bytes):
     result = accepted(distro, name, bus_bytes)
     assert_passed(result)
@@ -170,6 +171,7 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
         ),
     ],
 )
+@pytest.mark.sampled(2)
 def test_a_changed_line_is_found(ghdl, monkeypatch, file, pattern, text, output):
     change_line(monkeypatch, file, pattern, text)
     result = accepted("lyrical", HEADER)

@@ -268,6 +268,7 @@ UNDEFINED = ("no initial value", "undefined")
     ],
     indirect=["of_verilog"],
 )
+@pytest.mark.sampled(2)
 def test_a_changed_line_is_found(of_verilog, monkeypatch, change):
     *where, output = CHANGES[change]
     change_line(monkeypatch, *where)

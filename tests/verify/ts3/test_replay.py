@@ -41,6 +41,7 @@ def replayed(bag, name=STRING, distro="lyrical", **options):
 
 
 @pytest.mark.parametrize("form", FORMATS)
+@pytest.mark.sampled(2)
 def test_recordings_pass(capsys, tmp_path, form):
     messages = robot(form, 4)
     # rosbags reads compressed recordings; one circuit is enough to check that they are read.
