@@ -90,7 +90,7 @@ def _engine(name: EngineName) -> str:
 
     found, why = expected_engine(name)
     if found == "cxxrtl":
-        return "to compile a new node takes up to a minute"
+        return "to compile a new node takes a minute or more"
     slow = "Amaranth's simulator takes a few messages per second"
     return f"{slow} ({why})" if why else slow
 

@@ -113,7 +113,10 @@ class Boards(System):
         if not left:
             return
         if self._request.board == "sim":
-            print("board sim: starts; to compile a new node takes up to a minute", flush=True)
+            print(
+                "board sim: starts; to compile a new node takes a minute or more",
+                flush=True,
+            )
         silent = self._request.silent_seconds or (
             SILENT_SECONDS_OF_SIMULATION if self._request.board == "sim" else SILENT_SECONDS
         )

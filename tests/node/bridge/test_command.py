@@ -93,7 +93,11 @@ def test_a_signal_ends_the_start_of_a_board(file, capsys, monkeypatch, number):
 @pytest.mark.parametrize(
     ("engine", "compiler", "message"),
     [
-        ("auto", "", "board sim: starts; to compile a new node takes up to a minute"),
+        (
+            "auto",
+            "",
+            "board sim: starts; to compile a new node takes a minute or more",
+        ),
         ("auto", "nothing-there", "a few messages per second (CXX is 'nothing-there' in the"),
         ("auto", "'g++", "a few messages per second (CXX is no command: No closing quotation"),
         ("amaranth", "", "board sim: starts; Amaranth's simulator takes a few messages per second"),
