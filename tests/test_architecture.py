@@ -77,7 +77,7 @@ MAY_IMPORT["bench"] = {
     *("arguments", "drawing", "errors", "files", "jobs", "terminal"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware", "sim", "export", "node"),
     # `verify`: the client libraries that are compared with converters.
-    "verify",
+    *("covering", "verify"),
 }
 MAY_IMPORT["cli"] = {
     *("firm_hdl", "arguments", "errors", "terminal"),

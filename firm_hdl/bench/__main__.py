@@ -20,7 +20,9 @@ from firm_hdl.bench.estimates import estimates_json
 from firm_hdl.bench.page import (
     area_table,
     beats_table,
+    below_table,
     converter_table,
+    covering_table,
     made_with,
     path_list,
     write_page,
@@ -38,18 +40,28 @@ from firm_hdl.bench.software import (
     software_rows,
     software_table,
 )
-from firm_hdl.bench.standard import ALL_TYPES, MEASURED, SOFTWARE, Group, group_tasks
+from firm_hdl.bench.standard import (
+    ALL_TYPES,
+    MEASURED,
+    SOFTWARE,
+    Group,
+    covering_group,
+    group_tasks,
+)
 from firm_hdl.bench.tables import row
 from firm_hdl.bench.tools import BenchError, versions
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.plan import DIRECTIONS
 from firm_hdl.terminal import printable_streams
 
-GROUPS = (*MEASURED, "parts", "beats", "software")
+GROUPS = (*MEASURED, "covering", "parts", "beats", "software")
 """Groups of figures, by their names on the command line."""
 
 KEPT = "performance.json"
 """File of all measured figures of converters, beside the page's plots."""
+
+KEPT_COVERING = "covering.json"
+"""File of the figures of covering sets."""
 
 KEPT_PARTS = "parts.json"
 """File of the figures of packet parts."""
@@ -67,6 +79,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--estimates",
         default="firm_hdl/estimates/figures.json",
         help="file of `firm-hdl info`; default: %(default)s",
+    )
+    parser.add_argument(
+        "--covering",
+        default="tests/verify/covering",
+        help="folder of `firm-hdl cover`'s files; default: %(default)s",
     )
     parser.add_argument("--cache", default="build/bench", help="default: %(default)s")
     parser.add_argument(
@@ -88,6 +105,8 @@ def _measure_all(given: argparse.Namespace) -> int:
     names = given.group or GROUPS
     figures = Path(given.figures)
     groups = {name: group for name, group in MEASURED.items() if name in names}
+    if "covering" in names:
+        groups["covering"] = covering_group(Path(given.covering))
     devices = {device for group in groups.values() for device in group.devices}
     for device in devices | ({PART_DEVICE} if "parts" in names else set()):
         versions(DEVICES[device])
@@ -116,9 +135,11 @@ def _measure_all(given: argparse.Namespace) -> int:
     if parts:
         write_page(Path(given.page), {"parts": part_table(parts)})
         (figures / KEPT_PARTS).write_text(parts_text(parts), encoding="utf-8")
-    measured = [each for found in results.values() for each in found]
-    if measured:
-        _keep(figures / KEPT, Path(given.estimates), measured)
+    if results:
+        covering = results.pop("covering", [])
+        measured = [each for found in results.values() for each in found]
+        kept = _keep(figures / KEPT, measured) + _keep(figures / KEPT_COVERING, covering)
+        _write_estimates(Path(given.estimates), kept)
     return 0
 
 
@@ -192,10 +213,13 @@ def _write_parts(
 ) -> None:
     parts = {}
     for name, found in results.items():
-        parts[name] = area_table(found) if name == "devices" else converter_table(found)
+        table = {"devices": area_table, "covering": covering_table}.get(name, converter_table)
+        parts[name] = table(found)
         parts[f"{name}: made with"] = made_with(found)
     if "figures" in results:
         parts["figures: paths"] = path_list(results["figures"])
+    if "covering" in results:
+        parts["covering: below"] = below_table(results["covering"])
     if sets:
         parts["beats"] = beats_table(sets)
     if software:
@@ -204,21 +228,29 @@ def _write_parts(
     write_page(page, parts)
 
 
-def _keep(file: Path, estimates: Path, results: list[Result]) -> None:
-    """Print what changed since the file was written, and update the file.
+def _keep(file: Path, results: list[Result]) -> list[Result]:
+    """Print what changed since the file was written, and update it; return all that it has now.
 
-    Figures of converters without a new result stay in the file. The file of estimates is made from
-    all figures, old and new.
+    Figures of converters without a new result stay in the file.
     """
     old = read_results(file) if file.exists() else []
+    if not results:
+        return old
     new = {result.key: result for result in results}
     same = [result for result in old if result.key in new]
     if same:
         print(compared(same, results, 0.02)[0])
     everything = [*(result for result in old if result.key not in new), *results]
     file.write_text(results_text(everything), encoding="utf-8")
-    in_order = sorted(everything, key=lambda each: each.key)
-    estimates.write_text(estimates_json(in_order), encoding="utf-8")
+    return everything
+
+
+def _write_estimates(file: Path, results: list[Result]) -> None:
+    """Write the estimates. The first result of a converter counts: those have the most seeds."""
+    first: dict[tuple[str, ...], Result] = {}
+    for result in results:
+        first.setdefault(result.key, result)
+    file.write_text(estimates_json(first[key] for key in sorted(first)), encoding="utf-8")
 
 
 if __name__ == "__main__":

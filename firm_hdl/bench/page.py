@@ -5,15 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from statistics import median
 
 from firm_hdl.bench.results import Result
-from firm_hdl.bench.tables import beats_per_cycle, geometric_mean
+from firm_hdl.bench.tables import LINE_RATE_MHZ, beats_per_cycle, geometric_mean
 from firm_hdl.bench.tools import BenchError
 
 __all__ = [
     "area_table",
     "beats_table",
+    "below_table",
     "converter_table",
+    "covering_table",
     "made_with",
     "path_list",
     "write_page",
@@ -113,6 +116,36 @@ def beats_table(sets: Mapping[str, Sequence[Result]]) -> str:
             f"| {name} | {len(pairs)} | {mean:.3f} | {below} | {lowest:.3f}, "
             f"{worst.converter.type} {worst.converter.direction} |"
         )
+    return "\n".join(lines) + "\n"
+
+
+def covering_table(results: Iterable[Result]) -> str:
+    """Write how many converters of each distribution and direction reach the clock of 10 Gbit/s."""
+    lines = [
+        f"| Converters | Number | {LINE_RATE_MHZ} MHz or more | Median MHz | Lowest MHz |",
+        "| --- | ---: | ---: | ---: | ---: |",
+    ]
+    sets: dict[str, list[float]] = {}
+    for result in results:
+        if result.mhz is not None:
+            what = result.converter
+            sets.setdefault(f"{what.distro}, {what.direction}s", []).append(result.mhz)
+    for name, rates in sorted(sets.items()):
+        enough = sum(rate >= LINE_RATE_MHZ for rate in rates)
+        cells = [name, str(len(rates)), str(enough), f"{median(rates):.0f}", f"{min(rates):.0f}"]
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def below_table(results: Iterable[Result]) -> str:
+    """Write the critical path of each converter below the clock of 10 Gbit/s, the slowest first."""
+    lines = ["| Type | Direction | LUT | MHz | Slowest path |", "| --- | --- | ---: | ---: | --- |"]
+    rates = [(each.mhz, each.key, each) for each in results if each.mhz is not None]
+    for mhz, _, result in sorted(rates, key=lambda each: each[:2]):
+        if mhz < LINE_RATE_MHZ and (measured := result.measured) is not None:
+            what = result.converter
+            cells = [what.type, what.direction, f"{measured.area.lut:,}", f"{mhz:.1f}"]
+            lines.append(f"| {' | '.join([*cells, f'`{measured.path}`'])} |")
     return "\n".join(lines) + "\n"
 
 

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from firm_hdl.bench.results import Result
-from firm_hdl.bench.tables import beats_per_cycle
+from firm_hdl.bench.tables import LINE_RATE_MHZ, beats_per_cycle
 from firm_hdl.drawing.document import document
 from firm_hdl.drawing.svg import Figure, Scale
 
 __all__ = ["area_plot", "beats_plot", "clock_plot"]
-
-LINE_RATE_MHZ = 156.25
-"""Clock rate at which a beat of 8 bytes per cycle is 10 Gbit/s."""
 
 WIDTH, LEFT, RIGHT, TOP, ROW = 760, 240, 730, 34, 38
 COLOURS = {"deserializer": "c1", "serializer": "c3"}

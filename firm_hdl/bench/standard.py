@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from firm_hdl.bench.messages import STATED, Stated
 from firm_hdl.bench.results import Converted
 from firm_hdl.bench.run import BenchTask
+from firm_hdl.bench.tools import BenchError
+from firm_hdl.covering.command import read_chosen
 from firm_hdl.frontend import load_all, open_library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, DIRECTIONS
 
-__all__ = ["ALL_TYPES", "MEASURED", "SOFTWARE", "Group", "group_tasks"]
+__all__ = ["ALL_TYPES", "MEASURED", "SOFTWARE", "Group", "covering_group", "group_tasks"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,8 +31,8 @@ class Group:
     devices : tuple of str
         Empty: cycles only.
     seeds : tuple of int
-    stated : Stated
-        The messages.
+    stated : Stated or None
+        The messages; `None`: no cycles.
     """
 
     title: str
@@ -37,7 +40,7 @@ class Group:
     bus_bytes: tuple[int, ...] = (8,)
     devices: tuple[str, ...] = ()
     seeds: tuple[int, ...] = (1,)
-    stated: Stated = STATED
+    stated: Stated | None = STATED
 
 
 _FEW = (
@@ -110,6 +113,27 @@ SOFTWARE = (
     ),
 )
 """Converters whose messages libraries are timed with, too."""
+
+
+def covering_group(folder: Path) -> Group:
+    """Return the types of covering sets, for area and clock rate only.
+
+    Parameters
+    ----------
+    folder : Path
+        A file that ``firm-hdl cover`` wrote for each distribution, named after the distribution.
+
+    Raises
+    ------
+    BuildError
+        If a file names no types.
+    BenchError
+        If the folder has no such file.
+    """
+    types = {path.stem: tuple(read_chosen(path)) for path in sorted(folder.glob("*.txt"))}
+    if not types:
+        raise BenchError(f"'{folder}' has no covering sets")
+    return Group(title="covering sets", types=types, devices=("ecp5",), stated=None)
 
 
 def group_tasks(group: Group, **options: Any) -> Iterator[BenchTask]:

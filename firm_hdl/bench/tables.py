@@ -9,7 +9,10 @@ from firm_hdl.bench.devices import Device
 from firm_hdl.bench.messages import Stated
 from firm_hdl.bench.results import Result
 
-__all__ = ["beats_per_cycle", "geometric_mean", "head", "row", "summary"]
+__all__ = ["LINE_RATE_MHZ", "beats_per_cycle", "geometric_mean", "head", "row", "summary"]
+
+LINE_RATE_MHZ = 156.25
+"""Clock rate at which a beat of 8 bytes per cycle is 10 Gbit/s."""
 
 _ROW = "{:<52}{:>4} {:>6}{:>7}{:>6}{:>5}{:>5}  {:<28}{:>11}{:>8}{:>8}"
 

@@ -16,7 +16,9 @@ from firm_hdl.bench import __main__ as bench
 from firm_hdl.bench.page import (
     area_table,
     beats_table,
+    below_table,
     converter_table,
+    covering_table,
     made_with,
     path_list,
     write_page,
@@ -27,10 +29,11 @@ from firm_hdl.bench.results import Result, read_results
 from firm_hdl.bench.run import BenchTask
 from firm_hdl.bench.software import Compared
 from firm_hdl.bench.software.sample import Timed
-from firm_hdl.bench.standard import ALL_TYPES, MEASURED, Group, group_tasks
+from firm_hdl.bench.standard import ALL_TYPES, MEASURED, Group, covering_group, group_tasks
 from tests.bench.results import result
 
 ROOT = Path(__file__).parents[2]
+COVERING = ROOT / "tests" / "verify" / "covering"
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -78,6 +81,34 @@ def test_the_mean_of_beats_is_geometric() -> None:
     assert beats_table({"some": both, "none": []}).splitlines()[2:] == [
         "| some | 2 | 0.707 | 1 | 0.500, p/msg/A deserializer |"
     ]
+
+
+def test_converters_below_the_clock_of_ten_gigabit_have_a_line_with_their_path() -> None:
+    rates = {"p/msg/A": (156.2,), "p/msg/B": (156.25,), "p/msg/C": (99.0, 130.0, 110.0)}
+    found = [result(name, mhz=mhz) for name, mhz in rates.items()]
+    found += [result(direction="serializer", mhz=()), replace(result("p/msg/D"), measured=None)]
+    assert below_table(found).splitlines()[2:] == [
+        f"| p/msg/{name} | deserializer | 100 | {mhz} | `12.5 ns, 8.0 of them routing, 9 cells: "
+        "step 0.5 > & fill, offset 12.0 > run 12.5` |"
+        for name, mhz in (("C", 110.0), ("A", 156.2))
+    ]
+    assert covering_table(found).splitlines()[2:] == [
+        "| lyrical, deserializers | 3 | 1 | 156 | 110 |"
+    ]
+
+
+def test_covering_sets_are_read_from_the_files_of_the_cover_command(tmp_path: Path) -> None:
+    with pytest.raises(BenchError, match=r"has no covering sets$"):
+        covering_group(tmp_path)
+    (tmp_path / "noetic.txt").write_text("# chosen\nstd_msgs/Bool\n")
+    (tmp_path / "lyrical.txt").write_text("std_msgs/msg/Bool\nstd_msgs/msg/Char\n")
+    tasks = list(group_tasks(covering_group(tmp_path)))
+    assert [(task.converter.distro, task.converter.type) for task in tasks[::2]] == [
+        ("lyrical", "std_msgs/msg/Bool"),
+        ("lyrical", "std_msgs/msg/Char"),
+        ("noetic", "std_msgs/Bool"),
+    ]
+    assert {(task.device, task.stated) for task in tasks} == {("ecp5", None)}
 
 
 def parse_svg(text: str) -> ElementTree.Element:
@@ -149,9 +180,9 @@ def page_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     def run(tasks: Sequence[BenchTask], jobs: int | None) -> Iterator[Result]:
         assert jobs == 3
         for task in reversed(tasks):
+            found = result(mhz=tuple(80.0 + seed for seed in task.seeds))
             yield replace(
-                result() if task.device else replace(result(), measured=None),
-                converter=task.converter,
+                found if task.device else replace(found, measured=None), converter=task.converter
             )
 
     def run_parts(*, cache: str | None, jobs: int | None) -> Iterator[PartResult]:
@@ -178,6 +209,7 @@ def compare_libraries(task: BenchTask, results: Sequence[Result]) -> Compared:
 
 def run_bench(page_folder: Path, *words: str) -> int:
     where = ["--page", str(page_folder / "page.md"), "--figures", str(page_folder / "figures")]
+    where += ["--covering", str(COVERING)]
     where += ["--estimates", str(page_folder / "e.json"), "--jobs", "3"]
     return bench.main([*where, *words])
 
@@ -197,6 +229,7 @@ def test_all_parts_of_the_page_are_written(
         "bench_area.svg",
         "bench_beats.svg",
         "bench_clock.svg",
+        "covering.json",
         "parts.json",
         "performance.json",
     }
@@ -249,17 +282,38 @@ def test_a_missing_tool_is_an_error(
 
 def test_the_committed_page_has_all_parts_and_plots() -> None:
     text = (ROOT / "docs" / "performance.md").read_text()
-    for name in [*MEASURED, *(f"{name}: made with" for name in MEASURED), "beats", "parts"]:
+    groups = [*MEASURED, "covering"]
+    for name in [*groups, *(f"{name}: made with" for name in groups), "beats", "parts"]:
         part = text.split(f"<!-- {name} -->\n")[1].split(f"<!-- end {name} -->")[0]
         assert part.count("\n| ") > 4 or part.count("\n* ") > 0, name
     plots = re.findall(r"\]\((figures/\w+\.svg)\)", text)
     assert len(plots) == 3
     for plot in plots:
         parse_svg((ROOT / "docs" / plot).read_text())
-    kept = read_results(ROOT / "docs" / "figures" / bench.KEPT)
-    assert {each.key for each in kept} == {
-        (*map(str, asdict(task.converter).values()), task.device)
-        for group in MEASURED.values()
-        for task in group_tasks(group)
-    }
-    assert not any(each.problem for each in kept)
+    figures = ROOT / "docs" / "figures"
+    for file, groups_of_file in (
+        (bench.KEPT, list(MEASURED.values())),
+        (bench.KEPT_COVERING, [covering_group(COVERING)]),
+    ):
+        kept = read_results(figures / file)
+        assert {each.key for each in kept} == {
+            (*map(str, asdict(task.converter).values()), task.device)
+            for group in groups_of_file
+            for task in group_tasks(group)
+        }
+        assert not any(each.problem for each in kept)
+
+
+def test_estimates_take_the_figures_with_the_most_seeds(page_folder: Path) -> None:
+    def mhz() -> dict[tuple[str, str], float]:
+        entries = json.loads((page_folder / "e.json").read_text())
+        return {(entry["type"], entry["direction"]): entry["mhz"] for entry in entries}
+
+    # Invented figures: 81 MHz with one seed, a median of 82 MHz with three.
+    assert run_bench(page_folder, "--group", "covering") == 0
+    assert set(mhz().values()) == {81.0}
+    assert run_bench(page_folder, "--group", "figures") == 0
+    three = {name for group in MEASURED["figures"].types.values() for name in group}
+    assert {name for (name, _), rate in mhz().items() if rate == 82.0} == three
+    assert run_bench(page_folder, "--group", "covering") == 0
+    assert {name for (name, _), rate in mhz().items() if rate == 82.0} == three
