@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import subprocess
+from pathlib import Path
 
 import pytest
 
-__all__ = ["need"]
+__all__ = ["need", "run_script"]
 
 
 def need(tool: str, path: str | None) -> str:
@@ -17,3 +19,17 @@ def need(tool: str, path: str | None) -> str:
             pytest.fail(message)
         pytest.skip(message)
     return path
+
+
+def run_script(script: Path, *arguments: str, **environment: str) -> tuple[int, str]:
+    """Run a shell script from another folder; return its status and all that it printed."""
+    done = subprocess.run(
+        ["sh", str(script), *arguments],
+        cwd="/",
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    return done.returncode, done.stdout + done.stderr

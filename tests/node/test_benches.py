@@ -20,7 +20,7 @@ from firm_hdl.verify.cases.stimuli import stimuli
 from tests.depth import by_depth
 from tests.node.accelerators import echo_text
 from tests.node.samples import RELAY, read
-from tests.tools import need
+from tests.tools import need, run_script
 
 UDP = "{kind: udp, data_bytes: 1}"
 WIDE_UDP = "{kind: udp, data_bytes: 4, host: 10.0.0.7, datagram_bytes: 32}"
@@ -52,31 +52,17 @@ def folders(tmp_path_factory, relay):
     return build
 
 
-def run(folder, script, *arguments, **environment):
-    """Run a script from another folder; return its status and output."""
-    done = subprocess.run(
-        ["sh", str(folder / script), *arguments],
-        cwd="/",
-        env={**os.environ, **environment},
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    return done.returncode, done.stdout + done.stderr
-
-
 def in_ghdl(folder, ghdl, work, *, seed=1, stalls=40, patience=3000, frames=None):
     more = {} if frames is None else {"FRAMES": str(frames)}
     options = [f"-gseed={seed}", f"-gstalls={stalls}", f"-gpatience={patience}"]
-    return run(folder, "vhdl/run_ghdl.sh", *options, GHDL=ghdl, WORK=str(work), **more)
+    return run_script(folder / "vhdl/run_ghdl.sh", *options, GHDL=ghdl, WORK=str(work), **more)
 
 
 def in_icarus(folder, iverilog, work, *, seed=1, stalls=40, patience=3000, frames=None):
     more = {} if frames is None else {"FRAMES": str(frames)}
     options = [f"+seed={seed}", f"+stalls={stalls}", f"+patience={patience}"]
     path = os.pathsep.join([os.path.dirname(iverilog), os.environ["PATH"]])
-    return run(folder, "run_iverilog.sh", *options, PATH=path, WORK=str(work), **more)
+    return run_script(folder / "run_iverilog.sh", *options, PATH=path, WORK=str(work), **more)
 
 
 @pytest.mark.parametrize("kind", NODES)

@@ -20,7 +20,7 @@ from firm_hdl.node.top import node_ports
 from firm_hdl.verify.cases.stimuli import stimuli
 from tests.depth import by_depth
 from tests.node.samples import LIBRARY, RELAY, read
-from tests.node.test_benches import run
+from tests.tools import run_script
 
 SMALL, LARGE = "std_msgs/msg/UInt16", "sensor_msgs/msg/PointCloud2"
 TYPE = by_depth(SMALL, LARGE)
@@ -153,7 +153,7 @@ def test_records_pass_messages_through_in_vhdl(built, ghdl, tmp_path):
     files = looped("vhdl", built)
     write(built, files)
     work = {"GHDL": ghdl, "WORK": str(tmp_path / "work")}
-    status, output = run(built, "vhdl/run_ghdl.sh", "-gpatience=3000", **work)
+    status, output = run_script(built / "vhdl/run_ghdl.sh", "-gpatience=3000", **work)
     assert status == 0 and output.startswith("PASS node looped: "), output
     # A field that does not pass is found.
     text = files["vhdl/looped.vhd"]
@@ -166,7 +166,7 @@ def test_records_pass_messages_through_in_vhdl(built, ghdl, tmp_path):
     if TYPE == SMALL:
         assert wrong != text
         write(built, {"vhdl/looped.vhd": wrong})
-        status, output = run(built, "vhdl/run_ghdl.sh", "-gpatience=3000", **work)
+        status, output = run_script(built / "vhdl/run_ghdl.sh", "-gpatience=3000", **work)
         assert status != 0 and "byte 20 is ff instead of 00" in output, output
 
 

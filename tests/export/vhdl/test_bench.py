@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -13,20 +11,7 @@ from firm_hdl.export.vhdl.parts import packets_text
 from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.verify.results.verdict import NotJudgedError
 from tests.export.vhdl.test_layer import nasty, vhdl_of, write
-
-
-def run(folder: Path, *arguments: str, **environment: str) -> tuple[int, str]:
-    """Run the script from another folder; return its status and output."""
-    done = subprocess.run(
-        ["sh", str(folder / "run_ghdl.sh"), *arguments],
-        cwd="/",
-        env={**os.environ, **environment},
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    return done.returncode, done.stdout + done.stderr
+from tests.tools import run_script
 
 
 def write_folder(folder: Path, name: str, distro: str, bus_bytes: int) -> list[bytes]:
@@ -56,7 +41,9 @@ def test_passes(ghdl, tmp_path, name, distro, bus_bytes):
     folder = tmp_path / "with space"
     packets = write_folder(folder, name, distro, bus_bytes)
     for seed, stalls in ((1, 40), (2, 0)):
-        status, output = run(folder, f"-gseed={seed}", f"-gstalls={stalls}", GHDL=ghdl)
+        status, output = run_script(
+            folder / "run_ghdl.sh", f"-gseed={seed}", f"-gstalls={stalls}", GHDL=ghdl
+        )
         assert status == 0, output
         size = sum(map(len, packets))
         assert output.startswith(f"PASS {name}, "), output
@@ -73,7 +60,7 @@ def test_nasty_names_pass(ghdl, tmp_path, bus_bytes):
     packets = stimuli(message, plan)
     assert packets
     write(tmp_path / "vhdl", vhdl_of(message, bus_bytes, packets)[0].files)
-    status, output = run(tmp_path / "vhdl", GHDL=ghdl)
+    status, output = run_script(tmp_path / "vhdl" / "run_ghdl.sh", GHDL=ghdl)
     assert status == 0 and output.startswith("PASS "), output
 
 
@@ -90,7 +77,9 @@ def test_changed_byte_more_and_fewer_packets_fail(ghdl, tmp_path):
     ):
         path = tmp_path / f"{what}.txt"
         path.write_text(packets_text(list(map(bytes, wrong))))
-        status, output = run(tmp_path, f"-gexpected={path}", "-gpatience=1000", GHDL=ghdl)
+        status, output = run_script(
+            tmp_path / "run_ghdl.sh", f"-gexpected={path}", "-gpatience=1000", GHDL=ghdl
+        )
         assert status != 0, what
         assert message in output
         assert "PASS" not in output
@@ -99,7 +88,7 @@ def test_changed_byte_more_and_fewer_packets_fail(ghdl, tmp_path):
 def test_packet_that_is_not_of_the_type_fails(ghdl, tmp_path):
     packets = write_folder(tmp_path, "geometry_msgs/msg/Twist", "lyrical", 8)
     (tmp_path / "stimuli.txt").write_text(packets_text([packets[0][:-1]]))
-    status, output = run(tmp_path, GHDL=ghdl)
+    status, output = run_script(tmp_path / "run_ghdl.sh", GHDL=ghdl)
     assert status != 0
     assert "FAIL packet 0" in output
 
@@ -110,10 +99,10 @@ def test_missing_stimuli_and_missing_ghdl_are_reported(tmp_path):
     empty.mkdir()
     for tool in ("dirname", "sh", "mkdir", "cat"):
         (empty / tool).symlink_to(Path("/usr/bin") / tool)
-    status, output = run(tmp_path, PATH=str(empty), GHDL="")
+    status, output = run_script(tmp_path / "run_ghdl.sh", PATH=str(empty), GHDL="")
     assert (status, output.count("apt install ghdl")) == (127, 1)
     (tmp_path / "stimuli.txt").unlink()
-    status, output = run(tmp_path, GHDL="true")
+    status, output = run_script(tmp_path / "run_ghdl.sh", GHDL="true")
     assert (status, output.count("stimuli.txt, one per line")) == (2, 1)
 
 

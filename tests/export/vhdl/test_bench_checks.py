@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.export.vhdl.parts import PARTS, packets_text
-from tests.export.vhdl.test_bench import run, write_folder
+from tests.export.vhdl.test_bench import write_folder
+from tests.tools import run_script
 
 # The bench plays beats, one per line (data, keep, last, user in binary), and records the source.
 PLAYER = """\
@@ -208,14 +209,14 @@ def test_bench(ghdl, tmp_path, side, changes, output):
         r"^  status_valid <= .*|^  message_data_valid <= .*", "", text, flags=re.MULTILINE
     )
     file.write_text(text)
-    status, found = run(tmp_path, "-gpatience=1000", GHDL=ghdl)
+    status, found = run_script(tmp_path / "run_ghdl.sh", "-gpatience=1000", GHDL=ghdl)
     assert status != 0 and output in found and "PASS" not in found, found
 
 
 def test_bench_without_packets_fails(ghdl, tmp_path):
     write_folder(tmp_path, "std_msgs/msg/UInt8", "lyrical", 8)
     (tmp_path / "stimuli.txt").write_text("# nothing\n")
-    status, found = run(tmp_path, GHDL=ghdl)
+    status, found = run_script(tmp_path / "run_ghdl.sh", GHDL=ghdl)
     assert status != 0 and "FAIL there are no packets" in found
 
 
@@ -232,6 +233,6 @@ def test_bench_reports_leftover_transfers(ghdl, tmp_path):
         text, count = re.subn(pattern, to, text, count=1)
         assert count == 1
     file.write_text(text)
-    status, found = run(tmp_path, GHDL=ghdl)
+    status, found = run_script(tmp_path / "run_ghdl.sh", GHDL=ghdl)
     assert status != 0 and "FAIL unexpected transfers after the last packet" in found, found
     assert "PASS" not in found, found

@@ -12,8 +12,8 @@ from firm_hdl.export.backend import Options
 from firm_hdl.export.build import build
 from firm_hdl.verify.cases.stimuli import stimuli
 from tests.depth import by_depth
-from tests.export.vhdl.test_bench import run
 from tests.export.vhdl.test_layer import analyse, nasty, vhdl_of, write
+from tests.tools import run_script
 
 
 @pytest.mark.parametrize(
@@ -31,14 +31,14 @@ def test_bench_passes(ghdl, tmp_path, name, bus_bytes):
     made, _ = vhdl_of(message, bus_bytes, packets, ports="flat")
     write(tmp_path / "vhdl", made.files)
     analyse(ghdl, tmp_path / "vhdl", [*made.manifest["files"], *made.manifest["bench"]["files"]])
-    status, output = run(tmp_path / "vhdl", GHDL=ghdl)
+    status, output = run_script(tmp_path / "vhdl" / "run_ghdl.sh", GHDL=ghdl)
     assert status == 0, output
     assert output.startswith("PASS ") and f": {len(packets)} packets, " in output
     flat = (tmp_path / "vhdl" / "work" / "transfers.txt").read_text()
     # The bench of the converters with records takes the same number of cycles.
     made, _ = vhdl_of(message, bus_bytes, packets)
     write(tmp_path / "records", made.files)
-    assert run(tmp_path / "records", GHDL=ghdl)[0] == 0
+    assert run_script(tmp_path / "records" / "run_ghdl.sh", GHDL=ghdl)[0] == 0
     assert (tmp_path / "records" / "work" / "transfers.txt").read_text() == flat
 
 

@@ -17,8 +17,8 @@ from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.wire import lay_out
-from tests.export.vhdl.test_bench import run
 from tests.export.vhdl.test_layer import WARNINGS, analyse, vhdl_of, write
+from tests.tools import run_script
 
 ARRAYS = """\
 # Keywords, names that meet, and all kinds of arrays.
@@ -72,7 +72,9 @@ def write_folder(folder: Path, message: Message, bus_bytes: int) -> tuple[str, l
 def check(ghdl: str, folder: Path, message: Message, bus_bytes: int) -> None:
     bench, packets = write_folder(folder, message, bus_bytes)
     for stalls in (0, 40):
-        status, output = run(folder, f"-gstalls={stalls}", GHDL=ghdl, BENCH=bench)
+        status, output = run_script(
+            folder / "run_ghdl.sh", f"-gstalls={stalls}", GHDL=ghdl, BENCH=bench
+        )
         assert status == 0, output
         assert output.startswith(f"PASS {message.name} record, "), output
         assert f": {len(packets)} packets, " in output
@@ -106,7 +108,9 @@ def test_changed_byte_fails(ghdl, tmp_path):
     changed = [bytearray(packet) for packet in packets]
     changed[2][17] ^= 1
     (tmp_path / "changed.txt").write_text(packets_text(list(map(bytes, changed))))
-    status, output = run(tmp_path, f"-gexpected={tmp_path}/changed.txt", GHDL=ghdl, BENCH=bench)
+    status, output = run_script(
+        tmp_path / "run_ghdl.sh", f"-gexpected={tmp_path}/changed.txt", GHDL=ghdl, BENCH=bench
+    )
     assert status != 0
     assert "FAIL packet 2: byte 17 is " in output
 
@@ -120,7 +124,7 @@ def test_swapped_members_fail(ghdl, tmp_path):
     text = text.replace("value.x := all_bits", "value.@ := all_bits")
     text = text.replace("value.y := all_bits", "value.x := all_bits")
     package.write_text(text.replace("value.@ := all_bits", "value.y := all_bits"))
-    status, output = run(tmp_path, GHDL=ghdl, BENCH=bench)
+    status, output = run_script(tmp_path / "run_ghdl.sh", GHDL=ghdl, BENCH=bench)
     assert status != 0
     assert "FAIL packet " in output
 

@@ -6,8 +6,8 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.export.vhdl.parts import packets_text
-from tests.export.vhdl.test_bench import run
 from tests.export.vhdl.test_layer import vhdl_of, write
+from tests.tools import run_script
 
 # Bytes of ROS 2's own type support (humble, Fast CDR), and bytes derived from them for bounds.
 PACKETS = [
@@ -25,11 +25,11 @@ def test_wstrings_pass(ghdl, tmp_path, bus_bytes):
     message = load_message("my_msgs/msg/Wide", paths=[tmp_path])
     packets = [bytes.fromhex(text) for text in PACKETS]
     write(tmp_path / "vhdl", vhdl_of(message, bus_bytes, packets)[0].files)
-    status, output = run(tmp_path / "vhdl", GHDL=ghdl)
+    status, output = run_script(tmp_path / "vhdl" / "run_ghdl.sh", GHDL=ghdl)
     assert status == 0 and output.startswith("PASS my_msgs/msg/Wide, "), output
     assert (tmp_path / "vhdl" / "work" / "results.txt").read_text() == packets_text(packets)
     # One unit more than the bound, so the output packet differs.
     long = bytes.fromhex("00010000 01000000 00000000 02000000 04000000" + "61000000" * 4)
     (tmp_path / "vhdl" / "stimuli.txt").write_text(packets_text([long]))
-    status, output = run(tmp_path / "vhdl", GHDL=ghdl)
+    status, output = run_script(tmp_path / "vhdl" / "run_ghdl.sh", GHDL=ghdl)
     assert status != 0 and "FAIL packet 0" in output
