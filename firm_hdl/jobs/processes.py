@@ -112,32 +112,58 @@ def run_tool(
     ToolError
         If the program fails.
     """
-    with _starting:
-        process = subprocess.Popen(
-            command,
-            cwd=folder,
-            env={**os.environ, **(environment or {})},
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT if with_errors else subprocess.PIPE,
-            text=True,
-            errors="replace",
-            start_new_session=True,
-        )
-        _running.add(process)
+    process = None
     try:
+        with _signals_later(), _starting:
+            process = subprocess.Popen(
+                command,
+                cwd=folder,
+                env={**os.environ, **(environment or {})},
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT if with_errors else subprocess.PIPE,
+                text=True,
+                errors="replace",
+                start_new_session=True,
+            )
+            _running.add(process)
         output, errors = process.communicate(timeout=timeout)
     except subprocess.TimeoutExpired:
         raise TooSlowError(f"{Path(command[0]).name} took more than {timeout:.0f} s") from None
     finally:
-        _kill(process)
-        # Waits for the program, and closes its output.
-        with process:
-            _running.discard(process)
+        if process is not None:
+            _kill(process)
+            # Waits for the program, and closes its output.
+            with process:
+                _running.discard(process)
     if process.returncode:
         said = (errors or "").strip() or output.strip()
         raise ToolError(said or f"exit status {process.returncode}")
     return output
+
+
+@contextmanager
+def _signals_later() -> Iterator[None]:
+    """Let signals of interruption wait for the end of the block.
+
+    A program runs before `Popen` returns. A signal in between would not end the program.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    handlers = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
+    # A signal that is ignored, or ends this process at once, has no handler that could wait.
+    waiting = {number: handler for number, handler in handlers.items() if callable(handler)}
+    for number in waiting:
+        signal.signal(number, lambda number, frame: came.append(number))
+    try:
+        yield
+    finally:
+        for number, handler in waiting.items():
+            signal.signal(number, handler)
+        for each in came:
+            signal.raise_signal(each)
 
 
 def hang_up(process: subprocess.Popen[Any], seconds: float = 0.0) -> None:

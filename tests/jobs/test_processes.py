@@ -11,7 +11,13 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.jobs.processes import ToolError, TooSlowError, in_processes, run_tool
+from firm_hdl.jobs.processes import (
+    ToolError,
+    TooSlowError,
+    in_processes,
+    run_tool,
+    unwound_when_terminated,
+)
 
 
 def test_output_of_a_tool_is_returned(tmp_path):
@@ -44,7 +50,7 @@ def test_tool_that_takes_too_long_is_ended_with_all_that_it_started(tmp_path):
 
 def wait_for_exit(process: int) -> None:
     """Wait until a process has ended."""
-    for _ in range(100):
+    for _ in range(300):
         try:
             state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
         except (FileNotFoundError, ProcessLookupError):
@@ -54,6 +60,29 @@ def wait_for_exit(process: int) -> None:
             return
         time.sleep(0.1)
     raise AssertionError(f"process {process} is still there")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_while_a_program_is_started_ends_the_program(tmp_path, monkeypatch, number):
+    started = []
+
+    class Interrupted(subprocess.Popen):
+        def __init__(self, *arguments, **options):
+            super().__init__(*arguments, **options)
+            started.append(self.pid)
+            signal.raise_signal(number)
+
+    monkeypatch.setattr(subprocess, "Popen", Interrupted)
+    before = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)]
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with unwound_when_terminated(), pytest.raises((KeyboardInterrupt, SystemExit)):
+            run_tool(["sleep", "60"], tmp_path)
+    finally:
+        signal.signal(signal.SIGINT, before[0])
+    (process,) = started
+    assert not Path(f"/proc/{process}").exists()
+    assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)] == before
 
 
 def double(number: int) -> int:
@@ -101,7 +130,7 @@ def work(folder: str, number: int) -> None:
 
 def wait_for_removal(folder: Path) -> None:
     """Wait until a folder is removed."""
-    for _ in range(100):
+    for _ in range(300):
         if not folder.exists():
             return
         time.sleep(0.1)

@@ -33,6 +33,8 @@ class UdpNode(threading.Thread):
     def __init__(self, port=0, node=None):
         super().__init__(daemon=True)
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        # All messages of a test fit, in case that this thread does not run while they are sent.
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
         self.socket.bind(("127.0.0.1", port))
         self.socket.settimeout(0.05)
         self.port = self.socket.getsockname()[1]
