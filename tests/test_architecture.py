@@ -24,6 +24,7 @@ MAY_IMPORT = {
     "errors": {"terminal"},
     "drawing": set[str](),
     "files": set[str](),
+    "garbage": set[str](),
     "jobs": {"errors"},
     "names": set[str](),
     "rtlil": set[str](),
@@ -40,14 +41,14 @@ MAY_IMPORT = {
     "estimates": {"plan"},
     "gateware": {"model", "wire", "plan"},
     # `jobs`: compilers.
-    "sim": {"errors", "jobs", "model", "wire", "plan", "gateware"},
+    "sim": {"errors", "garbage", "jobs", "model", "wire", "plan", "gateware"},
 }
 MAY_IMPORT["export"] = {
-    *("firm_hdl", "errors", "files", "jobs", "names", "vhdl"),
+    *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "vhdl"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
-    *("firm_hdl", "errors", "files", "names", "rtps", "vhdl"),
+    *("firm_hdl", "errors", "files", "garbage", "names", "rtps", "vhdl"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
     *("sim", "export"),
 }
@@ -56,7 +57,7 @@ MAY_IMPORT["covering"] = {
     *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
 }
 MAY_IMPORT["verify"] = {
-    *(MAY_IMPORT["export"] - {"estimates"}),
+    *(MAY_IMPORT["export"] - {"estimates", "garbage"}),
     *("arguments", "drawing", "export", "identity", "metrics", "node", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {

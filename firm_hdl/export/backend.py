@@ -17,7 +17,8 @@ from amaranth.back import rtlil
 
 from firm_hdl.errors import UserError
 from firm_hdl.export.manifest import MANIFEST
-from firm_hdl.export.top import Direction, Top
+from firm_hdl.export.top import DIRECTIONS, Direction, Top
+from firm_hdl.garbage import search_put_off
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
@@ -113,15 +114,14 @@ class Converters:
 
     def make_circuits(self) -> dict[Direction, str]:
         """Make the circuits. Back ends give their outermost modules other names."""
-        parameters = self.parameters()
-        tops: dict[Direction, Top] = {
-            "deserializer": Top(Deserializer(self.message, **parameters)),
-            "serializer": Top(Serializer(self.message, **parameters)),
-        }
-        return {
-            direction: rtlil.convert(top, name=f"{self.name}_{direction}", emit_src=False)
-            for direction, top in tops.items()
-        }
+        return {direction: self._circuit(direction) for direction in DIRECTIONS}
+
+    @search_put_off()
+    def _circuit(self, direction: Direction) -> str:
+        converter = Deserializer if direction == "deserializer" else Serializer
+        top = Top(converter(self.message, **self.parameters()))
+        text: str = rtlil.convert(top, name=f"{self.name}_{direction}", emit_src=False)
+        return text
 
     def header(self, name: str, what: str) -> str:
         """Write the lines of a comment at the head of a file; empty without `inputs`.

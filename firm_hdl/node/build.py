@@ -26,6 +26,7 @@ from firm_hdl.export.manifest import digest
 from firm_hdl.export.systemverilog.structs import package_name
 from firm_hdl.export.systemverilog.types import WORDS
 from firm_hdl.export.verilog.backend import waivers
+from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.node.accelerator import conflicts_reported
 from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_core, bench_files, link_script
@@ -149,7 +150,7 @@ def _designed(
         except UserError as error:
             # The plain ports are there all the same.
             reason = str(error)
-    with conflicts_reported(description):
+    with conflicts_reported(description), search_put_off():
         circuit = rtlil.convert(NodeTop(node), name=name, emit_src=False)
     return _Design(
         description=description,

@@ -19,6 +19,7 @@ from amaranth.hdl import Cat, ClockDomain, Elaboratable, Module, Signal, Value
 from amaranth.lib import stream
 from amaranth.sim import Simulator, SimulatorContext
 
+from firm_hdl.garbage import search_put_off
 from firm_hdl.sim.drive import Drive, Inputs
 from firm_hdl.sim.job import Job
 from firm_hdl.sim.levels import divided
@@ -91,6 +92,7 @@ class Bench:
         Number of cycles of the last run, even if that run failed.
     """
 
+    @search_put_off()
     def __init__(
         self,
         design: Elaboratable,

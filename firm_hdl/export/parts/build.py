@@ -20,6 +20,7 @@ from firm_hdl.export.design import (
 )
 from firm_hdl.export.parts.catalog import Part
 from firm_hdl.export.parts.top import PartTop, clocks_of, part_ports
+from firm_hdl.garbage import search_put_off
 from firm_hdl.gateware.packets import GateStatus, Outcome
 from firm_hdl.vhdl.convert import convert
 
@@ -46,7 +47,8 @@ def build_part(
     name = part.name
     folder = design_folder(out, name)
     ports = part_ports(part)
-    design = rtlil.convert(PartTop(part), name=name, emit_src=False)
+    with search_put_off():
+        design = rtlil.convert(PartTop(part), name=name, emit_src=False)
     settings = ", ".join(f"{key} {value}" for key, value in part.parameters.items())
     what = f"packet {part.kind}: {settings}"
 

@@ -15,16 +15,14 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 
-from amaranth._toolchain.yosys import find_yosys
 from amaranth.back import rtlil
 
 from firm_hdl.errors import UserError
 from firm_hdl.export.top import Top
 from firm_hdl.export.verilog.memories import settled_memories, short_initials
 from firm_hdl.export.verilog.ports import named_ports
+from firm_hdl.export.verilog.runtime import YosysError, run_yosys
 from firm_hdl.export.verilog.vectors import whole_vectors
 from firm_hdl.names.identifiers import first_free
 from firm_hdl.names.keywords import KEYWORDS
@@ -130,18 +128,14 @@ def to_verilog(top: Top | str, *, module: str, header: str) -> str:
     script = _SCRIPT.format(
         rtlil=design, attributes=" ".join(f"-remove {name}" for name in _ATTRIBUTES)
     )
-    with _builtin_yosys():
-        yosys = find_yosys(lambda version: version >= (0, 40))
-        try:
-            # Ignore warnings: Yosys warns of all processes.
-            text = yosys.run(["-q", "-"], script, ignore_warnings=True)
-        except Exception as error:
-            # The WebAssembly runtime raises many exception types of its own.
-            if is_out_of_memory(str(error)):
-                raise UserError(f"{module}: {out_of_memory()}") from None
-            if found := _SYSTEM.search(str(error)):
-                raise UserError(f"{module}: Yosys cannot be run: {found[1].strip()}") from None
-            raise
+    try:
+        text = run_yosys(script)
+    except YosysError as error:
+        if is_out_of_memory(str(error)):
+            raise UserError(f"{module}: {out_of_memory()}") from None
+        if found := _SYSTEM.search(str(error)):
+            raise UserError(f"{module}: Yosys cannot be run: {found[1].strip()}") from None
+        raise
     # The first line names the version of Yosys, which is in the manifest.
     _, _, body = text.partition("\n")
     # A wire of width 0 is never used, and Verilog would read its range as two bits.
@@ -179,17 +173,3 @@ def _without_keywords(design: str) -> str:
         parts.append(_MEMORY_OF_PORT.sub(renamed, setting[0]))
         place = setting.end()
     return "".join([*parts, _IDENTIFIER.sub(renamed, design[place:])])
-
-
-@contextmanager
-def _builtin_yosys() -> Iterator[None]:
-    name = "AMARANTH_USE_YOSYS"
-    before = os.environ.get(name)
-    os.environ[name] = "builtin"
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ[name]
-        else:
-            os.environ[name] = before

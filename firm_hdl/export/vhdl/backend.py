@@ -18,6 +18,7 @@ from firm_hdl.export.vhdl.layer import flat_package, user_layer
 from firm_hdl.export.vhdl.neighbours import FOLDER, SECTION, check_packages
 from firm_hdl.export.vhdl.parts import PARTS, packets_text
 from firm_hdl.export.vhdl.wrapper import Core
+from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan
 from firm_hdl.vhdl.convert import convert
@@ -55,6 +56,7 @@ class _Parts:
     benches: dict[str, str] = field(default_factory=dict)
     section: dict[str, Any] = field(default_factory=dict)
 
+    @search_put_off()
     def core(self, circuit: str, name: str) -> Core:
         made = convert(circuit, name=name, header=self.header)
         self.design.update(made.files)

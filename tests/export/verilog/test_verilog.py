@@ -13,6 +13,7 @@ from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.errors import UserError
 from firm_hdl.export.top import DIRECTIONS, Top, ports_of
 from firm_hdl.export.verilog import to_verilog
+from firm_hdl.export.verilog.runtime import YosysError
 from firm_hdl.plan import Plan, build_plan, encode
 from firm_hdl.sim import to_transfers
 from firm_hdl.wire import lay_out
@@ -155,23 +156,22 @@ def test_packets_come_back_in_iverilog(bus_bytes, tmp_path):
     assert statuses == [0] * 8
 
 
-class BrokenYosys:
-    """Yosys whose runtime fails, as wasmtime may."""
+def broken(message):
+    """Return a Yosys whose runtime fails, as wasmtime may."""
 
-    def __init__(self, message):
-        self.message = message
+    def run(script):
+        raise YosysError(message)
 
-    def run(self, *arguments, **options):
-        raise RuntimeError(self.message)
+    return run
 
 
 def test_errors_of_the_system_are_passed_on(monkeypatch):
     top = Top(Deserializer(load_message("std_msgs/msg/Bool")))
     message = "failed to write the module\n\nCaused by:\n    File too large (os error 27)"
-    finds = "firm_hdl.export.verilog.yosys.find_yosys"
-    monkeypatch.setattr(finds, lambda _: BrokenYosys(message))
+    runs = "firm_hdl.export.verilog.yosys.run_yosys"
+    monkeypatch.setattr(runs, broken(message))
     with pytest.raises(UserError, match=r"^m: Yosys cannot be run: File too large$"):
         to_verilog(top, module="m", header="")
-    monkeypatch.setattr(finds, lambda _: BrokenYosys("a fault"))
-    with pytest.raises(RuntimeError, match=r"^a fault$"):
+    monkeypatch.setattr(runs, broken("a fault"))
+    with pytest.raises(YosysError, match=r"^a fault$"):
         to_verilog(top, module="m", header="")
