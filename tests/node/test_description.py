@@ -194,6 +194,13 @@ def test_ros_1_has_rules_of_its_own():
     assert (node.wire, node.topics[0].qos.depth) == ("ros1", 3)
 
 
+@pytest.mark.parametrize("baud", [9600, 921_600, 10_100_000, 14_200_000, 25_000_000])
+def test_a_baud_is_accepted_if_a_whole_number_of_cycles_is_near(baud):
+    # 100 MHz is 9.9, 7.1 and 4 cycles of the last three.
+    text = body(a="type: std_msgs/msg/Bool") + f"link: {{kind: uart, baud: {baud}}}"
+    assert read_description_text(text).link.baud == baud
+
+
 def test_all_mistakes_come_at_once_with_carets():
     text = WHEELS.replace("Twist", "Twits").replace("depth: 5", "depth: five")
     assert error_of(text).splitlines()[1::3] == [

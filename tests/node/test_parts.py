@@ -109,6 +109,17 @@ def test_a_wrong_length_or_a_short_fragment_is_no_message():
     assert len(out) == 4 and counters == {"cut": 2, "lost": 2, "stray": 1}
 
 
+@pytest.mark.parametrize("byte", [2, 12])
+def test_a_fragment_of_another_topic_or_number_is_not_of_the_message(byte):
+    messages = some(5, 6, (40,))
+    frames = [bytearray(frame) for frame in frames_of(messages, 48)]
+    # The second fragment of message 2.
+    frames[5][byte] ^= 0x10
+    out, aborted, counters = reassemble(8, list(map(bytes, frames)))
+    assert out == messages[:2] + messages[3:]
+    assert (aborted, counters) == (1, {"cut": 1, "lost": 1, "stray": 1})
+
+
 def test_senders_that_start_again_and_late_messages():
     first, again = some(5, 1), some(5, 2)
     frames = frames_of(first)
