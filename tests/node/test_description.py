@@ -85,6 +85,8 @@ def test_names_are_completed_as_ros_does():
     assert expand("a/b", "/", "n") == "/a/b"
     assert expand("~/b", "/r/s", "n") == "/r/s/n/b"
     assert expand("/b", "/r", "n") == "/b"
+    assert expand("~/b", "/", "n") == "/n/b"
+    assert expand("b", "/r", "n") == "/r/b"
 
 
 @pytest.mark.parametrize(
@@ -100,6 +102,7 @@ def test_names_are_completed_as_ros_does():
         ("nod: x", "1:1: error: a description has no 'nod'; did you mean 'node'?"),
         ("bus_bytes: 8", "1:1: error: a description needs a 'node'"),
         ("node: x", "1:1: error: a node needs a topic: subscribe, publish, serve"),
+        ("bus_bytes: 8\nnode:", "2:1: error: 'node' must be text, not empty"),
         ("node: on", "1:7: error: 'node' must be text, not a boolean (on); put it in quotes"),
         ("node: a-b", "1:7: error: the name of a node has letters, digits and '_' only, not '-'"),
         ("node: 3a", "1:7: error: the name of a node does not start with a digit"),
@@ -190,6 +193,8 @@ def test_ros_1_has_rules_of_its_own():
     text = error_of("node: _a\n" + topic % "reliability: reliable", library=noetic)
     assert "the name of a node starts with a letter in ROS 1" in text
     assert "ROS 1 has no 'reliability'" in text
+    text = error_of("node: a\nnamespace: /_b\n" + topic % "depth: 3", library=noetic)
+    assert "2:12: error: a namespace starts with a letter in ROS 1" in text
     node = read_description_text("node: a\n" + topic % "depth: 3", library=noetic)
     assert (node.wire, node.topics[0].qos.depth) == ("ros1", 3)
 

@@ -281,6 +281,16 @@ def test_a_writer_that_goes_gives_all_memory_back(sent, got):
     assert budget.used == 0 and got == []
 
 
+def test_fragments_far_ahead_take_no_memory(sent, got):
+    budget = Budget(1 << 20)
+    reader = Reader(THERE, KEEP_ALL, sent.append, lambda *_: got.append(1), budget)
+    reader.match(endpoint(HERE), ADDRESS, 0.0)
+    reader.on_heartbeat(HERE, heartbeat(1, 0), 1.0)
+    for number, takes in ((4097, False), (1 << 40, False), (4096, True)):
+        reader.on_data_frag(HERE, part(number, 2), None, 1.0)
+        assert bool(budget.used) is takes
+
+
 def test_a_reader_repeats_its_request_while_there_is_progress(reader, sent, got):
     reader.on_heartbeat(HERE, heartbeat(1, 50), 1.0)
     asked = len(sent.take(AckNack))
