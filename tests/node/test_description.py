@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -73,6 +75,19 @@ def test_the_fingerprint_is_that_of_the_topics():
     for old, new in (("/cmd_vel", "/cmd"), ("Twist", "Accel"), ("names:", "odom:")):
         assert read(WHEELS.replace(old, new)).fingerprint != first.fingerprint
     assert 0 < first.fingerprint < 1 << 64
+    # The same topics on another wire format are other bytes.
+    assert replace(first, wire="ros1").fingerprint != first.fingerprint
+
+
+def test_a_publication_answers_one_subscription():
+    def topics(*names):
+        return "".join(f"  {name}: {{type: std_msgs/msg/{kind}}}\n" for name, kind in names)
+
+    subscribed = topics(("/a", "Bool"), ("/b", "Bool"), ("/c", "String"), ("/d", "Bool"))
+    published = topics(("/w", "Char"), ("/x", "Bool"), ("/y", "String"), ("/z", "Bool"))
+    node = read(f"node: n\ndistro: jazzy\nsubscribe:\n{subscribed}publish:\n{published}")
+    pairs = [(one.name, other.name) for one, other in node.loops()]
+    assert pairs == [("/a", "/x"), ("/b", "/z"), ("/c", "/y")]
 
 
 def test_remapping_replaces_complete_names():

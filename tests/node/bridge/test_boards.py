@@ -22,6 +22,7 @@ from firm_hdl.node.boards import BoardError, board_of
 from firm_hdl.node.boards.bytestreams import ByteBoard, SerialBoard, TcpBoard
 from firm_hdl.node.boards.udp import UdpBoard
 from firm_hdl.node.bytestream import ByteStreamReader, write_frame
+from tests.node.accelerators import echo_text
 from tests.node.bridge.fakes import ECHO, HEARD, FakeGraph, FakeNode, bridge_of, run_until
 from tests.node.samples import read
 
@@ -154,6 +155,12 @@ def test_names_of_boards(name, kind):
 def test_wrong_names_of_boards(name, message):
     with pytest.raises(UserError, match=message.replace("?", r"\?")):
         board_of(name, ECHO)
+
+
+def test_only_a_link_of_udp_says_the_port_of_a_board():
+    with pytest.raises(UserError, match=r"'udp://a' needs a port, such as udp://a:7411"):
+        board_of("udp://a", read(echo_text(link="uart")))
+    assert board_of("udp://a", read(echo_text(link="{kind: udp, port: 99}")))._address == ("a", 99)
 
 
 def test_a_simulated_board_needs_an_accelerator():
