@@ -4,14 +4,18 @@
 from __future__ import annotations
 
 import random
+from itertools import accumulate
 from types import SimpleNamespace
 
 import pytest
 from amaranth.hdl import Const, Module, Mux, Signal
+from amaranth.sim import Simulator
 
 from firm_hdl.node.bytestream import write_frame
 from firm_hdl.node.description import Store
+from firm_hdl.node.gateware.clock import NodeClock
 from firm_hdl.node.gateware.cobs import ByteFrameReader, CobsDecoder, CobsEncoder
+from firm_hdl.node.gateware.counters import ByteCounter
 from firm_hdl.node.gateware.fragmenter import Fragmenter
 from firm_hdl.node.gateware.reassembler import Reassembler
 from firm_hdl.node.gateware.request_gate import RequestGate
@@ -274,3 +278,49 @@ def test_requests_that_nobody_takes_are_dropped_whole_and_counted():
     assert [tag for _, tag in out] == sorted(tag for _, tag in out)
     assert counters == {"passed": len(out), "full": 60 - len(out)}
     assert 3 < len(out) < 40
+
+
+# The clock and the counters of bytes, alone.
+
+
+def simulated(part, use):
+    simulator = Simulator(part)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(use)
+    simulator.run()
+
+
+@pytest.mark.parametrize("pause", range(8))
+def test_a_clock_that_is_set_at_the_end_of_a_second_has_the_time_that_is_set(pause):
+    clock, seen = NodeClock(100e6), []
+
+    async def use(ctx):
+        for seconds, nanoseconds, ticks in ((1, 999_999_970, pause), (7, 999_999_985, 7)):
+            ctx.set(clock.to, {"sec": seconds, "nanosec": nanoseconds})
+            ctx.set(clock.sets, 1)
+            await ctx.tick()
+            ctx.set(clock.sets, 0)
+            await ctx.tick().repeat(ticks) if ticks else None
+            seen.append((ctx.get(clock.time.sec), ctx.get(clock.time.nanosec)))
+
+    simulated(clock, use)
+    # The output has the time that was set 2 cycles later, of 8; a cycle has 10 ns.
+    assert seen[1] == (8, 999_999_985 + 10 * 6 - 10**9)
+
+
+def test_bytes_are_counted_in_64_bits():
+    counter = ByteCounter(31)
+    sizes = [(1 << 31) - 1] * 7 + [1, 0, 6]
+    seen = []
+
+    async def use(ctx):
+        for size in sizes:
+            for adds in (1, 0):
+                ctx.set(counter.adds, adds)
+                ctx.set(counter.size, size)
+                await ctx.tick()
+            await ctx.tick().repeat(2)
+            seen.append(ctx.get(counter.high) << 32 | ctx.get(counter.low))
+
+    simulated(counter, use)
+    assert seen == list(accumulate(sizes)) and seen[-1] > 3 << 32
