@@ -122,3 +122,15 @@ def test_comparison_names_different_tools_and_missing_converters() -> None:
     assert not compared(old, [result("p/msg/C")], 0.02)[1]
     assert not compared(old, [result(lut=200)], 0.02)[1]
     assert compared(old, [result(lut=50)], 0.02)[1]
+
+
+def test_the_path_is_that_of_the_run_nearest_to_the_median() -> None:
+    for rates, middle in (((90.0, 70.0, 80.0), 2), ((70.0, 90.0, 80.0, 81.0), 2)):
+        measured = result(mhz=rates).measured
+        assert measured is not None
+        placed = [
+            replace(each, path=replace(each.path, ns=float(number)))
+            for number, each in enumerate(measured.placed)
+        ]
+        path = replace(measured, placed=tuple(placed)).path
+        assert path is not None and path.ns == middle

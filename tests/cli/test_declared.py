@@ -11,6 +11,7 @@ import pytest
 
 from firm_hdl.cli import _parser, main
 from firm_hdl.cli.table import COMMANDS
+from firm_hdl.errors import UserError
 
 ORIGINS = {"distro": None, "path": [], "bag": [], "depends": []}
 PLAN = {"wire": None, "bus_bytes": 8, "max_message_bytes": 16 << 20}
@@ -116,6 +117,33 @@ def test_every_command_is_in_the_table():
 def test_arguments_have_these_defaults(command):
     words, expected = DEFAULTS[command]
     assert parsed(command, *words) == expected
+
+
+PARTS = {
+    "fifo": ({"bus_bytes": 8, "memory_bytes": 65536, "packets": 64, "when_full": "wait"}, []),
+    "width": ({"in_bytes": 2, "out_bytes": 4}, ["--in-bytes", "2", "--out-bytes", "4"]),
+    "crossing": ({"bus_bytes": 8, "beats": 16}, []),
+    "arbiter": ({"bus_bytes": 8, "inputs": 2, "side_bits": 0}, []),
+    "router": ({"bus_bytes": 8, "topics": 2, "topic_bits": 16, "side_bits": 0}, []),
+}
+OTHERS = {"when_full": "drop", "bus_bytes": 4, "in_bytes": 8, "out_bytes": 1}
+
+
+@pytest.mark.parametrize("kind", PARTS)
+def test_every_option_of_a_part_reaches_its_component(kind, monkeypatch):
+    defaults, needed = PARTS[kind]
+    asked = []
+
+    def make_part(kind, *, message, name, **given):
+        asked.append((kind, name, given))
+        raise UserError("enough")
+
+    monkeypatch.setattr("firm_hdl.export.parts.make_part", make_part)
+    assert main(["part", kind, *needed]) == 1
+    changed = {name: OTHERS.get(name, 7) for name in defaults}
+    options = [f"--{name.replace('_', '-')}={value}" for name, value in changed.items()]
+    assert main(["part", kind, *needed, *options, "--name", "mine"]) == 1
+    assert asked == [(kind, None, defaults), (kind, "mine", changed)]
 
 
 @pytest.mark.parametrize("command", [name for name, (words, _) in DEFAULTS.items() if words])

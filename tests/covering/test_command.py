@@ -47,6 +47,21 @@ def test_missing_features_are_named_with_a_type_that_has_them(tmp_path, capsys):
     assert "1 of 3 types have " in err and "100 %" not in err
 
 
+def test_a_missing_feature_is_shown_by_the_simplest_type_that_has_it(tmp_path, capsys):
+    path = tmp_path / "chosen.txt"
+    path.write_text("std_msgs/msg/Bool\n")
+    names = [
+        "std_msgs/msg/Bool",
+        "std_msgs/msg/Header",
+        "std_msgs/msg/String",
+        "sensor_msgs/msg/Imu",
+    ]
+    for order in (names, names[::-1]):
+        assert main(["cover", *order, "--check", str(path)]) == 1
+        found = capsys.readouterr().out
+        assert "missing: definition: field string (in std_msgs/msg/String)\n" in found
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -79,6 +79,16 @@ def test_status_says_whether_all_are_equal(
         assert "input i = 0x5" in out
 
 
+@pytest.mark.parametrize("results", [[], [(TASK, EQUAL)]])
+def test_a_converter_without_a_result_is_not_proved(
+    results: list[tuple[ProofTask, Attempt]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(command, "find_tools", lambda: Tools(ghdl=(), yosys=()))
+    monkeypatch.setattr(command, "run_tasks", lambda tasks, jobs: iter(results))
+    assert command.run_proofs([TASK, TASK], 1, bar=True) == 1
+    assert command.run_proofs([], 1, bar=True) == 1
+
+
 def test_missing_tools_are_named_with_the_command_that_installs_them(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

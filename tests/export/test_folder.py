@@ -115,6 +115,15 @@ def test_a_reader_finds_the_gap_between_two_renames():
     assert found["misses"] > 0
 
 
+def test_scripts_can_be_run_and_other_files_cannot(tmp_path):
+    texts = {"a.sh": "#!/bin/sh\nexit 7\n", "vhdl/run.sh": "#!/bin/sh\n", "vhdl/a.vhd": "--\n"}
+    for _ in range(2):
+        module.replace(tmp_path / "type", with_manifest(texts))
+        modes = {name: os.access(tmp_path / "type" / name, os.X_OK) for name in texts}
+        assert modes == {"a.sh": True, "vhdl/run.sh": True, "vhdl/a.vhd": False}
+    assert subprocess.run([tmp_path / "type/a.sh"], timeout=60, check=False).returncode == 7
+
+
 def test_folders_of_others_are_not_taken_for_leftovers(target):
     # Names of another program, or of an older build with the same process id.
     for name in (f".type.{os.getpid()}.new", f".type.{os.getpid()}.old", ".type.old", "type.new"):

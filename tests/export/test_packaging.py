@@ -54,6 +54,20 @@ def make_bench_fail(folder: Path) -> None:
     script.write_text(text.replace("assert got = byte_at", "assert got /= byte_at"))
 
 
+def test_only_what_depends_on_definitions_names_the_distribution(folders):
+    manifest = manifest_of(folders[1])
+    other = {**manifest, "inputs": {**manifest["inputs"], "distro": "humble"}}
+    assert manifest["inputs"]["distro"] != "humble"
+    shared = {f"{each['name']}.core": each for each in manifest["vhdl"]["shared_packages"]}
+    assert {bool(each["message"]) for each in shared.values()} == {False, True}
+    one, two = packaging(manifest), packaging(other)
+    for name in one:
+        if name.endswith(".core"):
+            is_of_bus = name in shared and not shared[name]["message"]
+            is_common = name in ("firm_hdl_common.core", "firm_hdl_bench.core")
+            assert (one[name] == two[name]) is (is_of_bus or is_common), name
+
+
 def test_everything_comes_from_the_manifest(folders):
     for folder in folders:
         made = packaging(manifest_of(folder))

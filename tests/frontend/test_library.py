@@ -266,6 +266,22 @@ def test_hash_changes_with_the_text_of_an_included_file(tmp_path):
     assert digest(3) == digest(3, " // The same.")
 
 
+def test_hash_changes_with_a_constant_whose_value_is_in_an_included_file(tmp_path):
+    def digest(value):
+        folder = tmp_path / str(value)
+        idl = (
+            "module p { module msg { module T_Constants { const long SIZE = N; };"
+            " struct T { long x; }; }; };"
+        )
+        sizes = f"module p {{ module msg {{ const long N = {value}; }}; }};"
+        files = {"p/msg/T.idl": f'#include "p/msg/sizes.idl"\n{idl}', "p/msg/sizes.idl": sizes}
+        made = Library("lyrical", [make_files(folder, files)])
+        assert [each.value for each in made.message("p/msg/T").constants] == [value]
+        return made.definition_hash("p/msg/T")
+
+    assert digest(3) != digest(4)
+
+
 def test_hash_tells_where_a_text_ends(tmp_path):
     one = library(tmp_path / "1", {"p/A": "B b\n#", "p/B": "#\n"})
     two = library(tmp_path / "2", {"p/A": "B b\n", "p/B": "##\n"})

@@ -336,6 +336,14 @@ def test_distribution_is_the_one_that_the_recording_says(tmp_path, recorded, dis
     assert open_library(bags=[path]).distro == (distro or "lyrical")
 
 
+def test_distribution_is_that_of_the_first_recording_that_says_one(tmp_path):
+    paths = [make_recording(tmp_path / str(number), "mcap") for number in range(3)]
+    for path, recorded in zip(paths, ("rosbags", "humble", "jazzy"), strict=True):
+        metadata = path / "metadata.yaml"
+        metadata.write_text(metadata.read_text().replace(": rosbags\n", f": {recorded}\n"))
+    assert open_library(bags=paths).distro == "humble"
+
+
 def test_a_file_that_ends_too_early_is_damaged(tmp_path):
     (file,) = make_recording(tmp_path, "mcap").glob("*.mcap")
     data = file.read_bytes()

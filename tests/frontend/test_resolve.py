@@ -170,6 +170,15 @@ def test_mistake_in_a_dependency_is_reported_there(tmp_path):
         assert len(error.value.diagnostics) == 1
 
 
+def test_mistake_far_below_is_reported_to_all_that_come_later(tmp_path):
+    texts = {"p/T": "U u", "p/U": "V v", "p/V": "int32 B", "p/W": "T t\nint8 x"}
+    lib = library(tmp_path, texts)
+    for name in ("p/T", "p/W"):
+        with pytest.raises(DefinitionError) as error:
+            lib.message(name)
+        assert errors_of(error.value, tmp_path).startswith("p/msg/V.msg:1:7: error: 'B' is not")
+
+
 def test_good_types_of_a_library_with_bad_ones_resolve(tmp_path):
     lib = library(tmp_path, {"p/A": "A a", "p/B": "int8 x", "p/C": "Nothing n"})
     assert lib.message("p/B").fields[0].name == "x"

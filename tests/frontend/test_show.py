@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from firm_hdl.errors import DefinitionError
@@ -192,3 +194,20 @@ def test_values_of_an_idl_read_back_as_those_of_a_msg(tmp_path):
     again = library(tmp_path / "msg", {"p/T": text}).message("p/T")
     assert again == ours.message("p/T")
     assert again.constants[0].value == "say \"a\" 'b'"
+
+
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_the_limit_counts_each_character_that_is_shown(distro, tmp_path, monkeypatch):
+    texts = {"p/msg/A.msg": "B b\nB c\n", "p/msg/B.msg": "C[] c\nint8 x\n"}
+    texts["p/msg/C.msg"] = "float64 long_name\nint8 y\n"
+    library = Library(distro, [make_files(tmp_path, texts)])
+    shown = show(library, "p/A")
+    assert max(len(line) - len(line.lstrip()) for line in shown.splitlines()) > 1
+    module = sys.modules["firm_hdl.frontend.show"]
+    monkeypatch.setattr(module, "MOST_CHARACTERS", len(shown))
+    assert show(library, "p/A") == shown
+    monkeypatch.setattr(module, "MOST_CHARACTERS", len(shown) - 1)
+    with pytest.raises(
+        DefinitionError, match=f"is shown in {len(shown)} characters, which is more"
+    ):
+        show(library, "p/A")

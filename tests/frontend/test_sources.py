@@ -214,3 +214,21 @@ def test_names_are_sorted_by_their_first_origin(tmp_path):
     make_files(tmp_path, {"std_msgs/srv/String.srv": "", "p/msg/A.msg": ""})
     names = [TypeName("std_msgs", kind, "String", "ros2") for kind in ("msg", "srv", "action")]
     assert sources(tmp_path).by_origin(names) == [names[1], names[0]]
+
+
+def test_of_packages_with_a_type_those_of_the_last_origin_come_first(tmp_path):
+    files = {
+        f"{root}/{name}/msg/Bool.msg": "" for root, name in (("a", "z"), ("a", "b"), ("c", "y"))
+    }
+    make_files(tmp_path, files)
+    have = sources(tmp_path / "a", tmp_path / "c")
+    assert have.packages_of["msg", "Bool"] == ["std_msgs", "y", "b", "z"]
+
+
+def test_a_byte_that_is_no_text_is_at_its_character(tmp_path):
+    make_files(tmp_path, {"p/msg/A.msg": ""})
+    (tmp_path / "p/msg/A.msg").write_bytes("# \u00e9\u4e2d\nint8 \u00e9".encode() + b"\xff b\n")
+    with pytest.raises(DefinitionError) as error:
+        sources(tmp_path).find("p", "msg", "A")
+    (problem,) = error.value.diagnostics
+    assert str(problem).startswith(f"{tmp_path}/p/msg/A.msg:2:7: error: byte 0xff is not UTF-8")

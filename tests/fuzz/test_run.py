@@ -6,8 +6,10 @@ import stat
 
 import pytest
 
+from firm_hdl.fuzz import command
 from firm_hdl.fuzz.circuits import CIRCUITS
 from firm_hdl.fuzz.command import main
+from firm_hdl.fuzz.report import summary
 from firm_hdl.fuzz.run import FuzzTask, Outcome, judged
 from tests.depth import by_depth
 from tests.fuzz.samples import EMPTY, STRING, need_tools, run
@@ -111,3 +113,54 @@ def test_numbers_that_do_not_agree_are_a_failure(change, rule):
     task = FuzzTask(type=STRING, bus_bytes=4, room=300, seed=1, packets=200)
     outcome = judged(Outcome(task=task, wire="cdr"), [{**SAID, **change}])
     assert [failure.rule for failure in outcome.failures] == ([] if rule is None else [rule])
+
+
+@pytest.mark.parametrize(
+    ("options", "first", "packets"),
+    [
+        ([], 0, 10_000),
+        (["--packets", "7"], 0, 7),
+        (["--only-packet", "0"], 0, 1),
+        (["--only-packet", "513"], 513, 1),
+    ],
+)
+def test_one_packet_is_the_one_that_is_named(options, first, packets, monkeypatch):
+    asked = []
+
+    def run(task):
+        asked.append(task)
+        return judged(Outcome(task=task, wire="cdr"), [SAID])
+
+    monkeypatch.setattr(command, "find_tools", lambda: None)
+    monkeypatch.setattr(command, "run_task", run)
+    call = ["--types", STRING, "--bus-bytes", "4", "--circuits", "loop", "--seed", "9"]
+    main([*call, "--room", "77", "--jobs", "1", *options])
+    assert asked == [
+        FuzzTask(
+            type=STRING,
+            bus_bytes=4,
+            room=77,
+            seed=9,
+            packets=packets,
+            first=first,
+            circuits=("loop",),
+        )
+    ]
+
+
+def test_the_summary_counts_types_on_each_wire_and_every_circuit():
+    outcomes = [
+        judged(
+            Outcome(
+                task=FuzzTask(type=STRING, bus_bytes=bus, room=1, seed=1, packets=200), wire=wire
+            ),
+            [SAID] * 2,
+        )
+        for bus, wire in ((4, "cdr"), (8, "cdr"), (8, "ros1"))
+    ]
+    text = summary(outcomes)
+    assert text.startswith(
+        "1,536 packets, 600 of them bad, through 6 circuits of 2 types on buses of 4, 8 bytes\n"
+        "900 OK, 600 TRUNCATED; 36 lost in 6 resets\n6,000 cycles"
+    )
+    assert text.endswith("no failures")

@@ -52,6 +52,21 @@ def test_leaves_and_limits_are_those_of_the_plan(name):
     assert limits == {leaf: begin.limit for leaf, begin in plan.begins.items()}
 
 
+@pytest.mark.parametrize("room", [0, 1, 7, 8, 15, 16, 40, 100])
+def test_limits_of_padded_elements_are_those_of_the_plan_in_any_room(room):
+    inner = make("ros2", {"x": "uint8", "d": "float64"})
+    small = make("ros2", {"a": "uint16", "b": "uint8"})
+    message = make("ros2", {"f": "uint8", "e": (inner, "[]"), "s": (small, "[<=5]"), "t": "string"})
+    most = table(message, most=0).least_bytes + room
+    plan = build_plan(lay_out(message), bus_bytes=8, max_message_bytes=most)
+    limits = [
+        int(line.split()[-1])
+        for line in table(message, most=most).lines
+        if line.startswith(("run", "loop")) and line.split()[1] != "-1"
+    ]
+    assert limits == [begin.limit for begin in plan.begins.values()]
+
+
 def test_the_table_is_made_from_the_model_alone():
     text = Path(firm_hdl.fuzz.table.__file__).read_text(encoding="utf-8")
     imports = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ImportFrom)]

@@ -33,8 +33,10 @@ class _Counting(Component):
         return m
 
 
-def _counts_until_last(counting: _Counting, number: int, *, nine: bool, pause: int = 0) -> int:
-    """Return the number of counts until `last` is high."""
+def _counts_until_last(
+    counting: _Counting, number: int, *, nine: bool, pause: int = 0, down: bool = False
+) -> int:
+    """Return the number of counts until `last` is high; `down` is high beside the load, too."""
     found = 0
 
     async def use(ctx) -> None:  # type: ignore[no-untyped-def]
@@ -42,7 +44,9 @@ def _counts_until_last(counting: _Counting, number: int, *, nine: bool, pause: i
         ctx.set(counting.begins, 1)
         ctx.set(counting.nine, nine)
         ctx.set(counting.number, number)
+        ctx.set(counting.down, down)
         await ctx.tick()
+        ctx.set(counting.down, 0)
         ctx.set(counting.begins, 0)
         ctx.set(counting.nine, 0)
         ctx.set(counting.number, 0x55)
@@ -73,3 +77,11 @@ def test_last_is_high_one_cycle_ahead(late: bool, pause: int) -> None:
 def test_a_constant_is_loaded_before_a_number(late: bool) -> None:
     for number in (0, 1, 2, 3, 200):
         assert _counts_until_last(_Counting(late=late), number, nine=True) == 8
+
+
+@pytest.mark.parametrize("late", [False, True])
+@pytest.mark.parametrize("nine", [False, True])
+def test_a_count_beside_a_load_is_not_subtracted(late: bool, nine: bool) -> None:
+    for number in (1, 2, 3, 4, 9):
+        found = _counts_until_last(_Counting(late=late), number, nine=nine, pause=1, down=True)
+        assert found == (8 if nine else number - 1)

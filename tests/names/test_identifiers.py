@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from firm_hdl.frontend import DISTROS, Library
-from firm_hdl.names.identifiers import flat_names, identifier, scope_names
+from firm_hdl.names.identifiers import first_free, flat_names, identifier, scope_names
 from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
 
 LEGAL = re.compile(r"[A-Za-z](_?[A-Za-z0-9])*")
@@ -107,3 +107,14 @@ def test_every_field_name_of_a_distribution_gets_a_legal_identifier(distro):
         assert all(LEGAL.fullmatch(text) for text in given_names.values())
         assert not {text.lower() for text in given_names.values()} & KEYWORDS
     assert clashes > 10
+
+
+def test_a_free_name_leaves_all_names_that_are_made_of_it_free():
+    taken = {"a_pkg", "a_2_t", "b"}
+
+    def derived(name):
+        return f"{name}_pkg", f"{name}_T"
+
+    assert first_free("A", taken, derived) == "A_3"
+    assert first_free("b", taken, derived) == "b"
+    assert first_free("b", taken) == "b_2"

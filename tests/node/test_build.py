@@ -51,6 +51,19 @@ def test_the_summary_has_topics_ids_cycles_and_clocks():
     assert "fingerprint" in text and "LUT" in text
 
 
+def test_the_summary_adds_up_memories_and_areas():
+    # A service stores its requests twice, and a link of UDP stores messages, too.
+    stored = 128 + 256 + 64 + 2 * 256 + 256
+    assert f"memory for packets: {stored} bytes\n" in summary(read())
+    assert f"memory for packets: {stored + 1024} bytes\n" in summary(read(link="udp"))
+    topics = facts_of(read())["topics"]
+    found = [store["estimate"] for topic in topics for store in topic["packets"].values()]
+    lut, ff = (sum(each[name] for each in found) for name in ("lut", "ff"))
+    rates = [each["mhz"] for each in found]
+    assert len(found) == 5 and min(rates) < max(rates)
+    assert f": {lut} LUT, {ff} FF, {min(rates):g} MHz; gates" in summary(read())
+
+
 def test_the_manifest_has_what_a_host_needs(built):
     manifest = json.loads((built / "manifest.json").read_text())
     facts = facts_of(read(RELAY))

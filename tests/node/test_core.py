@@ -194,9 +194,9 @@ def test_a_host_reads_all_registers(bus_bytes):
     sent += [control(9000, operation=9), control(9001, operation=1, argument=6)]
     sent += [control(9002, operation=1, argument=registers(description)[-1].number + 1)]
     sent += [
-        NodeMessage(topic=0, packet=bytes([1] * size), tag=9100 + size) for size in (15, 17, 32)
+        NodeMessage(topic=0, packet=bytes([1] * size), tag=9100 + size) for size in (15, 17, 32, 48)
     ]
-    total = len(names) + 6
+    total = len(names) + 7
     seen = bench.run(sent, want={"sent": total, "cmd_vel": 2}, stalls={"received": pause})
     answers = answers_of(seen)
     values = {each.number: answers[each.number].value for each in names}
@@ -210,7 +210,7 @@ def test_a_host_reads_all_registers(bus_bytes):
         Result.ARGUMENT,
         Result.ARGUMENT,
     ]
-    assert {answers[9100 + size].result for size in (15, 17, 32)} == {Result.OPERATION}
+    assert {answers[9100 + size].result for size in (15, 17, 32, 48)} == {Result.OPERATION}
     times = [each.nanoseconds for each in answers.values()]
     assert times == sorted(times) and times[-1] < 1_000_000
     assert bench.counters(0, "node") == {"control": total}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -73,6 +75,19 @@ def test_the_fingerprint_is_that_of_the_topics():
     for old, new in (("/cmd_vel", "/cmd"), ("Twist", "Accel"), ("names:", "odom:")):
         assert read(WHEELS.replace(old, new)).fingerprint != first.fingerprint
     assert 0 < first.fingerprint < 1 << 64
+    # The same topics on another wire format are other bytes.
+    assert replace(first, wire="ros1").fingerprint != first.fingerprint
+
+
+def test_a_publication_answers_one_subscription():
+    def topics(*names):
+        return "".join(f"  {name}: {{type: std_msgs/msg/{kind}}}\n" for name, kind in names)
+
+    subscribed = topics(("/a", "Bool"), ("/b", "Bool"), ("/c", "String"), ("/d", "Bool"))
+    published = topics(("/w", "Char"), ("/x", "Bool"), ("/y", "String"), ("/z", "Bool"))
+    node = read(f"node: n\ndistro: jazzy\nsubscribe:\n{subscribed}publish:\n{published}")
+    pairs = [(one.name, other.name) for one, other in node.loops()]
+    assert pairs == [("/a", "/x"), ("/b", "/z"), ("/c", "/y")]
 
 
 def test_remapping_replaces_complete_names():
@@ -85,6 +100,8 @@ def test_names_are_completed_as_ros_does():
     assert expand("a/b", "/", "n") == "/a/b"
     assert expand("~/b", "/r/s", "n") == "/r/s/n/b"
     assert expand("/b", "/r", "n") == "/b"
+    assert expand("~/b", "/", "n") == "/n/b"
+    assert expand("b", "/r", "n") == "/r/b"
 
 
 @pytest.mark.parametrize(
@@ -100,6 +117,7 @@ def test_names_are_completed_as_ros_does():
         ("nod: x", "1:1: error: a description has no 'nod'; did you mean 'node'?"),
         ("bus_bytes: 8", "1:1: error: a description needs a 'node'"),
         ("node: x", "1:1: error: a node needs a topic: subscribe, publish, serve"),
+        ("bus_bytes: 8\nnode:", "2:1: error: 'node' must be text, not empty"),
         ("node: on", "1:7: error: 'node' must be text, not a boolean (on); put it in quotes"),
         ("node: a-b", "1:7: error: the name of a node has letters, digits and '_' only, not '-'"),
         ("node: 3a", "1:7: error: the name of a node does not start with a digit"),
@@ -190,8 +208,17 @@ def test_ros_1_has_rules_of_its_own():
     text = error_of("node: _a\n" + topic % "reliability: reliable", library=noetic)
     assert "the name of a node starts with a letter in ROS 1" in text
     assert "ROS 1 has no 'reliability'" in text
+    text = error_of("node: a\nnamespace: /_b\n" + topic % "depth: 3", library=noetic)
+    assert "2:12: error: a namespace starts with a letter in ROS 1" in text
     node = read_description_text("node: a\n" + topic % "depth: 3", library=noetic)
     assert (node.wire, node.topics[0].qos.depth) == ("ros1", 3)
+
+
+@pytest.mark.parametrize("baud", [9600, 921_600, 10_100_000, 14_200_000, 25_000_000])
+def test_a_baud_is_accepted_if_a_whole_number_of_cycles_is_near(baud):
+    # 100 MHz is 9.9, 7.1 and 4 cycles of the last three.
+    text = body(a="type: std_msgs/msg/Bool") + f"link: {{kind: uart, baud: {baud}}}"
+    assert read_description_text(text).link.baud == baud
 
 
 def test_all_mistakes_come_at_once_with_carets():

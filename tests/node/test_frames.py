@@ -184,6 +184,17 @@ def test_a_wrong_length_is_found():
         assert received([bytes(frame)])[1].cut == 1
 
 
+@pytest.mark.parametrize("order", [(0, 2, 1), (2, 0, 1), (1, 2, 0), (2, 1, 0)])
+def test_two_frames_that_say_they_are_the_last_are_no_message(order):
+    """Fragment 1 of three says so, too, before or after the last one."""
+    frames = [
+        bytearray(frame) for frame in frames_of([NodeMessage(topic=1, packet=bytes(40))], 32)[0]
+    ]
+    frames[1][1] |= 1
+    out, counters = received(bytes(frames[number]) for number in order)
+    assert (out, counters.cut) == ([], 1)
+
+
 def test_frame_sizes_are_checked():
     for wrong in (16, 40):
         with pytest.raises(

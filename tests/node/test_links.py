@@ -191,6 +191,36 @@ def test_the_node_answers_whom_it_heard_last():
     assert "unsent" not in counters
 
 
+def test_the_host_does_not_change_within_a_datagram():
+    bench, words = udp_bench(8, memory_bytes=4096, packets=64)
+    layout = datagram_layout(words)
+    frames = frames_of(some(30, 1, (5,)))
+    source = [
+        word
+        for number, frame in enumerate(frames)
+        for word in words_of(frame, words, ip=ADDRESS + number, port=PORT + number)
+    ]
+    # The messages come after the first host has been heard.
+    late = {"sent": Stalls.bits("0" * 60 + "1" * 10**4)}
+    seen, _, _ = bench.run(
+        {"datagrams_in": source, "sent": link_beats(some(12, 2, (32,)), 8)},
+        {"datagrams_out": 12 * 48},
+        stalls=late,
+    )
+    inside, hosts = set(), set()
+    for bits in seen.others["datagrams_out"]:
+        names = ("ip_address", "dst_port", "last")
+        address, port, last = (
+            bits >> layout[name].offset & ((1 << layout[name].width) - 1) for name in names
+        )
+        inside.add((address, port))
+        if last:
+            assert len(inside) == 1
+            hosts |= inside
+            inside = set()
+    assert all(address - ADDRESS == port - PORT for address, port in hosts) and len(hosts) > 3
+
+
 def test_without_a_host_nothing_is_sent_and_all_is_counted():
     bench, _ = udp_bench(8)
     seen, _, counters = bench.run(

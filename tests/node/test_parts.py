@@ -1,24 +1,31 @@
 # amaranth: UnusedElaboratable=no
-"""The parts of links, against the host's side of the frame and a second COBS."""
+"""The parts of links and of the core, against the host's side of the frame and a second COBS."""
 
 from __future__ import annotations
 
 import random
+from itertools import accumulate
 from types import SimpleNamespace
 
 import pytest
 from amaranth.hdl import Const, Module, Mux, Signal
+from amaranth.sim import Simulator
 
 from firm_hdl.node.bytestream import write_frame
+from firm_hdl.node.description import Store
+from firm_hdl.node.gateware.clock import NodeClock
 from firm_hdl.node.gateware.cobs import ByteFrameReader, CobsDecoder, CobsEncoder
+from firm_hdl.node.gateware.counters import ByteCounter
 from firm_hdl.node.gateware.fragmenter import Fragmenter
 from firm_hdl.node.gateware.reassembler import Reassembler
+from firm_hdl.node.gateware.request_gate import RequestGate
 from firm_hdl.node.gateware.uart import UartReceiver, UartTransmitter
 from firm_hdl.sim import Stalls
 from tests.depth import by_depth
 from tests.gateware.packets.bench import PacketBench, beats, with_side
 from tests.node import cobs
 from tests.node.traffic import counters_of, frames_of, received_by_host, some
+from tests.strategies import make
 
 STALLS = Stalls(0.25, max_cycles=5)
 BUSES = by_depth([1, 8], [1, 2, 4, 8, 16])
@@ -107,6 +114,17 @@ def test_a_wrong_length_or_a_short_fragment_is_no_message():
     del frames[6][-1]
     out, _, counters = reassemble(8, list(map(bytes, frames)))
     assert len(out) == 4 and counters == {"cut": 2, "lost": 2, "stray": 1}
+
+
+@pytest.mark.parametrize("byte", [2, 12])
+def test_a_fragment_of_another_topic_or_number_is_not_of_the_message(byte):
+    messages = some(5, 6, (40,))
+    frames = [bytearray(frame) for frame in frames_of(messages, 48)]
+    # The second fragment of message 2.
+    frames[5][byte] ^= 0x10
+    out, aborted, counters = reassemble(8, list(map(bytes, frames)))
+    assert out == messages[:2] + messages[3:]
+    assert (aborted, counters) == (1, {"cut": 1, "lost": 1, "stray": 1})
 
 
 def test_senders_that_start_again_and_late_messages():
@@ -199,3 +217,110 @@ def test_a_line_that_breaks_is_no_byte():
     assert seen.others["o"] == [0x5A] and len(seen.events["overrun"]) == 2
     with pytest.raises(ValueError, match=r"^A bit must take 4 cycles at least, not 3$"):
         UartReceiver(3)
+
+
+# The gate of a service.
+
+TEXT = make("ros1", {"text": "string"})
+ROOM = 64
+
+
+def packet(size):
+    """Return a good request of `size` bytes."""
+    return (size - 4).to_bytes(4, "little") + bytes(range(1, size - 3))
+
+
+def through_gate(requests, bus=8, **options):
+    """Send pairs of a packet and a tag; return those that came out, and the counters."""
+    store = Store(
+        message=TEXT, max_message_bytes=1000, memory_bytes=ROOM, packets=4, when_full="drop"
+    )
+    gate = RequestGate(bus, store, "ros1")
+    bench = PacketBench(
+        gate,
+        {"in": with_side(gate.packets_in, gate.tag_in)},
+        {"out": (gate.packets_out, bus, gate.tag_out)},
+        final={name: gate.counters[name] for name in gate.counters.shape().members},
+    )
+    # The tag counts with the last beat alone.
+    sides = [(lambda last, tag=tag: tag if last else 99) for _, tag in requests]
+    source = list(beats([each for each, _ in requests], bus, sides))
+    seen = bench.run({"in": source}, {"in": len(source)}, **({"settle": 120} | options))
+    pairs = zip(seen.packets["out"], seen.sides["out"], strict=True)
+    return [(each, tag) for each, (tag,) in pairs], counters_of(bench)
+
+
+@pytest.mark.parametrize("bus", [1, 8])
+def test_each_cause_has_its_counter_and_good_requests_keep_their_tags(bus):
+    good = [(packet(size), 1000 + size) for size in (4, 5, 12, 33, ROOM - bus)]
+    bad = {
+        "truncated": packet(20)[:-1],
+        "trailing": packet(9) + b"x",
+        "length": (997).to_bytes(4, "little") + b"abc",
+        # It is a good one, but larger than the memory.
+        "large": packet(ROOM + 20),
+    }
+    requests = []
+    for number, each in enumerate(good):
+        requests += [(wrong, number) for wrong in bad.values()] + [each]
+    pause = {"in": Stalls.bits("0" * 40 + "1" * 40)}
+    out, counters = through_gate(requests, bus, stalls=pause, settle=400, deadline=1000)
+    assert out == good
+    assert counters == {"passed": 5, **dict.fromkeys(bad, 5)}
+
+
+def test_requests_that_nobody_takes_are_dropped_whole_and_counted():
+    rng = random.Random(1)
+    requests = [(packet(rng.choice((4, 12, 30))), number) for number in range(60)]
+    late = {"out": Stalls.bits("0" * 300 + "1" * 10**4)}
+    out, counters = through_gate(requests, stalls=late, settle=800, deadline=1000)
+    assert set(out) <= set(requests)
+    assert [tag for _, tag in out] == sorted(tag for _, tag in out)
+    assert counters == {"passed": len(out), "full": 60 - len(out)}
+    assert 3 < len(out) < 40
+
+
+# The clock and the counters of bytes, alone.
+
+
+def simulated(part, use):
+    simulator = Simulator(part)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(use)
+    simulator.run()
+
+
+@pytest.mark.parametrize("pause", range(8))
+def test_a_clock_that_is_set_at_the_end_of_a_second_has_the_time_that_is_set(pause):
+    clock, seen = NodeClock(100e6), []
+
+    async def use(ctx):
+        for seconds, nanoseconds, ticks in ((1, 999_999_970, pause), (7, 999_999_985, 7)):
+            ctx.set(clock.to, {"sec": seconds, "nanosec": nanoseconds})
+            ctx.set(clock.sets, 1)
+            await ctx.tick()
+            ctx.set(clock.sets, 0)
+            await ctx.tick().repeat(ticks) if ticks else None
+            seen.append((ctx.get(clock.time.sec), ctx.get(clock.time.nanosec)))
+
+    simulated(clock, use)
+    # The output has the time that was set 2 cycles later, of 8; a cycle has 10 ns.
+    assert seen[1] == (8, 999_999_985 + 10 * 6 - 10**9)
+
+
+def test_bytes_are_counted_in_64_bits():
+    counter = ByteCounter(31)
+    sizes = [(1 << 31) - 1] * 7 + [1, 0, 6]
+    seen = []
+
+    async def use(ctx):
+        for size in sizes:
+            for adds in (1, 0):
+                ctx.set(counter.adds, adds)
+                ctx.set(counter.size, size)
+                await ctx.tick()
+            await ctx.tick().repeat(2)
+            seen.append(ctx.get(counter.high) << 32 | ctx.get(counter.low))
+
+    simulated(counter, use)
+    assert seen == list(accumulate(sizes)) and seen[-1] > 3 << 32

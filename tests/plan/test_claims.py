@@ -107,3 +107,19 @@ def test_padding_is_only_saved_where_it_is_claimed():
         plan = build_plan(lay_out(message))
         assert {begin.claim.saved for begin in plan.begins.values()} == {saved}
         assert any(isinstance(node, LoopNode) for node in walk(lay_out(message).nodes))
+
+
+@pytest.mark.parametrize(("dialect", "limit"), [("ros1", 10), ("ros2", 9)])
+def test_the_nul_of_a_string_takes_room(dialect, limit):
+    layout = lay_out(make(dialect, {"s": "string"}))
+    plan = build_plan(layout, max_message_bytes=layout.min_bytes + 10)
+    assert [begin.limit for begin in plan.begins.values()] == [limit]
+
+
+@pytest.mark.parametrize(("room", "counts"), [(255, False), (256, True)])
+def test_a_string_is_counted_with_its_nul(room, counts):
+    """A length that can claim 256 bytes is counted; the NUL is one of them."""
+    row = make("ros2", {"s": "string"}, "Row")
+    layout = lay_out(make("ros2", {"rows": (row, "[]")}))
+    plan = build_plan(layout, max_message_bytes=layout.min_bytes + room)
+    assert [begin.claim is not None for begin in plan.begins.values()] == [counts, counts]

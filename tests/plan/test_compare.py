@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.plan import build_plan, to_yaml
-from firm_hdl.plan.compare import compare
+from firm_hdl.plan.compare import _step_names, compare
 from firm_hdl.wire import lay_out
 
 
@@ -111,3 +111,20 @@ def test_additions_and_removals_are_kinds_of_changes():
     added = {change.kind for change in compare(to_yaml(new), to_yaml(old))}
     assert any(kind.endswith(": gone") for kind in lost)
     assert {kind.replace(": gone", ": new") for kind in lost} == added
+
+
+def test_steps_with_one_name_are_numbered():
+    steps = {"step 0": {"words of": "a"}, "step 1": {"0..3": "b"}, "step 2": {"words of": "a"}}
+    assert _step_names(steps) == {
+        "step 0": "words of a",
+        "step 1": "b",
+        "step 2": "words of a, 2",
+    }
+
+    def text(limit):
+        lines = [f"  step {n}:\n    words of: a\n    limit: {limit[n]}\n" for n in range(2)]
+        return "steps:\n" + "".join(lines)
+
+    assert [str(change) for change in compare(text((1, 2)), text((3, 2)))] == [
+        "steps[words of a].limit: 1 -> 3"
+    ]

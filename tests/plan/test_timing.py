@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.recovery import Recovery
-from firm_hdl.plan.timing import Cost, Timing, clock_mhz, describe, timing
+from firm_hdl.plan.timing import Cost, Timing, clock_mhz, describe, recovery_text, timing
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
@@ -137,3 +139,13 @@ N on ros1, 32-bit bus: 2 steps; shortest packet 7 bytes, 2 beats, 2 cycles
 def test_figures_in_words(fields, bus_bytes, text):
     plan = plan_of(fields, bus_bytes)
     assert describe("N", plan, timing(plan)) == text
+
+
+@pytest.mark.parametrize(
+    ("cycles", "text"),
+    [(1, "1 cycle (0.01 us at"), (99_999, "99999 cycles (999.99 us at"), (250_000, "(2.5 ms at")],
+)
+def test_a_recovery_has_a_time_in_its_unit(cycles, text):
+    figures = timing(plan_of({"a": "uint32"}, 4))
+    found = replace(figures, recovery=Recovery(cycles=cycles, longest_packet=7))
+    assert f"{text} 100 MHz); the longest legal packet takes 7" in recovery_text(found)

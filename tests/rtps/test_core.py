@@ -108,6 +108,17 @@ def test_timestamps_and_related_samples_arrive():
     assert first.identity == SampleIdentity(writer.guid, 1)
 
 
+def test_the_end_of_an_instance_is_no_sample():
+    network = Network()
+    one, two, writer = pair(network)
+    one.write(writer, b"abcd")
+    writer.write(b"key.", network.now, key=True)
+    writer.write(None, network.now)
+    one.write(writer, b"efgh")
+    network.run(1)
+    assert two.payloads == [b"abcd", b"efgh"]
+
+
 def test_a_volatile_writer_sends_nothing_old():
     network = Network()
     one, two, writer = pair(network)

@@ -142,6 +142,18 @@ def test_what_is_missing_is_sent_again_with_a_heartbeat(writer, sent):
     assert len(sent.take(Data)) == 2
 
 
+def test_an_answer_that_asks_for_samples_gets_one_heartbeat(writer, sent):
+    for _ in range(3):
+        writer.write(b"abcd", 1.0)
+    sent.clear()
+    # It asks for a heartbeat, too: the one behind the samples is that.
+    writer.on_ack_nack(THERE, ack(2, (2,), final=False), 1.1)
+    assert len(sent.take(Heartbeat)) == 1
+    writer.on_ack_nack(THERE, ack(4, count=2, final=False), 1.2)
+    (asked,) = sent.take(Heartbeat)
+    assert asked.final
+
+
 def test_numbers_that_a_writer_never_had_are_no_gap(writer, sent):
     writer.write(b"abcd", 1.0)
     sent.clear()
@@ -163,6 +175,26 @@ def test_old_samples_are_a_gap_for_a_late_volatile_reader(sent):
     writer.on_ack_nack(THERE, ack(1, (1, 3, 5)), 2.1)
     (gap,) = sent.take(Gap)
     assert (gap.start, gap.numbers) == (1, NumberSet(2, (3, 5)))
+
+
+def test_fragments_of_old_samples_are_a_gap_for_a_late_volatile_reader(sent):
+    writer = Writer(HERE, Qos(durability=Durability.TRANSIENT_LOCAL), sent.append)
+    writer.write(bytes(5000), 1.0)
+    writer.match(endpoint(THERE), ADDRESS, 2.0)
+    writer.write(bytes(5000), 2.0)
+    sent.clear()
+    for number, kind in ((1, Gap), (2, DataFrag)):
+        asked = NackFrag(
+            reader=0x204,
+            writer=0x103,
+            sequence_number=number,
+            missing=NumberSet(1, (1,)),
+            count=number,
+        )
+        writer.on_nack_frag(THERE, asked, 2.1)
+        kinds = {type(each) for outgoing in sent for each in outgoing.submessages}
+        assert kinds & {Gap, DataFrag} == {kind}
+        sent.clear()
 
 
 def test_fragments_that_are_asked_for(writer, sent):
@@ -223,6 +255,40 @@ def test_a_reader_asks_for_what_is_missing_and_says_what_is_lost(reader, sent, g
     reader.on_gap(HERE, Gap(reader=0, writer=0x103, start=5, numbers=NumberSet(6)), 1.3)
     reader.on_data(HERE, data(6), None, 1.3)
     assert (got, reader.lost) == ([1, 4, 6], 2)
+
+
+def test_what_a_gap_named_and_is_then_given_up_is_not_lost(reader, got):
+    reader.on_heartbeat(HERE, heartbeat(1, 0), 1.0)
+    # 1 is missing; 2 and 4 will never come; 3 came early.
+    reader.on_gap(HERE, Gap(reader=0, writer=0x103, start=2, numbers=NumberSet(3, (4,))), 1.0)
+    reader.on_data(HERE, data(3), None, 1.0)
+    reader.on_heartbeat(HERE, heartbeat(6, 6, count=2), 1.1)
+    assert got == [3]
+    # 1 and 5.
+    assert reader.lost == 2
+
+
+def test_a_writer_that_goes_gives_all_memory_back(sent, got):
+    budget = Budget(1 << 20)
+    reader = Reader(THERE, KEEP_ALL, sent.append, lambda *_: got.append(1), budget)
+    reader.match(endpoint(HERE), ADDRESS, 0.0)
+    reader.on_heartbeat(HERE, heartbeat(1, 0), 1.0)
+    for number in (3, 4):
+        reader.on_data(HERE, data(number), None, 1.0)
+    reader.on_data_frag(HERE, part(6, 2), None, 1.0)
+    assert budget.used > 12
+    reader.unmatch(HERE)
+    assert budget.used == 0 and got == []
+
+
+def test_fragments_far_ahead_take_no_memory(sent, got):
+    budget = Budget(1 << 20)
+    reader = Reader(THERE, KEEP_ALL, sent.append, lambda *_: got.append(1), budget)
+    reader.match(endpoint(HERE), ADDRESS, 0.0)
+    reader.on_heartbeat(HERE, heartbeat(1, 0), 1.0)
+    for number, takes in ((4097, False), (1 << 40, False), (4096, True)):
+        reader.on_data_frag(HERE, part(number, 2), None, 1.0)
+        assert bool(budget.used) is takes
 
 
 def test_a_reader_repeats_its_request_while_there_is_progress(reader, sent, got):

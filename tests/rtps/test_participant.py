@@ -18,7 +18,7 @@ from firm_hdl.rtps import (
     TransportError,
 )
 from firm_hdl.rtps.ros import Context, Node, graph
-from firm_hdl.rtps.ros.graph import GraphInfo
+from firm_hdl.rtps.ros.graph import GraphInfo, NodeInfo
 from firm_hdl.rtps.transport import Transport
 
 # A domain of its own, so that participants on this machine do not come in.
@@ -350,3 +350,21 @@ def test_nodes_that_share_a_participant():
 def test_names_of_nodes_that_are_none(name, namespace):
     with pytest.raises(ValueError, match="is no name of a"):
         Node(name, namespace, **OPTIONS)
+
+
+def test_nodes_of_a_participant_that_leaves_are_gone():
+    with Node("stays", **OPTIONS) as stays:
+        with Context(**OPTIONS) as context:
+            context.update(NodeInfo(name="goes", namespace="/"))
+            assert stays.context.wait_for_node("goes")
+            # It does not say that its nodes are gone: it leaves with them.
+        assert wait(lambda: {each.name for each in stays.context.nodes()} == {"stays"})
+
+
+def test_topics_of_others_than_ros_are_none():
+    with Context(**OPTIONS) as context, Participant(**OPTIONS) as other:
+        other.writer("rt/foreign", "some::Type")
+        other.writer("foreign", TYPE)
+        other.writer("rt/ours", "p::msg::dds_::T_")
+        assert wait(lambda: len(list(context.participant.remotes(True))) == 3)
+        assert context.topics() == {"/ours": {"p/msg/T"}}

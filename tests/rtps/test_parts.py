@@ -177,6 +177,9 @@ def test_the_nearest_of_several_addresses():
     assert nearest((here, there, loop), "192.168.1.2") == there
     assert nearest((here, there, loop), "127.0.0.1") == loop
     assert nearest((), "127.0.0.1") is None
+    # Of one network are those that begin alike, not those whose numbers are near.
+    near, far = Address("10.0.2.0", 1), Address("10.0.1.1", 1)
+    assert nearest((near, far), "10.0.1.255") == far
 
 
 def test_addresses_of_other_transports_are_left_out():

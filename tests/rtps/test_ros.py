@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
@@ -9,6 +11,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from firm_hdl.rtps import Guid, Sample, SampleIdentity
 from firm_hdl.rtps.ros import names
 from firm_hdl.rtps.ros.graph import GraphInfo, NodeInfo
+from firm_hdl.rtps.ros.services import Client
 from firm_hdl.rtps.wire.octets import MalformedError
 
 GUIDS = [Guid(bytes(range(12)), entity) for entity in (0x1C1, 0x103, 0x204, 0x304)]
@@ -34,6 +37,8 @@ INFO = GraphInfo(
 )
 def test_names_are_expanded(name, full):
     assert names.expanded(name, "node", "/ns") == full
+    # The namespace of most nodes is the root.
+    assert names.expanded(name, "node", "/") == full.removeprefix("/ns")
 
 
 @pytest.mark.parametrize("name", ["", "/", "a//b", "a/", "1a", "a b", "a__b", "a-b", "~a", "é"])
@@ -113,3 +118,45 @@ def test_the_graph_is_what_rosbags_writes(gid_bytes):
 def test_identities():
     sample = Sample(payload=b"", writer=GUIDS[1], sequence_number=5)
     assert sample.identity == SampleIdentity(GUIDS[1], 5)
+
+
+def endpoint_of(prefix, entity=0x103):
+    """An endpoint with the name that others know, matched with nobody."""
+    return SimpleNamespace(guid=Guid(bytes([prefix]) * 12, entity), matched=(), write=lambda *_: 7)
+
+
+def test_a_server_has_both_topics_in_one_participant():
+    client = Client(None)
+    requests, replies = endpoint_of(1), endpoint_of(1, 0x104)
+    client.open(requests, replies)
+    for of_requests, of_replies, ready in (
+        ((), (), False),
+        ((2,), (), False),
+        ((), (2,), False),
+        # Half a server each.
+        ((2,), (3,), False),
+        ((2, 3), (4, 3), True),
+    ):
+        requests.matched = tuple(map(endpoint_of, of_requests))
+        replies.matched = tuple(map(endpoint_of, of_replies))
+        assert client._ready() is ready
+
+
+@pytest.mark.parametrize("names_reader", [False, True])
+def test_a_reply_names_the_writer_of_its_request_or_the_reader_of_replies(names_reader):
+    client = Client(None)
+    requests, replies = endpoint_of(1), endpoint_of(1, 0x104)
+    client.open(requests, replies)
+    future = client.call_async(b"?")
+
+    def reply(writer, number):
+        related = SampleIdentity(writer, number)
+        sample = Sample(payload=b"!", writer=GUIDS[0], sequence_number=1, related=related)
+        client.on_reply(sample)
+
+    own = (replies if names_reader else requests).guid
+    reply(own, 6)
+    reply(endpoint_of(2).guid, 7)
+    assert not future.done()
+    reply(own, 7)
+    assert future.result(0) == b"!"

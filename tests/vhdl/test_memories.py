@@ -7,6 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from amaranth.hdl import Module
+from amaranth.lib.memory import Memory
+from amaranth.lib.wiring import Component, In, Out
 
 from firm_hdl.vhdl.convert import Vhdl, convert
 from tests.memory_designs import DESIGNS, Store, Stores, rtlil_of, simulated
@@ -138,3 +141,28 @@ def test_a_wrong_bench_fails(tmp_path: Path) -> None:
     command = [GHDL, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable"]
     process = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert process.returncode != 0 and "unknown address" in process.stdout + process.stderr
+
+
+@pytest.mark.parametrize(("to", "bypasses"), [(2, True), (1, False)])
+def test_a_transparent_port_passes_on_what_is_written_to_its_own_word(
+    to: int, bypasses: bool
+) -> None:
+    """Both addresses are constants, so the text alone says whether they are the same."""
+
+    class Fixed(Component):
+        def __init__(self) -> None:
+            super().__init__({"given": In(8), "seen": Out(8)})
+
+        def elaborate(self, platform: object) -> Module:
+            m = Module()
+            m.submodules.memory = memory = Memory(shape=8, depth=4, init=[])
+            write = memory.write_port()
+            read = memory.read_port(transparent_for=(write,))
+            m.d.comb += [write.addr.eq(to), read.addr.eq(2)]
+            m.d.comb += [write.en.eq(1), read.en.eq(1)]
+            m.d.comb += [write.data.eq(self.given), self.seen.eq(read.data)]
+            return m
+
+    text = convert(Fixed(), name="fixed").files["fixed.vhd"]
+    assert f"memory({to}) <= unsigned(given);" in text
+    assert ("seen_q <= unsigned(given);" in text) is bypasses

@@ -68,3 +68,24 @@ def test_padding_that_differs_is_not_known() -> None:
     alignment = Alignment(CDR)
     found: list[int | None] = [alignment.pad(UINT32, at) for at in (residues(1), residues(0, 1))]
     assert found == [3, None]
+
+
+@pytest.mark.parametrize(
+    ("kind", "start", "size"),
+    [
+        (UINT32, 0, 4),
+        (UINT32, 1, 7),
+        (PAIR, 0, 5),
+        (PAIR, 5, 8),
+        # 5 bytes, and 3 of padding before each further element.
+        (Array(element=PAIR, count=3), 0, 5 + 8 + 8),
+        (Array(element=PAIR, count=3), 2, 7 + 8 + 8),
+        (Array(element=FLOAT64, count=2), 4, 4 + 8 + 8),
+        (Array(element=PAIR, count=0), 1, 0),
+        (Sequence(element=PAIR), 6, 2 + 4),
+        (String(), 3, 1 + 4),
+        (EMPTY, 3, 1),
+    ],
+)
+def test_shortest_values_are_padded_as_cdr_pads_them(kind: object, start: int, size: int) -> None:
+    assert Alignment(CDR).shortest(kind, start) == size  # type: ignore[arg-type]

@@ -34,7 +34,7 @@ class NodeClock(wiring.Component):
     rate : Out(32)
         Steps per cycle.
     sets : In(1)
-        Continue from `to`. The output has this time 3 cycles later.
+        Continue from `to`. The output has this time 2 cycles later.
     to : In(time_layout())
         `nanosec` has to be below 1,000,000,000.
     sets_rate : In(1)

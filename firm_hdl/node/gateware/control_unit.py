@@ -88,7 +88,7 @@ class ControlUnit(wiring.Component):
         """Collect the beats of a request."""
         beats = CONTROL_BYTES // self.bus_bytes
         packets, beat = self.packets_in, self.packets_in.payload
-        words, number, long = Signal(8 * CONTROL_BYTES), Signal(range(beats + 1)), Signal()
+        words, number = Signal(8 * CONTROL_BYTES), Signal(range(beats + 1))
         bits = 8 * self.bus_bytes
         whole = Signal(layout)
         kept = Signal(8 * CONTROL_BYTES)
@@ -99,7 +99,8 @@ class ControlUnit(wiring.Component):
             kept.eq(Cat(words[bits:], Value.cast(beat.data))),
             ends.eq(packets.valid & beat.last),
             Value.cast(whole.request).eq(kept),
-            whole.is_whole.eq((number == beats - 1) & (beat.count == self.bus_bytes) & ~long),
+            # `number` stops behind the last beat that a request has.
+            whole.is_whole.eq((number == beats - 1) & (beat.count == self.bus_bytes)),
             whole.tag.eq(self.tag_in),
             waiting.w_data.eq(whole),
             waiting.w_en.eq(ends),
@@ -108,7 +109,6 @@ class ControlUnit(wiring.Component):
             m.d.sync += [
                 words.eq(kept),
                 number.eq(Mux(beat.last, 0, Mux(number == beats, beats, number + 1))),
-                long.eq(~beat.last & (long | (number == beats - 1))),
             ]
         add_counters(
             m,

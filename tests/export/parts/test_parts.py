@@ -145,6 +145,19 @@ def test_tkeep_counts_in_the_last_beat_only():
     ]
 
 
+def test_tkeep_of_other_beats_is_all_ones_behind_a_part_that_changes_nothing():
+    beats = [beat(0x2211, 0, 0, tdest=0), beat(0x4433, 0b01, 0, tdest=1), beat(0x55, 0b01, 1)]
+    want = [(0x2211, 0b11, 0), (0x4433, 0b11, 0), (0x55, 0b01, 1)]
+    for kind, given in (
+        ("crossing", {"beats": 4}),
+        ("router", {"topics": 2, "out": "m_axis_0"}),
+        ("arbiter", {"inputs": 2, "ins": "s_axis_1"}),
+    ):
+        left_out = () if kind == "router" else ("tdest",)
+        sent = [{k: v for k, v in each.items() if k not in left_out} for each in beats]
+        assert [seen[:3] for seen in through(kind, sent, bus_bytes=2, **given)] == want
+
+
 def test_tuser_of_a_fifo_drops_a_packet_as_a_serializer_asks_for():
     beats = [beat(7, 3, 1, tuser=1), beat(8, 3, 0, tuser=1), beat(9, 1, 1, tuser=0)]
     extra = ("packet_bytes", "count_passed", "count_aborted")

@@ -89,6 +89,8 @@ def test_statuses_that_are_not_taken_hold_the_gate_or_drop_packets():
     # 8 statuses in the FIFO, 2 in the parser, and the beats in its buffer.
     inside = sum(cycle < 500 for cycle in run.taken)
     assert 10 <= inside <= 10 + 10
+    # Of the packets whose statuses are stored, each has left, and no other.
+    assert sum(cycle < 500 for cycle in run.left) == 8
     gate = PacketGate(message, memory_bytes=2048, packets=256, when_full="drop")
     bench = gate_bench(gate)
     inside += BACKLOG_BEATS

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
 import os
 import pty
@@ -18,9 +19,10 @@ import pytest
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.boards import BoardError, board_of
-from firm_hdl.node.boards.bytestreams import SerialBoard, TcpBoard
+from firm_hdl.node.boards.bytestreams import ByteBoard, SerialBoard, TcpBoard
 from firm_hdl.node.boards.udp import UdpBoard
 from firm_hdl.node.bytestream import ByteStreamReader, write_frame
+from tests.node.accelerators import echo_text
 from tests.node.bridge.fakes import ECHO, HEARD, FakeGraph, FakeNode, bridge_of, run_until
 from tests.node.samples import read
 
@@ -155,6 +157,12 @@ def test_names_of_boards(name, kind):
 def test_wrong_names_of_boards(name, message):
     with pytest.raises(UserError, match=message.replace("?", r"\?")):
         board_of(name, ECHO)
+
+
+def test_only_a_link_of_udp_says_the_port_of_a_board():
+    with pytest.raises(UserError, match=r"'udp://a' needs a port, such as udp://a:7411"):
+        board_of("udp://a", read(echo_text(link="uart")))
+    assert board_of("udp://a", read(echo_text(link="{kind: udp, port: 99}")))._address == ("a", 99)
 
 
 def test_a_simulated_board_needs_an_accelerator():
@@ -318,3 +326,67 @@ def test_a_slow_line_loses_messages_and_names_them(serial, room):
     # Nothing of it arrived, as far as the bridge can know.
     made.close()
     assert dropped["/heard", "unconfirmed"] == sent
+
+
+@pytest.mark.parametrize(
+    ("number", "passes"),
+    [
+        (errno.ECONNREFUSED, True),
+        (errno.EHOSTUNREACH, True),
+        (errno.ENETUNREACH, True),
+        (errno.EHOSTDOWN, True),
+        (errno.EBADF, False),
+        (errno.EMSGSIZE, False),
+    ],
+)
+@pytest.mark.parametrize("sends", [False, True])
+def test_what_a_network_says_of_one_datagram_ends_no_board(number, passes, sends):
+    class Socket:
+        def send(self, frame):
+            raise OSError(number, "no")
+
+        recv = send
+
+        def close(self):
+            pass
+
+    board = board_of("udp://127.0.0.1:9", ECHO)
+    board._socket = Socket()
+    work = (lambda: board.send([b"x"])) if sends else board.receive
+    if passes:
+        assert not work()
+        assert board.counters["unreachable"] == (1 if sends else 256)
+    else:
+        with pytest.raises(BoardError, match=r"^udp://127\.0\.0\.1:9: no$"):
+            work()
+
+
+def test_bytes_of_before_are_not_sent_to_a_board_that_is_opened_again():
+    opened = []
+
+    class Slow(ByteBoard):
+        def _open(self):
+            self.ours, theirs = socket.socketpair()
+            opened.append(self.ours)
+            self.ours.setblocking(False)
+            theirs.setblocking(False)
+            self.ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
+            return theirs.detach()
+
+    board = Slow("slow", 1 << 20)
+    board.open()
+    frame = bytes(range(1, 200))
+    while not board.waits_to_send:
+        board.send([frame] * 1000)
+    board.ours.send(write_frame(b"half")[:-3])
+    board.receive()
+    board.open()
+    assert not board.waits_to_send and board.has_room
+    board.send([b"first"])
+    assert board.ours.recv(1 << 16) == write_frame(b"first")
+    # Neither is half a frame of before part of the next one.
+    board.ours.send(write_frame(b"whole"))
+    assert board.receive() == [b"whole"] and not +board.counters
+    board.close()
+    for each in opened:
+        each.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import random
 
 import pytest
@@ -64,6 +65,18 @@ def test_a_board_is_ready_when_it_has_the_same_fingerprint():
     talk.run(0.1)
     assert talk.session.is_ready and talk.node.read[:2] == [1, 2]
     assert 0.001 < talk.session.latency < 0.01
+
+
+def test_the_latency_is_the_median_of_the_last_round_trips():
+    delays = itertools.cycle([0.001, 0.004, 0.009, 0.002, 0.1])
+    talk = Talk(delay=lambda: next(delays) / 2)
+    # Both ways of a request take a delay each: 2.5, 5.5, 50.5, 6.5 and 51 ms in turn.
+    for _ in range(5):
+        talk.run(20)
+        assert talk.session.latency == pytest.approx(0.0065, rel=0.01)
+    talk.delay = lambda: 0.0005
+    talk.run(80)
+    assert talk.session.latency == pytest.approx(0.001, rel=0.01)
 
 
 @pytest.mark.parametrize("bit", [0, 31, 32, 63])
@@ -233,6 +246,10 @@ def test_counters_are_kept_in_the_same_session():
     talk.run(7)
     assert talk.session.restarts == 1
     assert [value for _, value in talk.session.drops()] == [14]
+    talk.node = FakeNode()
+    talk.run(7)
+    assert talk.session.restarts == 2
+    assert [value for _, value in talk.session.drops()] == [21]
 
 
 @pytest.mark.parametrize("loss", [0.0, 0.3])

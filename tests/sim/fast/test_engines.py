@@ -209,8 +209,10 @@ def test_a_simulation_that_starts_again_is_as_at_first(start, engine):
         simulation.send("echo_in.1", b"not taken")
         simulation.go_live()
         end()
+        simulation._queued = [9] * len(simulation.ports.streams)
         simulation.restart()
         assert simulation.cycle == 0 and not simulation.is_live
+        assert simulation.queued("echo_in.1") == 0
     simulation.send("echo_in.1", bytes(range(20)))
     simulation.run(200)
     seen.append(simulation.transfers("echo_out.0"))

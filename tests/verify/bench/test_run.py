@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from firm_hdl.plan import build_plan
+from firm_hdl.verify.bench import run
 from firm_hdl.verify.bench.run import _check_transfers, _compare
 from firm_hdl.verify.cases.make import Case
+from firm_hdl.verify.results.verdict import Failed, Passed
+from firm_hdl.verify.systems.options import Options
 from firm_hdl.wire import lay_out
 from tests.strategies import make
+from tests.verify.report.samples import a_test
 
 MESSAGE = make("ros1", {"x": "int16", "b": "bool", "s": "string"})
 PLAN = build_plan(lay_out(MESSAGE), bus_bytes=2)
@@ -96,3 +102,45 @@ def test_packets(got, output):
         _compare("packets", got, "00\n01\n")
     assert str(caught.value) == f"packets: {output}"
     _compare("packets", "00\n01\n", "00\n01\n")
+
+
+RIGHT = "0001\n02\n"
+PACKETS = [replace(case, packet=each) for case, each in zip(CASES, (b"\0\1", b"\2"), strict=True)]
+
+
+def result_of(monkeypatch, tmp_path, *written):
+    """Return the counts of benches, of which each has written packets and transfers."""
+    folders = {}
+    for number, (packets, lines) in enumerate(written):
+        folders[f"bench_{number}"] = folder = tmp_path / str(number)
+        folder.mkdir()
+        (folder / "results.txt").write_text(packets)
+        if lines is not None:
+            (folder / "transfers.txt").write_text("".join(f"{line}\n" for line in lines))
+    monkeypatch.setattr(run, "plan_of", lambda *_: PLAN)
+    monkeypatch.setattr(run, "_cases", lambda *_: PACKETS)
+    monkeypatch.setattr(run, "build", lambda *_, **__: [None])
+    monkeypatch.setattr(run, "_analyse", lambda *_: (tmp_path, list(folders)))
+    monkeypatch.setattr(run, "_simulate", lambda entity, *_: folders[entity])
+    record = run.run_bench((Options(), "ghdl"), a_test("std_msgs/msg/Bool"))
+    return record.verdict, record.metrics
+
+
+def test_all_benches_are_compared_and_the_first_one_has_transfers(monkeypatch, tmp_path):
+    written = (RIGHT, LINES), (RIGHT, None), (RIGHT, None)
+    assert result_of(monkeypatch, tmp_path, *written) == (Passed(6), {"transfers": 10.0})
+
+
+@pytest.mark.parametrize(
+    ("written", "output"),
+    [
+        ([("0001\n03\n", LINES), (RIGHT, None)], "packets that came out: number 1 of 2 "),
+        ([(RIGHT, LINES), ("0001\n", None)], "packets that came out: number 1 of 2 is [] "),
+        ([("", LINES), (RIGHT, None)], "packets that came out: number 0 of 2 is [] "),
+        ([(RIGHT, LINES[:-1]), (RIGHT, LINES)], "transfers of s.items: number 3 of 4 "),
+        ([(RIGHT, None), (RIGHT, LINES)], "bench_0 ended without an error, but did not write"),
+    ],
+)
+def test_what_one_bench_has_wrong_fails(written, output, monkeypatch, tmp_path):
+    verdict, _ = result_of(monkeypatch, tmp_path, *written)
+    assert isinstance(verdict, Failed) and verdict.failures[0].startswith(output)

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
+from types import SimpleNamespace
 
 import pytest
 
 from firm_hdl.errors import UserError
 from firm_hdl.node import read_description_text
+from firm_hdl.node.messages import MessageSender
+from firm_hdl.verify.board import talk as talking
 from firm_hdl.verify.board.description import chosen_loops, loop_text
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from tests.node.bridge.fakes import FakeBoard
 from tests.verify.board.fakes import BOTH, STRING, LoopNode, described, verdicts
 
 ONE = described(STRING)
@@ -69,6 +74,20 @@ class Doubles(LoopNode):
         yield packet
         if self.heard == 7:
             yield packet
+
+
+class Straggles(LoopNode):
+    """A packet comes once more, when all have come and the counters are read."""
+
+    def control(self, message):
+        late = self.send(self.last[0], self.last[1]) if self.heard == 7 else []
+        self.heard += self.heard == 7
+        return late + super().control(message)
+
+    def send(self, topic, packet, tag=0):
+        if topic:
+            self.last = topic, packet
+        return super().send(topic, packet, tag)
 
 
 class Pads(LoopNode):
@@ -155,6 +174,7 @@ FAULTS = {
     Loses: r"board: 1 of 7 packets did not come back: case 2 of std_msgs/msg/String, seed 0",
     Swaps: r"board: packet 2 of 7 differs at byte",
     Doubles: r"board: 8 packets instead of 7",
+    Straggles: r"board: 8 packets instead of 7",
     Pads: r"board: packet 2 of 7 differs at byte",
     PassesAll: r"damaged packets: '\w+' of /loopback/in/std_msgs/String counts 0 instead of",
     Refuses: r"board: 1 of 7 packets did not come back",
@@ -197,6 +217,37 @@ def test_the_types_behind_one_that_fails_are_tested():
     found = verdicts(node, silent_seconds=0.2)
     assert [type(each) for each in found.values()] == [Failed, Failed]
     assert "does not answer" in found[STRING].failures[0]
+
+
+def test_a_board_that_wakes_up_when_it_is_opened_again_passes_the_next_type():
+    node = LoopNode(described(*BOTH))
+    asleep, take = [], node.take
+
+    def sleepy(frame):
+        # Messages with the flag of a start come only from a host that begins anew.
+        if node.heard == 3 and not asleep:
+            asleep.append(True)
+        if asleep == [True] and frame[1] & 2:
+            asleep.append(False)
+            node.sender = MessageSender(272)
+        return [] if asleep == [True] else take(frame)
+
+    node.take = sleepy
+    found = verdicts(node, silent_seconds=0.2)
+    assert [type(each) for each in found.values()] == [Failed, Passed]
+
+
+def test_each_repeat_of_a_request_waits_twice_as_long(monkeypatch):
+    clock = [100.0]
+    monkeypatch.setattr(talking, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    talk = talking.Talk(FakeBoard(Mute(ONE)), ONE, 60.0)
+    monkeypatch.setattr(talk, "_wait", lambda until: clock.__setitem__(0, until))
+    asked = []
+    monkeypatch.setattr(talk, "_ask", lambda number, begins: asked.append(clock[0]) or len(asked))
+    with pytest.raises(talking.TalkError, match="does not answer for 60 s"):
+        talk.read([16])
+    pauses = [after - before for before, after in pairwise(asked)]
+    assert pauses == [0.25 * 2**number for number in range(len(pauses))] and len(pauses) == 8
 
 
 def test_requests_that_are_lost_are_repeated_and_noted(capsys):

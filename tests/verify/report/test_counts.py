@@ -355,3 +355,17 @@ def test_the_most_frequent_word_of_an_oracle_comes_first():
         ("genmsg", "m/msg/X is odd", 2, "m/msg/T1"),
         ("genmsg", "nobody is here", 1, "m/msg/T4"),
     ]
+
+
+def test_a_later_file_counts_unless_an_earlier_one_failed():
+    def outcome(*verdicts):
+        files = [run_of(a_record(a_test("p/msg/T"), verdict=each)) for each in verdicts]
+        (found,) = outcomes_of(files)
+        return found.verdict
+
+    passed, failed, silent = Passed(1), Failed(("no",)), NotJudged("nobody")
+    assert outcome(silent, passed) == passed
+    assert outcome(passed, silent) == silent
+    assert outcome(Passed(1), Passed(2)) == Passed(2)
+    assert outcome(passed, failed) == outcome(failed, passed) == failed
+    assert outcome(failed, Failed(("later",))) == failed

@@ -106,6 +106,10 @@ def test_known_noise_has_its_r2():
 def test_equal_values_share_their_rank():
     assert correlate([1, 1, 2, 3], [5, 5, 6, 7]).spearman == pytest.approx(1)
     assert correlate([1, 2, 3], [3, 2, 1]).spearman == pytest.approx(-1)
+    # Ranks 1, 3, 3, 3, 5 and 1, 2, 3, 4, 5: by hand, 8 divided by the root of 8 times 10.
+    assert correlate([1, 2, 2, 2, 3], [1, 2, 3, 4, 5]).spearman == pytest.approx(8 / 80**0.5)
+    # Ranks 1.5, 1.5, 3, 4 and 1, 2, 3.5, 3.5.
+    assert correlate([1, 1, 2, 3], [1, 2, 3, 3]).spearman == pytest.approx(4 / 4.5)
 
 
 def test_constant_values_have_no_correlation():

@@ -8,6 +8,7 @@ import pytest
 
 import firm_hdl.verify.ts3.acceptance as acceptance
 from firm_hdl.cli import main
+from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.verify.references.user_oracle import judge_of
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.records import settled
@@ -19,7 +20,8 @@ from firm_hdl.verify.results.verdict import (
     Passed,
 )
 from firm_hdl.verify.run import concluded, succeeded
-from firm_hdl.verify.systems.system import Judged
+from firm_hdl.verify.systems import system
+from firm_hdl.verify.systems.system import Judged, run_shares
 from tests.frontend.workspace import make_files
 from tests.verify.report.samples import a_record, a_test
 
@@ -63,6 +65,20 @@ def test_end_lists_unjudged_types_by_name_and_reason():
     ]
     assert concluded([], is_named=False) == ["no test was judged, so the run fails"]
     assert concluded(found(PASSED, KNOWN, FAILED), is_named=True) == []
+
+
+def test_only_a_share_of_several_is_run_again(monkeypatch):
+    asked = []
+
+    def die(work, tasks, **options):
+        asked.append([share for share, _ in tasks])
+        yield from ((share, ExecutorError("it died")) for share, _ in tasks)
+
+    monkeypatch.setattr(system, "run_each", die)
+    results = list(run_shares(len, None, [(1, 2), (3,)], jobs=1))
+    assert asked == [[(1, 2), (3,)], [(1,), (2,)]]
+    assert [share for share, _ in results] == [(3,), (1,), (2,)]
+    assert all(isinstance(result, ExecutorError) for _, result in results)
 
 
 @pytest.fixture

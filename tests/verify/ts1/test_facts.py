@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from firm_hdl.frontend import load_message
+from firm_hdl.frontend import Library, load_message
+from firm_hdl.identity.md5 import md5sum
+from firm_hdl.identity.rihs import type_hash
+from firm_hdl.verify.ts1.comparison import compared
 from firm_hdl.verify.ts1.facts import differences, structure
+from firm_hdl.verify.ts1.oracles.oracle import Accepted
 from tests.frontend.workspace import make_files
 
 TEXT = """# Head.
@@ -97,3 +101,22 @@ def test_values_are_compared_with_their_types_and_signs():
 def test_long_values_are_shortened():
     (difference,) = differences("x" * 5000, "y")
     assert len(str(difference)) < 400
+
+
+def test_each_part_of_an_action_has_its_own_hash_and_sum(tmp_path):
+    texts = {"p/action/A.action": "int8 a\n---\nint16 b\n---\nint32 c\n"}
+    for distro, key in (("lyrical", "hash"), ("noetic", "md5")):
+        library = Library(distro, [make_files(tmp_path / distro, texts)])
+        action = library.interface("p/A")
+        own = {each.name: key for each in action.messages}
+        if key == "hash":
+            parts = (action, *action.messages, *action.services)
+            own = {each.name: type_hash(each) for each in parts}
+        else:
+            own = {each.name: md5sum(each) for each in action.messages}
+        assert len(set(own.values())) == len(own) > 6
+        assert compared(action, Accepted({key: own}), {}, str).differences == ()
+        for name in own:
+            wrong = Accepted({key: own | {name: "0"}})
+            (found,) = compared(action, wrong, {}, str).differences
+            assert name in found.path or name in str(found)

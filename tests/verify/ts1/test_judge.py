@@ -8,12 +8,14 @@ import pytest
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.model import Primitive, Sequence, String
+from firm_hdl.verify.results.records import OracleVerdict
 from firm_hdl.verify.results.records import Test as Tested
-from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.ts1 import judge as judging
-from firm_hdl.verify.ts1.judge import compare, judge, judge_case
+from firm_hdl.verify.ts1.judge import compare, judge, judge_case, record_of
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Refused
 from tests.verify.judged import assert_passed
+from tests.verify.report.samples import a_test
 
 GOOD = {
     "p/msg/A.msg": "int8 LOW=-1\nstring<=8 name\nuint16[<=4] codes\nB b\n",
@@ -66,6 +68,21 @@ def test_an_exception_that_is_no_refusal_is_a_difference(court, answer):
 def test_unjudged_definitions_are_neither_passed_nor_failed(court):
     outcome = verdict(court, refusal(), NotJudged("it slept"))
     assert outcome.verdict == NotJudged("it slept")
+
+
+def test_one_oracle_that_judges_is_enough_and_none_is_too_few():
+    def common(*verdicts):
+        each = [
+            OracleVerdict(oracle=name, verdict=v) for name, v in zip("abc", verdicts, strict=False)
+        ]
+        return record_of(a_test("p/msg/A"), "msg", each).verdict
+
+    silent, known = NotJudged("it slept"), KnownDifference(("a-key",), 2)
+    assert common() == NotJudged("no oracle that was asked reads .msg files")
+    assert common(silent, NotJudged("it left")) == NotJudged("a: it slept; b: it left")
+    assert common(silent, Passed(3), Passed(4)) == Passed(7)
+    assert common(Passed(3), known, silent) == KnownDifference(("a-key",), 5)
+    assert common(Passed(3), known, Failed(("no",))) == Failed(("c: no",))
 
 
 def test_an_accepting_oracle_without_facts_has_not_judged(court):

@@ -6,6 +6,7 @@ To accept a change of plans: ``firm-hdl golden accept tests/verify/golden``.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -93,3 +94,20 @@ def test_a_file_that_is_no_plan_is_refused(folder):
     (folder / "lyrical" / "x.yaml").unlink()
     with pytest.raises(ValueError, match="not below a distribution's name"):
         read_golden(folder)
+
+
+def test_a_plan_that_is_not_that_of_the_layout_has_problems(folder, monkeypatch):
+    """A planner that forgets the last field makes a plan that is right by itself."""
+
+    def forgetful(message, wire, bus_bytes, most):
+        return build_plan(
+            lay_out(replace(message, fields=message.fields[:-1]), wire),
+            bus_bytes=bus_bytes,
+            max_message_bytes=most,
+        )
+
+    monkeypatch.setattr("firm_hdl.verify.ts2.golden.plan_of", forgetful)
+    (twist,) = (
+        each for each in check_golden(read_golden(folder)) if "Twist" in each.golden.plan.message
+    )
+    assert twist.problems and isinstance(twist.verdict, Failed)

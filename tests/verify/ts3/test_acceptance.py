@@ -9,6 +9,7 @@ import pytest
 from amaranth.hdl import Module, Signal
 from amaranth.lib import wiring
 
+import firm_hdl.verify.cases.damage as damage
 import firm_hdl.verify.ts3.acceptance as acceptance
 import firm_hdl.verify.ts3.circuit as circuit
 from firm_hdl.frontend import load_message
@@ -198,6 +199,15 @@ def test_broken_packets_are_of_every_kind():
         2,
         6,
     }
+
+
+def test_all_kinds_of_damage_take_turns(monkeypatch):
+    plan = build_plan(lay_out(load_message("std_msgs/msg/Bool")))
+    kinds = [lambda *_, kind=kind: bytes([kind]) for kind in range(5)]
+    monkeypatch.setattr(damage, "DAMAGES", tuple(kinds))
+    cases = [Case(what="", value=None, packet=bytes(5), transfers={})] * 15
+    found = b"".join(broken_packets(plan, cases, random.Random(1)))
+    assert sorted(found[:5]) == [*range(5)] and found == found[:5] * 3
 
 
 def test_fault_in_the_golden_model_is_found(monkeypatch):

@@ -156,3 +156,11 @@ def test_missing_references_are_reported_or_an_error(capsys, monkeypatch):
     assert find_references(None, ["ros1"]) == []
     assert main(["verify", "--all", "--distro", "lyrical", "--reference", "cyclonedds"]) == 1
     assert capsys.readouterr().err == "error: cyclonedds is not there\n"
+
+
+def test_the_first_case_is_written_however_large_it_is(monkeypatch):
+    cases = cases_of("lyrical", "std_msgs/msg/String")
+    sizes = [len(case.packet) for case in cases]
+    for most, count in ((0, 1), (sizes[0], 1), (sum(sizes[:3]), 3), (1 << 30, len(cases))):
+        monkeypatch.setattr(references, "MOST_BYTES", most)
+        assert references._sample(cases) == cases[:count]

@@ -10,10 +10,12 @@ import pytest
 import firm_hdl.verify.ts3.circuit as circuit
 import firm_hdl.verify.ts3.replay as replay_module
 from firm_hdl.cli import main
+from firm_hdl.frontend import Library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.verify import Options
 from firm_hdl.verify.references.oracle import RosbagsOracle
 from firm_hdl.verify.results.verdict import NotJudged
+from firm_hdl.verify.ts3.recording import Topic
 from firm_hdl.verify.ts3.replay import replay
 from tests.frontend.recordings import make_old_db3
 from tests.verify.judged import assert_passed
@@ -275,6 +277,18 @@ def test_topics_with_another_definition_are_left_out(monkeypatch, tmp_path):
         "1 of 1 messages of 1 topic replayed; /b left out: its definition is another one "
         "(RIHS01_other)"
     )
+
+
+def test_a_topic_without_a_digest_has_the_definition_of_the_others(monkeypatch):
+    def topic(name, digest):
+        return Topic(bag="b", name=name, type=STRING, digest=digest)
+
+    topics = [topic("/a", ""), topic("/b", "RIHS01_1"), topic("/c", ""), topic("/d", "RIHS01_2")]
+    monkeypatch.setattr(replay_module, "topics_of", lambda bag: topics)
+    library = Library("lyrical")
+    mine, lines = replay_module._topics(library.message(STRING), library, ["b"])
+    assert mine == topics[:3]
+    assert lines == ["/d left out: its definition is another one (RIHS01_2)"]
 
 
 def test_long_messages_are_left_out_and_counted(tmp_path):

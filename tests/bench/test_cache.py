@@ -1,0 +1,77 @@
+"""Figures come from the cache only if all that determines them is the same."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from firm_hdl.bench import cache
+from firm_hdl.bench.devices import DEVICES
+from firm_hdl.bench.flow import Measured
+from tests.bench.results import result
+
+
+def test_each_input_has_figures_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+    tools = {"Yosys": "1"}
+
+    def measure(*given: Any, **more: Any) -> Measured:
+        asked.append((given, more))
+        found = result(lut=len(asked)).measured
+        assert found is not None
+        return found
+
+    monkeypatch.setattr(cache, "measure", measure)
+    monkeypatch.setattr(cache, "versions", lambda device: tools)
+    usual = {
+        "rtlil": "a",
+        "device": DEVICES["ecp5"],
+        "seeds": (1, 2),
+        "mapping": "",
+        "folder": tmp_path,
+    }
+    changes: list[dict[str, Any]] = [
+        {},
+        {"rtlil": "b"},
+        {"device": DEVICES["ice40"]},
+        # Another part of the same name.
+        {"device": replace(DEVICES["ecp5"], title="another")},
+        {"seeds": (1, 3)},
+        {"seeds": (1, 2, 3)},
+        {"seeds": (2, 1)},
+        {"mapping": "abc"},
+        {"folder": tmp_path / "other"},
+    ]
+
+    def lut(change: dict[str, Any]) -> int:
+        return cache.measure_once(**(usual | change)).area.lut  # type: ignore[arg-type]
+
+    first = [lut(change) for change in changes]
+    assert first == [*range(1, len(changes) + 1)]
+    assert [lut(change) for change in changes] == first
+    tools["Yosys"] = "2"
+    assert lut({}) == len(changes) + 1
+    # Without a folder, nothing is kept.
+    assert lut({"folder": None}) == len(changes) + 2
+    assert lut({"folder": None}) == len(changes) + 3
+
+
+def test_figures_with_a_problem_and_damaged_files_are_measured_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    good = result().measured
+    assert good is not None
+    found = [replace(good, problem="no room"), good, replace(good, mapping="again")]
+    monkeypatch.setattr(cache, "measure", lambda *_, **__: found.pop(0))
+    monkeypatch.setattr(cache, "versions", lambda device: {})
+
+    def once() -> Measured:
+        return cache.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=tmp_path)
+
+    assert once().problem == "no room" and once() == once() == good
+    (file,) = tmp_path.iterdir()
+    file.write_text(file.read_text()[:-9])
+    assert once().mapping == "again"

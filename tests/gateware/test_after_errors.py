@@ -1,0 +1,43 @@
+# amaranth: UnusedElaboratable=no
+"""A serializer after messages with errors: the next packets are right."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+
+from firm_hdl import Serializer
+from firm_hdl.plan import encode
+from firm_hdl.sim import Harness
+from tests.strategies import make
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 2, 4])
+def test_padding_is_right_after_a_message_with_an_error(bus_bytes):
+    """On narrow buses, padding depends on where in 8 bytes the packet before has ended."""
+    message = make("ros2", {"a": "uint8[<=9]", "d": "float64", "b": "uint8[]"})
+    tx = Serializer(message, bus_bytes=bus_bytes)
+    lanes = next(leaf.lanes for leaf in tx.plan.leaves if leaf.kind == "items")
+    leaves = {str(leaf): number for number, leaf in enumerate(tx.plan.leaves)}
+
+    def items(count, is_wrong=False):
+        words = [tuple(range(1, lanes + 1))] * -(-count // lanes)
+        return [(word, (at == len(words) - 1) ^ is_wrong) for at, word in enumerate(words)]
+
+    messages = [
+        {
+            leaves["a.length"]: [first],
+            leaves["a.items"]: items(first),
+            leaves["d"]: [0x0102030405060708],
+            leaves["b.length"]: [last],
+            # One message in two has an error at its end.
+            leaves["b.items"]: items(last, is_wrong=number % 2 == 0),
+        }
+        for number, (first, last) in enumerate(product((1, 2, 4, 9), (1, 2, 3, 4, 6, 7)))
+    ]
+    want = [encode(tx.plan, each) for each in messages]
+    assert {status for _, status in want} == {"OK", "ITEMS"}
+    seen = Harness(None, tx, message=message).run_messages(messages)
+    assert seen.packets == [packet for packet, _ in want]
+    assert [status.name for status in seen.statuses] == [status for _, status in want]
