@@ -87,14 +87,6 @@ def ros_packets(name, bus_bytes, count):
     return random_packets(plan, count)
 
 
-def test_a_packet_that_is_stored_while_the_one_before_waits_begins_a_cycle_later():
-    packets, held = [of_beats(1, 4), of_beats(1, 4, 1)], Stalls.bits("0" * 20 + "1" * 9)
-    later = {"out": held, "in": Stalls.bits("1" + "0" * 9 + "1" * 9)}
-    assert Run(PacketFifo(4, 64, 4), packets, stalls=later).left == [20, 22]
-    # Both are stored before the first one waits.
-    assert Run(PacketFifo(4, 64, 4), packets, stalls={"out": held}).left == [20, 21]
-
-
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
 @pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
 @pytest.mark.sampled(2)
