@@ -192,14 +192,15 @@ class VerdictQueue(wiring.Component):
             m.d.sync += [
                 first.eq(Mux(second.ends, Value.cast(second), Value.cast(came))),
                 second.eq(Mux(third.ends, Value.cast(third), Value.cast(came))),
-                third.ends.eq(0),
             ]
             with m.If(~second.ends):
                 m.d.sync += second.ends.eq(0)
-        with m.Elif(second.ends), m.If(~third.ends):
-            m.d.sync += third.eq(came)
-        with m.Else():
+        with m.Elif(~second.ends):
             m.d.sync += second.eq(came)
+        # `ready` is late in the cycle, so only the flag depends on it.
+        with m.If(~third.ends):
+            m.d.sync += third.eq(came)
+        m.d.sync += third.ends.eq(~takes & (third.ends | (second.ends & came.ends)))
         return m
 
 

@@ -184,7 +184,7 @@ def test_a_host_reads_all_registers(bus_bytes):
     bench, names = CoreBench(description), registers(description)
     # Identity, the counters of the first topic, and some of the others.
     names = by_depth(names[:6] + names[18:32] + names[32::6], names)
-    # A request has 16 bytes and takes 10 cycles and as many as its answer has beats.
+    # A request has 16 bytes and takes about 15 cycles and as many as its answer has beats.
     pause = Stalls.bits("1" + "0" * (24 * bus_bytes // 16))
     twists = packets_of(description.topics[0].stores[0][1].message, 5)
     sent = [

@@ -26,7 +26,7 @@ from tests.node.traffic import messages_of
 BUS = 8
 PASSED = 14
 """Cycles from the last beat of a packet on `received` to its first beat at a subscription."""
-SENT = 6
+SENT = 7
 """Cycles from the last beat of a publication to its first beat on `sent`."""
 
 

@@ -139,7 +139,7 @@ def _arbiter(scene: Scene) -> None:
     for port in block.packets_in:
         waits = waits & port.valid & ~port.ready
     progress(scene, "input moves", waits & ready, 1)
-    progress(scene, "output moves", (tracker.inside > 0) & ~out.valid, 0)
+    progress(scene, "output moves", (tracker.inside > 0) & ~out.valid, 1)
 
 
 def _fairness(
@@ -226,7 +226,7 @@ def _arbiter_study() -> Study:
             Claim("payload stays", _CHANGES),
             Claim("count", Bug(_SLICE, "out.eq(Mux(ready, incoming, second))", "out.eq(0)")),
             Claim("order", Bug(_ARBITER, "source.eq(turn.number)", "source.eq(~turn.number)")),
-            Claim("nothing extra", Bug(_ARBITER, "out.i.valid.eq(valid)", "out.i.valid.eq(1)")),
+            Claim("nothing extra", Bug(_ARBITER, "has_beat.eq(valid)", "has_beat.eq(1)")),
             Claim("whole packets", _HOPS),
             Claim(
                 "turns",
@@ -242,7 +242,7 @@ def _arbiter_study() -> Study:
             ),
             Claim(
                 "output moves",
-                Bug(_ARBITER, "out.i.valid.eq(valid)", "out.i.valid.eq(valid & last)"),
+                Bug(_ARBITER, "has_beat.eq(valid)", "has_beat.eq(valid & last)"),
             ),
         ),
     )

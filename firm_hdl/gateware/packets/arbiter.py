@@ -44,7 +44,7 @@ class PacketArbiter(wiring.Component):
     one. So an input waits for at most one packet of each other input. `source` is the number of the
     packet's input.
 
-    Latency 1 cycle, if it is the input's turn; else one more. Throughput one beat per cycle,
+    Latency 2 cycles, if it is the input's turn; else one more. Throughput one beat per cycle,
     without gaps between packets of different inputs, and between packets of one input. A packet
     that has begun is not interrupted: an input that begins a packet and stops holds all others.
     Gates and FIFOs send a packet only after its last beat was stored.
@@ -99,23 +99,29 @@ class PacketArbiter(wiring.Component):
         )
         m.submodules.slice = out = StreamSlice(layout)
         valid, last = Signal(), Signal()
+        # The chosen beat. Inputs come from far away, so nothing follows their multiplexer.
+        beat, has_beat = Signal(layout, reset_less=True), Signal()
         beats = Array(Value.cast(port.payload) for port in self.packets_in)
         m.d.comb += [
             valid.eq((Cat(port.valid for port in self.packets_in) & turn.bits).any()),
-            Value.cast(out.i.payload.beat).eq(beats[turn.number]),
-            out.i.payload.source.eq(turn.number),
-            out.i.valid.eq(valid),
+            out.i.payload.eq(beat),
+            out.i.valid.eq(has_beat),
             last.eq((Cat(port.payload.last for port in self.packets_in) & turn.bits).any()),
             self.packets_out.payload.eq(out.o.payload.beat),
             self.packets_out.valid.eq(out.o.valid),
             self.source.eq(out.o.payload.source),
             out.o.ready.eq(self.packets_out.ready),
         ]
-        if self.side_bits:
-            m.d.comb += [
-                out.i.payload.side.eq(Array(self.sides_in)[turn.number]),
-                self.side_out.eq(out.o.payload.side),
+        with m.If(out.i.ready):
+            m.d.sync += [
+                has_beat.eq(valid),
+                Value.cast(beat.beat).eq(beats[turn.number]),
+                beat.source.eq(turn.number),
             ]
+            if self.side_bits:
+                m.d.sync += beat.side.eq(Array(self.sides_in)[turn.number])
+        if self.side_bits:
+            m.d.comb += self.side_out.eq(out.o.payload.side)
         self._take_turns(m, turn, out, valid, last)
         return m
 
@@ -136,7 +142,8 @@ class PacketArbiter(wiring.Component):
             fires.eq(valid & out.i.ready),
             *following.eq(turn),
             # The slice is ready in the next cycle if its register moves now, or if nothing comes.
-            opens.eq(~out.o.valid | out.o.ready | (out.i.ready & ~valid)),
+            # Then it takes the chosen beat, so another one may be chosen.
+            opens.eq(~out.o.valid | out.o.ready | (out.i.ready & ~out.i.valid)),
         ]
         with m.If(fires):
             m.d.sync += inside.eq(~last)

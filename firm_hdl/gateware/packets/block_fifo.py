@@ -20,7 +20,8 @@ class BlockFifo(wiring.Component):
     domain, `sync`; its reset discards all transfers inside.
 
     The output of a block RAM is late in the cycle. So only the register of `o` comes after it, and
-    no multiplexer, as there is one in a FIFO of Amaranth.
+    no multiplexer, as there is one in a FIFO of Amaranth. Both have one enable, so while `o` waits,
+    nothing is read: a transfer that comes in the meantime, with none before it, takes a cycle more.
 
     Parameters
     ----------
@@ -71,7 +72,7 @@ class BlockFifo(wiring.Component):
             more.eq(to != at),
             leaves.eq(~self.o.valid | self.o.ready),
             memory.read_at.eq(at),
-            memory.reads.eq(~fetched | leaves),
+            memory.reads.eq(leaves),
             self.is_empty.eq(~more & ~fetched & ~self.o.valid),
         ]
         # What becomes free in this cycle is seen in the next one.
@@ -79,8 +80,9 @@ class BlockFifo(wiring.Component):
             to.eq(to + arrives),
             room.eq(~used.all() & ~((used == self.words - 2) & arrives)),
         ]
-        with m.If(memory.reads):
-            m.d.sync += [fetched.eq(more), at.eq(at + more)]
         with m.If(leaves):
-            m.d.sync += [self.o.valid.eq(fetched), Value.cast(self.o.payload).eq(memory.word)]
+            m.d.sync += [
+                *(fetched.eq(more), at.eq(at + more)),
+                *(self.o.valid.eq(fetched), Value.cast(self.o.payload).eq(memory.word)),
+            ]
         return m

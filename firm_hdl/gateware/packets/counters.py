@@ -30,6 +30,9 @@ def add_counters(m: Module, counters: data.View, events: Mapping[str, Value]) ->
     """
     for name, event in events.items():
         seen = Signal(name=f"{name}_seen")
+        # The carry tells that the counter is at its largest value.
+        more = Signal(COUNTER_BITS + 1, name=f"{name}_more")
+        m.d.comb += more.eq(counters[name] + 1)
         m.d.sync += seen.eq(event)
-        with m.If(seen & ~counters[name].all()):
-            m.d.sync += counters[name].eq(counters[name] + 1)
+        with m.If(seen & ~more[-1]):
+            m.d.sync += counters[name].eq(more)

@@ -315,15 +315,19 @@ class _Verdicts:
             gate.status.valid.eq(statuses.r_rdy),
             statuses.r_en.eq(gate.status.ready),
         ]
+        sent = Signal(name="sent")
+        m.d.comb += sent.eq(gate.status.valid & gate.status.ready)
         m.d.sync += [
-            unsent.eq(unsent + enters - (gate.status.valid & gate.status.ready)),
+            # `enters` is late in the cycle, so it selects, and no sum or enable depends on it.
+            unsent.eq(Mux(enters, Mux(sent, unsent, unsent + 1), Mux(sent, unsent - 1, unsent))),
             reported.eq(self.reports),
             is_due.eq(leaves),
             code.eq(given),
             is_ready.eq(is_due),
             judged.eq(code),
         ]
-        with m.If(enters):
+        # As long as the judged beat; reports only come if the memory never waits.
+        with m.If(~self.has_judged | store.ready):
             m.d.sync += Value.cast(given).eq(
                 Mux(self.reports | self.aborted, Value.cast(GateStatus.OVERRUN), Value.cast(parsed))
             )

@@ -16,7 +16,8 @@ class PacketReader(wiring.Component):
     """Read packets from a memory with a synchronous read port.
 
     Latency 2 cycles: one in the memory, and one to the register of `packets`. Throughput one beat
-    per cycle.
+    per cycle. The memory and the register have one enable, so while `packets` waits, nothing is
+    read: a beat that is stored in the meantime, with none before it, comes a cycle later.
 
     Parameters
     ----------
@@ -66,13 +67,14 @@ class PacketReader(wiring.Component):
         m.d.comb += [
             more.eq(self.at != self.kept),
             leaves.eq(~packets.valid | packets.ready),
-            self.reads.eq(~fetched | leaves),
+            self.reads.eq(leaves),
             self.begins.eq(leaves & fetched & starts),
         ]
-        with m.If(self.reads):
-            m.d.sync += [fetched.eq(more), self.at.eq(self.at + more)]
         with m.If(leaves):
-            m.d.sync += [packets.valid.eq(fetched), packets.payload.eq(self.word)]
+            m.d.sync += [
+                *(fetched.eq(more), self.at.eq(self.at + more)),
+                *(packets.valid.eq(fetched), packets.payload.eq(self.word)),
+            ]
         with m.If(leaves & fetched):
             m.d.sync += starts.eq(self.word.last)
         with m.If(self.begins):

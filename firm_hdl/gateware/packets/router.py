@@ -89,8 +89,7 @@ class PacketRouter(wiring.Component):
             to.eq(Mux(inside, begun, named)),
             out.i.payload.beat.eq(packets.payload),
             out.i.payload.to.eq(to),
-            # Beats of a packet without an output are taken and dropped.
-            out.i.valid.eq(packets.valid & to.any()),
+            out.i.valid.eq(packets.valid),
             packets.ready.eq(out.i.ready),
             ends.eq(packets.valid & packets.ready & packets.payload.last),
         ]
@@ -106,7 +105,8 @@ class PacketRouter(wiring.Component):
                 port.valid.eq(out.o.valid & out.o.payload.to[number]),
             ]
             takes.append(port.ready & out.o.payload.to[number])
-        m.d.comb += out.o.ready.eq(Cat(takes).any())
+        # Beats of a packet without an output are dropped here: `topic` may come late in a cycle.
+        m.d.comb += out.o.ready.eq(Cat(takes).any() | ~out.o.payload.to.any())
         with m.If(packets.valid & packets.ready):
             m.d.sync += [inside.eq(~packets.payload.last), begun.eq(to)]
         add_counters(m, self.counters, {"routed": ends & to.any(), "unknown": ends & ~to.any()})

@@ -114,7 +114,11 @@ class TailDrop(wiring.Component):
         # A packet that was aborted gets its status with its last beat.
         dropped_whole = Signal()
         m.d.comb += dropped_whole.eq(self.drops & ~begun & ~self.dropped.all())
-        m.d.sync += self.dropped.eq(
-            Mux(passes & ~begun, 0, self.dropped + dropped_whole - self.report)
-        )
+        # Both are late in the cycle, so no sum depends on them.
+        with m.If(passes & ~begun):
+            m.d.sync += self.dropped.eq(0)
+        with m.Elif(dropped_whole & ~self.report):
+            m.d.sync += self.dropped.eq(self.dropped + 1)
+        with m.Elif(self.report & ~dropped_whole):
+            m.d.sync += self.dropped.eq(self.dropped - 1)
         return m

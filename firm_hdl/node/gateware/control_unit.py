@@ -10,7 +10,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware import PacketSignature
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.node.control import CONTROL_BYTES, REQUEST, RESPONSE, ControlField, Operation, Result
-from firm_hdl.node.gateware.counters import READ_CYCLES
+from firm_hdl.node.gateware.counters import read_cycles
 from firm_hdl.node.gateware.streams import TAG_BITS, time_layout
 
 __all__ = ["ControlUnit"]
@@ -22,7 +22,8 @@ REQUESTS = 4
 class ControlUnit(wiring.Component):
     """Answer requests of the host, in order.
 
-    A request takes about 10 cycles. While 4 requests wait, others are dropped and counted.
+    A request takes about 10 cycles, and one more for each 16 registers. While 4 requests wait,
+    others are dropped and counted.
 
     Parameters
     ----------
@@ -46,7 +47,7 @@ class ControlUnit(wiring.Component):
     number : Out(range(first + counters))
         Register to read: counters follow the first registers without a gap.
     value : In(32)
-        Its value, `READ_CYCLES` later.
+        Its value, `read_cycles` later.
     time : In(time_layout())
     to : Out(time_layout())
     sets, sets_rate : Out(1)
@@ -59,6 +60,7 @@ class ControlUnit(wiring.Component):
     def __init__(self, bus_bytes: int, first: int, counters_from: int, counters: int):
         self.bus_bytes, self.first = bus_bytes, first
         self.counters_from, self.last = counters_from, counters_from + counters
+        self.read_cycles = read_cycles(first + counters)
         super().__init__(
             {
                 "packets_in": In(PacketSignature(bus_bytes)),
@@ -119,7 +121,9 @@ class ControlUnit(wiring.Component):
     def _answer(self, m: Module, layout: data.StructLayout, waiting: SyncFIFO) -> None:
         """Do the oldest request, and send the response."""
         asked, response = Signal(layout), Signal(_layout(RESPONSE))
-        cycles, is_known = Signal(range(READ_CYCLES + 1)), Signal()
+        cycles, is_known = Signal(range(self.read_cycles + 1)), Signal()
+        # The response is sent. A register of its own, because the arbiter is far away.
+        sends = Signal()
         m.d.comb += [
             self.tag_out.eq(asked.tag),
             self.to.sec.eq(asked.request.seconds),
@@ -138,14 +142,16 @@ class ControlUnit(wiring.Component):
                 self._check(m, asked, response, is_known)
                 m.next = "DO"
             with m.State("DO"):
-                self._do(m, asked, response, is_known)
-                m.d.sync += cycles.eq(READ_CYCLES)
+                self._do(m, asked, response, is_known, sends)
+                m.d.sync += cycles.eq(self.read_cycles)
             with m.State("READ"):
                 m.d.sync += [cycles.eq(cycles - 1), response.value.eq(self.value)]
                 with m.If(cycles == 0):
+                    m.d.sync += sends.eq(1)
                     m.next = "SEND"
-            with m.State("SEND"):
-                self._send(m, response)
+            with m.State("SEND"), m.If(~sends):
+                m.next = "IDLE"
+        self._send(m, response, sends)
 
     def _check(self, m: Module, asked: data.View, response: data.View, is_known: Signal) -> None:
         """Compare the numbers of a request with their limits."""
@@ -169,7 +175,9 @@ class ControlUnit(wiring.Component):
             ),
         ]
 
-    def _do(self, m: Module, asked: data.View, response: data.View, is_known: Signal) -> None:
+    def _do(
+        self, m: Module, asked: data.View, response: data.View, is_known: Signal, sends: Signal
+    ) -> None:
         """Do a request; go on to the state that follows."""
         request, does = asked.request, Signal()
         m.d.comb += does.eq(is_known & (response.result == Result.OK))
@@ -182,31 +190,32 @@ class ControlUnit(wiring.Component):
             response.seconds.eq(self.time.sec),
             response.nanoseconds.eq(self.time.nanosec),
         ]
+        m.d.sync += sends.eq(1)
         m.next = "SEND"
         with m.If(~is_known):
             m.d.sync += response.result.eq(Result.OPERATION)
         with m.Elif(does & (request.operation == Operation.READ)):
+            m.d.sync += sends.eq(0)
             m.next = "READ"
 
-    def _send(self, m: Module, response: data.View) -> None:
-        """Send the response, its first bytes first, and go back to the next request."""
+    def _send(self, m: Module, response: data.View, sends: Signal) -> None:
+        """Send the response, its first bytes first."""
         beats = CONTROL_BYTES // self.bus_bytes
         out, number = self.packets_out, Signal(range(max(2, beats)))
         bits = 8 * self.bus_bytes
         m.d.comb += [
-            out.valid.eq(1),
+            out.valid.eq(sends),
             Value.cast(out.payload.data).eq(Value.cast(response)[:bits]),
             out.payload.count.eq(self.bus_bytes),
             out.payload.last.eq(number == beats - 1),
         ]
-        with m.If(out.ready):
+        with m.If(sends & out.ready):
             m.d.sync += [
                 Value.cast(response).eq(Value.cast(response)[bits:]),
                 number.eq(number + 1),
             ]
             with m.If(out.payload.last):
-                m.d.sync += number.eq(0)
-                m.next = "IDLE"
+                m.d.sync += [number.eq(0), sends.eq(0)]
 
 
 def _layout(fields: tuple[ControlField, ...]) -> data.StructLayout:

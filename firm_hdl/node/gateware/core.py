@@ -66,7 +66,7 @@ class NodeCore(wiring.Component):
 
     A beat is taken per cycle and leaves per cycle. From the last beat of a packet on `received` to
     its first one at a subscription: 1 cycle more than in a :class:`PacketGate`. From the last beat
-    of a publication to the first one on `sent`: 6 cycles, if it is the turn of the publication.
+    of a publication to the first one on `sent`: 7 cycles, if it is the turn of the publication.
 
     Outputs depend on registers only. One clock domain, `sync`; its reset discards all packets
     inside, and sets the time to 0.

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from amaranth.hdl import Module, Mux, Signal, Value
+from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
-__all__ = ["READ_CYCLES", "ByteCounter", "RegisterReader"]
-
-READ_CYCLES = 4
-"""Cycles from a new number of a register to its value."""
+__all__ = ["ByteCounter", "RegisterReader", "read_cycles"]
 
 _GROUP = 16
+
+
+def read_cycles(count: int) -> int:
+    """Return the cycles from a new number of one of `count` registers to its value."""
+    return 2 + -(-count // _GROUP)
 
 
 class ByteCounter(wiring.Component):
@@ -47,7 +49,10 @@ class ByteCounter(wiring.Component):
 
 
 class RegisterReader(wiring.Component):
-    """Give the value of one of many registers, `READ_CYCLES` cycles after its number.
+    """Give the value of one of many registers, `read_cycles(count)` cycles after its number.
+
+    The registers are far from each other. So they are divided into groups, and each group has
+    registers for the number and for its value, in a chain from group to group.
 
     Parameters
     ----------
@@ -58,6 +63,7 @@ class RegisterReader(wiring.Component):
     -------
     values : In(ArrayLayout(32, count))
     number : In(range(count))
+        Has to stay until the value is there.
     value : Out(32)
     """
 
@@ -72,17 +78,20 @@ class RegisterReader(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        number = Signal.like(self.number)
-        low, high = number[: ceil_log2(_GROUP)], number[ceil_log2(_GROUP) :]
-        m.d.sync += number.eq(self.number)
-        chosen: list[Value] = []
-        # A tree of multiplexers with a register after each level.
-        values: Sequence[Value] = [Value.cast(each) for each in self.values]
-        for at in range(0, len(values), _GROUP):
-            group = Signal(32, name=f"group_{at}", reset_less=True)
-            m.d.sync += group.eq(_pick(values[at : at + _GROUP], low))
-            chosen.append(group)
-        m.d.sync += self.value.eq(_pick(chosen, high))
+        values = [Value.cast(each) for each in self.values]
+        bits = ceil_log2(_GROUP)
+        number, value = self.number, Const(0, 32)
+        for place, at in enumerate(range(0, len(values), _GROUP)):
+            here = Signal.like(self.number, name=f"number_{place}", reset_less=True)
+            mine = Signal(32, name=f"group_{place}", reset_less=True)
+            chosen = Signal(32, name=f"value_{place}", reset_less=True)
+            m.d.sync += [
+                here.eq(number),
+                mine.eq(_pick(values[at : at + _GROUP], here[:bits])),
+                chosen.eq(Mux(here[bits:] == place, mine, value)),
+            ]
+            number, value = here, chosen
+        m.d.comb += self.value.eq(value)
         return m
 
 

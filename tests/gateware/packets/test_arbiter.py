@@ -83,8 +83,8 @@ def test_inputs_take_turns_and_no_cycle_is_lost(inputs):
     assert order == [*range(inputs)] * 10
     times = seen.times["out"]
     total = sum(beats_of(len(packet), 4) for packets in sent for packet in packets)
-    # Latency 1, and a beat per cycle.
-    assert times == list(range(seen.times["in0"][0] + 1, seen.times["in0"][0] + 1 + total))
+    # Latency 2, and a beat per cycle.
+    assert times == list(range(seen.times["in0"][0] + 2, seen.times["in0"][0] + 2 + total))
 
 
 def test_an_input_that_is_alone_waits_one_cycle_once():
@@ -94,7 +94,7 @@ def test_an_input_that_is_alone_waits_one_cycle_once():
     first = seen.times["in2"][0]
     # Offered in cycle 0.
     assert first == 1
-    assert seen.times["out"] == list(range(first + 1, first + 1 + len(seen.times["in2"])))
+    assert seen.times["out"] == list(range(first + 2, first + 2 + len(seen.times["in2"])))
 
 
 def test_a_busy_input_does_not_starve_another():

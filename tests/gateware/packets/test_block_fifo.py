@@ -8,9 +8,10 @@ import random
 import pytest
 from amaranth.hdl import Const
 
+from firm_hdl import PacketFifo
 from firm_hdl.gateware.packets.block_fifo import BlockFifo
 from firm_hdl.sim import Stalls
-from tests.gateware.packets.bench import PacketBench
+from tests.gateware.packets.bench import PacketBench, beats
 
 LATENCY = 3
 DEPTH = 9
@@ -42,6 +43,20 @@ def test_a_transfer_per_cycle():
     assert seen.times["o"] == list(range(40, 100))
     after = seen.times["i"][DEPTH:]
     assert after == list(range(after[0], after[0] + len(after))) and after[0] <= 42
+
+
+def test_what_comes_while_the_one_before_waits_takes_a_cycle_more():
+    held = Stalls.bits("0" * 20 + "1" * 9)
+    apart = {"o": held, "i": Stalls.bits("1" + "0" * 9 + "1" * 9)}
+    assert run(fifo_bench(), 2, stalls=apart).times["o"] == [20, 22]
+    # Both are in registers when the first one begins to wait.
+    assert run(fifo_bench(), 2, stalls={"o": held}).times["o"] == [20, 21]
+    # The same of packets.
+    fifo, packets = PacketFifo(4, 64, 4), [b"abcd", b"efg"]
+    bench = PacketBench(fifo, {"i": fifo.packets_in}, {"o": (fifo.packets_out, 4, fifo.size)})
+    for stalls, times in ((apart, [20, 22]), ({"o": held}, [20, 21])):
+        seen = bench.run({"i": beats(packets, 4)}, {"o": 2}, stalls=stalls)
+        assert seen.times["o"] == times and seen.packets["o"] == packets
 
 
 @pytest.mark.parametrize("seed", range(4))
