@@ -173,8 +173,8 @@ FAULTS = [
         "gate_drop",
         (
             "packets are dropped without need",
-            r"(assign drops = \S+ +\? .*);",
-            r"\1 | (beat[7:0] == 8'h55);",
+            r"(assign refused = \S+ +)& (\S+) ;",
+            r"\1& (\2 | (beat[7:0] == 8'h55));",
             "a wrong value on status|an extra|no status|a wrong packet",
         ),
     ),

@@ -7,6 +7,9 @@ from dataclasses import replace
 
 import pytest
 
+from firm_hdl.fuzz.circuits import circuits_of
+from firm_hdl.fuzz.table import table_of
+from firm_hdl.fuzz.types import message_of
 from tests.depth import by_depth
 from tests.fuzz.faults import FAULTS
 from tests.fuzz.samples import STRING, found, need_tools, run
@@ -26,6 +29,21 @@ def test_a_fault_in_the_circuit_is_found(fault):
     assert re.search(fault.rule, failure.rule), failure
     assert failure.circuit == fault.circuit
     assert failure.packet is not None and failure.cycle is not None
+
+
+def test_each_fault_changes_the_verilog_of_today():
+    """The longer test of each fault is thorough, so renamed signals would be noticed late."""
+    message = message_of(STRING)
+    options = {"wire": message.wire, "bus_bytes": 4, "max_message_bytes": 300}
+    texts = {}
+
+    def kept(module, text):
+        return texts.setdefault(module, text)
+
+    circuits_of(message, table_of(message, **options), max_message_bytes=300, alter=kept)
+    assert set(texts) == {"deserializer", "serializer", "gate_wait", "gate_drop"}
+    for fault in FAULTS:
+        assert fault.alter(fault.module, texts[fault.module]) != texts[fault.module]
 
 
 # The table of a string: "run LENGTH ITEMS BYTES BOOL NUL COUNT BOUND LIMIT".
