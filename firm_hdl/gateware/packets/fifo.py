@@ -27,8 +27,8 @@ class PacketFifo(wiring.Component):
     The first beat of a packet is valid 4 cycles after the transfer of its last beat, if no packet
     is before it. A beat is taken per cycle, and a beat is sent per cycle, at the same time and
     without gaps between packets. Only a packet that is stored while the last beat of the one before
-    it waits on `packets_out` begins a cycle later. The memory of a packet that is dropped is free at
-    once.
+    it waits on `packets_out` begins a cycle later. The memory of a packet that is dropped is free
+    at once.
 
     There is room for a beat if the memory has a free word, and fewer than `packets` packets are
     stored. A packet of exactly `memory_bytes` has room. Without room, the policy decides:
