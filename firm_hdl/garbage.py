@@ -30,5 +30,6 @@ def search_put_off() -> Iterator[None]:
         yield
     finally:
         gc.enable()
-        # All objects since `disable` are in the youngest generation.
-        gc.collect(0)
+    # All objects since `disable` are in the youngest generation. After an exception, Python
+    # searches later: Amaranth would warn of unfinished circuits before the exception is reported.
+    gc.collect(0)

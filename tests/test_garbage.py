@@ -34,10 +34,13 @@ def test_without_a_block_cycles_are_freed_while_they_are_made():
     assert any(ring() is None for ring in rings(100_000))
 
 
-def test_an_error_ends_the_block():
+def test_an_error_ends_the_block_and_is_reported_before_anything_is_freed():
+    made = []
     with pytest.raises(KeyError), search_put_off():
+        made += rings(1)
         raise KeyError
     assert gc.isenabled()
+    assert made[0]() is not None
 
 
 def test_a_block_inside_another_changes_nothing():
