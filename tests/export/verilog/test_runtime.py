@@ -1,11 +1,18 @@
-"""Yosys inside this process: what it prints, and its errors."""
+"""Yosys in a process of its own: what it prints, its errors, and its end."""
 
 from __future__ import annotations
 
+import os
 import re
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
 
 import pytest
-import wasmtime
 
 from firm_hdl.export.verilog import runtime
 from firm_hdl.export.verilog.runtime import YosysError, run_yosys
@@ -34,6 +41,12 @@ def numbers(text: str) -> set[str]:
     return set(re.findall(r"\$procmux\$\d+", text))
 
 
+def process() -> int:
+    """Return the number of the process that has Yosys."""
+    run_yosys("write_rtlil")
+    return runtime._started[-1]._process.pid
+
+
 def test_a_run_does_not_depend_on_those_before():
     first = run_yosys(CHOICE)
     assert numbers(first)
@@ -43,15 +56,68 @@ def test_a_run_does_not_depend_on_those_before():
     assert numbers(both) > numbers(first)
 
 
+def test_one_process_serves_all_runs():
+    assert process() == process()
+
+
 def test_mistakes_in_a_script_are_errors():
     with pytest.raises(YosysError, match=r"^ERROR: No such command: no_command"):
         run_yosys("no_command")
 
 
-def test_failures_of_the_runtime_are_errors(monkeypatch):
-    def fails(*_):
-        raise wasmtime.WasmtimeError("mmap failed to reserve memory")
+def test_a_forked_process_starts_its_own():
+    """Threads of a runtime do not survive a fork: once, all workers waited for them for ever."""
+    own = process()
+    with ProcessPoolExecutor(2, mp_context=get_context("fork")) as pool:
+        others = {future.result(60) for future in [pool.submit(process) for _ in range(4)]}
+        assert own not in others and process() == own
 
-    monkeypatch.setattr(runtime, "_run", fails)
+
+def test_a_process_that_died_is_an_error_and_the_next_run_starts_another():
+    dead = process()
+    os.kill(dead, signal.SIGSTOP)
+    ends = subprocess.Popen(["sh", "-c", f"sleep 0.3; kill -9 {dead}"])
+    with pytest.raises(YosysError, match=r"^the process with Yosys died"):
+        run_yosys("write_rtlil")
+    ends.wait()
+    assert process() != dead
+
+
+def test_a_python_without_the_runtime_says_why(monkeypatch, tmp_path):
+    broken = tmp_path / "script.py"
+    broken.write_text("import no_such_runtime\n")
+    monkeypatch.setattr(runtime, "_SCRIPT", broken)
+    monkeypatch.setattr(runtime, "_started", [])
+    with pytest.raises(YosysError, match=r"(?s)^the process .* died; .*'no_such_runtime'"):
+        run_yosys("write_rtlil")
+
+
+def test_what_the_runtime_says_is_the_error(monkeypatch, tmp_path):
+    failing = tmp_path / "script.py"
+    failing.write_text("""input(); print('{"failed": "mmap failed to reserve memory"}')""")
+    monkeypatch.setattr(runtime, "_SCRIPT", failing)
+    monkeypatch.setattr(runtime, "_started", [])
     with pytest.raises(YosysError, match=r"^mmap failed to reserve memory$"):
         run_yosys("write_rtlil")
+
+
+def test_it_ends_with_the_process_that_asks_even_in_the_middle_of_a_run(tmp_path):
+    script = (
+        "import os\n"
+        "from firm_hdl.export.verilog import runtime\n"
+        "runtime.run_yosys('write_rtlil')\n"
+        "print(runtime._started[-1]._process.pid, flush=True)\n"
+        "runtime.run_yosys('\\n'.join(['write_rtlil'] * 10_000_000))\n"
+    )
+    asks = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+    assert asks.stdout is not None
+    number = int(asks.stdout.readline())
+    time.sleep(0.3)
+    asks.kill()
+    asks.wait()
+    asks.stdout.close()
+    for _ in range(300):
+        if not Path(f"/proc/{number}").exists():
+            return
+        time.sleep(0.1)
+    pytest.fail(f"process {number} is still there")
