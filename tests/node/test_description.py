@@ -125,6 +125,8 @@ def test_names_are_completed_as_ros_does():
         ("node: a\nnamespace: x", "2:12: error: a namespace starts with '/'"),
         ("node: a\nnamespace: /x/", "2:12: error: a namespace does not end with '/'"),
         ("node: a\nbus_bytes: 32", "2:12: error: 'bus_bytes' must be 1, 2, 4, 8 or 16, not 32"),
+        ("node: a\nbus_bytes: 3", "2:12: error: 'bus_bytes' must be 1, 2, 4, 8 or 16, not 3"),
+        ("node: a\nbus_bytes: 0", "2:12: error: 'bus_bytes' must be at least 1, not 0"),
         ("node: a\nnode: b", "2:1: error: 'node' is already in line 1"),
         ("node: a\ndistro: humbel", "did you mean 'humble'?"),
         ("node: a\nclock_mhz: 0", "2:12: error: 'clock_mhz' must be from 1 to 1000, not 0"),
