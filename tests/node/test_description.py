@@ -282,3 +282,28 @@ def test_the_page_quotes_a_description_that_is_right():
     text = (docs / "nodes" / "wheels.yaml").read_text(encoding="utf-8")
     assert f"```yaml\n{text}```" in (docs / "node.md").read_text(encoding="utf-8")
     assert len(read_description(docs / "nodes" / "wheels.yaml").topics) == 4
+
+
+@pytest.mark.parametrize(
+    ("link", "topic", "memory"),
+    [
+        ("udp", "", 1024),
+        ("udp", ", memory_bytes: 4096", 4096),
+        ("{kind: udp, port: 77}", "", 1024),
+        ("{kind: udp, port: 77}", ", memory_bytes: 4096", 4096),
+        ("{kind: udp, memory_bytes: 64}", ", memory_bytes: 4096", 64),
+    ],
+)
+def test_memory_of_a_link_is_that_of_the_largest_topic_behind_it(link, topic, memory):
+    topics = body(a="type: std_msgs/msg/Bool", b=f"type: std_msgs/msg/Char{topic}")
+    node = read_description_text(f"{topics}link: {link}", library=LIBRARY)
+    assert node.link.memory_bytes == memory
+
+
+def test_a_topic_has_packets_in_its_own_direction_alone():
+    node = read()
+    has = {t.kind: [t.store(way) is not None for way in ("in", "out")] for t in node.topics}
+    assert has == {"subscribe": [True, False], "publish": [False, True], "serve": [True, True]}
+    # So a node that only publishes has no memory to hold what comes.
+    published = "node: n\nlink: udp\npublish: {a: {type: std_msgs/msg/Bool}}"
+    assert read_description_text(published, library=LIBRARY).link.memory_bytes == 1 << 14
