@@ -142,6 +142,12 @@ IDL += [
         "string<'a'> h; long i[x::N]; long j[3]; @default(value=2) long k; "
         '@default (value = 3) @unit(value="N") long l; @default(value="N") string m;',
     ),
+    # 0 is a value as well.
+    (
+        "idl-expressions",
+        "const long Z = 0; const long N = Z + 3; long a[Z + 2];",
+        "const long Z = 0; const long N = 3; long a[2];",
+    ),
     (
         "idl-typedefs",
         "typedef long T; typedef T U; typedef U V[3]; typedef V W; typedef V X[2]; U a;",
