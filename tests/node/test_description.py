@@ -307,3 +307,13 @@ def test_a_topic_has_packets_in_its_own_direction_alone():
     # So a node that only publishes has no memory to hold what comes.
     published = "node: n\nlink: udp\npublish: {a: {type: std_msgs/msg/Bool}}"
     assert read_description_text(published, library=LIBRARY).link.memory_bytes == 1 << 14
+
+
+@pytest.mark.parametrize("kind", ["stream", "udp"])
+def test_a_stream_alone_can_be_held_by_a_subscription(kind):
+    text = body(a="type: std_msgs/msg/Bool, when_full: wait") + f"link: {kind}"
+    if kind != "stream":
+        assert "cannot be held" in error_of(text)
+        return
+    (topic,) = read_description_text(text, library=LIBRARY).topics
+    assert topic.store("in").when_full == "wait"
