@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from firm_hdl import load_message
+import firm_hdl.covering.branches
+from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.covering.branches import branches, traced
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
@@ -55,3 +56,21 @@ def test_types_differ_by_what_the_generator_does_for_them():
     assert boolean == branches(
         load_message("std_msgs/msg/Bool"), build_plan(lay_out(load_message("std_msgs/msg/Bool")))
     )
+
+
+def test_the_converters_that_are_traced_have_the_plan_s_width_and_limit(monkeypatch):
+    made = []
+
+    def keep(kind):
+        def keeping(*arguments, **options):
+            made.append(kind(*arguments, **options))
+            return made[-1]
+
+        return keeping
+
+    for kind in (Deserializer, Serializer):
+        monkeypatch.setattr(firm_hdl.covering.branches, kind.__name__, keep(kind))
+    message = load_message("std_msgs/msg/String")
+    plan = build_plan(lay_out(message, "ros1"), bus_bytes=2, max_message_bytes=100)
+    branches(message, plan)
+    assert [converter.plan for converter in made] == [plan, plan]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import shutil
 import stat
 from pathlib import Path
 
@@ -256,3 +257,13 @@ def test_empty_folders(tmp_path):
     assert not module.is_empty(tmp_path / "none")
     (tmp_path / "x").write_text("")
     assert not module.is_empty(tmp_path) and not module.is_empty(Path(tmp_path / "x"))
+
+
+def test_an_old_folder_is_put_back_before_files_of_users_are_moved_into_it(target):
+    # Names of leftovers are random: that of the new folder may come first.
+    leftover(target, {**with_manifest(NEW), "notes": "mine"}, "new", "0")
+    leftover(target, {**with_manifest(OLD), "more": "too"}, "old", "f")
+    shutil.rmtree(target)
+    module.clear_up(target)
+    assert names_beside(target) == ["type"]
+    assert texts(target) == {**with_manifest(OLD), "notes": "mine", "more": "too"}

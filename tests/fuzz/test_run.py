@@ -6,7 +6,7 @@ import stat
 
 import pytest
 
-from firm_hdl.fuzz import command
+from firm_hdl.fuzz import Failure, command
 from firm_hdl.fuzz.circuits import CIRCUITS
 from firm_hdl.fuzz.command import main
 from firm_hdl.fuzz.report import summary
@@ -164,3 +164,19 @@ def test_the_summary_counts_types_on_each_wire_and_every_circuit():
         "900 OK, 600 TRUNCATED; 36 lost in 6 resets\n6,000 cycles"
     )
     assert text.endswith("no failures")
+
+
+@pytest.mark.parametrize(
+    ("failure", "end"),
+    [
+        (Failure(rule="r"), " --packets 9"),
+        (Failure(rule="r", circuit="gate"), " --circuits gate --packets 9"),
+        # The first packet has the number 0.
+        (Failure(rule="r", circuit="gate", packet=0), " --circuits gate --only-packet 0"),
+        (Failure(rule="r", packet=7), " --only-packet 7"),
+    ],
+)
+def test_a_failure_is_repeated_by_its_packet_if_it_has_one(failure, end):
+    task = FuzzTask(type="p/msg/A", bus_bytes=2, room=30, seed=4, packets=9)
+    head = "python -m firm_hdl.fuzz --types p/msg/A --bus-bytes 2 --room 30 --seed 4"
+    assert task.command(failure) == head + end

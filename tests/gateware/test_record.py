@@ -309,3 +309,12 @@ def test_fields_are_a_list_of_names(adapter):
     with pytest.raises(TypeError, match=r"^Fields must be a list of names, not the text 'a'$"):
         adapter(message, fields="a")
     adapter(message, fields=["a"])
+
+
+def test_a_layout_is_that_of_its_wire():
+    """CDR gives a message without fields a byte; on the wire of ROS 1, it is a trigger."""
+    message = make("ros2", {"a": "uint8", "e": make("ros2", {}, "Empty")})
+    sizes = {wire: record_layout(message, wire=wire).size for wire in (None, "cdr", "ros1")}
+    assert sizes[None] == sizes["cdr"] != sizes["ros1"]
+    for wire in ("cdr", "ros1"):
+        assert RecordReader(message, wire=wire).record.payload.shape().size == sizes[wire]

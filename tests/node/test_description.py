@@ -125,6 +125,8 @@ def test_names_are_completed_as_ros_does():
         ("node: a\nnamespace: x", "2:12: error: a namespace starts with '/'"),
         ("node: a\nnamespace: /x/", "2:12: error: a namespace does not end with '/'"),
         ("node: a\nbus_bytes: 32", "2:12: error: 'bus_bytes' must be 1, 2, 4, 8 or 16, not 32"),
+        ("node: a\nbus_bytes: 3", "2:12: error: 'bus_bytes' must be 1, 2, 4, 8 or 16, not 3"),
+        ("node: a\nbus_bytes: 0", "2:12: error: 'bus_bytes' must be at least 1, not 0"),
         ("node: a\nnode: b", "2:1: error: 'node' is already in line 1"),
         ("node: a\ndistro: humbel", "did you mean 'humble'?"),
         ("node: a\nclock_mhz: 0", "2:12: error: 'clock_mhz' must be from 1 to 1000, not 0"),
@@ -280,3 +282,38 @@ def test_the_page_quotes_a_description_that_is_right():
     text = (docs / "nodes" / "wheels.yaml").read_text(encoding="utf-8")
     assert f"```yaml\n{text}```" in (docs / "node.md").read_text(encoding="utf-8")
     assert len(read_description(docs / "nodes" / "wheels.yaml").topics) == 4
+
+
+@pytest.mark.parametrize(
+    ("link", "topic", "memory"),
+    [
+        ("udp", "", 1024),
+        ("udp", ", memory_bytes: 4096", 4096),
+        ("{kind: udp, port: 77}", "", 1024),
+        ("{kind: udp, port: 77}", ", memory_bytes: 4096", 4096),
+        ("{kind: udp, memory_bytes: 64}", ", memory_bytes: 4096", 64),
+    ],
+)
+def test_memory_of_a_link_is_that_of_the_largest_topic_behind_it(link, topic, memory):
+    topics = body(a="type: std_msgs/msg/Bool", b=f"type: std_msgs/msg/Char{topic}")
+    node = read_description_text(f"{topics}link: {link}", library=LIBRARY)
+    assert node.link.memory_bytes == memory
+
+
+def test_a_topic_has_packets_in_its_own_direction_alone():
+    node = read()
+    has = {t.kind: [t.store(way) is not None for way in ("in", "out")] for t in node.topics}
+    assert has == {"subscribe": [True, False], "publish": [False, True], "serve": [True, True]}
+    # So a node that only publishes has no memory to hold what comes.
+    published = "node: n\nlink: udp\npublish: {a: {type: std_msgs/msg/Bool}}"
+    assert read_description_text(published, library=LIBRARY).link.memory_bytes == 1 << 14
+
+
+@pytest.mark.parametrize("kind", ["stream", "udp"])
+def test_a_stream_alone_can_be_held_by_a_subscription(kind):
+    text = body(a="type: std_msgs/msg/Bool, when_full: wait") + f"link: {kind}"
+    if kind != "stream":
+        assert "cannot be held" in error_of(text)
+        return
+    (topic,) = read_description_text(text, library=LIBRARY).topics
+    assert topic.store("in").when_full == "wait"

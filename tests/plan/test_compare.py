@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.plan import build_plan, to_yaml
-from firm_hdl.plan.compare import _step_names, compare
+from firm_hdl.plan.compare import Change, _step_names, compare
 from firm_hdl.wire import lay_out
 
 
@@ -128,3 +128,16 @@ def test_steps_with_one_name_are_numbered():
     assert [str(change) for change in compare(text((1, 2)), text((3, 2)))] == [
         "steps[words of a].limit: 1 -> 3"
     ]
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "kind"),
+    [
+        ("steps[a.b].map[c].lane", "1", "2", "steps[*].map[*].lane"),
+        ("steps[a].limit", None, "2", "steps[*].limit: new"),
+        ("steps[a].limit", "1", None, "steps[*].limit: gone"),
+        ("leaves.a.b.items", "1", "2", "leaves.*"),
+    ],
+)
+def test_each_name_is_left_out_of_a_kind_and_what_is_between_them_is_not(path, old, new, kind):
+    assert Change(path=path, old=old, new=new).kind == kind

@@ -115,3 +115,9 @@ def test_type_that_rosbags_cannot_write_has_no_stimuli(monkeypatch):
     vhdl, plan = vhdl_of(message)
     assert stimuli(message, plan) == []
     assert "stimuli.txt" not in vhdl.files
+
+
+def test_a_file_of_packets_has_a_line_for_each_packet_and_an_empty_one_for_an_empty_packet():
+    text = packets_text([b"\x00\x1f", b"", b"\xff"], "Three packets,\nand one is empty.")
+    assert text == "# Three packets,\n# and one is empty.\n001f\n\nff\n"
+    assert packets_text([]) == ""

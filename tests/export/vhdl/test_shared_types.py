@@ -328,3 +328,12 @@ def test_vhdl_compiles_as_a_library_of_vunit(ghdl, folders, tmp_path):
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_what_a_folder_had_before_it_is_built_anew_does_not_count(similar, tmp_path):
+    options = {"out": tmp_path / "out"}
+    build(["p/A"], library=Library("noetic", [similar]), **options)
+    # `A` now has what `B` has, whose package has the same name.
+    (similar / "p" / "msg" / "A.msg").write_text("INNER a\n")
+    made = build(["p/A", "p/B"], library=Library("noetic", [similar]), **options)
+    assert len(made) == 2

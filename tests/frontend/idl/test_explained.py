@@ -61,6 +61,17 @@ def test_wrong_words_are_marked_and_explained(marked, message):
     assert parse_error(marked) == (marked, message)
 
 
+# A number, a name and a directive that would be wrong there, and are not the first mistake.
+LATER = "\nlong _later = 0x; #later\n"
+
+
+@pytest.mark.parametrize(
+    ("marked", "message"), [case for case in CASES if not case[1].endswith("the file ends here")]
+)
+def test_only_the_first_mistake_is_explained(marked, message):
+    assert parse_error(marked + LATER) == (marked + LATER, message)
+
+
 @pytest.mark.parametrize(
     ("word", "what"),
     {

@@ -169,3 +169,18 @@ def test_integers_reach_from_border_to_border(bits):
 def test_values_that_a_type_does_not_have_are_refused(name, text):
     with pytest.raises(IdlError):
         fit(value(text), name, Source(name="x", text="x"))
+
+
+@pytest.mark.parametrize(
+    ("code", "is_character"),
+    [
+        *(("d7ff", True), ("e000", True), ("ffff", True)),
+        *(("d800", False), ("dbff", False), ("dc00", False), ("dfff", False)),
+    ],
+)
+def test_halves_of_surrogate_pairs_are_no_characters(code, is_character):
+    if is_character:
+        assert value(rf"L'\u{code}'") == ("character", int(code, 16))
+    else:
+        with pytest.raises(IdlError, match=rf"escape '\\u{code}' is half of a surrogate pair"):
+            value(rf"L'\u{code}'")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
+
 from firm_hdl.verify.report import html
+from firm_hdl.verify.report.command import FORMATS
 from firm_hdl.verify.report.prose import facts, headline, shown_packages, shown_tests, sources
 from firm_hdl.verify.report.summary import summarise
 from firm_hdl.verify.report.tables import (
@@ -223,3 +226,19 @@ def test_as_many_failures_as_a_page_shows_are_shown_whole(monkeypatch):
         assert page.count("<article") == 2
         assert all(f"wrong {n}" in page for n in range(count))
         assert ("also 2" in page) is False
+
+
+def test_lists_of_tests_in_json_are_keys_of_its_outcomes():
+    summary = summary_of(
+        a_record(a_test("p/msg/A"), coverage=PlanCoverage(taken=1, possible=2)),
+        a_record(a_test("p/msg/B"), verdict=Failed(("wrong",)), seconds=Seconds(testing=9.0)),
+        a_record(a_test("p/msg/C"), verdict=NotJudged("nobody")),
+        planned=tuple(a_test(f"p/msg/{name}") for name in "ABCD"),
+    )
+    found = json.loads(FORMATS["json"](summary))
+    types = {each["key"]: each["test"]["type"][-1] for each in found["outcomes"]}
+    lists = ("failed", "not_run", "not_judged", "uncovered")
+    assert [[types[key] for key in found[name]] for name in lists] == [["B"], ["D"], ["C"], ["A"]]
+    for name in ("slowest", "most_complex"):
+        assert {*found[name]} <= {*types} and found[name]
+    assert types[found["slowest"][0]] == "B"

@@ -79,3 +79,10 @@ def test_json_reads_back(verdict):
 def test_other_json_is_refused(given):
     with pytest.raises(ValueError, match=r"verdict|at least|Passed|Failed|NotJudged|KnownDiff"):
         read_back(given)
+
+
+@pytest.mark.parametrize("verdict", ["passed", "", None, True, Passed])
+def test_what_is_no_verdict_is_refused(verdict):
+    test = Tested(system="ts2", distro="iron", type="p/A")
+    with pytest.raises(ValueError, match=r"^What became of a test must be a verdict, not "):
+        Record(test=test, verdict=verdict)

@@ -208,3 +208,15 @@ def test_errors_of_rosbags_are_reported_in_one_line(error, output):
     found = replay._refused(None, None, here, SimpleNamespace(status="TRUNCATED"), error)
     assert found.finding == replay._misfit(here, f"rosbags says: {output.strip()}")
     assert (found.case, found.kind) == (here, "")
+
+
+@pytest.mark.parametrize(
+    ("name", "is_text"), [("UInt8MultiArray", True), ("Int8MultiArray", False)]
+)
+def test_items_with_a_sign_keep_their_highest_bit(name, is_text):
+    plan = plan_of(f"std_msgs/msg/{name}")
+    # No dimensions, no offset, and two elements.
+    decoded = decode(plan, b"\0\1\0\0" + bytes(8) + b"\2\0\0\0\xff\x80")
+    assert decoded.status == "OK"
+    found = replay._changed(plan, decoded.streams, replay._in_ascii)
+    assert (found != decoded.streams) is is_text

@@ -126,9 +126,9 @@ IDL = [
 IDL += [
     (
         "idl-expressions",
-        "const long A = 1 + 2; const uint8 B = A*2 ; const long C = 7; const long D = -3; "
-        "const float E = 1.5; const long F = 0x10; const char G = 'a'; // const long H = 1+1;",
-        "const long A = 3; const uint8 B = 6 ; const long C = 7; const long D = -3; "
+        "const long A = 1 + 2; const uint8 B = A*2 ; const long C = 0; const long D = -3; "
+        "const float E = 1.5; const long F = 0x10 + C; const char G = 'a'; // const long H = 1+1;",
+        "const long A = 3; const uint8 B = 6 ; const long C = 0; const long D = -3; "
         "const float E = 1.5; const long F = 16; const char G = 97; // const long H = 1+1;",
     ),
     (
