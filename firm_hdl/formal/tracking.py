@@ -102,23 +102,13 @@ class _Follower:
 class Tracker(_Follower):
     """Claims that the packets that leave are those that came, whole and in order.
 
-    Call `enter` and `leave` once each.
-
-    Parameters
-    ----------
-    most : int
-        Most units that a block may hold, with those of packets that it has not decided on.
+    Call `enter` and `leave` once each. If the unit is the end of its packet, `place` is the size of
+    the packet in bytes.
 
     Attributes
     ----------
-    inside : Signal
-        Units of packets that are kept, and have not left.
-    hits : Signal
-        The unit leaves in this cycle.
     is_end : Signal
         The unit is the end of its packet.
-    place : Signal
-        Units of the packet before it: if it is the end, the size in bytes.
     """
 
     def __init__(self, scene: Scene, name: str, most: int):
@@ -173,20 +163,6 @@ class BeatTracker(_Follower):
     """The same claims about a block that leaves beats as they are: the unit is a beat.
 
     Of the beat, one bit is kept: any one, because the surroundings choose it for ever.
-
-    Parameters
-    ----------
-    most : int
-        Most beats that a block may hold, with those of packets that it has not decided on.
-
-    Attributes
-    ----------
-    inside : Signal
-        Beats of packets that are kept, and have not left.
-    hits : Signal
-        The beat leaves in this cycle.
-    place : Signal
-        Beats of its packet before it.
     """
 
     def __init__(self, scene: Scene, name: str, most: int):

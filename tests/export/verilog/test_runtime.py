@@ -113,6 +113,7 @@ def test_it_ends_with_the_process_that_asks_even_in_the_middle_of_a_run(tmp_path
     assert asks.stdout is not None
     number = int(asks.stdout.readline())
     time.sleep(0.3)
+    assert asks.poll() is None and Path(f"/proc/{number}").exists()
     asks.kill()
     asks.wait()
     asks.stdout.close()
