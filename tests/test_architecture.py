@@ -27,7 +27,7 @@ MAY_IMPORT = {
     "garbage": set[str](),
     "jobs": {"errors"},
     "names": set[str](),
-    "rtlil": set[str](),
+    "rtlil": {"names"},
     "vhdl": {"names", "rtlil"},
     "rtps": set[str](),
     # Know messages.
@@ -44,7 +44,7 @@ MAY_IMPORT = {
     "sim": {"errors", "garbage", "jobs", "model", "wire", "plan", "gateware"},
 }
 MAY_IMPORT["export"] = {
-    *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "vhdl"),
+    *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
@@ -57,7 +57,7 @@ MAY_IMPORT["covering"] = {
     *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
 }
 MAY_IMPORT["verify"] = {
-    *(MAY_IMPORT["export"] - {"estimates", "garbage"}),
+    *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil"}),
     *("arguments", "drawing", "export", "identity", "metrics", "node", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
@@ -75,7 +75,7 @@ MAY_IMPORT["fuzz"] = {
     "verify",
 }
 MAY_IMPORT["bench"] = {
-    *("arguments", "drawing", "errors", "files", "jobs", "terminal"),
+    *("arguments", "drawing", "errors", "files", "jobs", "rtlil", "terminal"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware", "sim", "export", "node"),
     # `verify`: the client libraries that are compared with converters.
     *("covering", "verify"),

@@ -15,6 +15,7 @@ from firm_hdl.bench.netlist import Names, cell_counts, top_module
 from firm_hdl.bench.paths import CriticalPath, critical_path
 from firm_hdl.bench.surroundings import surround
 from firm_hdl.bench.tools import BenchError, Tool, find_nextpnr, find_yosys, written
+from firm_hdl.rtlil import without_indices
 
 __all__ = ["Measured", "Placed", "measure"]
 
@@ -125,7 +126,7 @@ def measure(
     problem = ""
     with tempfile.TemporaryDirectory(prefix="firm-hdl-bench-") as name:
         folder = Path(name)
-        (folder / "top.il").write_text(rtlil, encoding="utf-8")
+        (folder / "top.il").write_text(without_indices(rtlil), encoding="utf-8")
         top, script = _synthesize(yosys, folder, device, mapping)
         area = _area(device, top)
         if placer and nextpnr:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
+from firm_hdl.rtlil.indices import without_indices
 from firm_hdl.rtlil.read import parse
 from firm_hdl.rtlil.simplify import simplified
 
-__all__ = ["parse", "simplified"]
+__all__ = ["parse", "simplified", "without_indices"]

@@ -26,6 +26,7 @@ from firm_hdl.export.verilog.runtime import YosysError, run_yosys
 from firm_hdl.export.verilog.vectors import whole_vectors
 from firm_hdl.names.identifiers import first_free
 from firm_hdl.names.keywords import KEYWORDS
+from firm_hdl.rtlil import without_indices
 
 if sys.platform != "win32":
     import resource
@@ -124,7 +125,7 @@ def to_verilog(top: Top | str, *, module: str, header: str) -> str:
     if not isinstance(top, str):
         top = rtlil.convert(top, name=module, emit_src=False)
     design = settled_memories(_renamed(top, module))
-    design = whole_vectors(_without_keywords(named_ports(design)))
+    design = whole_vectors(_without_keywords(without_indices(named_ports(design))))
     script = _SCRIPT.format(
         rtlil=design, attributes=" ".join(f"-remove {name}" for name in _ATTRIBUTES)
     )

