@@ -160,9 +160,9 @@ def _compared(kind: str, a: int | None, b: int | None, left: Spec, right: Spec) 
     """Evaluate comparisons of unsigned numbers whose result is the same for all values."""
     if b is not None and (bits := spec_width(left)) < b.bit_length():
         less = kind in ("$lt", "$le", "$ne")
-        return _bits(int(less), 1) if bits else None
+        return _bits(less, 1) if bits else None
     if a is not None and spec_width(right) < a.bit_length():
-        return _bits(int(kind in ("$gt", "$ge", "$ne")), 1)
+        return _bits(kind in ("$gt", "$ge", "$ne"), 1)
     if (kind, b) == ("$lt", 0) or (kind, a) == ("$gt", 0):
         return _bits(0, 1)
     if (kind, b) == ("$ge", 0) or (kind, a) == ("$le", 0):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -32,6 +33,20 @@ def test_page_has_a_row_for_each_proof():
         claim = proof.claim
         row = f"| {proof.study.block} | {claim.name} | {claim.method} | {claim.reach} |"
         assert row in text, f"{row}: python -m firm_hdl.formal --write docs/formal.md"
+
+
+def test_no_block_is_forgotten():
+    """Other tests take the blocks from the program, and would not miss one."""
+    blocks = {
+        proof.study.block.partition("`")[2].partition("`")[0] for proof in all_proofs().values()
+    }
+    assert {block.partition("(")[0] for block in blocks} == {
+        *("StreamSlice", "PacketWidth", "PacketArbiter", "PacketRouter", "PacketFifo"),
+        *("TailDrop", "PacketCrossing", "Claims", "RecordReader", "RecordWriter"),
+        *("Deserializer", "Serializer", "Parser", "PacketGate"),
+    }
+    rows = re.findall(r"^\| `.* [\d.]+ \|$", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
+    assert len(rows) == len(all_proofs()), "python -m firm_hdl.formal --write docs/formal.md"
 
 
 def test_page_without_a_place_is_refused(tmp_path):

@@ -162,6 +162,13 @@ class RefusesToRead(LoopNode):
         return bytes([1, 2 * (packet[4] >= 16), 0, 0]) + super().response(packet)[4:]
 
 
+class CutsResponses(LoopNode):
+    """Its responses lack a byte."""
+
+    def response(self, packet):
+        return super().response(packet)[:-1]
+
+
 class Babbles(LoopNode):
     """It sends what no node sends."""
 
@@ -185,6 +192,7 @@ FAULTS = {
     Mute: r"^fake: the board does not answer for 0\.2 s$",
     Other: r"fake: the board's fingerprint is \w{16}, and that of the description is \w{16}",
     RefusesToRead: r"fake: the board refuses to read register 16",
+    CutsResponses: r"fake: a response has \d+ bytes, not \d+$",
     Babbles: r"fake: the board does not answer for 0\.2 s \(frames: \d+ malformed\)",
 }
 

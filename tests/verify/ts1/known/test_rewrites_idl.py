@@ -156,6 +156,12 @@ IDL += [
         "T a; T b; T c; S d; p::msg::S e; x::T f; p::T g; // p::S",
     ),
     (
+        # A text that is wrong for another reason has a brace too many.
+        "idl-typedefs",
+        "}; module p { typedef long T; }; }; typedef p::T U; p::T a;",
+        "}; module p { typedef long T; }; }; typedef long U; T a;",
+    ),
+    (
         "idl-long-names",
         "long longitude; unsigned long long_a; long double d; long long e; long doubled, f; "
         "long long long_b; unsigned  long doubles[3]; // long longitude;",
