@@ -15,7 +15,7 @@ from firm_hdl.gateware.packets.slice import StreamSlice
 FAST = [
     *("slice/valid-stays", "slice/order", "arbiter/whole-packets", "arbiter/turns"),
     *("router/order", "router/counters", "fifo-wait-1/one-outcome", "width-1-4/count"),
-    *("gate-bool/input-moves", "parser-string/one-status"),
+    *("gate-bool/input-moves", "gate-bool/output-moves", "parser-string/one-status"),
     *("tail-drop/room", "claims-noetic/pending", "record-reader/order", "record-writer/one-each"),
     *("gate-drop/output-moves", "crossing/nothing-extra"),
 ]

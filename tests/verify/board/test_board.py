@@ -271,6 +271,20 @@ def test_requests_that_are_lost_are_repeated_and_noted(capsys):
     )
 
 
+class CountsItsLink(LoopNode):
+    """Its link counts messages, and those for which there was no host yet."""
+
+    def take(self, frame):
+        self.count(0, "passed")
+        self.count(0, "unsent")
+        return super().take(frame)
+
+
+def test_messages_that_passed_or_had_no_host_are_not_lost(capsys):
+    assert isinstance(verdicts(CountsItsLink(ONE))[STRING], Passed)
+    assert "the link lost" not in capsys.readouterr().out
+
+
 def test_a_way_that_loses_a_message_fails_and_says_where():
     count = iter(range(10**6))
     found = verdicts(
