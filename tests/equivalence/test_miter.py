@@ -158,6 +158,15 @@ def test_ports_of_another_width_differ(what: str) -> None:
     assert f"the {what[:-1]} {name} has two widths" in result.differences
 
 
+def test_circuits_without_outputs_and_registers_are_not_equal() -> None:
+    empty = circuit(2, outputs={}, signals={}, cells=[], flops={})
+    with pytest.raises(ProofError, match="there is nothing to prove"):
+        make_miter(empty, empty, ports={}, signals={})
+    # What differs all the same is reported.
+    other = replace(empty, inputs={"clk": (2,)})
+    assert make_miter(empty, other, ports={}, signals={}).differences
+
+
 def test_ports_are_matched_by_the_names_that_the_back_end_gave() -> None:
     renamed = vhdl(inputs={"clk": (2,), "i_field": (3,), "en": (4,)})
     result = miter(renamed, ports={"i": "I_field"})

@@ -66,6 +66,18 @@ def test_the_oldest_incomplete_sample_makes_room():
     assert budget.used == 0
 
 
+def test_samples_below_a_number_are_forgotten():
+    budget = Budget(1 << 20)
+    reassembly = Reassembly(budget)
+    for number in (7, 3, 5, 4):
+        sample = Data(reader=1, writer=2, sequence_number=number, payload=bytes(2000))
+        assert reassembly.add(fragment(sample, 1, 1000)) is None
+    whole = budget.used
+    reassembly.drop_below(5)
+    assert [number in reassembly for number in (3, 4, 5, 7)] == [False, False, True, True]
+    assert budget.used == whole // 2
+
+
 def test_tables_of_policies():
     """DDS table 2.2.3, by hand: which offers satisfy a request."""
     best, reliable = Reliability
