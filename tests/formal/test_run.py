@@ -6,10 +6,12 @@ import pytest
 from amaranth.hdl import Signal
 
 from firm_hdl.formal import run
+from firm_hdl.formal.blocks import all_studies
 from firm_hdl.formal.bugs import Bug, seeded
 from firm_hdl.formal.catalog import Claim, Study
 from firm_hdl.formal.command import main
 from firm_hdl.formal.run import all_proofs, prove, refute
+from firm_hdl.formal.scene import Scene
 from firm_hdl.gateware.packets.slice import StreamSlice
 
 FAST = [
@@ -45,6 +47,11 @@ def test_every_bug_is_about_today_s_text():
     for proof in all_proofs().values():
         with seeded([proof.claim.bug]):
             pass
+
+
+@pytest.mark.parametrize("study", all_studies(), ids=lambda study: study.name)
+def test_scenes_have_the_claims_that_are_listed(study):
+    assert {claim.name for claim in study.claims} == set(Scene(study.build).claims)
 
 
 def test_every_proof_of_bounded_depth_says_its_depth():
