@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from amaranth.hdl import Signal
+from amaranth.hdl import Fragment, Signal
 
 from firm_hdl.formal import run
 from firm_hdl.formal.blocks import all_studies
@@ -51,7 +51,10 @@ def test_every_bug_is_about_today_s_text():
 
 @pytest.mark.parametrize("study", all_studies(), ids=lambda study: study.name)
 def test_scenes_have_the_claims_that_are_listed(study):
-    assert {claim.name for claim in study.claims} == set(Scene(study.build).claims)
+    scene = Scene(study.build)
+    assert {claim.name for claim in study.claims} == set(scene.claims)
+    # What is never elaborated is a warning.
+    Fragment.get(scene, None)
 
 
 def test_every_proof_of_bounded_depth_says_its_depth():
