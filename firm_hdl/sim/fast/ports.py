@@ -102,10 +102,6 @@ class StreamPort:
     def is_always_ready(self) -> bool:
         return isinstance(self.port.ready, Const)
 
-    @property
-    def is_always_valid(self) -> bool:
-        return isinstance(self.port.valid, Const)
-
     def bits(self, payload: object) -> int:
         """Return the bits of a payload. See :meth:`PlainPort.bits`."""
         return _bits(self.name, self._shape, self.width, payload)
