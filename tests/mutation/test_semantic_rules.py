@@ -121,6 +121,8 @@ COMMAND = (
         ("constant return", "def f() -> bool:\n    return a == b", 2),
         ("constant return", "def f() -> A | None:\n    return a", 1),
         ("constant return", "def f() -> A:\n    return a", []),
+        ("constant return", "def f() -> tuple[A, ...]:\n    return a", 1),
+        ("constant return", "def f() -> tuple[A, ...]:\n    return ()", []),
         ("swapped calls", "a()\nb()", ["b()\na()"]),
         # Two independent collections; then two of which one uses the other, or may use it.
         ("swapped calls", "a.append(b)\nc.add(d)", []),

@@ -167,7 +167,7 @@ def constant_return(source: Source, _: Index) -> Iterator[Change]:
         else:
             continue
         for value in values:
-            if ast.unparse(node.value) not in (value, "[]", "{}"):
+            if ast.unparse(node.value) not in (value, "[]", "{}", "()"):
                 yield source.change("constant return", node.value, value)
 
 
