@@ -155,12 +155,7 @@ IDL += [
         "module p { module msg { typedef long T; }; typedef short S; }; typedef long U; "
         "T a; T b; T c; S d; p::msg::S e; x::T f; p::T g; // p::S",
     ),
-    (
-        # A text that is wrong for another reason has a brace too many.
-        "idl-typedefs",
-        "}; module p { typedef long T; }; }; typedef p::T U; p::T a;",
-        "}; module p { typedef long T; }; }; typedef long U; T a;",
-    ),
+    ("idl-typedefs", "}; typedef long T; typedef T U;", "}; typedef long T; typedef long U;"),
     (
         "idl-long-names",
         "long longitude; unsigned long long_a; long double d; long long e; long doubled, f; "
