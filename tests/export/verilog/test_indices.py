@@ -99,11 +99,13 @@ def yosys() -> Tool:
 def test_yosys_keeps_bits_and_elements_apart(
     yosys: Tool, tmp_path: Path, device: str, keeps: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # If the test with `keeps` fails with a newer Yosys, that Yosys is mended.
     if keeps:
         monkeypatch.setattr("firm_hdl.export.verilog.yosys.without_indices", lambda design: design)
     (tmp_path / "t.v").write_text(to_verilog(TWO, module="top", header=""))
     script = f"read_verilog t.v; synth_{device} -top top -json t.json"
     yosys.run(tmp_path, "-q", "-p", script)
     ports = top_module(json.loads((tmp_path / "t.json").read_text()))["ports"]
-    assert (ports["z"]["bits"][0] in ports["y"]["bits"]) == keeps
+    joined = ports["z"]["bits"][0] in ports["y"]["bits"]
+    if keeps and not joined:
+        pytest.skip(f"Yosys {yosys.version} does not mistake the names")
+    assert joined == keeps
