@@ -193,6 +193,23 @@ def test_just_the_tests_that_run_a_line_judge_it_and_runs_resume(toy, capsys):
     }
 
 
+def test_faults_written_by_hand_are_judged(toy, capsys):
+    (toy / "tests/test_processes.py").unlink()
+    given = toy.parent / "faults.yaml"
+    fault = {"path": "firm_hdl/wire/toy.py"}
+    faults = [
+        {**fault, "old": "x + x", "new": "x + 1", "why": "no double"},
+        {**fault, "old": "x + x", "new": "2 * x"},
+    ]
+    given.write_text(json.dumps(faults))
+    found = run(toy, "--faults", str(given))
+    assert {scope: each.status for (scope, _), each in found.items()} == {
+        "no double": "killed",
+        "": "survived",
+    }
+    assert f"Faults of {given}" in capsys.readouterr().out
+
+
 def test_a_test_that_the_map_lacks_notices_nothing(toy, capsys):
     more = ["--count", "4", "--target", "wire"]
     (toy / "firm_hdl/wire/toy.py").write_text("def double(x):\n    return x + x\n")

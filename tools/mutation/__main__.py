@@ -14,6 +14,7 @@ from random import randrange
 from threading import Lock
 
 from tools.mutation.explained import read_explanations
+from tools.mutation.given import GivenFaultError, read_faults
 from tools.mutation.judge import Judge
 from tools.mutation.map.store import BrokenTreeError, read_map, tree_digest
 from tools.mutation.mutants import Mutant
@@ -34,18 +35,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not files:
         print("error: no tests there", file=sys.stderr)
         return 1
-    mutants = all_mutants(root, options.target or list(TARGETS))
-    if options.rule:
-        mutants = [mutant for mutant in mutants if mutant.change.rule in options.rule]
-    seed = randrange(10**6) if options.seed is None else options.seed
-    # With the same seed, an interrupted run can be continued.
-    print(f"--seed {seed}", file=sys.stderr)
-    chosen = sample(root, mutants, options.count, seed)
+    try:
+        chosen, origin = _chosen(root, options)
+    except GivenFaultError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
     out = Path(options.out)
     known = read(out)
     tree = tree_digest(root, test_files(root))
     todo = [mutant for mutant in chosen if _is_due(known.get(mutant.key), tree, options)]
-    print(f"{len(mutants)} faults, {len(chosen)} chosen, {len(todo)} to run", file=sys.stderr)
+    print(f"{len(chosen)} chosen, {len(todo)} to run", file=sys.stderr)
     if options.list:
         for mutant in chosen:
             print(f"{mutant.key} {mutant.path}:{mutant.line} {mutant.change.rule}")
@@ -59,7 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.confirm and not _confirm(root, known.values(), options.nice):
         return 1
     records = [known[mutant.key] for mutant in chosen if mutant.key in known]
-    text = f"{markdown(records, read_explanations(), tree)}\nSeed {seed}.\n"
+    text = f"{markdown(records, read_explanations(), tree)}\n{origin}.\n"
     print(text)
     if options.report:
         Path(options.report).write_text(text)
@@ -72,6 +71,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--count", type=int, default=200, help="faults to inject (default %(default)s)")
     add("--seed", type=int, help="chooses them; without it, others each time")
     add("--target", action="append", choices=list(TARGETS), help="only this one; repeatable")
+    add("--faults", metavar="FILE", help="faults written by hand, instead of a sample")
     add("--rule", action="append", help="only what this one makes; repeatable")
     add("--first", action="store_true", help="stop at the first test that notices a fault")
     add("--tests", action="append", metavar="PATH", help="only tests below this; repeatable")
@@ -95,6 +95,19 @@ def _parser() -> argparse.ArgumentParser:
     add("--list", action="store_true", help="list the faults, and run nothing")
     add("--root", default=str(ROOT), help=argparse.SUPPRESS)
     return parser
+
+
+def _chosen(root: Path, options: argparse.Namespace) -> tuple[list[Mutant], str]:
+    """Return the mutants to be judged, and where they come from."""
+    if options.faults:
+        return read_faults(root, Path(options.faults)), f"Faults of {options.faults}"
+    mutants = all_mutants(root, options.target or list(TARGETS))
+    if options.rule:
+        mutants = [mutant for mutant in mutants if mutant.change.rule in options.rule]
+    seed = randrange(10**6) if options.seed is None else options.seed
+    # With the same seed, an interrupted run can be continued.
+    print(f"--seed {seed}\nout of {len(mutants)} faults", file=sys.stderr)
+    return sample(root, mutants, options.count, seed), f"Seed {seed}"
 
 
 def _is_due(record: Record | None, tree: str, options: argparse.Namespace) -> bool:
