@@ -39,6 +39,26 @@ def test_long_line_is_cut_around_the_place():
     assert line == "x" * 400 + "..." and carets == "^^"
     _, line, carets = str(diagnostic(text, 2000, 2004)).split("\n")
     assert line.endswith("y") and len(line) == 207 and carets == " " * 203 + "^^^^"
+    # The part that is shown ends with the line.
+    _, line, _ = str(diagnostic(text, len(text) - 200, len(text))).split("\n")
+    assert line == "..." + "y" * 400
+
+
+def test_words_of_several_lines_are_marked_in_the_first():
+    assert str(diagnostic("int8 a\nint8 b\n", 5, 12)) == "a.msg:1:6: error: no\nint8 a\n     ^"
+    assert str(diagnostic("int8 a", 5, 9)) == "a.msg:1:6: error: no\nint8 a\n     ^"
+
+
+def test_text_without_a_line_end_is_shown_to_its_last_character():
+    assert str(diagnostic("int8 a\nint8 bc", 12, 14)).endswith("\nint8 bc\n     ^^")
+
+
+def test_all_errors_are_printed_in_their_order():
+    wrong = [diagnostic("a\nb\n", 2, 3, "second"), Diagnostic(message="none"),
+             diagnostic("a\nb\n", 0, 1, "first")]  # fmt: skip
+    assert str(DefinitionError(wrong)).splitlines() == [
+        "a.msg:2:1: error: second", "b", "^", "error: none", "a.msg:1:1: error: first", "a", "^",
+    ]  # fmt: skip
 
 
 def test_many_errors_in_one_line_are_printed_in_time():

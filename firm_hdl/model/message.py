@@ -60,7 +60,7 @@ class Field:
         if not isinstance(self.type, Array) or self.span is None:
             return text
         written = _LENGTH.search(self.span.line_text[: self.span.column - 1])
-        if written is None or int(written[1]) != self.type.count:
+        if written is None:
             return text
         return f"{text[: text.rindex('[')]}[{written[1]}]"
 

@@ -10,7 +10,7 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-__all__ = ["FORMATS", "make_old_db3", "make_recording"]
+__all__ = ["FORMATS", "make_old_db3", "make_recording", "record", "record_in_idl"]
 
 FORMATS = ["bag", "mcap", "db3"]
 
@@ -58,4 +58,22 @@ def make_old_db3(path: Path, types: list[str]) -> Path:
             row = index, f"/t{index}", name, "cdr", ""
             database.execute("INSERT INTO topics VALUES (?, ?, ?, ?, ?)", row)
     database.close()
+    return path
+
+
+def record(path: Path, name: str, text: str, *more: tuple[str, str]) -> Path:
+    """Record topics with given definitions; the hashes in the recording are wrong."""
+    with Writer2(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        for index, (type_name, definition) in enumerate([(name, text), *more]):
+            hashed = "RIHS01_" + "0" * 64
+            writer.add_connection(f"/t{index}", type_name, msgdef=definition, rihs01=hashed)
+    return path
+
+
+def record_in_idl(path: Path, name: str, text: str, *more: tuple[str, str]) -> Path:
+    """Record topics as `record` does, with definitions in IDL; they may lack their headings."""
+    (file,) = record(path, name, text, *more).glob("*.mcap")
+    data = file.read_bytes()
+    assert data.count(b"ros2msg") >= 1 + len(more)
+    file.write_bytes(data.replace(b"ros2msg", b"ros2idl"))
     return path

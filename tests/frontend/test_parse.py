@@ -186,6 +186,10 @@ def test_file_full_of_errors_is_given_up():
     *first, last = error.value.diagnostics
     assert len(first) == 1000
     assert last.message == "too many errors; the rest of this file was not checked"
+    assert (last.span.line, last.span.line_text) == (1001, "?")
+    with pytest.raises(DefinitionError) as error:
+        parse("\n".join("?" * 1000), "ros1")
+    assert {d.message for d in error.value.diagnostics} == {"'?' is not a type"}
 
 
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])

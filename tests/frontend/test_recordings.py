@@ -15,7 +15,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library, RecordingOrigin, open_library
 from firm_hdl.identity import type_hash
 
-from .recordings import FORMATS, make_old_db3, make_recording
+from .recordings import FORMATS, make_old_db3, make_recording, record
 from .workspace import make_files
 
 SEPARATOR = "=" * 80
@@ -108,15 +108,6 @@ def test_first_of_several_recordings_wins(tmp_path):
     ours = open_library(bags=[one, two])
     assert ours.names() == ["p/msg/A", "p/msg/B"]
     assert ours.message("p/A").fields[0].name == "one"
-
-
-def record(path, name, text, *more):
-    """Record topics with given definitions; the hashes in the recording are wrong."""
-    with Writer2(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-        for index, (type_name, definition) in enumerate([(name, text), *more]):
-            hashed = "RIHS01_" + "0" * 64
-            writer.add_connection(f"/t{index}", type_name, msgdef=definition, rihs01=hashed)
-    return path
 
 
 def test_texts_are_cut_at_headings_alone(tmp_path):

@@ -98,6 +98,16 @@ def test_defaults_see_the_constants_of_their_own_struct():
     assert found == {"S_Request": 3, "S_Response": 4}
 
 
+@pytest.mark.parametrize(
+    ("kind", "value"), [("float", "2"), ("double", "2"), ("boolean", "1"), ("long double", "2")]
+)
+def test_constants_have_the_kind_of_their_type_and_not_of_their_value(kind, value):
+    text = f"""module p {{ module msg {{ const {kind} N = {value};
+      struct T {{ long a[N]; }}; }}; }};"""
+    (wrong,) = read(text)[1]
+    assert wrong.message == "the length of an array must be an integer"
+
+
 def test_structs_keep_their_own_constants():
     messages, wrong = read(
         SERVICE.format(outer="const long X = 1;", inner="", request="", response="")
@@ -172,6 +182,19 @@ def test_an_included_file_is_looked_for_as_it_is_written_before_its_own_folder(t
         "p/sizes.idl": sizes.format(2),
         "q/msg/p/sizes.idl": sizes.format(3),
         "p/msg/T.idl": """#include "q/msg/Base.idl"
+            module p { module msg { struct T { long a[N]; }; }; };""",
+    }
+    assert types(library(tmp_path, files).message("p/msg/T")) == {"a": "int32[2]"}
+
+
+def test_a_file_that_was_included_before_is_not_looked_for_elsewhere(tmp_path):
+    sizes = "module p {{ module msg {{ const long N = {}; }}; }};"
+    files = {
+        "q/msg/Base.idl": '#include "p/sizes.idl"\nmodule q { struct Base { long x; }; };',
+        "p/sizes.idl": sizes.format(2),
+        "q/msg/p/sizes.idl": sizes.format(3),
+        "p/msg/T.idl": """#include "p/sizes.idl"
+            #include "q/msg/Base.idl"
             module p { module msg { struct T { long a[N]; }; }; };""",
     }
     assert types(library(tmp_path, files).message("p/msg/T")) == {"a": "int32[2]"}
@@ -292,72 +315,6 @@ def test_types_of_two_packages_may_have_one_name(tmp_path):
     }
     found = library(tmp_path, files).message("p/msg/T")
     assert [item.type.fields[0].name for item in found.fields] == ["r", "p", "q"]
-
-
-# Annotations and comments.
-
-
-def test_annotations_belong_to_their_own_member():
-    text = """module p { module msg {
-      @verbatim(language="comment", text="of T") struct T {
-        @verbatim(language="comment", text="of a") @unit(value="m") @default(value=1) long a;
-        long b;
-        @unit(value="s") long c[2];
-        @verbatim(language="comment", text="of d") long d[3];
-        @default(value="(1, 2)") sequence<long, 2> e;
-        sequence<long, 2> f;
-        @unit(value="kg") @default(value=2) long g, h;
-        long i;
-      };
-    }; };"""
-    messages, wrong = read(text)
-    assert wrong == [] and messages["T"].comment == "of T"
-
-    def default(member):
-        value = member.default
-        if value is None:
-            return None
-        return tuple(i.value for i in value.items) if hasattr(value, "items") else value.value
-
-    found = {m.name.text: (m.comment, m.unit, default(m)) for m in messages["T"].members}
-    assert found == {
-        "a": ("of a", "m", 1),
-        "b": ("", None, None),
-        "c": ("", "s", None),
-        "d": ("of d", None, None),
-        "e": ("", None, (1, 2)),
-        "f": ("", None, None),
-        "g": ("", "kg", 2),
-        "h": ("", "kg", 2),
-        "i": ("", None, None),
-    }
-
-
-def test_comments_are_those_in_the_language_of_comments():
-    text = """module p { struct T {
-      @verbatim(language="comment", text="one") @verbatim(language="c++", text="no")
-      @verbatim(language="comment", text="two" "\\n" "three") @verbatim(text="none") long a;
-      @vendor::unit(value="m") @vendor::verbatim(language="comment", text="theirs") long b;
-      @unit::vendor(value="s") long c;
-    }; };"""
-    messages, wrong = read(text)
-    assert wrong == []
-    a, b, c = messages["T"].members
-    assert a.comment == "one\ntwo\nthree"
-    # rosidl_parser decides by the first word of a name.
-    assert (b.comment, b.unit, c.unit) == ("", None, "s")
-
-
-def test_a_default_of_one_name_is_not_that_of_an_array_after_it():
-    text = (
-        'module p { struct T { @default(value="(1, 2)") long a[2]; @default(value=3) long b; }; };'
-    )
-    messages, wrong = read(text)
-    assert wrong == []
-    a, b = messages["T"].members
-    assert [item.value for item in a.default.items] == [1, 2] and b.default.value == 3
-    # A list is no default of a number, and a number is none of a list.
-    assert read('module p { struct T { @default(value="(1, 2)") long a, b[2]; }; };')[1]
 
 
 def test_unknown_constant_in_a_dependency_names_its_file(tmp_path):

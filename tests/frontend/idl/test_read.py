@@ -284,6 +284,9 @@ def test_a_thousand_mistakes_are_enough():
     wrong = read(f"module p {{ struct T {{ {members} }}; }};")[1]
     assert len(wrong) == 1001
     assert wrong[-1].message == "too many errors; the others are not listed"
+    members = "".join(f"any a{i}; " for i in range(1000))
+    wrong = read(f"module p {{ struct T {{ {members} }}; }};")[1]
+    assert [each.message for each in wrong] == ["type 'any' is not supported"] * 1000
 
 
 @pytest.mark.parametrize("kind", ["typedefs", "constants", "includes"])
@@ -315,6 +318,27 @@ def test_members_are_in_the_order_of_the_text():
     members = read(text)[0]["T"].members
     assert [m.name.text for m in members] == ["A", "b", "C"]
     assert [isinstance(m, ConstantSyntax) for m in members] == [True, False, True]
+
+
+@pytest.mark.parametrize(
+    ("names", "wrong", "message"),
+    [
+        ("A B", "B", "'B' is a second struct beside 'A'; one message per file"),
+        ("A_Request B", "B", "'B' must end with '_Response', as the file declares a service"),
+        ("A B_Response", "A", "'A' must end with '_Request', as the file declares a service"),
+        ("A_Request B_Response", "B_Response",
+         "'B_Response' must be called 'A_Response', to match 'A_Request'"),
+        ("A_Goal A_Result", "A_Result",
+         "'A_Result' is a second struct beside 'A_Goal'; one message per file"),
+        ("A_Goal A_Result B_Feedback", "B_Feedback",
+         "'B_Feedback' must be called 'A_Feedback', to match 'A_Goal'"),
+    ],
+)  # fmt: skip
+def test_structs_whose_names_do_not_fit_are_marked(names, wrong, message):
+    structs = " ".join(f"struct {name} {{ long a; }};" for name in names.split())
+    first, *_ = read(f"module p {{ {structs} }};")[1]
+    text = first.span.source.text
+    assert (text[first.span.start : first.span.end], first.message) == (wrong, message)
 
 
 def test_a_long_default_before_many_names_takes_no_time():

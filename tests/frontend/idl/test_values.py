@@ -62,6 +62,38 @@ def test_integers(text, want):
 def test_complement_of_an_unsigned_type_has_its_size():
     assert value("~1", 8) == ("integer", 254)
     assert value("~0", 64) == ("integer", 2**64 - 1)
+    for text, want in {"~(~1)": 1, "-(~1)": -254, "~1 | 1": 255, "1 | ~1": 255}.items():
+        assert value(text, 8) == ("integer", want), text
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    {
+        "1 / 0": "division by zero",
+        "1 % 0": "division by zero",
+        "1. / 0": "division by zero",
+        "1 / 0.0": "division by zero",
+        "1e999": "this value is too large",
+        "-1e999": "this value is too large",
+        "1e308 * 10": "this value is too large",
+        "1 + TRUE": "'+' is for numbers, not for a boolean",
+        "TRUE + 1": "'+' is for numbers, not for a boolean",
+        "1 + 'a'": "'+' is for numbers, not for a character",
+        '1.5 - "a"': "'-' is for numbers, not for a string",
+        "~1.5": "an integer must follow '~', not a number with a fraction",
+        "~TRUE": "an integer must follow '~', not a boolean",
+        "-TRUE": "a number must follow '-', not a boolean",
+        "+'a'": "a number must follow '+', not a character",
+        "1.5 % 2": "'%' is for integers, not for a number with a fraction",
+        "1 << 2.": "'<<' is for integers, not for a number with a fraction",
+        "2. | 1": "'|' is for integers, not for a number with a fraction",
+        "1 < < 2": "'< <' must be written without blanks",
+    }.items(),
+)
+def test_operators_take_numbers_alone(text, message):
+    with pytest.raises(IdlError) as error:
+        value(text)
+    assert error.value.diagnostic.message == message
 
 
 @pytest.mark.parametrize(
@@ -114,6 +146,8 @@ def test_characters(text, want):
         ("char", r"'\x7f'", 127),
         ("char", "-128", -128),
         ("wchar", r"L'\u2122'", 0x2122),
+        ("wchar", r"L'\x80'", 128),
+        ("wchar", "L'é'", 233),
         ("int8", "-128", -128),
         ("uint64", "18446744073709551615", 2**64 - 1),
         ("float32", "2", 2.0),

@@ -1,0 +1,158 @@
+"""Names and texts of recordings: which topics have a definition, and which one counts."""
+
+from __future__ import annotations
+
+import pytest
+from rosbags.rosbag1 import Writer
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import RecordingOrigin, open_library
+
+from .recordings import make_old_db3, record, record_in_idl
+
+LINE = "=" * 80
+
+
+def refused(path):
+    with pytest.raises(DefinitionError) as error:
+        RecordingOrigin(path)
+    return str(error.value)
+
+
+def record_in_ros1(path, *topics):
+    """Record topics of ROS 1 with given definitions; their md5 sums are wrong."""
+    with Writer(path) as writer:
+        for number, (name, text) in enumerate(topics):
+            writer.add_connection(f"/t{number}", name, msgdef=text, md5sum="0" * 32)
+    return path
+
+
+def test_types_without_definitions_are_of_more_weight_than_names_of_no_type(tmp_path):
+    # Folders or a distribution help with the one and not with the other.
+    assert "has no definitions of its types" in refused(
+        make_old_db3(tmp_path / "both.db3", ["no name of ros", "std_msgs/msg/String"])
+    )
+    assert "type 'no name of ros', which is not a ROS name" in refused(
+        make_old_db3(tmp_path / "one.db3", ["no name of ros"])
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "is_legal"),
+    [
+        ("p/A", True),
+        ("p/msg/A", True),
+        ("p/srv/A_Request", True),
+        ("p/action/A_Goal", True),
+        ("p/idl/A", False),
+        ("p//A", False),
+        ("/A", False),
+        ("p/", False),
+        ("/msg/A", False),
+        ("p/msg/", False),
+        ("A", False),
+        ("p/msg/A/B", False),
+    ],
+)
+def test_names_of_types_have_a_package_and_at_most_one_of_three_kinds(tmp_path, name, is_legal):
+    path = record(tmp_path / "r", name, "int8 a\n", ("q/msg/B", "int8 b\n"))
+    want = name if name.count("/") == 2 else name.replace("/", "/msg/")
+    assert open_library(bags=[path]).interfaces() == [*([want] if is_legal else []), "q/msg/B"]
+
+
+def test_definition_in_idl_without_a_text_is_a_missing_one(tmp_path):
+    path = record_in_idl(tmp_path / "r", "p/msg/A", "", ("p/msg/B", "struct B { long b; };"))
+    ours = open_library(bags=[path])
+    assert ours.names() == ["p/msg/B"]
+    with pytest.raises(DefinitionError, match="a topic of type 'p/msg/A', but not its definition"):
+        ours.message("p/A")
+
+
+def test_definition_in_idl_of_blanks_is_none_of_that_type(tmp_path):
+    ours = open_library(bags=[record_in_idl(tmp_path / "r", "p/msg/A", " \n ")])
+    assert ours.names() == ["p/msg/A"]
+    with pytest.raises(DefinitionError, match="the file ends here"):
+        ours.message("p/A")
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_empty_text_of_ros1_is_a_definition_like_any_other(tmp_path, order):
+    topics = [("p/msg/B", ""), ("p/msg/A", f"B b\n{LINE}\nMSG: p/B\nint8 x\n")][::order]
+    ours = open_library(bags=[record_in_ros1(tmp_path / "r.bag", *topics)])
+    assert ours.names() == ["p/A", "p/B"]
+    assert [field.name for field in ours.message("p/B").fields] == ["x"][: order == -1]
+
+
+def test_type_whose_topic_lacks_a_definition_has_that_of_another_topic(tmp_path):
+    a = f"{LINE}\nIDL: p/msg/A\nstruct A {{ p::msg::B b; }};\n"
+    b = f"{LINE}\nIDL: p/msg/B\nstruct B {{ long x; }};\n"
+    for order in (1, -1):
+        topics = [("p/msg/B", ""), ("p/msg/A", a + b)][::order]
+        path = record_in_idl(tmp_path / str(order), *topics[0], topics[1])
+        ours = open_library(bags=[path])
+        assert ours.names() == ["p/msg/A", "p/msg/B"]
+        assert [field.name for field in ours.message("p/B").fields] == ["x"]
+
+
+def test_scopes_of_idl_stand_in_names_of_definitions_in_idl_alone(tmp_path):
+    (path,) = record(tmp_path / "r", "p/msg//Long", "int8 a\n").glob("*.mcap")
+    path.write_bytes(path.read_bytes().replace(b"p/msg//Long", b"p::msg::Lon"))
+    assert "type 'p::msg::Lon', which is not a ROS name" in refused(path)
+
+
+@pytest.mark.parametrize("ending", ["", "\n", "\n\n"])
+def test_every_text_ends_with_one_line_end_at_least(tmp_path, ending):
+    text = f"B b{ending}{LINE}\nMSG: p/B\nint8 x{ending}" if ending else "int8 x"
+    ours = open_library(bags=[record(tmp_path / "r", "p/msg/A", text)])
+    if not ending:
+        assert ours.source("p/A").text == "int8 x\n"
+        return
+    assert ours.source("p/A").text == "B b\n"
+    assert ours.source("p/B").text == f"int8 x{ending}"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "parts"),
+    [
+        ("p/srv/S", "int8 a\n---\nint8 b\n", ["p/srv/S_Request", "p/srv/S_Response"]),
+        ("p/srv/S_Request", "int8 a\n", ["p/srv/S_Request"]),
+        ("p/srv/S_Request", "int8 a # ---\n", ["p/srv/S_Request"]),
+        ("p/action/A_Goal", "int8 a\n", ["p/action/A_Goal"]),
+    ],
+)
+def test_separators_tell_services_from_their_messages(tmp_path, name, text, parts):
+    ours = open_library("humble", bags=[record(tmp_path / "r", name, text)])
+    assert [message.name for message in ours.interface(name).messages] == parts
+
+
+def test_bags_are_known_by_their_ending_in_any_case(tmp_path):
+    path = record_in_ros1(tmp_path / "r.bag", ("p/msg/A", "int8 a\n"))
+    path = path.rename(tmp_path / "R.BAG")
+    assert RecordingOrigin(path).dialect == "ros1"
+    folder = record(tmp_path / "folder.bag", "p/msg/A", "int8 a\n")
+    assert RecordingOrigin(folder).dialect == "ros2"
+    assert open_library(bags=[folder]).names() == ["p/msg/A"]
+
+
+def test_definitions_in_full_names_keep_words_that_only_look_so(tmp_path):
+    text = "  q/msg/Pt p # of q/msg/Pt\nstring q='q/msg/Pt'\n# q/msg/Pt\n"
+    path = record(tmp_path / "r", "p/msg/A", f"{text}{LINE}\nMSG: q/Pt\nint8 x\n")
+    assert open_library(bags=[path]).source("p/A").text == (
+        "q/Pt p # of q/msg/Pt\nstring q='q/msg/Pt'\n# q/msg/Pt\n"
+    )
+
+
+def test_folders_in_a_recordings_folder_are_not_read(tmp_path):
+    path = record(tmp_path / "r", "p/msg/A", "int8 a\n")
+    (path / "metadata").mkdir()
+    assert open_library(bags=[path]).names() == ["p/msg/A"]
+    metadata = path / "metadata.yaml"
+    metadata.write_text(metadata.read_text() + "# more\n" * (1 << 18))
+    assert "metadata.yaml' " in refused(path)
+
+
+def test_only_the_start_of_a_bag_is_looked_at(tmp_path):
+    path = tmp_path / "r.bag"
+    for start in (b"#ROSBAG V2.0", b"#ROSBAG V" + b"2" * 200 + b"\n", b"ROSBAG V2.0\n"):
+        path.write_bytes(start + b"x" * 1000)
+        assert refused(path).endswith("File magic is invalid.")
