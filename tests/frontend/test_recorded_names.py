@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import sqlite3
+from contextlib import closing
+
 import pytest
 from rosbags.rosbag1 import Writer
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import RecordingOrigin, open_library
 
-from .recordings import make_old_db3, record, record_in_idl
+from .recordings import make_old_db3, make_recording, record, record_in_idl
 
 LINE = "=" * 80
 
@@ -156,3 +159,27 @@ def test_only_the_start_of_a_bag_is_looked_at(tmp_path):
     for start in (b"#ROSBAG V2.0", b"#ROSBAG V" + b"2" * 200 + b"\n", b"ROSBAG V2.0\n"):
         path.write_bytes(start + b"x" * 1000)
         assert refused(path).endswith("File magic is invalid.")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "topics SET type = x'414243'",
+        "message_definitions SET encoded_message_definition = x'4142'",
+    ],
+)
+def test_columns_of_another_type_than_text_are_damage(tmp_path, change):
+    # SQLite does not enforce the types of columns.
+    (file,) = make_recording(tmp_path, "db3").glob("*.db3")
+    with closing(sqlite3.connect(file)) as database, database:
+        database.execute(f"UPDATE {change}")
+    assert refused(file).endswith("cannot be read as a recording: it is damaged")
+
+
+@pytest.mark.parametrize("position", [2**63 - 1, 2**63, 2**64 - 1])
+def test_positions_that_no_file_has_are_damage(tmp_path, position):
+    path = record_in_ros1(tmp_path / "r.bag", ("p/msg/A", "int8 a\n"))
+    data = path.read_bytes()
+    start = data.index(b"index_pos=") + len(b"index_pos=")
+    path.write_bytes(data[:start] + position.to_bytes(8, "little") + data[start + 8 :])
+    assert refused(path).endswith("cannot be read as a recording: it is damaged")

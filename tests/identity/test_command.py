@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+
 import pytest
 
 from firm_hdl.cli import main
@@ -14,6 +16,10 @@ DEFINITIONS = {
     "p/action/Do.action": "int8 a\n---\nint8 b\n---\nint8 c\n",
     "p/msg/Bad.msg": "int33 a\n",
     "p/msg/Worse.msg": "int34 a\n",
+    "p/msg/AsBad.msg": "int33 a\n",
+    "p/msg/Both.msg": "int8 x\n",
+    "p/srv/Both.srv": "int8 y\n---\n",
+    "p/msg/Do_SendGoal.msg": "int8 z\n",
 }
 
 
@@ -47,6 +53,39 @@ def test_md5_of_an_action_is_that_of_its_messages(run):
     assert (status, err) == (0, "")
     parts = ["Goal", "Result", "Feedback", "ActionGoal", "ActionResult", "ActionFeedback", "Action"]
     assert [line.split("  ")[1] for line in out.splitlines()] == [f"p/Do{part}" for part in parts]
+
+
+def digest(text):
+    return hashlib.md5(text.encode()).hexdigest()
+
+
+def test_md5_of_a_service_is_one_sum_under_its_name(run):
+    assert run("md5", "p/S") == (0, f"{digest('int8 aint8 b')}  p/S\n", "")
+
+
+def test_message_and_service_of_one_name_are_two_types_in_ros1(run):
+    two = f"{digest('int8 x')}  p/Both\n{digest('int8 y')}  p/Both\n"
+    assert run("md5", "p/msg/Both", "p/srv/Both") == (0, two, "")
+    # Each type is listed once, by whatever name it is asked for.
+    assert run("md5", "p/Both", "p/srv/Both", "p/msg/Both", "p/srv/Both") == (0, two, "")
+
+
+def test_services_of_actions_are_those_of_ros2(run):
+    names = ["p/action/Do_SendGoal", "p/action/Do_GetResult"]
+    status, out, err = run("hash", *names, "p/Do_GetResult")
+    assert (status, err) == (0, "")
+    found = [line.split("  ") for line in out.splitlines()]
+    assert [name for _, name in found] == names
+    assert len({hashed for hashed, _ in found}) == 2
+    # In ROS 1, such a name is one like any other.
+    assert run("md5", "p/Do_SendGoal") == (0, f"{digest('int8 z')}  p/Do_SendGoal\n", "")
+
+
+def test_the_same_mistake_in_two_files_is_reported_for_both(run):
+    status, _, err = run("md5", "p/Bad", "p/AsBad", "p/Bad")
+    assert status == 1
+    places = [line.partition(": ")[0] for line in err.splitlines() if "'int33' is not" in line]
+    assert places == ["./p/msg/Bad.msg:1:1", "./p/msg/AsBad.msg:1:1"]
 
 
 def test_hash_of_all_types_that_have_one(run):

@@ -19,6 +19,7 @@ from firm_hdl.model import IDL_PRIMITIVES, Array, Field, Message, Sequence, Stri
 from tests.depth import by_depth
 
 from ..frontend.workspace import library, make_files
+from .rosmsg_examples import EXAMPLES
 
 DEBIAN_PYTHON = "/usr/bin/python3"
 WORKER = Path(__file__).with_name("rosmsg_worker.py")
@@ -96,6 +97,15 @@ def test_defaults_are_applied(tmp_path):
         "l:\n- 'yes'\n- ''\nm:\n- true\n- false\n"
         "n:\n- \"\\0\"\n- ÿ\no:\n- 0\n- 0\np:\n- ''\n- ''\n"
         "y: 0.0\n'on': 'null'\n"
+    )
+
+
+def test_long_texts_stay_on_their_line_and_floats_of_lists_have_32_bits(tmp_path):
+    words = " ".join(["word"] * 60)
+    ours = library(tmp_path, {"p/A": f"string s {words}\nfloat32[] f [1e39, -1e39, 1e-50]\n"
+                                     "float64[] d [1e39, 0.1]\nfloat32 x 0.1\n"})  # fmt: skip
+    assert proto(ours.message("p/A"), quotes=False) == (
+        f"s: {words}\nf:\n- .inf\n- -.inf\n- 0.0\nd:\n- 1.0e+39\n- 0.1\nx: 0.1\n"
     )
 
 
@@ -204,39 +214,29 @@ def rosmsg():
     return run
 
 
-# Each row changes the YAML style of another part.
-ROS1 = {
-    "p/Plain": "int32 a\nfloat32 b\nstring c\nbool d\n",
-    "p/Five": "int32 a\nfloat32 b\nstring c\nbool d\nuint8 e\n",
-    "p/Times": "time t\nduration d\ntime[] ts\nduration[2] ds\nHeader header\nHeader[] own\n",
-    "p/Header": "string mine\n",
-    "p/Bytes": "uint8[] a\nchar[] b\nuint8[3] c\nchar[70] d\nbyte[] e\nint8[2] f\n",
-    "p/Lists": "float64[] a\nstring[] b\nbool[] c\nstring[2] d\nfloat32[4] e\n",
-    "p/Long": "int8 a\nfloat32[5] b\nPlain c\n",
-    "p/Short": "int8 a\nfloat32[4] b\nPlain c\n",
-    "p/LongLast": "Plain a\nPlain b\nLong c\n",
-    "p/Messages": "Plain[] a\nPlain[2] b\nFive[] c\nPlain[] d\n",
-    "p/None": "",
-    "p/Nones": "None a\nNone[] b\nNone[2] c\n",
-    "p/Nested": "Messages[] a\nNones[] b\nTimes c\nint8 x\nint8 y\n",
-    "p/Constants": "int8 A=1\nstring B=x\nint8 a\n",
-    "p/Names": "float64 y\nint8 on\nint8 null\nint8 x\n",
-    "p/Python": "int8 self\nint8 lambda\nint8 None\nint8 print\nint8 match\n",
-    "p/Folded": "int8[60] numbers\nstring[40] texts\n",
-}
-
-
-def test_example_is_that_of_rosmsg_proto(tmp_path, rosmsg):
-    ours = library(tmp_path, ROS1, "ros1")
+def make_examples(root):
+    """Return a library of the examples' definitions and of ROS's own types in them."""
     needed = {
         "Header": "uint32 seq\ntime stamp\nstring frame_id\n",
         "Time": "time data\n",
         "Duration": "duration data\n",
     }
-    make_files(tmp_path, {f"std_msgs/msg/{name}.msg": text for name, text in needed.items()})
-    want = rosmsg(tmp_path, list(ROS1))
-    assert None not in want.values()
-    assert {name: proto(ours.message(name)) for name in ROS1} == want
+    make_files(root, {f"std_msgs/msg/{name}.msg": text for name, text in needed.items()})
+    return library(root, {name: text for name, (text, _) in EXAMPLES.items()}, "ros1")
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example_is_the_recorded_one_of_rosmsg_proto(tmp_path, name):
+    message = make_examples(tmp_path).message(name)
+    assert proto(message, quotes=False) == EXAMPLES[name][1]
+    assert proto(message) == f'"{EXAMPLES[name][1]}"'
+
+
+def test_example_is_that_of_rosmsg_proto(tmp_path, rosmsg):
+    make_examples(tmp_path)
+    assert rosmsg(tmp_path, list(EXAMPLES)) == {
+        name: f'"{text}"' for name, (_, text) in EXAMPLES.items()
+    }
 
 
 def test_examples_of_the_corpus_are_those_of_rosmsg_proto(corpus, rosmsg):
@@ -282,6 +282,15 @@ def test_size_is_that_of_the_text_before_it_is_written(tmp_path, monkeypatch):
         pattern = f" has an example of {len(text)} characters, which is more than {len(text) - 1}$"
         with pytest.raises(TooLargeError, match=pattern):
             proto(ours.message(name))
+
+
+def test_levels_of_ros1_are_counted_from_the_outermost_message(tmp_path):
+    texts = {f"p/L{n}": f"L{n - 1} f\n" for n in range(1, 101)} | {"p/L0": "int8 x\n"}
+    ours = library(tmp_path, texts, "ros1")
+    # L99 has 100 levels.
+    assert proto(ours.message("p/L99"), quotes=False).endswith("x: 0")
+    with pytest.raises(TooLargeError, match=r"^p/L100 has an example of more than 100 levels$"):
+        proto(ours.message("p/L100"))
 
 
 @pytest.mark.parametrize(
