@@ -90,8 +90,9 @@ def read_unit(
     if definition.language == "idl":
         messages, wrong = read_idl(source, _with_own_folder(name, include))
         wrong = wrong or list(_check_structs(name, source, messages))
-        # Drop structs of other names, because nothing can look them up.
-        messages = {part: messages[part] for part in _structs(name) if part in messages}
+        # Drop structs of other names, because nothing can look them up; in ROS 1, that is all.
+        wanted = _structs(name) if name.dialect == "ros2" else []
+        messages = {part: messages[part] for part in wanted if part in messages}
     else:
         messages, wrong = _read_parts(name, source, definition.language)
         diagnostics += check_type_name(source, name, messages)

@@ -99,6 +99,19 @@ def test_every_part_has_its_comment_its_constants_and_spans_of_the_whole_file(tm
     assert (a.unit, b.comment) == ("m", "Why.")
     assert (a.span.line, b.span.line, b.span.column) == (3, 8, 8)
     assert b.span.source.text == text == service.text
+    (constant,) = service.request.constants
+    assert (constant.span.line, constant.span.column) == (2, 6)
+
+
+def test_every_part_has_its_own_text(tmp_path):
+    text = "# Asks.\nint8 a # [m]\n---\n---\nint8 c"
+    action = load(tmp_path, "action/A", text)
+    parts = action.goal, action.result, action.feedback
+    assert [part.text for part in parts] == ["# Asks.\nint8 a # [m]\n", "", "int8 c\n"]
+    assert (action.text, action.comment) == (text, "Asks.")
+    # What ROS derives has neither the text nor the comment of the file.
+    assert [(each.text, each.comment) for each in action.services] == [("", "")] * 2
+    assert action.wrappers[0].text == ("unique_identifier_msgs/UUID goal_id\nA_Feedback feedback\n")
 
 
 def test_ros2_service(tmp_path):
@@ -249,8 +262,10 @@ def test_ros1_definitions_may_use_the_messages_of_actions_once_they_are_files(tm
 )
 def test_definitions_cannot_use_types_without_a_message_file(tmp_path, distro, type_):
     files = {"p/srv/S.srv": "---", "p/action/F.action": FIBONACCI, "p/msg/M.msg": f"{type_} a"}
-    with pytest.raises(DefinitionError, match="is not defined in package 'p'"):
+    with pytest.raises(DefinitionError, match="is not defined in package 'p'") as error:
         Library(distro, [make_files(tmp_path, files)]).message("p/M")
+    # In ROS 2, no build makes them.
+    assert "build" not in str(error.value)
 
 
 def test_file_with_a_derived_name_wins_over_later_origins(tmp_path):
@@ -261,6 +276,48 @@ def test_file_with_a_derived_name_wins_over_later_origins(tmp_path):
     assert fields(Library("noetic").message("actionlib/TestGoal")) == ["int32 goal"]
     make_files(tmp_path, {"actionlib/msg/TestGoal.msg": "int8 file"})
     assert fields(Library("noetic", [tmp_path]).message("actionlib/TestGoal")) == ["int8 file"]
+
+
+def test_an_action_called_header_has_the_header_of_std_msgs(tmp_path):
+    action = load(tmp_path, "action/Header", FIBONACCI, distro="noetic")
+    assert fields(action.wrappers[0]) == [
+        "std_msgs/Header header", "actionlib_msgs/GoalID goal_id", "p/HeaderGoal goal",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "legal"), [("srv", 1), ("action", 2)])
+def test_every_separator_that_is_too_many_is_reported(tmp_path, kind, legal):
+    with pytest.raises(DefinitionError) as error:
+        load(tmp_path, f"{kind}/A", "---\nint8 a\n" * 5)
+    found = error.value.diagnostics
+    assert [each.span.line for each in found] == [1 + 2 * n for n in range(legal, 5)]
+    assert {each.span.line_text for each in found} == {"---"}
+
+
+@pytest.mark.parametrize("kind", ["msg", "srv", "action"])
+def test_ros1_has_no_definitions_in_idl(tmp_path, kind):
+    structs = {"msg": ["A"], "srv": ["A_Request", "A_Response"],
+               "action": ["A_Goal", "A_Result", "A_Feedback"]}[kind]  # fmt: skip
+    text = " ".join(f"struct {name} {{ long a; }};" for name in structs)
+    make_files(tmp_path, {f"p/{kind}/A.idl": f"module p {{ module {kind} {{ {text} }}; }};"})
+    assert Library("lyrical", [tmp_path]).interface("p/A").name == f"p/{kind}/A"
+    with pytest.raises(DefinitionError, match="ROS 1 has no definitions in IDL"):
+        Library("noetic", [tmp_path]).interface(f"p/{kind}/A")
+
+
+@pytest.mark.parametrize("kind", ["msg", "srv", "action"])
+def test_file_included_without_a_folder_is_that_beside_the_file(tmp_path, kind):
+    make_files(tmp_path, {
+        f"p/{folder}/sizes.idl": f"module p {{ const long N = {size}; }};"
+        for folder, size in (("msg", 2), ("srv", 3), ("action", 4))
+    })  # fmt: skip
+    structs = {"msg": ["A"], "srv": ["A_Request", "A_Response"],
+               "action": ["A_Goal", "A_Result", "A_Feedback"]}[kind]  # fmt: skip
+    text = " ".join(f"struct {name} {{ long a[N]; }};" for name in structs)
+    idl = f'#include "sizes.idl"\nmodule p {{ module {kind} {{ {text} }}; }};'
+    make_files(tmp_path, {f"p/{kind}/A.idl": idl})
+    first, *_ = Library("lyrical", [tmp_path]).interface(f"p/{kind}/A").messages
+    assert fields(first) == [f"int32[{ {'msg': 2, 'srv': 3, 'action': 4}[kind] }] a"]
 
 
 def test_long_suffixes_are_tried_first(tmp_path):
