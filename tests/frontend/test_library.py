@@ -55,7 +55,10 @@ def test_load_message_takes_paths(tmp_path):
     assert load_message("p/A", distro="foxy", paths=[tmp_path]).fields[0].name == "x"
 
 
-@pytest.mark.parametrize("name", ["", "/", "a//b", "/a/b", "a/b/", "a/b/c", "a/b/c/d", "time"])
+@pytest.mark.parametrize(
+    "name",
+    ["", "/", "/b", "a/", "a//b", "/a/b", "a/b/", "a/b/c", "a/b/c/d", "/msg/b", "a/msg/", "time"],
+)
 def test_malformed_names(name):
     assert refused(Library("noetic").message, name) == (
         f"error: '{name}' is not the name of a type, which is 'package/Name'"
@@ -134,6 +137,14 @@ def test_a_service_is_no_message(tmp_path, name):
     )
 
 
+def test_an_action_is_no_message(tmp_path):
+    make_files(tmp_path, {"p/action/C.action": "---\n---"})
+    assert refused(Library("lyrical", [tmp_path]).message, "p/C") == (
+        "error: 'p/action/C' is an action, not a message; "
+        "did you mean 'p/action/C_Goal', 'p/action/C_Result' or 'p/action/C_Feedback'?"
+    )
+
+
 def test_services_and_actions_are_suggested(tmp_path):
     lib = Library("lyrical", [make_files(tmp_path, {"p/srv/Begin.srv": "---"})])
     assert refused(lib.interface, "p/Begni") == (
@@ -156,6 +167,8 @@ def test_messages_of_services_are_the_same_objects_however_asked_for(tmp_path):
         assert lib.message(request) is lib.interface("p/B").request is lib.interface(request)
         assert lib.message(goal) is lib.interface("p/C").goal
         assert lib.interface("p/C") is lib.interface("p/action/C")
+        assert lib.interface("p/B") is lib.interface("p/srv/B")
+        assert [lib.interface(n).name[-1] for n in ("p/B", "p/C", "p/B")] == ["B", "C", "B"]
         assert lib.source(request).text == "int8 a\n---"
         assert lib.source(goal).text == lib.source("p/C").text == "---\n---"
     assert Library("noetic", [tmp_path]).message("p/srv/BRequest").name == "p/BRequest"
@@ -199,6 +212,8 @@ def test_origins_replace_the_types_of_the_distribution(tmp_path):
     assert refused(lib.message, "std_msgs/String") == "error: package 'std_msgs' is not found"
     lib = Library("lyrical", [make_files(tmp_path, {"q/msg/B.msg": "int8 y"})], origins=[origin])
     assert lib.message("q/B").fields[0].name == "y"
+    # Without other origins there are the folders alone.
+    assert Library("lyrical", [tmp_path], origins=()).interfaces() == ["q/msg/B"]
 
 
 def test_origins_may_have_messages_of_services_by_themselves():
@@ -278,6 +293,16 @@ def test_hash_changes_with_a_constant_whose_value_is_in_an_included_file(tmp_pat
         made = Library("lyrical", [make_files(folder, files)])
         assert [each.value for each in made.message("p/msg/T").constants] == [value]
         return made.definition_hash("p/msg/T")
+
+    assert digest(3) != digest(4)
+
+
+def test_hash_changes_with_a_default_whose_value_is_in_an_included_file(tmp_path):
+    def digest(value):
+        idl = "module p { module msg { struct T { @default(value=N) long x; }; }; };"
+        sizes = f"module p {{ module msg {{ const long N = {value}; }}; }};"
+        files = {"p/msg/T.idl": f'#include "p/msg/sizes.idl"\n{idl}', "p/msg/sizes.idl": sizes}
+        return Library("lyrical", [make_files(tmp_path / str(value), files)]).definition_hash("p/T")
 
     assert digest(3) != digest(4)
 

@@ -152,6 +152,18 @@ def test_line_ends(dialect, end):
     assert members[2].comment == "d"
 
 
+@pytest.mark.parametrize("end", "\v\f\x1c\x1d\x1e\x85\u2028\u2029")
+def test_line_ends_of_python_are_those_of_ros2_alone(end):
+    text = f"string A=x{end}string B=y"
+    assert [m.value.value for m in parse(text, "ros2").members] == ["x", "y"]
+    assert [m.value.value for m in parse(text, "ros1").members] == [f"x{end}string B=y"]
+
+
+def test_tabs_are_blanks_in_ros2_alone():
+    text = "string A=x\ty"
+    assert [parse(text, d).members[0].value.value for d in ("ros1", "ros2")] == ["x\ty", "x y"]
+
+
 @pytest.mark.parametrize("text", ["", "\n", "   ", "\t\n \n", "#", "  # c", "# a\n# b"])
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])
 def test_texts_without_definitions(dialect, text):

@@ -234,3 +234,19 @@ def test_errors_after_a_cycle_are_reported(tmp_path):
     missing = "type '{}' is not defined in package 'p'"
     # An error in a type that is used twice is reported once.
     assert found == [(1, cycle), (2, missing.format("Nope")), (1, missing.format("Never"))]
+
+
+def test_mistakes_of_a_file_with_several_messages_are_reported_once(tmp_path):
+    """A message in IDL may have both parts of a service."""
+    idl = "module p { module msg { struct T { p::srv::S_Request a; p::srv::S_Response b; }; }; };"
+    make_files(tmp_path, {"p/msg/T.idl": idl, "p/srv/S.srv": "int8 A\n---\nint8 B\n"})
+    with pytest.raises(DefinitionError) as error:
+        Library("lyrical", [tmp_path]).message("p/T")
+    assert [each.span.line for each in error.value.diagnostics] == [1, 3]
+
+
+def test_mistakes_in_dependencies_come_in_the_order_of_the_fields(tmp_path):
+    with pytest.raises(DefinitionError) as error:
+        load(tmp_path, "A a\nB b\nint8 X\nC c\n", A="D d", B="int8 Y", C="int8 Z", D="int8 W")
+    names = [each.message[1] for each in error.value.diagnostics]
+    assert names == ["X", "W", "Y", "Z"]

@@ -8,9 +8,10 @@ import pytest
 
 from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend import open_library
+from firm_hdl.frontend import all_names, load_all, open_library
 from firm_hdl.frontend.search import workspace_folders
 
+from .recordings import record
 from .workspace import make_files
 
 
@@ -119,3 +120,87 @@ def test_recordings_are_read_without_the_environment(ros2, monkeypatch):
     path = make_recording(ros2, "mcap")
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(ros2 / "one"))
     assert "p/msg/A" not in open_library(bags=[path]).names()
+
+
+@pytest.mark.parametrize(("fixture", "distro", "variable"), CASES)
+def test_dependencies_come_after_the_folders_and_before_the_environment(
+    fixture, distro, variable, request
+):
+    root = request.getfixturevalue(fixture)
+    environment = {variable: str(root / "two")}
+    make_files(root / "depends", {"p/msg/A.msg": named("depends"), "p/msg/B.msg": named("depends")})
+    ours = open_library(distro, [root / "dir"], depends=[root / "depends"], environment=environment)
+    found = {name: ours.message(name).fields[0].name for name in ("p/A", "p/B", "std_msgs/Bool")}
+    assert found == {"p/A": "dir", "p/B": "depends", "std_msgs/Bool": "two"}
+
+
+def test_dependencies_come_after_the_recordings(tmp_path):
+    path = record(tmp_path / "r", "p/msg/A", "int8 recorded\n")
+    root = make_files(tmp_path / "ws", {"p/msg/A.msg": named("ws"), "p/msg/B.msg": named("ws")})
+    ours = open_library(bags=[path], depends=[root])
+    assert [ours.message(name).fields[0].name for name in ("p/A", "p/B")] == ["recorded", "ws"]
+
+
+@pytest.mark.parametrize(("fixture", "distro", "variable"), CASES)
+def test_an_environment_that_is_given_replaces_that_of_the_process(
+    fixture, distro, variable, request, monkeypatch
+):
+    root = request.getfixturevalue(fixture)
+    monkeypatch.setenv(variable, str(root / "one"))
+    assert open_library(distro).message("p/A").fields[0].name == "one"
+    assert len(workspace_folders(distro, {"p"})) == 1
+    assert workspace_folders(distro, {"p"}, {}) == []
+    with pytest.raises(DefinitionError, match="package 'p' is not found"):
+        open_library(distro, environment={}).message("p/A")
+
+
+def test_packages_with_services_or_actions_alone_are_found_in_the_order_of_their_names(tmp_path):
+    make_files(tmp_path, {"share/c/action/C.action": "---\n---\n", "share/a/srv/A.srv": "---\n"})
+    make_files(tmp_path, {"share/b/msg/B.msg": "", "share/d/include/D.msg": ""})
+    environment = {"AMENT_PREFIX_PATH": str(tmp_path)}
+    folders = workspace_folders("lyrical", {"d", "c", "b", "a"}, environment)
+    assert folders == [str(tmp_path / "share" / name) for name in "abc"]
+    ours = open_library("lyrical", environment=environment)
+    assert ours.interface("c/C").name == "c/action/C"
+
+
+def test_all_types_are_those_of_the_folders_if_there_are_any(ros1, monkeypatch):
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(ros1 / "one"))
+    assert all_names("noetic", [ros1 / "dir", ros1 / "two"], ()) == [
+        "p/A", "p/B", "p/S", "std_msgs/Bool",
+    ]  # fmt: skip
+    assert all_names(None, [ros1 / "dir"], ()) == ["p/msg/A"]
+    everywhere = all_names("noetic", (), ())
+    assert "p/A" in everywhere and "std_msgs/String" in everywhere and "p/B" not in everywhere
+    assert "std_msgs/msg/String" in all_names(None, (), ())
+
+
+def test_all_types_of_recordings_are_those_in_them(tmp_path):
+    one = record(tmp_path / "one", "p/msg/A", "int8 a\n")
+    two = record(tmp_path / "two", "p/srv/S_Request", "int8 b\n")
+    assert all_names(None, (), [one, two]) == ["p/msg/A", "p/srv/S_Request"]
+
+
+def test_all_messages_of_all_types_are_loaded_once(tmp_path):
+    files = {"p/srv/S.srv": "p/A a\n---\n", "p/msg/A.msg": "B b\n", "p/msg/B.msg": ""}
+    ours = open_library("humble", [make_files(tmp_path, files)], environment={})
+    found = load_all(ours, ["p/srv/S", "p/msg/A", "p/S", "p/srv/S_Response"])
+    assert [each.name for each in found] == ["p/srv/S_Request", "p/srv/S_Response", "p/msg/A"]
+    assert load_all(ours, []) == []
+
+
+def test_errors_of_all_types_are_reported_with_those_of_every_message(tmp_path):
+    idl = (
+        "module p { module srv { struct S_Request { long a; }; "
+        "struct S_Response { long b; long double c; }; }; };"
+    )
+    files = {"p/srv/S.idl": idl, "p/msg/A.msg": "int33 a\nint34 b\n", "p/msg/B.msg": "int33 a\n"}
+    ours = open_library("humble", [make_files(tmp_path, files)], environment={})
+    with pytest.raises(DefinitionError) as error:
+        load_all(ours, ["p/A", "p/srv/S", "p/B", "p/A", "p/Nothing"])
+    lines = [line for line in str(error.value).splitlines() if "error:" in line]
+    places = [line.replace(f"{tmp_path}/", "").partition(": ")[0] for line in lines]
+    assert places == [
+        "p/msg/A.msg:1:1", "p/msg/A.msg:2:1", f"p/srv/S.idl:1:{idl.index('c;') + 1}",
+        "p/msg/B.msg:1:1", "error",
+    ]  # fmt: skip

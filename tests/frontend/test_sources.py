@@ -164,6 +164,46 @@ def test_folder_that_cannot_be_read_is_passed_over(tmp_path):
     (tmp_path / "a").chmod(0o700)
 
 
+def test_search_goes_on_after_a_folder_that_cannot_be_read(tmp_path, monkeypatch):
+    make_files(tmp_path, {"a/pkg/msg/A.msg": "", "b/pkg/msg/B.msg": "", "c/pkg/msg/C.msg": ""})
+    scandir = os.scandir
+
+    def refuse(folder):
+        if os.path.basename(folder) == "b":
+            raise PermissionError(13, "Permission denied", folder)
+        return scandir(folder)
+
+    monkeypatch.setattr(os, "scandir", refuse)
+    assert found(tmp_path) == [("pkg", "A"), ("pkg", "C")]
+
+
+KLINGON = "<?xml version='1.0' encoding='klingon'?><package><name>p</name></package>"
+
+
+def test_package_whose_name_cannot_be_read_is_refused_when_it_is_used(tmp_path):
+    make_files(tmp_path, {"p/package.xml": KLINGON, "p/msg/A.msg": "", "q/msg/B.msg": "# q"})
+    have = sources(tmp_path)
+    assert have.find("q", "msg", "B").source.text == "# q"
+    with pytest.raises(DefinitionError) as error:
+        have.find("p", "msg", "A")
+    assert str(error.value) == (
+        f"error: '{tmp_path}/p/package.xml' is in an encoding that is not known"
+    )
+    assert have.find("p", "msg", "C") is None
+
+
+@pytest.mark.parametrize("good", ["one", "two"])
+def test_of_two_packages_of_a_name_the_first_is_the_one_that_counts(tmp_path, good):
+    names = {"one": KLINGON, "two": KLINGON, good: "<package><name>p</name></package>"}
+    make_files(tmp_path, {f"{place}/p/package.xml": xml for place, xml in names.items()})
+    make_files(tmp_path, {"one/p/msg/A.msg": "# one", "two/p/msg/A.msg": "# two"})
+    if good == "one":
+        assert sources(tmp_path).find("p", "msg", "A").source.text == "# one"
+    else:
+        with pytest.raises(DefinitionError, match=r"one/p/package\.xml"):
+            sources(tmp_path).find("p", "msg", "A")
+
+
 def test_scanning_reads_no_definition(tmp_path):
     for number in range(300):
         (tmp_path / f"p{number}/msg/A.msg").mkdir(parents=True)
@@ -205,7 +245,9 @@ def test_includes_are_read_from_folders_first(tmp_path):
     # Files in ROS's own form need no IDL text: their types are found by name.
     assert have.include("pkg/msg/B.idl").text == ""
     assert have.include("std_msgs/msg/String.idl").text == ""
-    for path in ("pkg/msg/C.idl", "pkg/srv/A.idl", "none/msg/A.idl", "A.idl", "", "pkg/msg"):
+    absent = ["pkg/msg/C.idl", "pkg/srv/A.idl", "none/msg/A.idl", "A.idl", "", "pkg/msg"]
+    absent += ["pkg/msg/B", "pkg/msg/B.msg/x.idl", "/pkg/msg/A.idl"]
+    for path in absent:
         assert have.include(path) is None
     assert have.include("pkg/../../secret.idl") is None
 
@@ -232,3 +274,26 @@ def test_a_byte_that_is_no_text_is_at_its_character(tmp_path):
         sources(tmp_path).find("p", "msg", "A")
     (problem,) = error.value.diagnostics
     assert str(problem).startswith(f"{tmp_path}/p/msg/A.msg:2:7: error: byte 0xff is not UTF-8")
+
+
+def test_a_sequence_of_bytes_that_is_cut_off_is_shown_by_its_first(tmp_path):
+    make_files(tmp_path, {"p/msg/A.msg": ""})
+    (tmp_path / "p/msg/A.msg").write_bytes(b"int8 a\n\xe4\xb8 b\n")
+    with pytest.raises(DefinitionError, match=r"A\.msg:2:1: error: byte 0xe4 is not UTF-8 text"):
+        sources(tmp_path).find("p", "msg", "A")
+
+
+def test_types_of_a_package_are_sorted_with_messages_first(tmp_path):
+    files = ["action/B.action", "msg/Z.msg", "srv/C.srv", "msg/Y.msg", "action/A.action"]
+    make_files(tmp_path, {f"p/{file}": "" for file in files})
+    assert Sources([FolderOrigin(tmp_path)]).types == {
+        "p": [("msg", "Y"), ("msg", "Z"), ("srv", "C"), ("action", "A"), ("action", "B")]
+    }
+
+
+def test_files_have_at_most_four_mebibytes(tmp_path):
+    make_files(tmp_path, {"p/msg/A.msg": "#" * (1 << 22), "p/msg/B.msg": "#" * ((1 << 22) + 1)})
+    have = sources(tmp_path)
+    assert len(have.find("p", "msg", "A").source.text) == 1 << 22
+    with pytest.raises(DefinitionError, match=r"B\.msg' cannot be read"):
+        have.find("p", "msg", "B")
