@@ -59,7 +59,7 @@ def show(library: Library, name: str) -> str:
     stack = [printer.root(interface)]
     while stack:
         for line, nested in stack[-1]:
-            lines.append(printer.indent * (len(stack) - 1) + line if line else "")
+            lines.append(printer.indent * (len(stack) - 1) + line)
             if nested is not None:
                 stack.append(printer.nested(nested))
                 break

@@ -96,6 +96,31 @@ def test_unknown_names_get_suggestions(name, message):
     assert refused(lib.definition_hash, name) == f"error: {message}"
 
 
+def test_types_of_the_same_name_are_suggested_with_similar_packages_first(tmp_path):
+    files = {f"{package}/msg/Gizmo.msg": "" for package in ("a_msgs", "own_msgs", "owl_msgs", "z")}
+    lib = Library("lyrical", [make_files(tmp_path, files)], origins=())
+    assert refused(lib.message, "own_msg/Gizmo") == (
+        "error: package 'own_msg' is not found; did you mean 'own_msgs/msg/Gizmo', "
+        "'owl_msgs/msg/Gizmo' or 'a_msgs/msg/Gizmo'?"
+    )
+    # Similar names are suggested only if no package has the name itself.
+    assert refused(lib.message, "z/Gizmos") == (
+        "error: type 'Gizmos' is not defined in package 'z'; did you mean 'z/msg/Gizmo'?"
+    )
+    assert refused(lib.message, "a_msg/Gizmos") == (
+        "error: package 'a_msg' is not found; did you mean 'a_msgs/msg/Gizmo', "
+        "'own_msgs/msg/Gizmo' or 'owl_msgs/msg/Gizmo'?"
+    )
+
+
+def test_fields_get_suggestions_of_messages_alone(tmp_path):
+    files = {"p/msg/Begin.msg": "", "p/srv/Begin.srv": "---", "p/msg/A.msg": "Begni a"}
+    with pytest.raises(DefinitionError) as error:
+        Library("lyrical", [make_files(tmp_path, files)]).message("p/A")
+    (wrong,) = error.value.diagnostics
+    assert wrong.message.endswith("in package 'p'; did you mean 'Begin'?")
+
+
 def test_long_and_invisible_names_are_shown_shortened_and_escaped():
     message = refused(Library().message, "p/\x00" + "x" * 5000)
     assert message == "error: package 'p' is not found"

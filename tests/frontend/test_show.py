@@ -88,6 +88,13 @@ def test_ros2_interface_show_keeps_blanks_and_empty_lines_of_the_type_itself(tmp
     )
 
 
+def test_signs_in_comments_make_no_constants_of_fields(tmp_path):
+    files = {"p/T": "U a # a = b\nU b # c\nint8 X=1 # d = e\nU c", "p/U": "int8 x"}
+    assert show(library(tmp_path, files), "p/T") == (
+        "U a # a = b\n\tint8 x\nU b # c\n\tint8 x\nint8 X=1 # d = e\nU c\n\tint8 x\n"
+    )
+
+
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])
 def test_empty_message_shows_nothing(distro):
     assert show(Library(distro), "std_msgs/Empty") == ""
@@ -150,7 +157,7 @@ def test_idl_is_shown_as_msg(tmp_path):
         #include "q/msg/U.idl"
         module p { module msg {
           module T_Constants { const short LIMIT = 3; };
-          @verbatim(language="comment", text="A type.")
+          @verbatim(language="comment", text="A type." "\\n\\n  More. ")
           struct T {
             @unit(value="m") @default(value=2.5)
             double x;
@@ -162,7 +169,8 @@ def test_idl_is_shown_as_msg(tmp_path):
     files = {"p/msg/T.idl": idl, "q/msg/U.msg": SERVICE["q/msg/U.msg"], "p/msg/V.msg": "T[2] t # v"}
     library = Library("lyrical", [make_files(tmp_path, files)])
     assert show(library, "p/msg/T") == (
-        "# A type.\nint16 LIMIT=3\nfloat64 x 2.5  # [m]\nq/U[<=4] us\n\tint8 x\nstring<=5 s\n"
+        "# A type.\n#\n# More.\nint16 LIMIT=3\nfloat64 x 2.5  # [m]\nq/U[<=4] us\n\tint8 x\n"
+        "string<=5 s\n"
     )
     assert show(library, "p/msg/V") == (
         "T[2] t # v\n\tint16 LIMIT=3\n\tfloat64 x 2.5\n\tq/U[<=4] us\n\t\tint8 x\n\tstring<=5 s\n"

@@ -75,9 +75,21 @@ def test_large_recordings_may_expand_to_more(tmp_path, monkeypatch):
     assert use_recording(str(path), sizes) == [8 * MIB]
 
 
+def test_recordings_may_expand_to_all_of_the_limit(tmp_path, monkeypatch):
+    path = BOMBS["compressed message"](tmp_path, 8 * MIB)
+    monkeypatch.setattr(expansion, "MAX_RATIO", 0)
+    monkeypatch.setattr(expansion, "MIN_BUDGET_BYTES", 8 * MIB)
+    assert use_recording(str(path), sizes) == [8 * MIB]
+    monkeypatch.setattr(expansion, "MIN_BUDGET_BYTES", 8 * MIB - 1)
+    with pytest.raises(DefinitionError, match=f"it decompresses to more than {8 * MIB - 1} bytes"):
+        use_recording(str(path), sizes)
+
+
 def test_rosbags_is_unchanged_outside_of_firm_hdl(tmp_path, monkeypatch):
     from rosbags.rosbag2 import Reader
 
+    (tmp_path / "before").mkdir()
+    use_recording(str(BOMBS["compressed message"](tmp_path / "before", MIB)), sizes)
     monkeypatch.setattr(expansion, "MIN_BUDGET_BYTES", 1)
     monkeypatch.setattr(expansion, "MAX_RATIO", 0)
     monkeypatch.setattr(expansion, "MAX_CHUNK_BYTES", 1)
