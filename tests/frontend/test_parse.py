@@ -185,6 +185,14 @@ def test_spans_cover_the_words():
     assert (two.name.span.line, two.name.span.column) == (3, 6)
 
 
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_empty_text_of_a_constant_is_right_after_its_name(dialect):
+    text = "int8 a\r\nstring AB=  \n"
+    value = parse(text, dialect).members[1].value
+    assert (value.value, value.span.start, value.span.end) == ("", 17, 17)
+    assert (value.span.line, value.span.column) == (2, 10)
+
+
 def test_every_bad_line_is_reported_and_hides_no_other():
     text = "int32 a\nint32\nint32 b\nfloat c\nint32 D\n"
     with pytest.raises(DefinitionError) as error:
@@ -227,6 +235,16 @@ def test_number_longer_than_python_reads_is_reported(dialect):
         ("ros2", "a/A_b", False),
         ("ros2", "a/Ab ", False),
         ("ros2", "a/Srv_Request", True),
+        # rosidl_adapter takes each suffix off once: that of a request first, of feedback last.
+        ("ros2", "a/Sample_A_Feedback_Result_Goal_Response_Request", True),
+        ("ros2", "a/A_Result", True),
+        ("ros2", "a/A_Request_Response", False),
+        ("ros2", "a/A_Response_Goal", False),
+        ("ros2", "a/A_Goal_Result", False),
+        ("ros2", "a/A_Result_Feedback", False),
+        ("ros2", "a/A_Request_Request", False),
+        ("ros2", "a/A_Event", False),
+        ("ros2", "a/Sample_a", False),
         ("ros2", "", False),
     ],
 )
