@@ -48,6 +48,13 @@ def test_words_that_start_like_builtin_types_are_other_types(type_):
     refused(f"{type_} x", "ros2")
 
 
+@pytest.mark.parametrize("word", ["int8", "byte", "float32", "bool", "string", "wstring", "time"])
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_packages_may_have_the_names_of_builtin_types(dialect, word):
+    found = field(f"{word}/Foo[3] x", dialect).type
+    assert (found.package, found.name, found.is_builtin) == (word, "Foo", False)
+
+
 @pytest.mark.parametrize("name", ["a__b", "a_", "A", "aB", "a1", "int32", "string", "time"])
 def test_ros1_field_names(name):
     assert field(f"int32 {name}", "ros1").name.text == name

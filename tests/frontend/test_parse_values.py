@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from firm_hdl.errors import DefinitionError
@@ -37,11 +39,18 @@ def test_malformed_integers_are_refused(dialect, text):
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("1", 1.0), ("-.5", -0.5), ("5.", 5.0), ("1e3", 1000.0), ("1.5E-3", 0.0015), ("-inf", "-inf")],
-)
+    [("1", 1.0), ("-.5", -0.5), ("5.", 5.0), ("1e3", 1000.0), ("1.5E-3", 0.0015), ("-inf", "-inf"),
+     ("INF", "inf"), ("+Infinity", "inf"), ("1_0.2_5E+1_0", 10.25e10)],
+)  # fmt: skip
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])
 def test_numbers(dialect, text, value):
     assert constant(f"float64 X={text}", dialect).value.value == float(value)
+
+
+@pytest.mark.parametrize("text", ["nan", "NaN", "-NAN"])
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_numbers_that_are_none(dialect, text):
+    assert math.isnan(constant(f"float64 X={text}", dialect).value.value)
 
 
 @pytest.mark.parametrize("text", ["", ".", "1,5", "1e", "0x10", "x", "1.0f", "1 0"])
@@ -207,6 +216,8 @@ def test_ros2_defaults_of_arrays(line, values):
         "string[] x [a, ]b",
         'string[] x ["a]',
         """string[] x ["'a'b'"]""",
+        r"""string[] x ["a\"]""",
+        r"""string[] x ['b', 'a\']""",
         "Foo x 1",
         "Foo[] x []",
     ],
