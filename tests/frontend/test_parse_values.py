@@ -191,6 +191,7 @@ def test_ros2_default_cannot_contain_equals():
         ('string[] x [""]', ("",)),
         ('string[] x [" a "]', ("a",)),
         ("""string[] x ["'a", "'"]""", ("'a", "")),
+        (r"""string[] x ["'a\'b'", '"']""", ("a'b", "")),
     ],
 )
 def test_ros2_defaults_of_arrays(line, values):

@@ -98,10 +98,12 @@ def test_two_angles_end_two_types_and_shift_elsewhere():
 
 @pytest.mark.parametrize("sign", ["|", "^", "&", "<<", "+", "-", "*", "/", "%"])
 def test_operators_stand_between_angles_as_elsewhere(sign):
-    (struct,) = parse(f"struct T {{ sequence<long, 8 {sign} 2> a; string<8 {sign} 2> b; }};")
-    for bound in (member.type.bound for member in struct.members):
-        assert isinstance(bound, Chain) and bound.operators == (sign,)
-        assert [words(operand) for operand in bound.operands] == ["8", "2"]
+    for operands in (["8", "2"], ["8", "2", "1"]):
+        text = f" {sign} ".join(operands)
+        (struct,) = parse(f"struct T {{ sequence<long, {text}> a; string<{text}> b; }};")
+        for bound in (member.type.bound for member in struct.members):
+            assert isinstance(bound, Chain) and {*bound.operators} == {sign}
+            assert [words(operand) for operand in bound.operands] == operands
 
 
 def test_operators_bind_as_in_c():

@@ -10,8 +10,7 @@ from rosbags.rosbag1 import Writer
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import RecordingOrigin, open_library
-
-from .recordings import make_old_db3, make_recording, record, record_in_idl
+from tests.frontend.recordings import make_old_db3, make_recording, record, record_in_idl
 
 LINE = "=" * 80
 
