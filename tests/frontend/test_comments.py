@@ -31,6 +31,11 @@ def test_comment_above_and_after_are_joined():
     assert comments("\n# above\nint32 a # after\n") == ("", {"a": "above\nafter"})
 
 
+def test_signs_in_front_of_a_comment_are_not_of_it():
+    text = "## head #1\n#\n##\n### more\n\n## of a\nint32 a ## after #2\n    ### on\n"
+    assert comments(text) == ("head #1\n\nmore", {"a": "of a\nafter #2\non"})
+
+
 def test_comment_survives_empty_lines():
     assert comments("\n# above\n\n\nint32 a\n")[1] == {"a": "above"}
 

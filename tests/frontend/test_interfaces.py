@@ -347,6 +347,13 @@ def test_mistakes_of_one_file_are_reported_once_and_in_order(tmp_path):
     assert [d.span.line for d in error.value.diagnostics] == [1, 3, 5, 6]
 
 
+def test_mistakes_of_a_file_come_before_those_of_its_dependencies(tmp_path):
+    make_files(tmp_path, {"a/msg/U.msg": "int8 X\n", "q/msg/V.msg": "\n\n\n\n\n\nint8 Y\n"})
+    with pytest.raises(DefinitionError) as error:
+        load(tmp_path, "srv/S", "q/V v\na/U u\n---\nint8 Z\nq/V v\n")
+    assert [each.message[1] for each in error.value.diagnostics] == ["Z", "Y", "X"]
+
+
 def test_wrong_part_makes_the_file_wrong(tmp_path):
     files = {"p/srv/S.srv": "int8 a\n---\nint8 B\n"}
     library = Library("lyrical", [make_files(tmp_path, files)])

@@ -106,6 +106,20 @@ def test_operators_stand_between_angles_as_elsewhere(sign):
             assert [words(operand) for operand in bound.operands] == operands
 
 
+@pytest.mark.parametrize(
+    "text", ['#include"a/b.idl"', "#include<a/b.idl>", '#include \n "a/b.idl"']
+)
+def test_blanks_before_the_path_of_an_include_mean_nothing(text):
+    (include,) = parse(text)
+    assert isinstance(include, Include) and (include.path, words(include)) == ("a/b.idl", text)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_comment_ends_with_its_line(end):
+    (struct,) = parse(f"struct T {{ // long a; /*{end} long b; // {end} /* // */ long c; }};")
+    assert [member.declarators[0].name.text for member in struct.members] == ["b", "c"]
+
+
 def test_operators_bind_as_in_c():
     (module,) = parse("module m { const long A = 1|2^3&4<<5+6*-7; };")
     node = module.definitions[0].value
