@@ -163,15 +163,15 @@ def test_only_the_start_of_a_bag_is_looked_at(tmp_path):
 @pytest.mark.parametrize(
     "change",
     [
-        "topics SET type = x'414243'",
-        "message_definitions SET encoded_message_definition = x'4142'",
+        "topics SET type = x'414243' WHERE id = 2",
+        "message_definitions SET encoded_message_definition = x'4142' WHERE id = 2",
     ],
 )
 def test_columns_of_another_type_than_text_are_damage(tmp_path, change):
     # SQLite does not enforce the types of columns.
     (file,) = make_recording(tmp_path, "db3").glob("*.db3")
     with closing(sqlite3.connect(file)) as database, database:
-        database.execute(f"UPDATE {change}")
+        assert database.execute(f"UPDATE {change}").rowcount == 1
     assert refused(file).endswith("cannot be read as a recording: it is damaged")
 
 

@@ -1,4 +1,4 @@
-"""Error messages for texts that are not IDL, and the exact words that are marked."""
+"""Error messages for texts that are not IDL or not one message, and the words that are marked."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import pytest
 
 from firm_hdl.errors import Diagnostic, Source
 from firm_hdl.frontend.idl.parse import parse_file
+
+from .rosidl import read
 
 RULE = "letters, digits and underscores, a letter first"
 
@@ -97,3 +99,24 @@ def test_unsupported_features_are_called_by_their_names(word, what):
     for before in ("", "module m { "):
         marked = f"{before}«{word}» x"
         assert parse_error(marked) == (marked, f"{what} not supported")
+
+
+@pytest.mark.parametrize(
+    ("names", "wrong", "message"),
+    [
+        ("A B", "B", "'B' is a second struct beside 'A'; one message per file"),
+        ("A_Request B", "B", "'B' must end with '_Response', as the file declares a service"),
+        ("A B_Response", "A", "'A' must end with '_Request', as the file declares a service"),
+        ("A_Request B_Response", "B_Response",
+         "'B_Response' must be called 'A_Response', to match 'A_Request'"),
+        ("A_Goal A_Result", "A_Result",
+         "'A_Result' is a second struct beside 'A_Goal'; one message per file"),
+        ("A_Goal A_Result B_Feedback", "B_Feedback",
+         "'B_Feedback' must be called 'A_Feedback', to match 'A_Goal'"),
+    ],
+)  # fmt: skip
+def test_structs_whose_names_do_not_fit_are_marked(names, wrong, message):
+    structs = " ".join(f"struct {name} {{ long a; }};" for name in names.split())
+    first, *_ = read(f"module p {{ {structs} }};")[1]
+    text = first.span.source.text
+    assert (text[first.span.start : first.span.end], first.message) == (wrong, message)

@@ -219,6 +219,12 @@ def test_errors_of_unused_parts_of_included_files_are_ignored(tmp_path):
         lib.message("p/msg/U")
 
 
+def test_constants_are_declared_in_modules():
+    text = "const long N = 3;\nmodule p { struct T { long a[N]; }; };"
+    (wrong,) = read(text)[1]
+    assert (wrong.message, wrong.span.start) == ("a constant must be declared in a module", 11)
+
+
 def test_errors_of_included_files_come_first(tmp_path):
     files = {
         "q/msg/Base.idl": "module q { typedef fixed<3, 1> Bad; struct Base { long a; }; };",
@@ -318,27 +324,6 @@ def test_members_are_in_the_order_of_the_text():
     members = read(text)[0]["T"].members
     assert [m.name.text for m in members] == ["A", "b", "C"]
     assert [isinstance(m, ConstantSyntax) for m in members] == [True, False, True]
-
-
-@pytest.mark.parametrize(
-    ("names", "wrong", "message"),
-    [
-        ("A B", "B", "'B' is a second struct beside 'A'; one message per file"),
-        ("A_Request B", "B", "'B' must end with '_Response', as the file declares a service"),
-        ("A B_Response", "A", "'A' must end with '_Request', as the file declares a service"),
-        ("A_Request B_Response", "B_Response",
-         "'B_Response' must be called 'A_Response', to match 'A_Request'"),
-        ("A_Goal A_Result", "A_Result",
-         "'A_Result' is a second struct beside 'A_Goal'; one message per file"),
-        ("A_Goal A_Result B_Feedback", "B_Feedback",
-         "'B_Feedback' must be called 'A_Feedback', to match 'A_Goal'"),
-    ],
-)  # fmt: skip
-def test_structs_whose_names_do_not_fit_are_marked(names, wrong, message):
-    structs = " ".join(f"struct {name} {{ long a; }};" for name in names.split())
-    first, *_ = read(f"module p {{ {structs} }};")[1]
-    text = first.span.source.text
-    assert (text[first.span.start : first.span.end], first.message) == (wrong, message)
 
 
 def test_a_long_default_before_many_names_takes_no_time():
