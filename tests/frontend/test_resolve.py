@@ -250,3 +250,12 @@ def test_mistakes_in_dependencies_come_in_the_order_of_the_fields(tmp_path):
         load(tmp_path, "A a\nB b\nint8 X\nC c\n", A="D d", B="int8 Y", C="int8 Z", D="int8 W")
     names = [each.message[1] for each in error.value.diagnostics]
     assert names == ["X", "W", "Y", "Z"]
+
+
+def test_the_first_twenty_unknown_types_get_suggestions(tmp_path):
+    names = [f"Gadget{letter}" for letter in "ABCDEFGHIJKLMNOPQRSTUVWXYZ"]
+    text = "".join(f"{name} {name.lower()}\n" for name in names)
+    with pytest.raises(DefinitionError) as error:
+        load(tmp_path, text, Gadget="int8 x")
+    found = [each.message.partition("; ")[2] for each in error.value.diagnostics]
+    assert found == ["did you mean 'Gadget'?"] * 20 + [""] * 6
