@@ -138,7 +138,7 @@ def test_a_package_is_preferred_to_a_command(install, package, tmp_path):
 def test_a_package_that_does_not_run_is_an_error_even_if_there_is_a_command(install, package):
     install("own-tool", "echo Tool 2.0")
     package("sys.exit('no memory')")
-    with pytest.raises(ToolError, match="^no memory$"):
+    with pytest.raises(ToolError, match=r"^no memory$"):
         find_it()
 
 
