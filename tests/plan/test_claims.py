@@ -123,3 +123,46 @@ def test_a_string_is_counted_with_its_nul(room, counts):
     layout = lay_out(make("ros2", {"rows": (row, "[]")}))
     plan = build_plan(layout, max_message_bytes=layout.min_bytes + room)
     assert [begin.claim is not None for begin in plan.begins.values()] == [counts, counts]
+
+
+PAIR = make("ros1", {"x": "uint16", "y": "uint16"}, "Pair")
+
+
+def rows(*counts, size=1):
+    """Return a sequence of rows in ROS 1: each is a sequence of items of `size` bytes."""
+    parts = [count.to_bytes(4, "little") + bytes(count * size) for count in counts]
+    return len(counts).to_bytes(4, "little") + b"".join(parts)
+
+
+@pytest.mark.parametrize(("items", "size"), [("uint8[]", 1), ((PAIR, "[]"), 4)])
+def test_the_step_after_a_counted_length_is_held_once(items, size):
+    """The check of a claim of at least 4,096 bytes takes 3 cycles, a refusal 2 more."""
+    row = make("ros1", {"items": items}, "Row")
+    layout = lay_out(make("ros1", {"rows": (row, "[]")}))
+    least = 4096 // size
+    found = decode(build_plan(layout), rows(least - 1, least, least - 1, 0, size=size))
+    (place,) = (place for place, visit in enumerate(found.steps) if visit.held)
+    # The length of the second row, and the number and the first row before it.
+    assert (found.steps[place - 1].end, found.steps[place].held) == (4 + 4 + 4096 - size + 4, 3)
+    # Without a byte of room for as much again.
+    plan = build_plan(layout, max_message_bytes=4 + 8191)
+    found = decode(plan, rows(least, least, 0, size=size))
+    assert found.status == "LENGTH"
+    assert [visit.held for visit in found.steps if visit.held] == [3, 5]
+
+
+@pytest.mark.parametrize(("more", "status"), [(0, "TRUNCATED"), (1, "LENGTH")])
+def test_a_budget_is_spent_to_its_last_byte_and_renewed_by_each_sequence(more, status):
+    row = make("ros1", {"a": "uint8[]"}, "Row")
+    layout = lay_out(make("ros1", {"one": (row, "[]"), "other": (row, "[]")}))
+    plan = build_plan(layout, max_message_bytes=8 + 8192)
+    # 1,024 rows claim 4 bytes each, and the first row as many bytes as are left.
+    packet = (1024).to_bytes(4, "little") + (4096 + more).to_bytes(4, "little")
+    assert decode(plan, packet).status == status
+    # What the first sequence has claimed is left to the second one.
+    second = (1024).to_bytes(4, "little") + (4096 + more).to_bytes(4, "little")
+    assert decode(plan, rows(5000) + second).status == status
+    # Lengths below a 16th of the packet are not counted, however many there are.
+    assert decode(plan, rows(*[511] * 20) + rows()).status == "OK"
+    assert decode(plan, rows(*[512] * 16) + rows()).status == "OK"
+    assert decode(plan, rows(*[512] * 17) + rows()).status == "LENGTH"

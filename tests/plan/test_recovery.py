@@ -117,10 +117,12 @@ def test_types_of_fixed_size_recover_at_once():
     assert recovery(plan, 7) == Recovery(cycles=len(plan.steps) + AFTER, longest_packet=7)
 
 
-def test_a_string_takes_a_cycle_for_each_word():
-    plan = build_plan(lay_out(make("ros1", {"s": "string"})), max_message_bytes=804)
-    # 800 characters in 100 words, besides the steps of the length and of the rest.
-    assert recovery(plan, 2) == Recovery(cycles=2 + 100 + AFTER, longest_packet=102)
+@pytest.mark.parametrize(("characters", "words"), [(793, 100), (800, 100), (801, 101)])
+def test_a_string_takes_a_cycle_for_each_word(characters, words):
+    layout = lay_out(make("ros1", {"s": "string"}))
+    plan = build_plan(layout, max_message_bytes=4 + characters)
+    # Besides the steps of the length and of the rest.
+    assert recovery(plan, 2) == Recovery(cycles=2 + words + AFTER, longest_packet=2 + words)
 
 
 def test_the_longest_packet_has_the_padding_of_its_elements():
