@@ -97,7 +97,7 @@ def test_an_empty_run_ends_before_the_padding_of_items():
     assert found.places[-1] == Place((0, 4), (0, 4))
 
 
-WIDE = make("ros2", {"x": "uint64", "y": "uint64", "s": "string"}, "Wide")
+WIDE = make("ros2", {"x": "uint64", "s": "string"}, "Wide")
 EMPTY = make("ros2", {}, "Empty")
 
 
