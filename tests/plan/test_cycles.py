@@ -102,6 +102,31 @@ def test_a_full_beat_waits_where_it_may_be_the_last_one():
     assert both_cycles([packet]) == ([3], [1 + 3])
 
 
+@pytest.mark.parametrize(
+    ("kind", "bus_bytes", "beats", "steps"),
+    [("uint8", 1, 5, 4), ("uint16", 2, 3, 2), ("uint32", 2, 4, 3)],
+)
+def test_beats_of_the_header_wait_for_the_first_leaf(kind, bus_bytes, beats, steps):
+    """Their steps are done before the leaf is offered, so the beats follow each other."""
+    size = bus_bytes * beats - 4
+    packet = packet_for({"a": kind}, b"\0\1\0\0" + bytes(size), bus_bytes, "ros2")
+    # The last step takes two beats.
+    assert (packet.beats, len(packet.visits)) == (beats, steps)
+    assert both_cycles([packet] * 2) == ([beats - 1, 2 * beats - 1],) * 2
+
+
+@pytest.mark.parametrize(("count", "held"), [(4095, 0), (4096, 3)])
+def test_a_length_whose_claim_is_checked_costs_the_deserializer_three_cycles(count, held):
+    row = make("ros1", {"a": "uint8[]"}, "Row")
+    data = b"\1\0\0\0" + count.to_bytes(4, "little") + bytes(count)
+    packet = packet_for({"rows": (row, "[]")}, data)
+    # Two lengths, and the words of the row.
+    steps = 2 + 512
+    assert (packet.beats, len(packet.visits)) == (1 + 512, steps)
+    assert deserializer_cycles([packet] * 2) == [steps - 1 + held, 2 * (steps + held) - 1]
+    assert cycles_between(packet) == steps + held
+
+
 def test_packets_of_no_bytes_have_a_beat():
     packet = packet_for({"e": EMPTY}, b"")
     assert (packet.bytes, packet.beats) == (0, 1)
