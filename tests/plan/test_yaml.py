@@ -204,7 +204,8 @@ def test_lines_have_at_most_100_columns():
         text = text_of(make("ros1", {name: "string", "e": (PAIRS, "[]")}))
         lines = text.splitlines()
         assert max(map(len, lines)) <= 100
-        flat = f"    starts: {{run: {name}.items, count: {name}.length, limit: 16777208, body: step 1}}"
+        flat = f"    starts: {{run: {name}.items, count: {name}.length, "
+        flat += "limit: 16777208, body: step 1}"
         assert (flat in lines) == (len(flat) <= 100)
         ends.append(flat in lines)
     assert True in ends and False in ends
