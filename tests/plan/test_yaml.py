@@ -258,6 +258,8 @@ MISTAKES = [
      "Line 35: next has no 'loops'"),
     ("grid.items, 1 item, last", "grid.items, 1 item, bytes 0..2 of 4, last",
      "Line 47: the bytes of 'grid.items' are not as many as those of the slice"),
+    ("grid.items, 1 item, last", "grid.items, 1 item, bytes 2 of 4, last",
+     "Line 47: the bytes of 'grid.items' are not as many as those of the slice"),
     ("grid.items, 1 item, last", "grid.items, 1 item, last, last of loop 0",
      "Line 47: 'grid.items, 1 item, last, last of loop 0' is not a leaf, padding or fixed bytes"),
     ("[counted, with NUL]", "[counted, NUL there]",
