@@ -147,3 +147,25 @@ def test_arrays_of_constant_count_are_part_of_an_element():
     for wanted in ([28], [10, 0, 5000], [1, 0, 0, 9000], [27, 1, 2, 3]):
         packet = bomb(plan, wanted)
         assert steps_after(plan, packet) + AFTER <= recovery(plan, 1).cycles
+
+
+@pytest.mark.parametrize("outer", ["[]", "[<=40]"])
+def test_an_array_of_messages_recovers_like_its_elements_one_by_one(outer):
+    inner = make("ros1", {"t": "string"}, "Inner")
+    found = []
+    for fields in ({"i": (inner, "[2]")}, {"a": inner, "b": inner}):
+        message = make("ros1", {"o": (make("ros1", fields, "Outer"), outer)})
+        found.append(recovery(build_plan(lay_out(message), max_message_bytes=10_000), 2))
+    assert found[0] == found[1]
+    # Texts of a word per cycle, and 8 bytes of lengths in two cycles.
+    assert found[0].longest_packet >= 1250
+
+
+@pytest.mark.parametrize(("bound", "cycles"), [("<=1", 3), ("<=2", 6), ("<=3", 12), ("", 4000)])
+def test_the_longest_packet_takes_its_beats_or_its_steps(bound, cycles):
+    # Each element has 4 beats, and 3 steps, as the last one takes two words.
+    element = make("ros1", dict.fromkeys("abcd", "uint64"), "Element")
+    layout = lay_out(make("ros1", {"e": (element, f"[{bound}]")}))
+    plan = build_plan(layout, max_message_bytes=4 + 32 * 1000)
+    # Packets of at most two elements have few beats, so that only steps are counted.
+    assert recovery(plan, 2).longest_packet == 2 + cycles
