@@ -31,6 +31,15 @@ def test_the_largest_message_has_room_for_the_smallest(size):
         build_plan(lay_out(BLOB), max_message_bytes=size)
 
 
+@pytest.mark.parametrize("number", [True, False, 8.0, "8", None])
+def test_numbers_are_integers_and_no_flags(number):
+    with pytest.raises(TypeError, match=f"^Bus width must be an integer, not {number!r}$"):
+        build_plan(lay_out(BLOB), bus_bytes=number)
+    layout = lay_out(make("ros1", {}))
+    with pytest.raises(TypeError, match=f"^Maximum message size must be .*, not {number!r}$"):
+        build_plan(layout, max_message_bytes=number)
+
+
 def test_message_beyond_every_limit_is_refused_by_its_size():
     layout = lay_out(make("ros1", {"a": "uint8[4294967295]"}))
     assert build_plan(layout, max_message_bytes=(1 << 32) - 1).max_message_bytes == (1 << 32) - 1
