@@ -75,6 +75,16 @@ def test_leaves_in_another_order_are_a_change():
     assert [change for change in changes if change.startswith("order of leaves")]
 
 
+def test_steps_in_another_order_are_a_change():
+    first, second = "0..3: b\n    next: step {}\n", "0..3: a\n    next: end\n"
+    old = f"steps:\n  step 0:\n    {first.format(1)}  step 1:\n    {second}"
+    new = f"steps:\n  step 0:\n    {second}  step 1:\n    {first.format(0)}"
+    assert [str(change) for change in compare(old, new)] in (
+        ["order of steps: b -> (nothing here)", "order of steps: (nothing here) -> b"],
+        ["order of steps: (nothing here) -> a", "order of steps: a -> (nothing here)"],
+    )
+
+
 @pytest.mark.parametrize(
     "change",
     [

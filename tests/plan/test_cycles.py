@@ -127,6 +127,15 @@ def test_a_length_whose_claim_is_checked_costs_the_deserializer_three_cycles(cou
     assert cycles_between(packet) == steps + held
 
 
+@pytest.mark.parametrize(("count", "start"), [(0, 8), (1, 12), (2, 12), (3, 12)])
+@pytest.mark.parametrize("bus_bytes", [8, 16])
+def test_items_start_at_their_alignment_after_the_header_if_there_are_any(count, start, bus_bytes):
+    data = b"\0\1\0\0" + count.to_bytes(4, "little")
+    data += (bytes(4) + bytes(8 * count)) if count else b""
+    packet = packet_for({"q": "float64[]"}, data, bus_bytes, "ros2")
+    assert packet.next_start(0) == start
+
+
 def test_packets_of_no_bytes_have_a_beat():
     packet = packet_for({"e": EMPTY}, b"")
     assert (packet.bytes, packet.beats) == (0, 1)

@@ -5,7 +5,14 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.plan import build_plan
-from firm_hdl.plan.geometry import Place, first_step, geometry, may_end_empty, only_ends
+from firm_hdl.plan.geometry import (
+    Place,
+    first_step,
+    geometry,
+    may_end_empty,
+    most_beats,
+    only_ends,
+)
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
@@ -89,6 +96,8 @@ def test_padding_that_is_computed():
     assert needs({"s": "string", "n": "uint32"}, "cdr", 8).aligns
     assert not needs({"s": "string", "n": "uint32"}, "ros1", 8).aligns
     assert needs({"a": "uint64[]"}, "cdr", 4).aligns
+    # Only the items of a run.
+    assert needs({"a": "uint64[]"}, "cdr", 8).aligns
 
 
 def test_an_empty_run_ends_before_the_padding_of_items():
@@ -124,3 +133,24 @@ def test_steps_before_the_first_leaf_and_at_the_end(fields, wire, bus_bytes, fir
     assert first_step(plan) == first
     assert [index for index, step in enumerate(plan.steps) if only_ends(step)] == ends
     assert may_end_empty(plan) == is_empty
+
+
+@pytest.mark.parametrize(
+    ("fields", "wire", "bus_bytes", "beats"),
+    [
+        # A byte in the last lane, and as many bytes as follow it.
+        ({"a": "uint8"}, "ros1", 8, 1),
+        ({"a": "uint16"}, "ros1", 8, 2),
+        ({"a": "uint64", "b": "uint16"}, "ros1", 8, 3),
+        ({"e": (EMPTY, "[2]")}, "ros1", 8, 1),
+        # The rest of a text, its NUL on CDR, and a byte.
+        ({"s": "string", "b": "uint8"}, "ros1", 8, 2),
+        ({"s": "string", "b": "uint8"}, "cdr", 8, 3),
+        # Also 7 bytes of padding.
+        ({"s": "string", "b": "float64"}, "cdr", 8, 4),
+        # A header of 4 bytes, the length, and 7 bytes of padding before the items.
+        ({"a": "uint64[]"}, "cdr", 8, 3),
+    ],
+)
+def test_beats_that_a_step_touches(fields, wire, bus_bytes, beats):
+    assert most_beats(build_plan(lay_out(make("ros2", fields), wire), bus_bytes=bus_bytes)) == beats

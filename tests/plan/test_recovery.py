@@ -169,3 +169,27 @@ def test_the_longest_packet_takes_its_beats_or_its_steps(bound, cycles):
     plan = build_plan(layout, max_message_bytes=4 + 32 * 1000)
     # Packets of at most two elements have few beats, so that only steps are counted.
     assert recovery(plan, 2).longest_packet == 2 + cycles
+
+
+def test_the_worst_packet_claims_what_has_the_most_steps_per_byte():
+    """Rows of a byte array: a row is a step in 4 bytes, and a word of bytes a step in 8."""
+    row = make("ros1", {"a": "uint8[]"}, "Row")
+    plan = build_plan(lay_out(make("ros1", {"rows": (row, "[]")})), max_message_bytes=10_000)
+    # All that is left of 10,000 bytes for rows. Then 624 bytes, one less than are counted.
+    claimed = 9996 // 4 + 624 // 8
+    assert recovery(plan, 1).cycles == 2 + claimed + AFTER
+
+
+def test_what_padding_may_save_is_claimed_beside_the_budget():
+    named = make("ros2", {"s": "string", "y": "uint8"}, "Named")
+    plan = build_plan(lay_out(make("ros2", {"e": (named, "[]")})), max_message_bytes=8 + 8000)
+    # Each of two levels may have claimed 14 bytes more than the 8,000 of the budget. An element has
+    # 8 bytes and 2 steps: 1,001 of them. Texts take the other 20 bytes, and 499 uncounted ones.
+    rest = -(-(20 + 499) // 8)
+    assert recovery(plan, 1).cycles == 1 + 2 * 1001 + rest + AFTER
+
+
+@pytest.mark.parametrize(("bound", "words"), [(2, 1), (16, 2), (17, 3)])
+def test_a_short_sequence_takes_few_words(bound, words):
+    plan = build_plan(lay_out(make("ros2", {"a": f"uint8[<={bound}]"}, "T"), "ros1"))
+    assert recovery(plan, 2).longest_packet == 2 + words
