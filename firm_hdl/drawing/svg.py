@@ -18,7 +18,7 @@ def number(value: float) -> str:
     """Write a number with three significant digits and separators of thousands."""
     if not math.isfinite(value):
         return "-"
-    if value == int(value) and abs(value) < 1e15:
+    if value == int(value):
         return f"{int(value):,}"
     if abs(value) >= 1000:
         return f"{value:,.0f}"

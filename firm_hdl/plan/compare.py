@@ -110,6 +110,8 @@ def _facts(text: str) -> dict[str, str]:
         raise ValueError(f"Not YAML: {error}") from None
     if not isinstance(document, dict) or not isinstance(document.get("steps"), dict):
         raise ValueError("Not a plan: it has no steps")
+    if not all(isinstance(content, dict) for content in document["steps"].values()):
+        raise ValueError("Not a plan: a step must be a mapping")
     names = _step_names(document["steps"])
     facts: dict[str, str] = {}
     for key, value in document.items():

@@ -80,7 +80,7 @@ def _max_counts(plan: Plan) -> MaxCounts:
 
     def note(counter: int | str, step: int | None, count: int) -> None:
         if step is not None:
-            counts[counter, step] = max(count, counts.get((counter, step), 0))
+            counts[counter, step] = count
 
     for jump in plan.jumps():
         for counter, count in jump.enter:

@@ -149,7 +149,7 @@ class _Printer:
             count = part.size // leaf.item_bytes
             natural *= count
             text += f", {counted(count, 'item')}"
-        if part.bytes != part.size or part.size != natural:
+        if part.first or part.bytes != part.size or part.size != natural:
             text += f", bytes {_range(part.first, part.bytes)} of {part.size}"
         match part.end:
             case ArrayEnd():

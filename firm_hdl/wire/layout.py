@@ -189,7 +189,7 @@ def lay_out(message: Message, wire: Wire | None = None) -> Layout:
         raise DefinitionError(wrong)
     rules = RULES[wire or message.wire]
     builder = _Builder(rules)
-    nodes, _ = builder.message(message, (), rs.single(0))
+    nodes = builder.message(message, (), rs.single(0))
     return Layout(
         message=message,
         rules=rules,
@@ -227,24 +227,24 @@ class _Builder:
 
     # Nodes.
 
-    def message(self, message: Message, path: Path, at: int) -> tuple[tuple[Node, ...], int]:
+    def message(self, message: Message, path: Path, at: int) -> tuple[Node, ...]:
         if not message.fields:
             if self.rules.empty_member is None:
-                return (Trigger(path=path),), at
+                return (Trigger(path=path),)
             member = Field(name=self.rules.empty_member, type=OCTET)
-            return self.field(member.type, (*path, member.name), at), self.alignment.past(OCTET, at)
+            return self.field(member.type, (*path, member.name), at)
         nodes: list[Node] = []
         for item in message.fields:
             nodes.extend(self.field(item.type, (*path, item.name), at))
             at = self.alignment.after(item.type, at)
-        return tuple(nodes), at
+        return tuple(nodes)
 
     def field(self, kind: FieldType, path: Path, at: int) -> tuple[Node, ...]:
         match kind:
             case Primitive():
                 return (Scalar(path=path, gap=self.gap(kind, at), type=_number(kind)),)
             case Message():
-                return self.message(kind, path, at)[0]
+                return self.message(kind, path, at)
             case String():
                 return (self.text(kind, path, at),)
             case Array(element=Primitive() as item) | Sequence(element=Primitive() as item):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.covering.command import read_chosen
+from firm_hdl.covering.command import _share, read_chosen
 
 NAMES = ["geometry_msgs/msg/Point", "geometry_msgs/msg/Vector3", "std_msgs/msg/Bool"]
 
@@ -107,3 +107,37 @@ def test_folders_are_chosen_from_with_services_and_without_the_distribution(tmp_
     assert main(["cover", "--path", str(tmp_path), "--out", str(tmp_path / "chosen.txt")]) == 0
     assert all(name.startswith("p/srv/T_") for name in read_chosen(tmp_path / "chosen.txt"))
     assert " of 4 types have 100 % " in capsys.readouterr().err
+
+
+def test_the_file_is_sorted_and_names_the_bus(tmp_path):
+    """The chosen types come in the order of what they add: here, the last by name is the first."""
+    path = tmp_path / "chosen.txt"
+    names = ["std_msgs/msg/Bool", "std_msgs/msg/String", "sensor_msgs/msg/Imu"]
+    assert main(["cover", *names, "--bus-bytes", "2", "--out", str(path)]) == 0
+    head, *_ = text = path.read_text().splitlines()
+    assert head.endswith("; bus of 2 bytes.")
+    assert text[2:] == sorted(names)
+
+
+@pytest.mark.parametrize(
+    ("options", "feature"),
+    [
+        (["--bus-bytes", "1"], "plan: first part of scalar, 8 bytes each"),
+        (["--wire", "ros1"], "plan: wire ros1"),
+    ],
+)
+def test_features_are_those_of_the_plan_that_is_asked_for(capsys, options, feature):
+    assert main(["cover", "geometry_msgs/msg/Point", *options]) == 0
+    assert feature in capsys.readouterr().out
+
+
+def test_a_limit_that_a_type_exceeds_is_an_error(capsys):
+    assert main(["cover", "geometry_msgs/msg/Point", "--max-message-bytes", "27"]) == 1
+    assert "28 bytes" in capsys.readouterr().err
+
+
+def test_a_share_is_rounded_down_so_that_only_all_is_100_percent():
+    few = frozenset(f"plan: {number}" for number in range(299))
+    types = {"a": few, "b": frozenset({"plan: 299"})}
+    assert " have 99 % of the 300 features (plan 299 of 300)" in _share(types, ["a"])
+    assert " have 100 % of the 300 features (plan 300 of 300)" in _share(types, ["a", "b"])

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ElementTree
+
 import pytest
 
+from firm_hdl.drawing.document import document
 from firm_hdl.drawing.svg import Figure, Scale, number, seconds, spread
 
 
@@ -157,3 +160,19 @@ def test_units_of_time_change_at_their_limits(value, text):
 
 def test_neighbours_are_a_golden_section_apart():
     assert [round(spread(n), 3) for n in range(4)] == [0, 0.618, 0.236, 0.854]
+
+
+def test_a_file_has_a_size_a_style_sheet_and_a_background():
+    figure = Figure(200, 100, "A > B")
+    figure.line(1, 2, 3, 4, "grid")
+    figure.text(5, 6, "a<b>c", "label")
+    space = "{http://www.w3.org/2000/svg}"
+    root = ElementTree.fromstring(document(figure))
+    assert root.tag == f"{space}svg"
+    sizes = [root.get(name) for name in ("width", "height", "viewBox", "aria-label")]
+    assert sizes == ["200", "100", "0 0 200 100", "A > B"]
+    style, paper, line, text = root
+    assert style.tag == f"{space}style" and "prefers-color-scheme: dark" in style.text
+    assert paper.tag == f"{space}rect"
+    assert paper.attrib == {"width": "200", "height": "100", "class": "paper"}
+    assert (line.tag, line.get("y2"), text.text) == (f"{space}line", "4", "a<b>c")

@@ -64,8 +64,17 @@ def test_made_by_requires_the_file(tmp_path):
         ToolError, match=r"^yosys ended without an error, but did not write out\.v$"
     ):
         made_by("yosys", file)
+    file.mkdir()
+    with pytest.raises(ToolError, match="did not write"):
+        made_by("yosys", file)
+    file.rmdir()
     file.touch()
     assert made_by("yosys", file) == file
+    file.write_text(" \n")
+    with pytest.raises(ToolError, match="did not write"):
+        made_by("yosys", file, may_be_empty=False)
+    file.write_text("module\n")
+    assert made_by("yosys", file, may_be_empty=False) == file
 
 
 def test_tool_has_empty_input_and_may_print_any_bytes(tmp_path):
@@ -75,6 +84,9 @@ def test_tool_has_empty_input_and_may_print_any_bytes(tmp_path):
     output = run_tool(["sh", "-c", "echo $A_NAME $HOME"], tmp_path, environment=environment)
     assert output == f"b {os.environ.get('HOME', '')}\n"
     assert "A_NAME" not in os.environ
+    # The caller's value counts, not that of this process.
+    output = run_tool(["sh", "-c", "echo $HOME"], tmp_path, environment={"HOME": "/elsewhere"})
+    assert output == "/elsewhere\n"
     # No tool is registered as running.
     assert processes._running == set()
 

@@ -81,6 +81,13 @@ def test_identifier(name, want):
     assert identifier(name) == want
 
 
+def test_reserved_names_are_taken_in_any_case():
+    assert scope_names(["clk", "Rst", "a"], {"CLK", "rst"}) == {
+        "clk": "clk_2", "Rst": "Rst_2", "a": "a",
+    }  # fmt: skip
+    assert flat_names([("in", "A")], {"IN_a"}) == {("in", "A"): "in_A_2"}
+
+
 def test_paths_with_equal_flat_names_are_distinguished():
     paths = [("a", "b_c"), ("a_b", "c"), ("A", "B", "C"), ("a__b", "c"), ("a_b_c_2",)]
     assert list(flat_names(paths).values()) == ["a_b_c", "a_b_c_3", "A_B_C_4", "a_b_c_5", "a_b_c_2"]

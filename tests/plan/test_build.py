@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from firm_hdl.plan import build_plan, decode, encode
+from firm_hdl.plan import build_plan, check, decode, encode
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out
 from tests.strategies import BUS_WIDTHS, make
@@ -29,6 +29,15 @@ def test_the_largest_message_has_room_for_the_smallest(size):
     )
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         build_plan(lay_out(BLOB), max_message_bytes=size)
+
+
+@pytest.mark.parametrize("number", [True, False, 8.0, "8", None])
+def test_numbers_are_integers_and_no_flags(number):
+    with pytest.raises(TypeError, match=f"^Bus width must be an integer, not {number!r}$"):
+        build_plan(lay_out(BLOB), bus_bytes=number)
+    layout = lay_out(make("ros1", {}))
+    with pytest.raises(TypeError, match=f"^Maximum message size must be .*, not {number!r}$"):
+        build_plan(layout, max_message_bytes=number)
 
 
 def test_message_beyond_every_limit_is_refused_by_its_size():
@@ -65,3 +74,58 @@ def test_fixed_fields_take_no_more_cycles_than_beats(bus_bytes):
     visits = decode(plan, packet).steps
     size = sum(visit.bytes for visit in visits)
     assert len(visits) <= -(-size // bus_bytes) * 1.5 + 2
+
+
+PAIR = make("ros1", {"x": "uint16", "y": "uint16"}, "Pair")
+TEXT = make("ros1", {"s": "string"}, "Text")
+
+
+@pytest.mark.parametrize(
+    ("fields", "sizes"),
+    [
+        # Two words in the last step save one if all packets are alike.
+        ({"p": (PAIR, "[2]")}, [4, 8]),
+        # Otherwise, short packets end with a step of one word, wherever a length is.
+        ({"p": (PAIR, "[]")}, [4, 4, 4, 4]),
+        ({"p": (TEXT, "[2]")}, [4, 4, 4]),
+        ({"s": "string"}, [4, 4, 4]),
+    ],
+)
+def test_the_last_step_takes_two_words_if_no_length_is_in_the_message(fields, sizes):
+    message = make("ros1", {**fields, "a": "uint32", "b": "uint32"})
+    plan = build_plan(lay_out(message), bus_bytes=4)
+    assert [step.bytes for step in plan.steps if step.bytes] == sizes
+
+
+@pytest.mark.parametrize(("more", "sizes"), [(56, [8]), (57, [4, 4])])
+def test_the_first_length_of_a_short_packet_is_in_a_step_of_two_words(more, sizes):
+    """The shortest packet has up to 16 bus words."""
+    message = make("ros1", {"a": "uint32", "s": "string", "m": f"uint8[{more}]"})
+    plan = build_plan(lay_out(message), bus_bytes=4)
+    first = next(n for n, step in enumerate(plan.steps) if step.begin is not None)
+    assert [step.bytes for step in plan.steps[: first + 1]] == sizes
+
+
+@pytest.mark.parametrize(
+    ("kind", "bus_bytes", "runs", "levels"),
+    [
+        # Up to two transfers are as static as other values.
+        ("uint8[16]", 8, 0, 0),
+        ("uint8[17]", 8, 1, 0),
+        ("uint64[2]", 8, 0, 0),
+        ("uint64[3]", 8, 1, 0),
+        # Items wider than the bus are a loop, unless there is one.
+        ("uint64[1]", 4, 0, 0),
+        ("uint64[2]", 4, 0, 1),
+        ("uint64[<=1]", 4, 0, 1),
+        ("uint64[<=1]", 8, 1, 0),
+    ],
+)
+@pytest.mark.parametrize("wire", ["ros1", "cdr"])
+def test_arrays_are_values_runs_or_loops(wire, kind, bus_bytes, runs, levels):
+    # After a string, whose rest the first step takes, or a step of its own.
+    for before in ({"a": "uint8"}, {"s": "string"}):
+        layout = lay_out(make("ros2", {**before, "m": kind, "z": "uint16"}), wire)
+        plan = build_plan(layout, bus_bytes=bus_bytes)
+        assert (len(plan.runs) - ("s" in before), plan.levels) == (runs, levels)
+        assert check(plan, layout) == []

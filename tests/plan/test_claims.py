@@ -123,3 +123,122 @@ def test_a_string_is_counted_with_its_nul(room, counts):
     layout = lay_out(make("ros2", {"rows": (row, "[]")}))
     plan = build_plan(layout, max_message_bytes=layout.min_bytes + room)
     assert [begin.claim is not None for begin in plan.begins.values()] == [counts, counts]
+
+
+PAIR = make("ros1", {"x": "uint16", "y": "uint16"}, "Pair")
+
+
+def rows(*counts, size=1):
+    """Return a sequence of rows in ROS 1: each is a sequence of items of `size` bytes."""
+    parts = [count.to_bytes(4, "little") + bytes(count * size) for count in counts]
+    return len(counts).to_bytes(4, "little") + b"".join(parts)
+
+
+@pytest.mark.parametrize(("items", "size"), [("uint8[]", 1), ((PAIR, "[]"), 4)])
+def test_the_step_after_a_counted_length_is_held_once(items, size):
+    """The check of a claim of at least 4,096 bytes takes 3 cycles, a refusal 2 more."""
+    row = make("ros1", {"items": items}, "Row")
+    layout = lay_out(make("ros1", {"rows": (row, "[]")}))
+    least = 4096 // size
+    found = decode(build_plan(layout), rows(least - 1, least, least - 1, 0, size=size))
+    (place,) = (place for place, visit in enumerate(found.steps) if visit.held)
+    # The length of the second row, and the number and the first row before it.
+    assert (found.steps[place - 1].end, found.steps[place].held) == (4 + 4 + 4096 - size + 4, 3)
+    # Without a byte of room for as much again.
+    plan = build_plan(layout, max_message_bytes=4 + 8191)
+    found = decode(plan, rows(least, least, 0, size=size))
+    assert found.status == "LENGTH"
+    assert [visit.held for visit in found.steps if visit.held] == [3, 5]
+
+
+@pytest.mark.parametrize(("more", "status"), [(0, "TRUNCATED"), (1, "LENGTH")])
+def test_a_budget_is_spent_to_its_last_byte_and_renewed_by_each_sequence(more, status):
+    row = make("ros1", {"a": "uint8[]"}, "Row")
+    layout = lay_out(make("ros1", {"one": (row, "[]"), "other": (row, "[]")}))
+    plan = build_plan(layout, max_message_bytes=8 + 8192)
+    # 1,024 rows claim 4 bytes each, and the first row as many bytes as are left.
+    packet = (1024).to_bytes(4, "little") + (4096 + more).to_bytes(4, "little")
+    assert decode(plan, packet).status == status
+    # What the first sequence has claimed is left to the second one.
+    second = (1024).to_bytes(4, "little") + (4096 + more).to_bytes(4, "little")
+    assert decode(plan, rows(5000) + second).status == status
+    # Lengths below a 16th of the packet are not counted, however many there are.
+    assert decode(plan, rows(*[511] * 20) + rows()).status == "OK"
+    assert decode(plan, rows(*[512] * 16) + rows()).status == "OK"
+    assert decode(plan, rows(*[512] * 17) + rows()).status == "LENGTH"
+
+
+ROOM = (1 << 24) - 4
+PADDED = make("ros2", {"x": "uint32", "y": "uint8"}, "Padded")
+NAMED = make("ros2", {"s": "string", "y": "uint8"}, "Named")
+LIST = make("ros2", {"a": "uint8[]"}, "List")
+
+
+@pytest.mark.parametrize(
+    ("wire", "fields", "claims"),
+    [
+        # A sequence in an array is as much an outermost one as another.
+        (
+            "ros1",
+            {"g": (make("ros2", {"l": (LIST, "[]")}, "G"), "[2]"), "l": (LIST, "[]")},
+            {
+                "g.item.l": (4, 1024, 0, ROOM - 8),
+                "g.item.l.item.a": (1, 4096, 0, None),
+                "l": (4, 1024, 0, ROOM - 8),
+                "l.item.a": (1, 4096, 0, None),
+            },
+        ),
+        # What is not in a sequence of messages, or has no length inside, shares no budget.
+        ("ros1", {"a": "uint8[]", "p": (PAIR, "[]"), "s": "string"}, {}),
+        # A bound that is too small, and one that is just large enough: 4,096 bytes.
+        ("ros1", {"l": (make("ros2", {"a": "float64[<=511]"}, "L"), "[]")}, {}),
+        (
+            "ros1",
+            {"l": (make("ros2", {"a": "float64[<=512]"}, "L"), "[]")},
+            {"l": (4, 1024, 0, ROOM), "l.item.a": (8, 512, 0, None)},
+        ),
+        # Padding is claimed by the inner sequence alone; all lengths of the message save it.
+        (
+            "cdr",
+            {"r": (make("ros2", {"e": (NAMED, "[]")}, "R"), "[]")},
+            {
+                "r": (4, 1024, 14, ROOM - 4),
+                "r.item.e": (8, 512, 14, None),
+                "r.item.e.item.s": (1, 4096, 14, None),
+            },
+        ),
+        # The elements of an array have padding, but no length claims any.
+        (
+            "cdr",
+            {"c": (PADDED, "[2]"), "l": (LIST, "[]")},
+            {"l": (4, 1024, 0, ROOM - 4 - 10), "l.item.a": (1, 4096, 0, None)},
+        ),
+    ],
+)
+def test_claims_by_hand(wire, fields, claims):
+    plan = build_plan(lay_out(make("ros2", fields), wire))
+    found = {
+        ".".join(plan.leaves[leaf].path[:-1]): begin.claim for leaf, begin in plan.begins.items()
+    }
+    assert {
+        path: (claim.bytes, claim.least, claim.saved, claim.total)
+        for path, claim in found.items()
+        if claim is not None
+    } == claims
+
+
+@pytest.mark.parametrize(
+    ("size", "least"),
+    [(1 << 10, 256), (4111, 256), (4112, 257), (65_535, 4095), (65_536, 4096), (1 << 30, 4096)],
+)
+def test_a_length_is_counted_from_a_16th_of_the_largest_packet(size, least):
+    plan = build_plan(lay_out(make("ros1", {"l": (LIST, "[]")})), max_message_bytes=size)
+    assert [begin.claim.least for begin in plan.begins.values()] == [-(-least // 4), least]
+
+
+@pytest.mark.parametrize(("room", "limit"), [(80, 11), (81, 11), (82, 12), (10, 2), (5, 1), (4, 0)])
+def test_room_for_elements_is_counted_with_and_without_padding(room, limit):
+    """Each has 5 bytes, or 8 with padding, of which 14 may be saved."""
+    element = make("ros2", {"y": "uint8", "s": "string"}, "E")
+    plan = build_plan(lay_out(make("ros2", {"e": (element, "[]")})), max_message_bytes=8 + room)
+    assert plan.begins[0].limit == limit

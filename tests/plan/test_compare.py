@@ -75,6 +75,16 @@ def test_leaves_in_another_order_are_a_change():
     assert [change for change in changes if change.startswith("order of leaves")]
 
 
+def test_steps_in_another_order_are_a_change():
+    first, second = "0..3: b\n    next: step {}\n", "0..3: a\n    next: end\n"
+    old = f"steps:\n  step 0:\n    {first.format(1)}  step 1:\n    {second}"
+    new = f"steps:\n  step 0:\n    {second}  step 1:\n    {first.format(0)}"
+    assert [str(change) for change in compare(old, new)] in (
+        ["order of steps: b -> (nothing here)", "order of steps: (nothing here) -> b"],
+        ["order of steps: (nothing here) -> a", "order of steps: a -> (nothing here)"],
+    )
+
+
 @pytest.mark.parametrize(
     "change",
     [
@@ -98,10 +108,20 @@ def test_kinds_leave_out_what_belongs_to_one_type():
     assert kinds == ["max_message_bytes", "steps[*].starts.limit"]
 
 
-@pytest.mark.parametrize("text", ["", "a: [", "[]", "message: x"])
-def test_texts_that_are_no_plans_are_refused(text):
-    with pytest.raises(ValueError, match=r"^Not (YAML|a plan): "):
-        compare(text, text)
+@pytest.mark.parametrize(
+    "text", ["", "a: [", "[]", "message: x", "steps: 5", "steps: []", "steps:"]
+)
+@pytest.mark.parametrize("is_old", [True, False])
+def test_texts_that_are_no_plans_are_refused(text, is_old):
+    texts = [text, "steps: {}"] if is_old else ["steps: {}", text]
+    with pytest.raises(ValueError, match=r"^Not (YAML|a plan: it has no steps)"):
+        compare(*texts)
+
+
+@pytest.mark.parametrize("content", ["", "5", "words of", "[a]"])
+def test_steps_that_are_no_mappings_are_refused(content):
+    with pytest.raises(ValueError, match=r"^Not a plan: a step must be a mapping$"):
+        compare("steps: {}", f"steps: {{step 0: {{next: end}}, step 1: {content}}}")
 
 
 def test_additions_and_removals_are_kinds_of_changes():

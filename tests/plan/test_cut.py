@@ -15,6 +15,9 @@ from firm_hdl.plan.ir import Pad, Part
         # Cut between the values, because one more step is needed anyway.
         ([1, 8], [1, 4, 4]),
         ([2, 4, 3], [2, 4, 3]),
+        # Of several such cuts, the last one leaves the least.
+        ([1, 2, 4, 2], [3, 4, 2]),
+        ([1, 1, 1, 4], [3, 4]),
         # Cut through the second value: a cut between the values would cost a step.
         ([1, 7], [4, 4]),
         ([3, 1, 3, 1], [4, 4]),

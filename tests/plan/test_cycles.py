@@ -102,6 +102,40 @@ def test_a_full_beat_waits_where_it_may_be_the_last_one():
     assert both_cycles([packet]) == ([3], [1 + 3])
 
 
+@pytest.mark.parametrize(
+    ("kind", "bus_bytes", "beats", "steps"),
+    [("uint8", 1, 5, 4), ("uint16", 2, 3, 2), ("uint32", 2, 4, 3)],
+)
+def test_beats_of_the_header_wait_for_the_first_leaf(kind, bus_bytes, beats, steps):
+    """Their steps are done before the leaf is offered, so the beats follow each other."""
+    size = bus_bytes * beats - 4
+    packet = packet_for({"a": kind}, b"\0\1\0\0" + bytes(size), bus_bytes, "ros2")
+    # The last step takes two beats.
+    assert (packet.beats, len(packet.visits)) == (beats, steps)
+    assert both_cycles([packet] * 2) == ([beats - 1, 2 * beats - 1],) * 2
+
+
+@pytest.mark.parametrize(("count", "held"), [(4095, 0), (4096, 3)])
+def test_a_length_whose_claim_is_checked_costs_the_deserializer_three_cycles(count, held):
+    row = make("ros1", {"a": "uint8[]"}, "Row")
+    data = b"\1\0\0\0" + count.to_bytes(4, "little") + bytes(count)
+    packet = packet_for({"rows": (row, "[]")}, data)
+    # Two lengths, and the words of the row.
+    steps = 2 + 512
+    assert (packet.beats, len(packet.visits)) == (1 + 512, steps)
+    assert deserializer_cycles([packet] * 2) == [steps - 1 + held, 2 * (steps + held) - 1]
+    assert cycles_between(packet) == steps + held
+
+
+@pytest.mark.parametrize(("count", "start"), [(0, 8), (1, 12), (2, 12), (3, 12)])
+@pytest.mark.parametrize("bus_bytes", [8, 16])
+def test_items_start_at_their_alignment_after_the_header_if_there_are_any(count, start, bus_bytes):
+    data = b"\0\1\0\0" + count.to_bytes(4, "little")
+    data += (bytes(4) + bytes(8 * count)) if count else b""
+    packet = packet_for({"q": "float64[]"}, data, bus_bytes, "ros2")
+    assert packet.next_start(0) == start
+
+
 def test_packets_of_no_bytes_have_a_beat():
     packet = packet_for({"e": EMPTY}, b"")
     assert (packet.bytes, packet.beats) == (0, 1)

@@ -144,6 +144,7 @@ def test_a_string_of_length_zero_is_the_empty_string_without_nul(bus_bytes):
     message = make("ros2", {"s": "string", "x": "uint32"})
     packet = bytes.fromhex("000100000000000005000000")
     assert read(packet, bus_bytes, message) == ("OK", {"s": "", "x": 5})
+    assert decode(plan_for(bus_bytes, message), packet).streams == {0: [0], 2: [5]}
 
 
 @every_bus
@@ -235,6 +236,13 @@ def test_lanes_past_the_end_do_not_reach_the_wire(bus_bytes):
             filled.append((items[:there] + (99,) * (lanes - there), last))
         streams[leaf] = filled
     assert encode(plan, streams) == want
+
+
+@every_bus
+def test_numbers_are_cut_to_the_width_of_their_leaf(bus_bytes):
+    plan = plan_for(bus_bytes, make("ros1", {"a": "bool", "b": "uint8", "c": "int16", "d": "bool"}))
+    streams = {0: [2], 1: [0x1FE], 2: [-0x18002], 3: [3]}
+    assert encode(plan, streams) == (bytes.fromhex("00 fe fe7f 01"), "OK")
 
 
 def test_iterators_give_one_packet_per_call():

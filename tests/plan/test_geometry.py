@@ -5,7 +5,14 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.plan import build_plan
-from firm_hdl.plan.geometry import Place, geometry
+from firm_hdl.plan.geometry import (
+    Place,
+    first_step,
+    geometry,
+    may_end_empty,
+    most_beats,
+    only_ends,
+)
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
@@ -36,6 +43,9 @@ def needs(fields, wire, bus_bytes):
         ({"s": "string", "n": "uint8"}, "cdr", 8, (0,), ANY),
         ({"s": "string", "n": "uint32"}, "cdr", 8, (0,), (0, 4)),
         ({"a": "uint16[]", "b": "uint16"}, "cdr", 4, (0,), (0, 2)),
+        ({"s": "string", "n": "uint8"}, "ros1", 16, (4,), tuple(range(16))),
+        # The items start at byte 12 of the packet, and end half a bus word later or not.
+        ({"a": "uint8", "q": "uint64[]", "b": "uint64"}, "cdr", 16, (12,), (0, 4, 12)),
         # The words of an array are as static as a map.
         ({"a": "uint8[20]"}, "cdr", 8, (0,), (0, 4)),
         # A map of two words takes the first one from where items are.
@@ -86,9 +96,61 @@ def test_padding_that_is_computed():
     assert needs({"s": "string", "n": "uint32"}, "cdr", 8).aligns
     assert not needs({"s": "string", "n": "uint32"}, "ros1", 8).aligns
     assert needs({"a": "uint64[]"}, "cdr", 4).aligns
+    # Only the items of a run.
+    assert needs({"a": "uint64[]"}, "cdr", 8).aligns
 
 
 def test_an_empty_run_ends_before_the_padding_of_items():
     # `b` follows the length at once, or follows items.
     found = needs({"a": "uint64[]", "b": "uint8"}, "cdr", 8)
     assert found.places[-1] == Place((0, 4), (0, 4))
+
+
+WIDE = make("ros2", {"x": "uint64", "s": "string"}, "Wide")
+EMPTY = make("ros2", {}, "Empty")
+
+
+@pytest.mark.parametrize(
+    ("fields", "wire", "bus_bytes", "first", "ends", "is_empty"),
+    [
+        ({"a": "uint64"}, "ros1", 8, 0, [], False),
+        # The header is a step of its own.
+        ({"a": "uint64"}, "cdr", 4, 1, [], False),
+        ({"a": "uint64"}, "cdr", 2, 2, [], False),
+        # A run is a leaf's.
+        ({"a": "uint8[24]"}, "ros1", 8, 0, [], False),
+        # The last step takes the rest of the text, and ends the packet.
+        ({"s": "string"}, "ros1", 8, 0, [2], False),
+        ({"t": (TEXT, "[]")}, "ros1", 8, 0, [3], False),
+        # The last step takes the rest, and may be followed by another turn.
+        ({"w": (WIDE, "[]")}, "ros1", 8, 0, [], True),
+        # The last step is a trigger.
+        ({"e": (EMPTY, "[]")}, "ros1", 8, 0, [], True),
+    ],
+)
+def test_steps_before_the_first_leaf_and_at_the_end(fields, wire, bus_bytes, first, ends, is_empty):
+    plan = build_plan(lay_out(make("ros2", fields), wire), bus_bytes=bus_bytes)
+    assert first_step(plan) == first
+    assert [index for index, step in enumerate(plan.steps) if only_ends(step)] == ends
+    assert may_end_empty(plan) == is_empty
+
+
+@pytest.mark.parametrize(
+    ("fields", "wire", "bus_bytes", "beats"),
+    [
+        # A byte in the last lane, and as many bytes as follow it.
+        ({"a": "uint8"}, "ros1", 8, 1),
+        ({"a": "uint16"}, "ros1", 8, 2),
+        ({"a": "uint64", "b": "uint16"}, "ros1", 8, 3),
+        ({"e": (EMPTY, "[2]")}, "ros1", 8, 1),
+        # The rest of a text, its NUL on CDR, and a byte.
+        ({"s": "string", "b": "uint8"}, "ros1", 8, 2),
+        ({"s": "string", "b": "uint8"}, "cdr", 8, 3),
+        # Also 7 bytes of padding.
+        ({"s": "string", "b": "float64"}, "cdr", 8, 4),
+        # A header of 4 bytes, the length, and 7 bytes of padding before the items.
+        ({"a": "uint64[]"}, "cdr", 8, 3),
+    ],
+)
+def test_beats_that_a_step_touches(fields, wire, bus_bytes, beats):
+    assert most_beats(build_plan(lay_out(make("ros2", fields), wire), bus_bytes=bus_bytes)) == beats

@@ -12,7 +12,7 @@ from firm_hdl.plan import RunStep, build_plan, check, decode, encode
 from firm_hdl.plan.outline import outline
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out, walk
-from firm_hdl.wire.layout import LoopNode, RunNode, Trigger
+from firm_hdl.wire.layout import LoopNode, RunNode, Scalar, Trigger
 from tests.plan.test_random_messages import damaged, typed_values
 from tests.strategies import BUS_WIDTHS, make
 
@@ -99,6 +99,39 @@ def test_an_array_of_messages_is_bytes_if_its_padding_is_fixed():
     assert sum(isinstance(step, RunStep) for step in short.steps) == 1
     assert decode(short, b"\0\1\0\0" + bytes(8002)).status == "OK"
     assert decode(short, b"\0\1\0\0" + bytes(8001)).status == "TRUNCATED"
+
+
+AHEAD = make("ros2", {"x": "uint32", "y": "uint8"}, "Ahead")
+INSIDE = make("ros2", {"y": "uint8", "x": "uint32"}, "Inside")
+
+
+@pytest.mark.parametrize(
+    ("element", "count", "kinds"),
+    [
+        # Only the padding before the one element differs: a number that has it, and a byte.
+        (AHEAD, 1, [RunNode, Scalar, RunNode]),
+        # The padding before the second element is another one.
+        (AHEAD, 2, [RunNode, LoopNode]),
+        # The padding inside an element differs.
+        (INSIDE, 1, [RunNode, LoopNode]),
+        (INSIDE, 2, [RunNode, LoopNode]),
+    ],
+)
+def test_padding_that_differs_stays_where_it_is(element, count, kinds):
+    message = make("ros2", {"s": "string", "p": (element, f"[{count}]")})
+    nodes = outline(lay_out(message), 8).nodes
+    assert [type(node) for node in nodes] == kinds
+    _, short = plans_of(message, "cdr", 8)
+    assert check(short) == []
+
+
+def test_four_bus_words_of_bytes_share_a_step_with_the_length_after_them():
+    """A run would take a cycle for its last word, and the length another one."""
+    element = make("ros1", {"x": "uint64[4]", "t": "string"}, "Element")
+    _, short = plans_of(make("ros1", {"e": (element, "[]")}), "ros1", 8)
+    visits = decode(short, b"\1\0\0\0" + bytes(32 + 4)).steps
+    # The number of elements, the four words with the length, and the end with the rest of `t`.
+    assert [visit.bytes for visit in visits] == [4, 8, 8, 8, 12, 0]
 
 
 def test_elements_without_bytes_are_only_counted():

@@ -117,10 +117,12 @@ def test_types_of_fixed_size_recover_at_once():
     assert recovery(plan, 7) == Recovery(cycles=len(plan.steps) + AFTER, longest_packet=7)
 
 
-def test_a_string_takes_a_cycle_for_each_word():
-    plan = build_plan(lay_out(make("ros1", {"s": "string"})), max_message_bytes=804)
-    # 800 characters in 100 words, besides the steps of the length and of the rest.
-    assert recovery(plan, 2) == Recovery(cycles=2 + 100 + AFTER, longest_packet=102)
+@pytest.mark.parametrize(("characters", "words"), [(793, 100), (800, 100), (801, 101)])
+def test_a_string_takes_a_cycle_for_each_word(characters, words):
+    layout = lay_out(make("ros1", {"s": "string"}))
+    plan = build_plan(layout, max_message_bytes=4 + characters)
+    # Besides the steps of the length and of the rest.
+    assert recovery(plan, 2) == Recovery(cycles=2 + words + AFTER, longest_packet=2 + words)
 
 
 def test_the_longest_packet_has_the_padding_of_its_elements():
@@ -145,3 +147,49 @@ def test_arrays_of_constant_count_are_part_of_an_element():
     for wanted in ([28], [10, 0, 5000], [1, 0, 0, 9000], [27, 1, 2, 3]):
         packet = bomb(plan, wanted)
         assert steps_after(plan, packet) + AFTER <= recovery(plan, 1).cycles
+
+
+@pytest.mark.parametrize("outer", ["[]", "[<=40]"])
+def test_an_array_of_messages_recovers_like_its_elements_one_by_one(outer):
+    inner = make("ros1", {"t": "string"}, "Inner")
+    found = []
+    for fields in ({"i": (inner, "[2]")}, {"a": inner, "b": inner}):
+        message = make("ros1", {"o": (make("ros1", fields, "Outer"), outer)})
+        found.append(recovery(build_plan(lay_out(message), max_message_bytes=10_000), 2))
+    assert found[0] == found[1]
+    # Texts of a word per cycle, and 8 bytes of lengths in two cycles.
+    assert found[0].longest_packet >= 1250
+
+
+@pytest.mark.parametrize(("bound", "cycles"), [("<=1", 3), ("<=2", 6), ("<=3", 12), ("", 4000)])
+def test_the_longest_packet_takes_its_beats_or_its_steps(bound, cycles):
+    # Each element has 4 beats, and 3 steps, as the last one takes two words.
+    element = make("ros1", dict.fromkeys("abcd", "uint64"), "Element")
+    layout = lay_out(make("ros1", {"e": (element, f"[{bound}]")}))
+    plan = build_plan(layout, max_message_bytes=4 + 32 * 1000)
+    # Packets of at most two elements have few beats, so that only steps are counted.
+    assert recovery(plan, 2).longest_packet == 2 + cycles
+
+
+def test_the_worst_packet_claims_what_has_the_most_steps_per_byte():
+    """Rows of a byte array: a row is a step in 4 bytes, and a word of bytes a step in 8."""
+    row = make("ros1", {"a": "uint8[]"}, "Row")
+    plan = build_plan(lay_out(make("ros1", {"rows": (row, "[]")})), max_message_bytes=10_000)
+    # All that is left of 10,000 bytes for rows. Then 624 bytes, one less than are counted.
+    claimed = 9996 // 4 + 624 // 8
+    assert recovery(plan, 1).cycles == 2 + claimed + AFTER
+
+
+def test_what_padding_may_save_is_claimed_beside_the_budget():
+    named = make("ros2", {"s": "string", "y": "uint8"}, "Named")
+    plan = build_plan(lay_out(make("ros2", {"e": (named, "[]")})), max_message_bytes=8 + 8000)
+    # Each of two levels may have claimed 14 bytes more than the 8,000 of the budget. An element has
+    # 8 bytes and 2 steps: 1,001 of them. Texts take the other 20 bytes, and 499 uncounted ones.
+    rest = -(-(20 + 499) // 8)
+    assert recovery(plan, 1).cycles == 1 + 2 * 1001 + rest + AFTER
+
+
+@pytest.mark.parametrize(("bound", "words"), [(2, 1), (16, 2), (17, 3)])
+def test_a_short_sequence_takes_few_words(bound, words):
+    plan = build_plan(lay_out(make("ros2", {"a": f"uint8[<={bound}]"}, "T"), "ros1"))
+    assert recovery(plan, 2).longest_packet == 2 + words

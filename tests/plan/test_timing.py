@@ -95,6 +95,13 @@ def test_packets_with_too_many_transfers_are_left_out(monkeypatch):
         assert timing(plan_of(fields, 8)).hardest == found
 
 
+def test_packets_after_one_that_is_too_long_are_still_tried(monkeypatch):
+    fields = {"d": "uint64[3]", "a": "string", "b": "string", "c": "string", "t": (TEXT, "[]")}
+    # 10 transfers if the strings have a character each, and 8 if there is one element.
+    monkeypatch.setattr("firm_hdl.plan.timing.MAX_TRANSFERS", 8)
+    assert timing(plan_of(fields, 8)).hardest == cost(44, 6, 9)
+
+
 @pytest.mark.parametrize(("count", "searched"), [(2046, True), (2047, True), (2048, False)])
 def test_nothing_is_searched_where_short_texts_are_a_small_part(count, searched):
     figures = timing(plan_of({"d": f"float64[{count}]", "t": (TEXT, "[]")}, 8))

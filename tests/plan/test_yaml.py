@@ -7,8 +7,9 @@ import re
 import pytest
 import yaml
 
-from firm_hdl.plan import build_plan, from_yaml, to_yaml
+from firm_hdl.plan import Pad, build_plan, from_yaml, to_yaml
 from firm_hdl.wire import RULES, lay_out
+from tests.plan.check.broken_plans import PLANS, damaged
 from tests.steps import calls_at_most
 from tests.strategies import BUS_WIDTHS, make
 
@@ -149,6 +150,67 @@ def test_what_lengths_claim_is_printed_and_read():
         from_yaml(text.replace("4 from 1024 of 65532", "4 of 9"))
 
 
+PAIRS = make("ros1", {"p": (make("ros1", {"x": "uint8"}, "X"), "[2]")}, "Pairs")
+
+
+def test_a_jump_into_loops_names_each_counter():
+    plan = build_plan(lay_out(make("ros1", {"s": "string", "grid": (PAIRS, "[3]"), "a": "byte"})))
+    text = to_yaml(plan)
+    assert "    next: step 3 with loop 0 = 3; loop 1 = 2\n" in text
+    again = "{loop 1 again: step 3, loop 0 again: step 3 with loop 1 = 2, else: step 4}"
+    assert f"    next: {again}\n" in text
+    assert from_yaml(text) == plan
+
+
+@pytest.mark.parametrize(
+    ("which", "changes"),
+    [
+        ("pair", {"steps.0.bytes": 11}),
+        ("pair", {"steps.0.bytes": 13}),
+        ("pair", {"steps.0.slices.1.size": 12}),
+        ("pair", {"steps.0.slices.1.size": 4}),
+        ("pair", {"steps.0.slices.0.first": 1}),
+        ("cut", {"steps.1.slices.0.first": 3}),
+        ("cut", {"steps.1.slices.0.bytes": 1}),
+        ("side", {"steps.0.slices.1.at": 5}),
+        ("side", {"steps.0.align": 4}),
+        ("last", {"start.step": None}),
+        ("last", {"start.enter": ((0, 2), ("run", 3), (1, 4))}),
+        ("last", {"leaves.1.kind": "items"}),
+        ("trigger", {"steps.0.slices.0": Pad(at=0, bytes=3)}),
+        ("nested", {"steps.1.begin.claim.saved": 14}),
+        ("nested", {"steps.0.begin.claim.saved": 14}),
+        ("nested", {"steps.1.begin.claim.total": 9}),
+        ("nested", {"steps.0.begin.claim": None}),
+        ("gap", {"steps.2.begin.align": 4}),
+        ("text", {"runs.0.last": False}),
+        ("text", {"runs.0.counted": False}),
+        ("text", {"runs.0.terminated": True}),
+    ],
+)
+def test_a_plan_that_is_not_sound_is_printed_and_read_too(which, changes):
+    """What a user has edited is shown as it is; `check` reports it."""
+    plan = PLANS[which]
+    for path, new in changes.items():
+        plan = damaged(plan, path.split("."), new)
+    assert plan != PLANS[which]
+    assert from_yaml(to_yaml(plan)) == plan
+
+
+def test_lines_have_at_most_100_columns():
+    ends = []
+    for length in range(10, 40):
+        name = "n" * length
+        text = text_of(make("ros1", {name: "string", "e": (PAIRS, "[]")}))
+        lines = text.splitlines()
+        assert max(map(len, lines)) <= 100
+        flat = f"    starts: {{run: {name}.items, count: {name}.length, "
+        flat += "limit: 16777208, body: step 1}"
+        assert (flat in lines) == (len(flat) <= 100)
+        ends.append(flat in lines)
+    assert True in ends and False in ends
+
+
 MISTAKES = [
     ("", "", "Line 1: a plan must be a mapping, not empty"),
     (BODY, "[1, 2]", "Line 1: a plan must be a mapping"),
@@ -195,6 +257,8 @@ MISTAKES = [
     ("next: {loop 0 again: step 1, else: step 4}", "next: {loops: step 1, else: step 4}",
      "Line 35: next has no 'loops'"),
     ("grid.items, 1 item, last", "grid.items, 1 item, bytes 0..2 of 4, last",
+     "Line 47: the bytes of 'grid.items' are not as many as those of the slice"),
+    ("grid.items, 1 item, last", "grid.items, 1 item, bytes 2 of 4, last",
      "Line 47: the bytes of 'grid.items' are not as many as those of the slice"),
     ("grid.items, 1 item, last", "grid.items, 1 item, last, last of loop 0",
      "Line 47: 'grid.items, 1 item, last, last of loop 0' is not a leaf, padding or fixed bytes"),

@@ -201,3 +201,52 @@ def test_names_without_room_are_cut(tmp_path, kind, fits, cut):
         picture = ElementTree.fromstring(to_svg(lay_out(message, "ros1"), "p/T"))
         cells = [each.text for each in picture.iter(f"{SVG}text") if each.get("class") == "c"]
         assert cells == [name if not more else "n" * cut + "~"]
+
+
+DEEP = {
+    "p/Deep": "T[] a\nuint8 end",
+    "p/T": f"uint64[5] first\nPart[2] parts\nstring {'long_' * 20}name\nuint64 last",
+    "p/Part": "uint8 x\nuint64[9] y\nstring z",
+}
+
+
+def boxes_of(picture):
+    """Return left, top, right and bottom of each rectangle but the background."""
+    numbers = (
+        [int(each.get(key)) for key in ("x", "y", "width", "height")]
+        for each in picture.iter(f"{SVG}rect")
+    )
+    _, *boxes = [(x, y, x + width, y + height) for x, y, width, height in numbers]
+    return boxes
+
+
+@pytest.mark.parametrize("wire", ["cdr", "ros1"])
+def test_bands_are_below_each_other_inside_the_picture(tmp_path, wire):
+    layout = lay_out(library(tmp_path, DEEP).message("p/Deep"), wire)
+    picture = ElementTree.fromstring(to_svg(layout, "p/Deep"))
+    width, height = (int(picture.get(key)) for key in ("width", "height"))
+    boxes = boxes_of(picture)
+    assert all(x >= 0 and y >= 0 and right <= width for x, y, right, _ in boxes)
+    assert max(bottom for *_, bottom in boxes) <= height
+    for number, (x, y, right, bottom) in enumerate(boxes):
+        for left, top, end, below in boxes[:number]:
+            assert right <= left or end <= x or bottom <= top or below <= y
+    # Texts that start at their left end, such as the names beside a row.
+    ends = [
+        int(each.get("x")) + 6.7 * len(each.text)
+        for each in picture.iter(f"{SVG}text")
+        if each.get("class") is None
+    ]
+    assert width - 20 <= max(ends) <= width
+    # A rail for each loop around a band, from the left.
+    rails = [x for x, _, right, _ in boxes if right - x == 5]
+    depths = [band.depth for band in bands(layout)]
+    assert rails == [6 + 8 * level for depth in depths for level in range(depth)]
+    assert max(depths) == 2
+
+
+def test_a_long_title_and_few_bytes_fit(tmp_path):
+    layout = lay_out(library(tmp_path, {"p/T": "uint8 a"}).message("p/T"))
+    title = "t" * 200
+    picture = ElementTree.fromstring(to_svg(layout, title))
+    assert int(picture.get("width")) >= 8 + 6.7 * len(title)

@@ -205,7 +205,7 @@ class Machine(ABC):
         has_nul = run.terminated and not left
         items = count - has_nul
         if items:
-            self.items(run, items, run.last and left <= run.terminated)
+            self.items(run, items, run.last and not left)
         if has_nul:
             self.terminator()
 
