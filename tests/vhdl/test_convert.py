@@ -179,6 +179,15 @@ def test_an_expression_read_only_by_a_port_is_written_in_place() -> None:
     assert "signal" not in text
 
 
+def test_copies_of_a_bit_and_of_a_word() -> None:
+    m = Module()
+    a, b, o = Signal(4, name="a"), Signal(4, name="b"), Signal(15, name="o")
+    m.d.comb += o.eq(Cat(a, a, b[1].replicate(3), b[0], b[2:4], b[0]))
+    text = " ".join(convert(m, name="copies", ports=[a, b, o]).files["copies.vhd"].split())
+    assert "(b(0) & unsigned(b(3 downto 2)) & b(0) & repeat_bit(b(1), 3) & unsigned(a) &" in text
+    assert "unsigned(a) & unsigned(a))" in text
+
+
 def test_assigns_to_several_wires_at_once() -> None:
     # Amaranth 0.5 writes no such connection, but RTLIL allows it.
     rtlil = r"""
