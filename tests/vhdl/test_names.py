@@ -111,3 +111,16 @@ def test_a_part_of_an_operator_gives_the_operator_no_name() -> None:
     m.d.comb += [o.eq(Cat(total[:4], a[4:])), p.eq(total[2:6])]
     text = convert(m, name="t", ports=[a, b, o, p]).files["t.vhd"]
     assert "signal add_" in text and "o_0" not in text
+
+
+def test_signals_inside_have_other_names_than_ports_whatever_their_case() -> None:
+    m = Module()
+    ports = {name: Signal(4, name=name) for name in ("Data", "sum", "Top")}
+    inside = {name: Signal(4, name=name) for name in ("data", "SUM", "TOP", "Sum")}
+    for port, signal in zip([*ports.values(), ports["Data"]], inside.values(), strict=True):
+        m.d.sync += signal.eq(port)
+    vhdl = convert(m, name="Top", ports=list(ports.values()))
+    names = vhdl.entities["Top"]
+    assert names.ports["Data"] == "Data" and names.ports["sum"] == "sum"
+    given = [names.signals[name].lower() for name in (*ports, *inside)]
+    assert len(set(given)) == len(given) and "top" not in given
