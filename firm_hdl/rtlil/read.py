@@ -229,7 +229,8 @@ class _Parser:
         """Split a line of a keyword and two specifications."""
         rest = line.partition(" ")[2]
         if rest.startswith("{"):
-            split = rest.index("}") + 1
+            # Without an end, all is the target, and malformed.
+            split = rest.find("}") + 1 or len(rest)
         else:
             match = re.match(r"\S+(?: \[[\d:]+\])?", rest)
             split = match.end() if match else 0

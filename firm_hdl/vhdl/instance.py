@@ -132,14 +132,22 @@ def _mode(cell: Cell, port: str, graph: Graph) -> str:
 
 
 def _sources(graph: Graph) -> set[str]:
-    """List the wires that processes, operators and connections drive."""
+    """List the wires that processes, operators, instances and connections drive."""
     names = {graph.target(process) for process in graph.processes}
     names.update(
         output(cell)
         for cell in graph.cells
         if cell.kind.startswith("$") and ("Y" in cell.ports or cell.kind == "$memrd_v2")
     )
-    names.update(c.wire for target, _ in graph.drives for c in target if isinstance(c, Slice))
+    outputs = (
+        spec
+        for cell in graph.cells
+        if graph.is_instance(cell)
+        for port, spec in cell.ports.items()
+        if graph.is_output(cell, port)
+    )
+    driven = (*outputs, *(target for target, _ in graph.drives))
+    names.update(chunk.wire for spec in driven for chunk in spec if isinstance(chunk, Slice))
     return names | set(graph.name_of.values())
 
 

@@ -41,6 +41,26 @@ def test_reads_wires_with_attributes() -> None:
     assert [wire.name for wire in wires.values()] == ["a", "b", "$1", "c"]
     assert wires["c"].attributes == {"init": Bits("0101"), "note": 'say "a"\n'}
     assert (wires["b"].direction, wires["b"].signed) == ("input", True)
+    # An attribute belongs to the next wire only.
+    assert parse(f"{HEAD}{text}wire width 1 \\d\nend\n").top.wires["d"].attributes == {}
+
+
+def test_attributes_belong_to_the_next_module_only() -> None:
+    design = parse("attribute \\keep 1\nmodule \\a\nend\nmodule \\b\nend\n")
+    assert [module.attributes for module in design.modules.values()] == [{"keep": 1}, {}]
+
+
+def test_the_top_is_the_marked_module_or_else_the_first() -> None:
+    first, marked = "module \\a\nend\n", "attribute \\top 1\nmodule \\b\nend\n"
+    last = "module \\c\nend\n"
+    assert parse(first + marked + last).top.name == "b"
+    assert parse(first + last).top.name == "a"
+
+
+@pytest.mark.parametrize("separator", ["\x0b", "\x0c", "\x1c", "\x85", "\u2028"])
+def test_only_line_feeds_end_a_line(separator: str) -> None:
+    wires = parse(f'{HEAD}attribute \\note "a{separator}b"\nwire width 4 \\c\nend\n').top.wires
+    assert wires["c"].attributes == {"note": f"a{separator}b"}
 
 
 def test_reads_specifications_least_significant_first() -> None:
@@ -51,6 +71,7 @@ def test_reads_specifications_least_significant_first() -> None:
     assert cell.ports["A"] == (Bits("01"), Slice("a", 2, 2))
     assert cell.ports["B"] == (Slice("b", 1, 1),)
     assert cell.ports["Y"] == (Slice("$1", 0, 4),)
+    assert cell.line == 6
 
 
 def test_reads_processes() -> None:
@@ -59,6 +80,7 @@ def test_reads_processes() -> None:
         "assign $1 [3:0] \\b [3:0]\ncase\nend\nend"
     )
     assert isinstance(process, Process)
+    assert process.line == 6
     default, switch = process.body
     assert default == Assign(target=(Slice("$1", 0, 4),), value=(Bits("0000"),))
     assert isinstance(switch, Switch)
@@ -89,6 +111,9 @@ def test_reads_what_amaranth_prints_of_an_instance() -> None:
         ("connect \\a \\b [4:1]", r"^RTLIL line 6: slice \[4:1\] is out of range$"),
         ("connect \\a 4'01", r"^RTLIL line 6: constant 4'01 has 2 bits$"),
         ("process $2\nswitch \\a\ncase 2'01\nend\nend", r"^RTLIL line 8: pattern .* does not fit"),
+        ("process $2\nsync always\nend", r"^RTLIL line 7: unexpected 'sync always' in a process$"),
+        ("connect { \\a \\b", r"^RTLIL line 6: malformed signal '\{ \\\\a \\\\b'$"),
+        ("cell $not $2\nconnect \\A { \\a\nend", r"^RTLIL line 7: malformed signal '\{ \\\\a'$"),
         ("sync always", r"^RTLIL line 6: unexpected 'sync always' in a module$"),
         ("cell $not $2", r"^RTLIL line \d+: unexpected|the text ends inside a block$"),
     ],

@@ -29,7 +29,7 @@ from firm_hdl.rtlil.simplify import simplified
 from tests.rtlil.test_evaluate import value_of
 
 INPUTS = {"s": 3, "t": 2}
-WIDTHS = {**INPUTS, "k": 3, "y": 4, "z": 4}
+WIDTHS = {**INPUTS, "$k": 3, "y": 4, "z": 4}
 Values = dict[str, int]
 
 
@@ -58,7 +58,7 @@ def fits(pattern: str, bits: str) -> bool:
 
 
 def settled(module: Module, inputs: Values) -> Values:
-    """Run processes and connections until nothing changes."""
+    """Run processes and connections until nothing changes; return the named wires."""
     values = {**dict.fromkeys(WIDTHS, 0), **inputs}
     for _ in range(6):
         for item in module.items:
@@ -66,7 +66,7 @@ def settled(module: Module, inputs: Values) -> Values:
             run(item.body, values)
         for target, value in module.connections:
             run((Assign(target=target, value=value),), values)
-    return values
+    return {name: value for name, value in values.items() if not name.startswith("$")}
 
 
 def module_of(*items: Process | Cell, **wires: Wire) -> Module:
@@ -101,7 +101,7 @@ class Maker:
     def value(self, width: int) -> Spec:
         chunks: list[Bits | Slice] = []
         while (left := width - spec_width(tuple(chunks))) > 0:
-            name = self.random.choice([*INPUTS, "k", "", ""])
+            name = self.random.choice([*INPUTS, "$k", "", ""])
             if name:
                 size = self.random.randint(1, min(left, WIDTHS[name]))
                 chunks.append(Slice(name, self.random.randint(0, WIDTHS[name] - size), size))
@@ -145,7 +145,7 @@ class Maker:
 def test_a_simplified_module_does_the_same(start: int) -> None:
     for seed in range(start, start + 100):
         constant = Bits(f"{seed % 8:03b}")
-        known = process(Assign(target=(Slice("k", 0, 3),), value=(constant,)))
+        known = process(Assign(target=(Slice("$k", 0, 3),), value=(constant,)))
         module = module_of(Maker(seed, "y").process(), known)
         less = simplified(module)
         assert len(less.items) < len(module.items)
@@ -306,3 +306,19 @@ def test_value_that_may_have_changed_is_assigned_again() -> None:
     switch = Switch(selector=(S,), cases=(Case(patterns=("001",), body=(other,)),))
     assert body_of(one, switch, one) == (one, switch, one)
     assert body_of(one, one, switch) == (one, switch)
+    varying = Assign(target=(Y,), value=(Slice("t", 0, 2), Slice("s", 0, 2)))
+    assert body_of(varying, one, one, switch) == (varying, one, switch)
+
+
+def test_values_are_inserted_at_all_ports_of_an_instance_but_not_evaluated() -> None:
+    """The names of an instance's ports may be those of an operator's ports."""
+    known = process(Assign(target=(Slice("$k", 0, 3),), value=(Bits("101"),)))
+    ports: dict[str, Spec] = {
+        "A": (Slice("$k", 0, 3),),
+        "B": (Bits("1"),),
+        "Y": (Slice("$k", 1, 2),),
+    }
+    unit = Cell(kind="unit", name="u", parameters={}, ports=ports, attributes={}, line=1)
+    (found,) = simplified(module_of(known, unit)).items
+    assert isinstance(found, Cell)
+    assert found.ports == {"A": (Bits("101"),), "B": (Bits("1"),), "Y": (Bits("10"),)}

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from amaranth.hdl import Cat, Module, Signal, unsigned
+from amaranth.hdl import Cat, Module, Mux, Signal, unsigned
 from amaranth.lib import enum, wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
@@ -177,6 +177,58 @@ def test_an_expression_read_only_by_a_port_is_written_in_place() -> None:
     text = convert(m, name="place", ports=[a, b, o]).files["place.vhd"]
     assert "unsigned(b) & (unsigned(a) and unsigned(b))" in text
     assert "signal" not in text
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_an_operator_has_all_bits_that_are_read_and_no_more(order: tuple[int, ...]) -> None:
+    connections = (r"connect \l $1 [3:0]", r"connect \h $1 [6:5]")
+    text = rf"""
+attribute \top 1
+module \top
+  wire width 9 input 0 \a
+  wire width 9 input 1 \b
+  wire width 4 output 2 \l
+  wire width 2 output 3 \h
+  wire width 9 $1
+  cell $add $2
+    parameter \A_SIGNED 0
+    parameter \B_SIGNED 0
+    parameter \A_WIDTH 9
+    parameter \B_WIDTH 9
+    parameter \Y_WIDTH 9
+    connect \A \a [8:0]
+    connect \B \b [8:0]
+    connect \Y $1
+  end
+  {connections[order[0]]}
+  {connections[order[1]]}
+end
+"""
+    written = convert(text).files["top.vhd"]
+    assert "signal add_1 : unsigned(6 downto 0);" in written
+    assert "add_1 <= unsigned(a(6 downto 0)) + unsigned(b(6 downto 0));" in written
+    assert "l <= std_logic_vector(add_1(3 downto 0));" in written
+    assert "h <= std_logic_vector(add_1(6 downto 5));" in written
+
+
+def test_a_choice_beside_a_division_stays() -> None:
+    """Only the choice that Amaranth adds for divisor 0 is part of the division."""
+    m = Module()
+    a, b, c = (Signal(4, name=name) for name in "abc")
+    plain, chosen, other = Signal(4, name="o"), Signal(4, name="p"), Signal(4, name="q")
+    m.d.comb += [plain.eq(a // b), chosen.eq(Mux(c, a // 3, 0)), other.eq(Mux(c, a // b, 0))]
+    text = convert(m, name="division", ports=[a, b, c, plain, chosen, other]).files["division.vhd"]
+    lines = [line for line in text.splitlines() if line.startswith("  ") and "<=" in line]
+    assert ["unsigned(c) /= 0" in line for line in lines] == [False, True, True], lines
+
+
+def test_copies_of_a_bit_and_of_a_word() -> None:
+    m = Module()
+    a, b, o = Signal(4, name="a"), Signal(4, name="b"), Signal(15, name="o")
+    m.d.comb += o.eq(Cat(a, a, b[1].replicate(3), b[0], b[2:4], b[0]))
+    text = " ".join(convert(m, name="copies", ports=[a, b, o]).files["copies.vhd"].split())
+    assert "(b(0) & unsigned(b(3 downto 2)) & b(0) & repeat_bit(b(1), 3) & unsigned(a) &" in text
+    assert "unsigned(a) & unsigned(a))" in text
 
 
 def test_assigns_to_several_wires_at_once() -> None:

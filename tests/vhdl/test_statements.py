@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import random
 from collections.abc import Iterable
+from dataclasses import replace
 
 import pytest
 
@@ -44,6 +45,8 @@ def body_of(wire: str, chosen: random.Random, depth: int = 0) -> Body:
     """Make random statements that assign one register."""
     result: list[Statement] = []
     for _ in range(chosen.randint(0 if depth else 1, 3)):
+        if chosen.random() < 0.05:
+            result.append(Assign(target=(), value=()))
         if depth == 3 or chosen.random() < 0.4:
             result.append(assign(wire, f"{chosen.randrange(16):04b}"))
             continue
@@ -84,6 +87,8 @@ def test_empty_switches_are_removed_without_effect(start: int) -> None:
         for statement in all_statements(flat):
             if isinstance(statement, Switch):
                 assert statement.selector and any(case.body for case in statement.cases)
+            else:
+                assert statement.target
 
 
 def all_statements(body: Body) -> Iterable[Statement]:
@@ -116,8 +121,11 @@ def switch_on(wire: str, **bodies: str) -> Switch:
     ],
 )
 def test_one_choice_is_written_once(one: dict, other: dict, together: bool) -> None:
-    both = merged((switch_on("p", **one),), (switch_on("q", **other),))
+    first, second = switch_on("p", **one), switch_on("q", **other)
+    both = merged((first,), (second,))
     assert (len(both) == 1) == together
+    for state in STATES:
+        assert run(both, state, {}) == run((first, second), state, {}), state
 
 
 def test_a_choice_of_a_bit_is_joined_only_if_its_arms_are_the_same() -> None:
@@ -127,6 +135,17 @@ def test_a_choice_of_a_bit_is_joined_only_if_its_arms_are_the_same() -> None:
 
     assert len(merged((bit("p", "1"),), (bit("q", "1"),))) == 1
     assert len(merged((bit("p", "1"),), (bit("q", "0"),))) == 2
+
+
+def test_no_statement_overtakes_another_one_of_its_register() -> None:
+    on_t = Switch(
+        selector=(Slice("t", 0, 2),), cases=(Case(patterns=("01",), body=(assign("p", "0001"),)),)
+    )
+    later = replace(on_t, cases=(Case(patterns=("01",), body=(assign("q", "1111"),)),))
+    first, second = (on_t, switch_on("p", b01="0010")), (switch_on("q", b01="0100"), later)
+    both = merged(first, second)
+    for state in STATES:
+        assert run(both, state, {}) == run(second, state, run(first, state, {})), state
 
 
 def test_later_statements_join_later_ones() -> None:

@@ -30,6 +30,11 @@ def test_elements_of_arrays_get_names_of_their_own() -> None:
     )
 
 
+def test_two_elements_never_get_one_name() -> None:
+    before = "wire \\a[0][1]\nwire \\a_0[1]\nwire \\A_0_1\n"
+    assert without_indices(before) == "wire \\a_0_1_2\nwire \\a_0_1_3\nwire \\A_0_1\n"
+
+
 @pytest.mark.parametrize("converter", [Deserializer, Serializer])
 def test_no_name_of_a_converter_has_an_index(converter: type) -> None:
     design = converter(load_message("sensor_msgs/msg/Imu"))

@@ -1,0 +1,177 @@
+# amaranth: UnusedElaboratable=no
+"""Attributes of signals, components of foreign instances, and comments of choices."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from amaranth.hdl import Const, Instance, Module, Signal, unsigned
+from amaranth.lib import enum
+from amaranth.lib.memory import Memory
+
+from firm_hdl.vhdl.convert import convert
+from tests.vhdl.ghdl import analyse
+
+
+class Kind(enum.Enum, shape=unsigned(2)):
+    IDLE = 0
+    BUSY = 1
+    DONE = 2
+
+
+def text_of(m: Module, *ports: Signal) -> str:
+    return convert(m, name="t", ports=list(ports)).files["t.vhd"]
+
+
+def test_a_signal_keeps_its_attributes_whatever_drives_it() -> None:
+    m = Module()
+    a, b, o = (Signal(2, name=name) for name in "abo")
+    driven = Signal(2, name="driven", attrs={"keep": 1})
+    stored = Signal(2, name="stored", attrs={"keep": 2, "note": 'a "b"'})
+    unread = Signal(Kind, name="unread", attrs={"keep": 3})
+    m.d.comb += [driven.eq(a + b), unread.eq(a[::-1])]
+    m.d.sync += stored.eq(a * b)
+    m.d.comb += o.eq(driven[::-1] ^ stored[::-1])
+    lines = [line.strip() for line in text_of(m, a, b, o).splitlines()]
+    assert {line for line in lines if line.startswith("attribute")} == {
+        "attribute keep : integer;",
+        "attribute note : string;",
+        "attribute keep of driven : signal is 1;",
+        "attribute keep of stored : signal is 2;",
+        'attribute note of stored : signal is "a ""b""";',
+        "attribute keep of unread : signal is 3;",
+    }
+
+
+def test_one_attribute_has_one_type() -> None:
+    m = Module()
+    a, o = Signal(name="a"), Signal(2, name="o")
+    for index, value in enumerate((1, "yes")):
+        register = Signal(name=f"r{index}", attrs={"keep": value})
+        m.d.sync += register.eq(a)
+        m.d.comb += o[index].eq(register)
+    with pytest.raises(ValueError, match=r"^attribute 'keep' has values of different types$"):
+        text_of(m, a, o)
+
+
+def two_units(first: dict[str, Any], second: dict[str, Any]) -> tuple[Module, Signal]:
+    m, a = Module(), Signal(8, name="a")
+    for name, more in (("u", first), ("v", second)):
+        m.submodules[name] = Instance("unit", i_a=a, **more)
+    return m, a
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_a_component_is_declared_once(tmp_path: Path) -> None:
+    m, a = two_units({"p_N": 1, "p_T": "x"}, {"p_N": 2, "p_T": "y"})
+    vhdl = convert(m, name="t", ports=[a])
+    assert vhdl.files["t.vhd"].count("component unit is") == 1
+    assert [f"N => {n}" in vhdl.files["t.vhd"] for n in (1, 2)] == [True, True]
+    analyse(vhdl, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ({"p_N": 1}, {}),
+        ({"p_N": 1}, {"p_N": 1.0}),
+        ({"p_N": 1}, {"p_M": 1}),
+        ({"p_N": Const(1, 2)}, {"p_N": Const(1, 3)}),
+        ({"i_b": Const(1, 2)}, {"i_b": Const(1, 3)}),
+        ({"i_b": Const(1, 2)}, {"o_b": Signal(2)}),
+    ],
+)
+def test_instances_of_one_component_must_not_differ(
+    first: dict[str, Any], second: dict[str, Any]
+) -> None:
+    m, a = two_units(first, second)
+    with pytest.raises(ValueError, match=r"^instances of 'unit' in 't' differ in their ports"):
+        text_of(m, a)
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_foreign_names_and_generics_stay_exact(tmp_path: Path) -> None:
+    m, a = Module(), Signal(4, name="a")
+    m.submodules.u = Instance(
+        "Unit\\2",
+        p_signal=Const(5, 4),
+        p_N=-3,
+        p_R=0.5,
+        p_T='a "b"',
+        i_In=a,
+        i__x=a[:1],
+        i_none=Const(0, 0),
+    )
+    vhdl = convert(m, name="t", ports=[a])
+    words = " ".join(vhdl.files["t.vhd"].split())
+    assert (
+        "component \\Unit\\\\2\\ is generic ( \\signal\\ : std_logic_vector(3 downto 0); "
+        "N : integer; R : real; T : string ); port ( \\In\\ : in std_logic_vector(3 downto 0); "
+        "\\_x\\ : in std_logic ); end component;"
+    ) in words
+    assert (
+        'generic map ( \\signal\\ => "0101", N => -3, R => 0.5, T => "a ""b""" ) '
+        "port map ( \\In\\ => a, \\_x\\ => a(0) );"
+    ) in words
+    analyse(vhdl, tmp_path)
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_a_component_without_ports(tmp_path: Path) -> None:
+    m, a, o = Module(), Signal(name="a"), Signal(name="o")
+    m.submodules.u = Instance("marker")
+    m.d.comb += o.eq(~a)
+    vhdl = convert(m, name="t", ports=[a, o])
+    assert "component marker is\n  end component;" in vhdl.files["t.vhd"]
+    analyse(vhdl, tmp_path)
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_an_output_that_the_design_itself_drives_is_an_input_of_a_component(
+    tmp_path: Path,
+) -> None:
+    m, a = Module(), Signal(4, name="a")
+    m.submodules.memory = memory = Memory(shape=4, depth=4, init=[1])
+    m.submodules.inner = inner = Module()
+    driven = [Signal(4, name=f"o{number}") for number in range(6)]
+    register, operator, choice, wire, foreign, below = driven
+    inner.d.sync += below.eq(a)
+    m.d.sync += register.eq(a)
+    m.d.comb += [operator.eq(a + 1), wire.eq(a)]
+    with m.Switch(a):
+        with m.Case(1):
+            m.d.comb += choice.eq(3)
+        with m.Case(2):
+            m.d.comb += choice.eq(a)
+    read = memory.read_port(domain="comb")
+    m.d.comb += read.addr.eq(a)
+    m.submodules.u = Instance("source", o_Q=foreign)
+    for number, value in enumerate([*driven, read.data]):
+        m.submodules[f"u{number}"] = Instance(f"sink{number}", i_D=value)
+    vhdl = convert(m, name="t", ports=[a, *driven, read.data])
+    assert vhdl.files["t.vhd"].count("D : in std_logic_vector(3 downto 0)") == 7
+    assert vhdl.files["t.vhd"].count("Q : out std_logic_vector(3 downto 0)") == 1
+    analyse(vhdl, tmp_path)
+
+
+def test_choices_of_computed_values_have_their_names() -> None:
+    m = Module()
+    a, b, o = (Signal(2, name=name) for name in "abo")
+    kind = Signal(Kind, name="kind")
+    m.d.comb += kind.eq(a + b)
+    with m.Switch(kind):
+        with m.Case(Kind.IDLE):
+            m.d.comb += o.eq(3)
+        with m.Case(Kind.BUSY, Kind.DONE):
+            m.d.comb += o.eq(1)
+        with m.Case(3):
+            m.d.comb += o.eq(2)
+    found = [line.strip() for line in text_of(m, a, b, o).splitlines() if "when" in line]
+    assert found == [
+        'when "00" =>  -- IDLE',
+        'when "01" | "10" =>  -- BUSY or DONE',
+        'when "11" =>',
+        "when others =>",
+    ]

@@ -1,0 +1,126 @@
+# amaranth: UnusedElaboratable=no
+"""Which names entities, ports and signals get, and what is refused before any is given."""
+
+from __future__ import annotations
+
+import pytest
+from amaranth.asserts import AnyConst
+from amaranth.hdl import Cat, ClockDomain, Module, Signal
+
+from firm_hdl.vhdl.convert import convert
+
+NETLIST = r"""
+attribute \top 1
+module \t
+  wire width 4 input 0 \i
+  wire width 4 output 1 \o
+  cell \t.sub \u
+    connect \i \i [3:0]
+    connect \o \o
+  end
+end
+module \t.sub
+  wire width 4 input 0 \i
+  wire width 4 output 1 \o
+  connect \o \i [3:0]
+end
+"""
+
+
+@pytest.mark.parametrize("name", ["t", "other", "firm_hdl"])
+def test_all_entities_of_a_netlist_get_the_given_name(name: str) -> None:
+    vhdl = convert(NETLIST, name=name)
+    assert vhdl.top == name
+    assert list(vhdl.files) == ["firm_hdl_pkg.vhd", f"{name}_sub.vhd", f"{name}.vhd"]
+    assert {module: given.entity for module, given in vhdl.entities.items()} == {
+        "t.sub": f"{name}_sub",
+        "t": name,
+    }
+
+
+def test_no_entity_has_the_name_of_the_package() -> None:
+    vhdl = convert(NETLIST, name="firm_hdl_pkg")
+    assert len(vhdl.files) == 3 and vhdl.top != "firm_hdl_pkg"
+    assert vhdl.files["firm_hdl_pkg.vhd"] == convert(NETLIST).files["firm_hdl_pkg.vhd"]
+
+
+def test_an_empty_design_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"^The design is empty: it has no module"):
+        convert("")
+
+
+def test_cells_of_formal_tools_are_refused_in_inner_modules() -> None:
+    top, inner, out = Module(), Module(), Signal(4, name="o")
+    top.submodules.inner = inner
+    inner.d.comb += out.eq(AnyConst(4))
+    with pytest.raises(ValueError, match=r"^module 'top\.inner' has AnyConst \(\$anyconst\)"):
+        convert(top, ports=[out])
+
+
+def test_clocks_and_resets_are_the_first_ports_and_ports_without_bits_are_none() -> None:
+    m = Module()
+    a, empty, clk_enable, q = (
+        Signal(n, name=s) for n, s in [(4, "a"), (0, "z"), (1, "e"), (4, "q")]
+    )
+    m.domains.fast = fast = ClockDomain()
+    m.d.fast += q.eq(a)
+    m.d.sync += clk_enable.eq(a[0])
+    vhdl = convert(m, name="t", ports=[a, empty, clk_enable, q, fast.clk, fast.rst])
+    ports = list(vhdl.entities["t"].ports)
+    assert set(ports[:4]) == {"clk", "rst", "fast_clk", "fast_rst"}
+    assert ports[4:] == ["a", "e", "q"]
+    assert " z " not in vhdl.files["t.vhd"]
+
+
+def test_names_of_the_design_come_before_names_made_for_operators() -> None:
+    def names(register: str) -> dict[str, str]:
+        m = Module()
+        a, b = Signal(4, name="a"), Signal(4, name="b")
+        low, high = Signal(name="low"), Signal(2, name="high")
+        kept = Signal(4, name=register)
+        total = a + b
+        m.d.sync += kept.eq(a)
+        m.d.comb += [low.eq(total[0] ^ kept[0]), high.eq(total[1:3])]
+        vhdl = convert(m, name="t", ports=[a, b, low, high])
+        return dict(vhdl.entities["t"].signals)
+
+    (wire, made) = next(item for item in names("kept").items() if item[0].startswith("$"))
+    assert made.startswith("add_")
+    taken = names(made)
+    assert taken[made] == made and taken[wire] == f"{made}_2"
+
+
+def test_the_parts_of_a_signal_are_named_by_their_lowest_bits() -> None:
+    m = Module()
+    a, q = Signal(12, name="a"), Signal(12, name="q")
+    m.domains.fast = fast = ClockDomain()
+    m.d.comb += fast.clk.eq(a[0])
+    m.d.comb += q[:3].eq(a[9:])
+    m.d.fast += q[3:8].eq(a[3:8])
+    m.d.sync += q[8:].eq(a[8:])
+    text = convert(m, name="t", ports=[a, q, fast.rst]).files["t.vhd"]
+    for name, width in (("q_3", 5), ("q_8", 4)):
+        assert f"  signal {name} : unsigned({width - 1} downto 0) := (others => '0');" in text
+
+
+def test_a_part_of_an_operator_gives_the_operator_no_name() -> None:
+    m = Module()
+    a, b = Signal(8, name="a"), Signal(8, name="b")
+    o, p = Signal(8, name="o"), Signal(4, name="p")
+    total = a + b
+    m.d.comb += [o.eq(Cat(total[:4], a[4:])), p.eq(total[2:6])]
+    text = convert(m, name="t", ports=[a, b, o, p]).files["t.vhd"]
+    assert "signal add_" in text and "o_0" not in text
+
+
+def test_signals_inside_have_other_names_than_ports_whatever_their_case() -> None:
+    m = Module()
+    ports = {name: Signal(4, name=name) for name in ("Data", "sum", "Top")}
+    inside = {name: Signal(4, name=name) for name in ("data", "SUM", "TOP", "Sum")}
+    for port, signal in zip([*ports.values(), ports["Data"]], inside.values(), strict=True):
+        m.d.sync += signal.eq(port)
+    vhdl = convert(m, name="Top", ports=list(ports.values()))
+    names = vhdl.entities["Top"]
+    assert names.ports["Data"] == "Data" and names.ports["sum"] == "sum"
+    given = [names.signals[name].lower() for name in (*ports, *inside)]
+    assert len(set(given)) == len(given) and "top" not in given

@@ -1,0 +1,93 @@
+"""Netlists that Amaranth 0.5 rarely prints, but the format allows: a wire with several readers."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.vhdl.convert import convert
+
+HEAD = r"""
+attribute \top 1
+module \top
+  wire width 1 input 0 \clk
+  wire width 4 input 1 \a
+  wire width 4 input 2 \s
+  wire width 4 output 3 \o
+  wire width 4 output 4 \p
+  attribute \init 4'0101
+  wire width 4 \q
+  wire width 4 $1
+"""
+ADD = r"""
+  cell $add $2
+    parameter \A_SIGNED 0
+    parameter \B_SIGNED 0
+    connect \A \a [3:0]
+    connect \B \s [3:0]
+    connect \Y $1
+  end
+"""
+NEXT = r"""
+  process $3
+    assign $1 [3:0] \q [3:0]
+    switch \s [0]
+      case 1'1
+        assign $1 [3:0] \a [3:0]
+    end
+  end
+  cell $dff $4
+    parameter \CLK_POLARITY 1
+    connect \D $1 [3:0]
+    connect \CLK \clk [0]
+    connect \Q \q
+  end
+"""
+
+
+def body_of(*parts: str) -> str:
+    text = convert(HEAD + "\n".join(parts) + "\nend\n").files["top.vhd"]
+    return text.partition("\nbegin\n")[2]
+
+
+@pytest.mark.parametrize("targets", ["op", "po"])
+def test_each_name_of_an_operator_is_driven(targets: str) -> None:
+    first, second = targets
+    body = body_of(ADD, *(rf"connect \{name} $1 [3:0]" for name in targets))
+    assert f"  {first} <= std_logic_vector(unsigned(a) + unsigned(s));" in body
+    assert f"  {second} <= std_logic_vector(unsigned({first}));" in body
+
+
+def test_a_next_state_that_is_read_is_a_signal() -> None:
+    body = body_of(NEXT, r"connect \o $1 [3:0]", r"connect \p \q [3:0]")
+    assert (
+        "  o <= std_logic_vector(unsigned(a)) when s(0) = '1' else\n       std_logic_vector(q);"
+        in body
+    )
+    assert "q <= unsigned(o);" in body
+    part = body_of(NEXT, r"connect \o { $1 [3:2] \a [1:0] }", r"connect \p \q [3:0]")
+    assert "choice_1 <= unsigned(a) when s(0) = '1' else" in part
+    assert "q <= choice_1;" in part
+
+
+def test_a_next_state_that_only_its_register_reads_is_none() -> None:
+    body = body_of(NEXT, r"connect \o \q [3:0]", r"connect \p \q [3:0]")
+    assert "if s(0) = '1' then\n        q <= unsigned(a);\n      end if;" in body
+
+
+def test_a_memory_without_bits_has_no_text() -> None:
+    memory = r"""
+  memory width 0 size 4 \m
+  wire width 0 $5
+  cell $memrd_v2 $6
+    parameter \MEMID "\\m"
+    parameter \CLK_ENABLE 0
+    connect \ADDR \a [1:0]
+    connect \DATA $5
+    connect \EN 1'1
+    connect \CLK 1'0
+    connect \ARST 1'0
+    connect \SRST 1'0
+  end
+"""
+    text = convert(HEAD + ADD + memory + "connect \\o $1 [3:0]\nend\n").files["top.vhd"]
+    assert "array" not in text and "unsigned(a) + unsigned(s)" in text
