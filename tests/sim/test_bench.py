@@ -168,6 +168,20 @@ def test_stalled_source_does_not_stall_others():
     assert run.taken == {"o0": [(4, 1), (8, 2)], "o1": [(2, 3)], "o2": [(1, 4)]}
 
 
+def test_each_stream_has_the_stalls_of_its_own_name():
+    """A payload enters and leaves in the first cycles that the two patterns let through."""
+    stalls = Stalls(0.7, 1, 9, seed=4)
+
+    def free(name, after):
+        return next(n for n, stalled in enumerate(stalls.cycles(name)) if n > after and not stalled)
+
+    times = [free(f"o{n}", free(f"i{n}", -1)) for n in range(4)]
+    assert len(set(times)) == 4
+    run = Run([[5]] * 4, stalls=stalls)
+    run.go()
+    assert run.taken == {f"o{n}": [(time, 5)] for n, time in enumerate(times)}
+
+
 @pytest.mark.parametrize("bits", [WORD_BITS // 4, WORD_BITS // 2, WORD_BITS - 3, WORD_BITS, 400])
 def test_wide_payloads_arrive_whole(bits):
     """The words that the bench drives divide them at any bit."""
