@@ -49,6 +49,10 @@ def test_parts_of_a_page_are_replaced_and_the_rest_stays(tmp_path: Path) -> None
     with pytest.raises(BenchError, match=r"page\.md' has not one part 'd'$"):
         write_page(page, {"b": "newer\n", "d": ""})
     assert page.read_text() == text
+    page.write_text(twice := text + "<!-- b -->\n<!-- end b -->\n")
+    with pytest.raises(BenchError, match=r"page\.md' has not one part 'b'$"):
+        write_page(page, {"b": "newer\n"})
+    assert page.read_text() == twice
 
 
 def test_tables_have_the_figures() -> None:
@@ -61,6 +65,7 @@ def test_tables_have_the_figures() -> None:
     assert area_table([ser]).splitlines()[2:] == [
         "| ECP5 LFE5U-45F-8 | p/msg/A | serializer | 1,234 | 50 | 0 | 0 | 99.0 |"
     ]
+    assert area_table([result(mhz=(80.0, 90.0))]).splitlines()[2].endswith("| 85.0 (80, 90) |")
     bare = replace(result(), measured=None, cycles=None)
     assert converter_table([bare]).splitlines()[2].count("|") == 13
     assert area_table([bare]).count("\n") == 2
@@ -78,8 +83,10 @@ def test_tables_have_the_figures() -> None:
 
 def test_the_mean_of_beats_is_geometric() -> None:
     both = [result(beats=50), result("p/msg/B", beats=100)]
-    assert beats_table({"some": both, "none": []}).splitlines()[2:] == [
-        "| some | 2 | 0.707 | 1 | 0.500, p/msg/A deserializer |"
+    limit = [result(beats=84), result("p/msg/B", beats=85), result("p/msg/C", beats=86)]
+    assert beats_table({"some": both, "none": [], "limit": limit}).splitlines()[2:] == [
+        "| some | 2 | 0.707 | 1 | 0.500, p/msg/A deserializer |",
+        "| limit | 3 | 0.850 | 1 | 0.840, p/msg/A deserializer |",
     ]
 
 
