@@ -172,7 +172,12 @@ def test_a_task_has_the_figures_of_its_converter(monkeypatch: pytest.MonkeyPatch
     options = {"mapping": "tee", "folder": Path("c")}
     assert seen == [Stated(count=3), (DEVICES["ice40"], (4, 5), options)]
     ((kind, plan),) = plans
-    assert (kind, plan.wire, plan.bus_bytes, plan.max_message_bytes) == ("Serializer", "cdr", 2, 777)
+    assert (kind, plan.wire, plan.bus_bytes, plan.max_message_bytes) == (
+        "Serializer",
+        "cdr",
+        2,
+        777,
+    )
     assert run_task(replace(task, stated=None)).cycles is None
     assert run_task(replace(task, device=None)).measured is None and len(seen) == 4
 
