@@ -179,7 +179,7 @@ def test_reasons_are_of_the_log_of_this_run(tmp_path: Path) -> None:
     path.write_text("#!/bin/sh\necho 'ERROR: one'; echo 'ERROR: two'; echo 'ERROR: three'; exit 1")
     path.chmod(0o755)
     (tmp_path / "tool.log").write_text("ERROR: of an earlier run\n")
-    with pytest.raises(BenchError, match="^x failed: ERROR: one ERROR: two$"):
+    with pytest.raises(BenchError, match=r"^x failed: ERROR: one ERROR: two$"):
         Tool(title="x", command=(str(path),), version="1").run(tmp_path)
 
 

@@ -93,7 +93,7 @@ def test_choices_of_a_node_are_those_of_its_documentation(capsys):
 @pytest.mark.parametrize("command", ["md5", "hash", "proto", "metrics", "prove", "bench"])
 def test_types_or_all_of_them_and_not_both(command, capsys):
     for words in ([], ["--all", "std_msgs/msg/Bool"]):
-        with pytest.raises(SystemExit, match="^2$"):
+        with pytest.raises(SystemExit, match=r"^2$"):
             main([command, *words])
         out, err = capsys.readouterr()
         assert out == "" and err.endswith("error: name either types or --all\n")
@@ -101,7 +101,7 @@ def test_types_or_all_of_them_and_not_both(command, capsys):
 
 @pytest.mark.parametrize("words", [["sh\0ow", "a/B"], ["show", "a/\0B"]])
 def test_an_argument_with_a_nul_character_is_refused(words, capsys):
-    with pytest.raises(SystemExit, match="^2$"):
+    with pytest.raises(SystemExit, match=r"^2$"):
         main(words)
     assert capsys.readouterr().err.endswith("error: an argument contains a NUL character\n")
 

@@ -112,9 +112,8 @@ def nested():
     # Only the last signal of the group reads what is driven.
     outer, inner = Signal(name="outer"), Signal(name="inner")
     m.d.comb += [outer.eq(a[0] ^ a[1]), inner.eq(outer ^ a[2])]
-    with m.If(inner):
-        with m.If(a[3]):
-            m.d.comb += b.eq(1)
+    with m.If(inner), m.If(a[3]):
+        m.d.comb += b.eq(1)
     m.d.comb += [Cat(c, d[:4]).eq(a), Cat(d[4:], e).eq(inner), f.eq(e + b)]
     return m
 

@@ -177,5 +177,5 @@ def test_a_beat_is_checked_in_the_cycle_of_its_transfer_and_cycles_of_a_reset_co
     simulator.add_testbench(source)
     simulator.add_testbench(sink)
     simulator.add_testbench(watch({"i": dut.i}), background=True)
-    with pytest.raises(StreamRuleError, match="^Stream 'i' breaks rule 3 in cycle 6:"):
+    with pytest.raises(StreamRuleError, match=r"^Stream 'i' breaks rule 3 in cycle 6:"):
         simulator.run()
