@@ -91,7 +91,7 @@ def test_cells_of_all_kinds_are_added_up() -> None:
 
 def test_the_table_of_parity_is_the_xor_of_four_bits() -> None:
     ones = [bin(number).count("1") for number in range(16)]
-    assert PARITY == "".join(str(ones[number] % 2) for number in reversed(range(16)))
+    assert "".join(str(ones[number] % 2) for number in reversed(range(16))) == PARITY
 
 
 def test_estimates_are_of_circuits_with_a_clock_rate_on_one_device() -> None:

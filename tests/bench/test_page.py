@@ -242,6 +242,15 @@ def test_all_parts_of_the_page_are_written(
     }
     # The plots that the page shows exist.
     assert all(f"figures/{name}" in text for name in files if name.endswith(".svg"))
+    marks = {
+        "covering": "| Converters | Number | 156.25 MHz or more |",
+        "devices": "| Device | Type |",
+        "narrow": "| Type | Wire | Bus |",
+    }
+    for name, heading in marks.items():
+        assert text.split(f"<!-- {name} -->\n\n")[1].startswith(heading)
+    assert text.split("<!-- software -->")[1].split("<!-- end")[0].count("\n|") == 2 + 2 * 21
+    check_kept(page_folder)
     entries = json.loads((page_folder / "e.json").read_text())
     assert {entry["bus_bytes"] for entry in entries} == {1, 2, 4, 8}
     assert {entry["part"] for entry in entries} == {"ECP5 LFE5U-45F-8"}
@@ -250,6 +259,21 @@ def test_all_parts_of_the_page_are_written(
     assert run_bench(page_folder) == 0
     assert (page_folder / "page.md").read_text() == text
     assert "0 figures changed by more than 2 %" in capsys.readouterr().out
+    check_kept(page_folder)
+
+
+def check_kept(page_folder: Path) -> None:
+    """Check that each file of figures has those of its groups, once for each group.
+
+    All invented results name one device, so converters on several devices count once, too.
+    """
+    for file, groups in (
+        (bench.KEPT, list(MEASURED.values())),
+        (bench.KEPT_COVERING, [covering_group(COVERING)]),
+    ):
+        found = [str(each.converter) for each in read_results(page_folder / "figures" / file)]
+        names = [{str(task.converter) for task in group_tasks(group)} for group in groups]
+        assert sorted(found) == sorted(name for each in names for name in each)
 
 
 def test_one_part_leaves_the_others_alone(page_folder: Path) -> None:
@@ -274,6 +298,26 @@ def test_without_all_figures_nothing_is_written(
     assert "p/msg/A (lyrical, cdr, 8 bytes) deserializer: too large" in capsys.readouterr().err
     assert (page_folder / "page.md").read_text() == before
     assert not (page_folder / "e.json").exists()
+
+
+@pytest.mark.parametrize("group", ["parts", "software", "beats"])
+def test_a_figure_that_is_missing_in_any_group_is_a_failure(
+    group: str,
+    page_folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    before = (page_folder / "page.md").read_text()
+    problems = [result(), result("p/msg/B", problem="too large"), result()]
+    parts = [PartResult(part=part, measured=result().measured) for part in PARTS]
+    parts[-1] = replace(parts[-1], problem="too large")
+    monkeypatch.setattr(bench, "run_tasks", lambda tasks, jobs: problems)
+    monkeypatch.setattr(bench, "run_parts", lambda *, cache, jobs: parts)
+    assert run_bench(page_folder, "--group", group) == 1
+    lines = {line for line in capsys.readouterr().err.splitlines() if "too large" in line}
+    what = PARTS[-1].name if group == "parts" else str(problems[1].converter)
+    assert lines == {f"{what}: too large"}
+    assert (page_folder / "page.md").read_text() == before
 
 
 def test_a_missing_tool_is_an_error(
