@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
+from amaranth.hdl import Fragment
 
-from firm_hdl.bench import Device, command
-from firm_hdl.bench.results import read_results
-from firm_hdl.bench.run import BenchTask, run_tasks
+from firm_hdl.bench import DEVICES, Device, command, run
+from firm_hdl.bench.messages import Stated
+from firm_hdl.bench.results import Converted, read_results
+from firm_hdl.bench.run import BenchTask, run_task, run_tasks
 from firm_hdl.cli import main
 from firm_hdl.jobs import ProgramMissingError
 from tests.bench.results import result
@@ -127,15 +130,84 @@ def test_a_type_that_no_circuit_can_have_is_a_problem_of_its_own(tmp_path: Path)
     assert found[2] == ""
 
 
+def test_a_task_has_the_figures_of_its_converter(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[object] = []
+    plans: list[Any] = []
+    cycles, measured = result().cycles, result(problem="").measured
+    assert measured is not None
+
+    def count(converter: Any, message: Any, stated: Stated) -> Any:
+        seen.append(stated)
+        plans.append((type(converter).__name__, converter.plan))
+        # Amaranth warns of a component that nothing elaborates.
+        Fragment.get(converter, None)
+        return cycles
+
+    def measure(rtlil: str, *given: object, **options: object) -> Any:
+        seen.append((*given, options))
+        assert "attribute \\top 1" in rtlil and "\\src" not in rtlil
+        return replace(measured, problem="no room")
+
+    monkeypatch.setattr(run, "count_cycles", count)
+    monkeypatch.setattr(run, "measure_once", measure)
+    what = Converted(
+        distro="noetic",
+        type="std_msgs/Bool",
+        wire="cdr",
+        bus_bytes=2,
+        max_message_bytes=777,
+        direction="serializer",
+    )
+    task = BenchTask(
+        converter=what,
+        device="ice40",
+        seeds=(4, 5),
+        mapping="tee",
+        stated=Stated(count=3),
+        cache="c",
+    )
+    found = run_task(task)
+    assert (found.converter, found.cycles, found.problem) == (what, cycles, "no room")
+    assert found.measured == replace(measured, problem="no room")
+    options = {"mapping": "tee", "folder": Path("c")}
+    assert seen == [Stated(count=3), (DEVICES["ice40"], (4, 5), options)]
+    ((kind, plan),) = plans
+    assert (kind, plan.wire, plan.bus_bytes, plan.max_message_bytes) == (
+        "Serializer",
+        "cdr",
+        2,
+        777,
+    )
+    assert run_task(replace(task, stated=None)).cycles is None
+    assert run_task(replace(task, device=None)).measured is None and len(seen) == 4
+
+
+def test_a_process_that_failed_is_a_problem_of_its_converter(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tasks = [BenchTask(converter=result(name).converter) for name in ("p/msg/A", "p/msg/B")]
+
+    def run_each(work: Any, given: Any, jobs: int) -> Any:
+        (one, _), (other, _) = given
+        assert (work, jobs) == (run_task, 3)
+        yield other, result("p/msg/B")
+        yield one, RuntimeError("it was killed")
+
+    monkeypatch.setattr(run, "run_each", run_each)
+    found = list(run_tasks(tasks, 3))
+    assert [each.converter for each in found] == [tasks[1].converter, tasks[0].converter]
+    assert [each.problem for each in found] == ["", "it was killed"]
+
+
 def test_options_are_those_of_the_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     seen = []
     monkeypatch.setattr(command, "versions", lambda device, *, with_placer: {})
 
-    def run(tasks: list[object], jobs: int | None) -> list[object]:
+    def run_tasks(tasks: list[object], jobs: int | None) -> list[object]:
         seen.append((tasks, jobs))
         return []
 
-    monkeypatch.setattr(command, "run_tasks", run)
+    monkeypatch.setattr(command, "run_tasks", run_tasks)
     words = ["--distro", "noetic", "--wire", "cdr", "--bus-bytes", "16", "--seeds", "4,5"]
     words += ["--mapping", "tee", "--messages", "7", "--message-seed", "9", "--cache", "c"]
     assert bench("geometry_msgs/Twist", *words, "--jobs", "3") == 1

@@ -10,7 +10,7 @@ from firm_hdl.bench import DEVICES, BenchError
 from firm_hdl.bench.devices import Area
 from firm_hdl.bench.netlist import Names, cell_counts, top_module
 from firm_hdl.bench.paths import critical_path
-from tests.bench.netlists import small
+from tests.bench.netlists import flip_flop, lut, small
 
 ECP5 = DEVICES["ecp5"]
 
@@ -36,6 +36,17 @@ def test_nets_have_the_names_of_the_design() -> None:
     assert [names.net(net) for net in nets] == ["o", "o", "i", "", "", ""]
     cells = ("fill_TRELLIS_FF_Q", "port i[1]", "$1", "unknown")
     assert [names.register(cell) for cell in cells] == ["o", "port i", "$1", "unknown"]
+
+
+@pytest.mark.parametrize("end", ["", "_LC", "_DFFLC", "$nextpnr_LUT4_1"])
+def test_placed_cell_of_ice40_has_the_register_behind_its_table(end: str) -> None:
+    top = small()
+    assert Names(top).register(f"fill_LUT4_A_Z_LUT4_Z{end}") == "o"
+    assert list(Names(top).joining(f"fill_LUT4_A_Z_LUT4_Z{end}", "i[1]")) == ["o", "i"]
+    # The table drives a register outside of a port, and nothing else that has a name.
+    top["cells"]["port q[1]"] = flip_flop(8, 20)
+    del top["cells"]["fill_LUT4_A_Z_LUT4_Z"]
+    assert Names(top).register(f"i_LUT4_A{end}") == "port q"
 
 
 @pytest.mark.parametrize(
@@ -82,3 +93,22 @@ def test_path_has_the_names_of_the_design() -> None:
     )
     with pytest.raises(BenchError, match=r"^nextpnr reports no path from a register to"):
         critical_path({"critical_paths": report["critical_paths"][:1]}, Names(small()))
+
+
+def test_at_most_three_signals_join_at_a_point_and_each_only_once() -> None:
+    names = {"x": 10, "a": 20, "b": 21, "c": 22, "d": 23}
+    top = {
+        # `d` joins the first table, and so do the others, through logic without a name.
+        "cells": {"l0": lut(40, 20, 21, 22), "l1": lut(30, 10, 40, 23), "l2": lut(31, 30, 40)},
+        "netnames": {name: {"bits": [bit]} for name, bit in names.items()}
+        | {"l1_LUT4_A_Z": {"bits": [30]}},
+    }
+    way = [
+        segment("routing", 1.0, net="x"),
+        segment("logic", 0.5, "l1"),
+        segment("routing", 0.25, net="l1_LUT4_A_Z"),
+        segment("logic", 0.5, "l2"),
+    ]
+    report = {"critical_paths": [{"from": "posedge clk", "to": "posedge clk", "path": way}]}
+    found = critical_path(report, Names(top))
+    assert found.points == ((1.0, "x"), (1.5, "& d, a, b"), (2.25, "& c"))

@@ -49,6 +49,10 @@ def test_parts_of_a_page_are_replaced_and_the_rest_stays(tmp_path: Path) -> None
     with pytest.raises(BenchError, match=r"page\.md' has not one part 'd'$"):
         write_page(page, {"b": "newer\n", "d": ""})
     assert page.read_text() == text
+    page.write_text(twice := text + "<!-- b -->\n<!-- end b -->\n")
+    with pytest.raises(BenchError, match=r"page\.md' has not one part 'b'$"):
+        write_page(page, {"b": "newer\n"})
+    assert page.read_text() == twice
 
 
 def test_tables_have_the_figures() -> None:
@@ -61,6 +65,7 @@ def test_tables_have_the_figures() -> None:
     assert area_table([ser]).splitlines()[2:] == [
         "| ECP5 LFE5U-45F-8 | p/msg/A | serializer | 1,234 | 50 | 0 | 0 | 99.0 |"
     ]
+    assert area_table([result(mhz=(80.0, 90.0))]).splitlines()[2].endswith("| 85.0 (80, 90) |")
     bare = replace(result(), measured=None, cycles=None)
     assert converter_table([bare]).splitlines()[2].count("|") == 13
     assert area_table([bare]).count("\n") == 2
@@ -78,8 +83,10 @@ def test_tables_have_the_figures() -> None:
 
 def test_the_mean_of_beats_is_geometric() -> None:
     both = [result(beats=50), result("p/msg/B", beats=100)]
-    assert beats_table({"some": both, "none": []}).splitlines()[2:] == [
-        "| some | 2 | 0.707 | 1 | 0.500, p/msg/A deserializer |"
+    limit = [result(beats=84), result("p/msg/B", beats=85), result("p/msg/C", beats=86)]
+    assert beats_table({"some": both, "none": [], "limit": limit}).splitlines()[2:] == [
+        "| some | 2 | 0.707 | 1 | 0.500, p/msg/A deserializer |",
+        "| limit | 3 | 0.850 | 1 | 0.840, p/msg/A deserializer |",
     ]
 
 
@@ -235,6 +242,15 @@ def test_all_parts_of_the_page_are_written(
     }
     # The plots that the page shows exist.
     assert all(f"figures/{name}" in text for name in files if name.endswith(".svg"))
+    marks = {
+        "covering": "| Converters | Number | 156.25 MHz or more |",
+        "devices": "| Device | Type |",
+        "narrow": "| Type | Wire | Bus |",
+    }
+    for name, heading in marks.items():
+        assert text.split(f"<!-- {name} -->\n\n")[1].startswith(heading)
+    assert text.split("<!-- software -->")[1].split("<!-- end")[0].count("\n|") == 2 + 2 * 21
+    check_kept(page_folder)
     entries = json.loads((page_folder / "e.json").read_text())
     assert {entry["bus_bytes"] for entry in entries} == {1, 2, 4, 8}
     assert {entry["part"] for entry in entries} == {"ECP5 LFE5U-45F-8"}
@@ -243,6 +259,21 @@ def test_all_parts_of_the_page_are_written(
     assert run_bench(page_folder) == 0
     assert (page_folder / "page.md").read_text() == text
     assert "0 figures changed by more than 2 %" in capsys.readouterr().out
+    check_kept(page_folder)
+
+
+def check_kept(page_folder: Path) -> None:
+    """Check that each file of figures has those of its groups, once for each group.
+
+    All invented results name one device, so converters on several devices count once, too.
+    """
+    for file, groups in (
+        (bench.KEPT, list(MEASURED.values())),
+        (bench.KEPT_COVERING, [covering_group(COVERING)]),
+    ):
+        found = [str(each.converter) for each in read_results(page_folder / "figures" / file)]
+        names = [{str(task.converter) for task in group_tasks(group)} for group in groups]
+        assert sorted(found) == sorted(name for each in names for name in each)
 
 
 def test_one_part_leaves_the_others_alone(page_folder: Path) -> None:
@@ -267,6 +298,26 @@ def test_without_all_figures_nothing_is_written(
     assert "p/msg/A (lyrical, cdr, 8 bytes) deserializer: too large" in capsys.readouterr().err
     assert (page_folder / "page.md").read_text() == before
     assert not (page_folder / "e.json").exists()
+
+
+@pytest.mark.parametrize("group", ["parts", "software", "beats"])
+def test_a_figure_that_is_missing_in_any_group_is_a_failure(
+    group: str,
+    page_folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    before = (page_folder / "page.md").read_text()
+    problems = [result(), result("p/msg/B", problem="too large"), result()]
+    parts = [PartResult(part=part, measured=result().measured) for part in PARTS]
+    parts[-1] = replace(parts[-1], problem="too large")
+    monkeypatch.setattr(bench, "run_tasks", lambda tasks, jobs: problems)
+    monkeypatch.setattr(bench, "run_parts", lambda *, cache, jobs: parts)
+    assert run_bench(page_folder, "--group", group) == 1
+    lines = {line for line in capsys.readouterr().err.splitlines() if "too large" in line}
+    what = PARTS[-1].name if group == "parts" else str(problems[1].converter)
+    assert lines == {f"{what}: too large"}
+    assert (page_folder / "page.md").read_text() == before
 
 
 def test_a_missing_tool_is_an_error(

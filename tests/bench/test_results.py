@@ -10,6 +10,7 @@ import pytest
 
 from firm_hdl.bench import BenchError
 from firm_hdl.bench.compare import compare, compared
+from firm_hdl.bench.devices import DEVICES
 from firm_hdl.bench.messages import STATED
 from firm_hdl.bench.results import read_results, results_text
 from firm_hdl.bench.tables import geometric_mean, head, row, summary
@@ -37,6 +38,7 @@ def test_results_come_back_from_a_file(tmp_path: Path) -> None:
         ("[]", r"is not a file of results of bench \(TypeError"),
         ('{"format": 1}', r"is not a file of results of bench \(KeyError: 'results'\)"),
         ('{"format": 7, "results": []}', "has format 7, and 1 is read"),
+        ('{"format": 0, "results": []}', "has format 0, and 1 is read"),
         ('{"format": 1, "results": [{"type": "x"}]}', r"is not a file .*\(KeyError"),
     ],
 )
@@ -121,6 +123,13 @@ def test_comparison_names_different_tools_and_missing_converters() -> None:
     # A comparison without common converters is no pass.
     assert not compared(old, [result("p/msg/C")], 0.02)[1]
     assert not compared(old, [result(lut=200)], 0.02)[1]
+    # The same converter on another device, bus or wire is another one.
+    (first,) = [each for each in old if each.converter.type == "p/msg/A"]
+    assert first.measured is not None
+    other = replace(first, measured=replace(first.measured, device=DEVICES["ice40"]))
+    for each in (other, result(bus_bytes=4), result(direction="serializer")):
+        text, is_fine = compared([first], [each], 0.02)
+        assert text.startswith("0 converters compared, 1 are new, 1 are not") and not is_fine
     assert compared(old, [result(lut=50)], 0.02)[1]
 
 

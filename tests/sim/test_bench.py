@@ -8,7 +8,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
-from amaranth.hdl import Cat, Module, Signal
+from amaranth.hdl import Cat, Const, Module, Signal
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -84,8 +84,8 @@ def test_a_bench_runs_job_after_job_from_reset():
 class RelayBench:
     """A relay, a counter of clock edges without a reset, and one with a reset."""
 
-    def __init__(self, *, keeps_state):
-        relay, top = Relay(8), Module()
+    def __init__(self, *, keeps_state, bits=8):
+        relay, top = Relay(bits), Module()
         self.edges, self.since = Signal(8, reset_less=True), Signal(8)
         top.submodules.relay = relay
         top.d.sync += [self.edges.eq(self.edges + 1), self.since.eq(self.since + 1)]
@@ -120,6 +120,23 @@ def test_between_runs_is_a_reset_or_a_new_start(keeps_state):
     assert [row[1:] for row in second] == [
         row[1:] for row in RelayBench(keeps_state=False).run([7])
     ]
+
+
+def test_a_run_begins_without_the_payloads_of_the_one_before():
+    # These payloads have a word of their own, after that of the control bits.
+    relay_bench = RelayBench(keeps_state=True, bits=WORD_BITS)
+    relay_bench.run([1, (1 << WORD_BITS) - 1])
+    assert [row[2] for row in relay_bench.run([0, 5])[:3]] == [0, 0, 5]
+
+
+def test_runs_with_waveforms_begin_from_reset(tmp_path):
+    relay_bench = RelayBench(keeps_state=False)
+    runs = [relay_bench.run([5, 6], vcd=tmp_path / f"{number}.vcd") for number in range(2)]
+    assert runs[0] == runs[1] == relay_bench.run([5, 6])
+    texts = [(tmp_path / f"{number}.vcd").read_text() for number in range(2)]
+    # Each begins with the time of the day.
+    first, second = (text.partition("$timescale")[2] for text in texts)
+    assert "payload" in first and first == second
 
 
 def test_a_run_that_failed_is_followed_by_a_reset():
@@ -166,6 +183,20 @@ def test_stalled_source_does_not_stall_others():
     run = Run([[1, 2], [3], [4]], stalls={"i0": Stalls.bits("0001"), "i1": Stalls.bits("01")})
     run.go()
     assert run.taken == {"o0": [(4, 1), (8, 2)], "o1": [(2, 3)], "o2": [(1, 4)]}
+
+
+def test_each_stream_has_the_stalls_of_its_own_name():
+    """A payload enters and leaves in the first cycles that the two patterns let through."""
+    stalls = Stalls(0.7, 1, 9, seed=4)
+
+    def free(name, after):
+        return next(n for n, stalled in enumerate(stalls.cycles(name)) if n > after and not stalled)
+
+    times = [free(f"o{n}", free(f"i{n}", -1)) for n in range(4)]
+    assert len(set(times)) == 4
+    run = Run([[5]] * 4, stalls=stalls)
+    run.go()
+    assert run.taken == {f"o{n}": [(time, 5)] for n, time in enumerate(times)}
 
 
 @pytest.mark.parametrize("bits", [WORD_BITS // 4, WORD_BITS // 2, WORD_BITS - 3, WORD_BITS, 400])
@@ -232,6 +263,13 @@ def test_silence_begins_anew_while_something_is_offered():
     assert run.taken["o0"] == [(1, 1), (11, 2)]
 
 
+def test_silence_is_counted_from_the_last_transfer():
+    # Transfers in cycles 0 and 1, then in 3 and 4.
+    run = Run([[1, 2]], expected=1, stalls={"i0": Stalls.bits("1001")}, settle=4)
+    assert run.go() == 9
+    assert run.taken["o0"] == [(1, 1), (4, 2)]
+
+
 @pytest.mark.parametrize(("fault", "rule"), [("drop", "1"), ("change", "2")])
 def test_rules_are_watched_at_sinks(fault, rule):
     run = Run([[4, 4]], fault=fault, stalls={"o0": Stalls.bits("00001")})
@@ -296,6 +334,7 @@ def test_taps_are_watched_and_held_up_by_their_gates(stalls, times):
         sinks={"o": design.o},
         taps={"tap": design.between},
         gates=design.gates,
+        payloads={"tap": Cat(design.between.payload, Const(1))},
     )
     taken = {"o": [], "tap": []}
     takes = {
@@ -309,7 +348,8 @@ def test_taps_are_watched_and_held_up_by_their_gates(stalls, times):
         options=RunOptions(stalls={name: Stalls.bits(bits) for name, bits in stalls.items()}),
     )
     Bench(design, ports).run(job)
-    assert taken["o"] == taken["tap"] == list(zip(times, [7, 8, 9], strict=True))
+    assert taken["o"] == list(zip(times, [7, 8, 9], strict=True))
+    assert taken["tap"] == [(time, 256 + payload) for time, payload in taken["o"]]
 
 
 @pytest.mark.parametrize("name", ["a", "b", "c"])

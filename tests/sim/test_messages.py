@@ -193,3 +193,40 @@ def test_stalls_of_a_leaf_are_those_that_were_asked_for(side):
 
     run_testbenches(dut, source, sink, observe)
     assert taken == {0: 0, 1: 1, 2: 4, 3: 2}
+
+
+@pytest.mark.parametrize("leaf", ["message.r", "message.a"])
+def test_deadline_of_a_message_allows_for_the_longest_stall_of_any_leaf(leaf):
+    dut = Wires(COLOUR)
+    i, o = MessagePort(dut.i, COLOUR), MessagePort(dut.o, COLOUR)
+    stalls, got = {leaf: Stalls.bits("0" * 30 + "1")}, []
+
+    async def source(ctx):
+        await i.send(ctx, dict.fromkeys("rgba", 1.0))
+
+    async def sink(ctx):
+        got.append(await o.receive(ctx, stalls=stalls, deadline=5))
+        # What is offered on a leaf that has had its transfer is none.
+        ctx.set(i.streams[0].valid, 1)
+        await o.receive(ctx, stalls=stalls, deadline=5)
+
+    message = r"^No transfer of a message in 36 cycles; outstanding: .*message\.g \(1\), "
+    with pytest.raises(DeadlineError, match=message):
+        run_testbenches(dut, source, sink)
+    assert got == [dict.fromkeys("rgba", 1.0)]
+
+
+def test_leaves_that_are_offered_and_not_awaited_do_not_put_off_the_deadline():
+    dut = Wires(COLOUR)
+    i, o = MessagePort(dut.i, COLOUR), MessagePort(dut.o, COLOUR)
+
+    async def source(ctx):
+        for leaf in (0, 1, 2):
+            ctx.set(i.streams[leaf].valid, 1)
+
+    async def sink(ctx):
+        await o.receive(ctx, deadline=5)
+
+    message = r"^No transfer of a message in 6 cycles; outstanding: message\.a \(1\)$"
+    with pytest.raises(DeadlineError, match=message):
+        run_testbenches(dut, source, sink)

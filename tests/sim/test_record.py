@@ -10,11 +10,13 @@ from firm_hdl.gateware.signatures import packet_layout
 from firm_hdl.plan import build_plan
 from firm_hdl.sim.payloads import all_beats, packet_beats
 from firm_hdl.sim.record import Recorder, RunResult
+from firm_hdl.sim.transfers import transfer_table
 from firm_hdl.sim.watch import StreamRuleError
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
-PLAN = build_plan(lay_out(make("ros1", {"x": "uint8", "y": "uint8[3]"})), bus_bytes=4)
+MESSAGE = make("ros1", {"x": "uint8", "y": "uint8[3]"})
+PLAN = build_plan(lay_out(MESSAGE), bus_bytes=4)
 MARK = 1 << packet_layout(4).size
 
 
@@ -34,6 +36,7 @@ def test_packets_and_marks_are_collected():
     take(6, beat(b"e", mark=True))
     assert (run.result.packets, run.result.packet_errors) == ([b"abcde"], [True])
     assert not run.finished()
+    assert run.finish().beats_out == 2
 
 
 def test_mark_belongs_to_the_last_beat():
@@ -89,6 +92,18 @@ def test_a_run_is_over_with_the_last_of_all_streams(which, needed):
         assert f"{name} (0 of 1)" in run.outstanding()
         takes[name](1, beat(b"ab") if name == "packets_out" else 0)
     assert run.finished()
+    assert run.outstanding() == "nothing"
+
+
+def test_leaves_are_missing_only_while_a_message_is():
+    run = recorder(encodes=False, table=transfer_table(PLAN, MESSAGE))
+    takes = run.takes()
+    assert run.outstanding() == "status (0 of 1), message.x (1), message.y.items (1)"
+    takes["message.y.items"](1, 0)
+    assert run.outstanding() == "status (0 of 1), message.x (1)"
+    takes["message.x"](2, 0)
+    assert run.outstanding() == "status (0 of 1)"
+    takes["status"](3, 0)
     assert run.outstanding() == "nothing"
 
 

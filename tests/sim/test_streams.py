@@ -104,9 +104,9 @@ def test_receive_packets_checks_their_rules():
         await send(ctx, dut.i, [bad])
 
     async def sink(ctx):
-        await receive_packets(ctx, dut.o, 1)
+        await receive_packets(ctx, dut.o, 1, name="answers")
 
-    with pytest.raises(StreamRuleError, match="rule 3"):
+    with pytest.raises(StreamRuleError, match=r"^Stream 'answers' breaks rule 3 in cycle 0: "):
         run_testbenches(dut, source, sink)
 
 
@@ -174,3 +174,25 @@ def test_statuses_may_be_stalled_and_have_a_deadline():
     with pytest.raises(DeadlineError, match=message):
         run_testbenches(dut, source, sink)
     assert got == [Status.OK, Status.STRING]
+
+
+def test_both_sides_leave_a_stream_idle():
+    """What another testbench sends later is not taken, and nothing is sent twice."""
+    dut = Relay(8)
+    got, seen = [], []
+
+    async def source(ctx):
+        await send(ctx, dut.i, [5, 6])
+        seen.append(("i.valid", ctx.get(dut.i.valid)))
+        await ctx.tick().repeat(3)
+        await send(ctx, dut.i, [7])
+
+    async def sink(ctx):
+        got.extend(await receive(ctx, dut.o, 2))
+        seen.append(("o.ready", ctx.get(dut.o.ready)))
+        await ctx.tick().repeat(9)
+        got.extend(await receive(ctx, dut.o, 1))
+
+    run_testbenches(dut, source, sink)
+    assert got == [5, 6, 7]
+    assert sorted(seen) == [("i.valid", 0), ("o.ready", 0)]

@@ -90,6 +90,37 @@ def test_a_ros1_byte_is_signed():
     }
 
 
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_numbers_of_numpy_have_either_order_of_bytes(order):
+    fields = {"x": "float32", "d": "float64[2]", "i": "int16[2]"}
+    value = {
+        "x": np.array([1.5], f"{order}f4")[0] if order == "<" else np.array(1.5, ">f4"),
+        "d": np.array([-2.0, 0.5], f"{order}f8"),
+        "i": np.array([-2, 0x1234], f"{order}i2"),
+    }
+    got = transfers(fields, value, bus_bytes=16)
+    assert got["x"] == [0x3FC00000]
+    assert got["d.items"] == [((0xC000000000000000, 0x3FE0000000000000), True)]
+    assert got["i.items"] == [((-2, 0x1234, 0, 0, 0, 0, 0, 0), True)]
+
+
+@pytest.mark.parametrize("number", [-128, -127, -1, 0, 1, 127, 128, 129, 255])
+def test_a_byte_may_be_given_with_or_without_a_sign(number):
+    signed = number - 256 if number > 127 else number
+    assert transfers({"x": "byte"}, {"x": number}, dialect="ros1") == {"x": [signed]}
+    assert transfers({"x": "byte"}, {"x": number}) == {"x": [number % 256]}
+    for dialect, sent in (("ros1", signed), ("ros2", number % 256)):
+        got = transfers({"x": "byte[1]"}, {"x": bytes([number % 256])}, dialect=dialect)
+        assert got == {"x.items": [((sent, 0, 0, 0), True)]}
+
+
+def test_half_of_a_pair_in_a_wstring_is_a_unit_of_its_own():
+    got = transfers({"w": "wstring"}, {"w": "\udc00a\ud83d"}, bus_bytes=16)
+    assert got["w.items"] == [((0xDC00, 0x61, 0xD83D, 0), True)]
+    streams = {"w.length": [3], "w.items": got["w.items"]}
+    assert joined({"w": "wstring"}, streams, bus_bytes=16) == {"w": "\udc00a\ud83d"}
+
+
 def test_wstring_is_utf_16_units_or_any_numbers():
     got = transfers({"w": "wstring"}, {"w": "a\U0001f600"}, bus_bytes=16)
     assert got["w.items"] == [((0x61, 0xD83D, 0xDE00, 0), True)]
@@ -166,12 +197,36 @@ def test_bounds_can_be_exceeded_on_purpose():
 # From transfers to values.
 
 
-def joined(fields, streams, bus_bytes=4):
+def joined(fields, streams, bus_bytes=4, **options):
     message = make("ros2", fields)
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
     paths = [str(leaf) for leaf in plan.leaves]
     given = {paths.index(name): payloads for name, payloads in streams.items()}
-    return from_transfers(plan, message, given)
+    return from_transfers(plan, message, given, **options)
+
+
+def test_exact_values_are_bits_bytes_and_units():
+    fields = {"f": "float32", "d": "float64[1]", "s": "string", "w": "wstring", "b": "bool"}
+    streams = {
+        # A signalling NaN, which a Python float does not keep.
+        "f": [0x7F800001],
+        "d.items": [((0x7FF0000000000001,), True)],
+        "s.length": [2],
+        "s.items": [((0x61, 0x62, 0, 0, 0, 0, 0, 0), True)],
+        "w.length": [2],
+        "w.items": [((0x61, 0x62), True)],
+        "b": [1],
+    }
+    assert joined(fields, streams, 8, exact=True) == {
+        "f": 0x7F800001,
+        "d": [0x7FF0000000000001],
+        "s": b"ab",
+        "w": [0x61, 0x62],
+        "b": True,
+    }
+    value = joined(fields, streams, 8)
+    assert (value["s"], value["w"]) == ("ab", "ab")
+    assert value["f"] != value["f"] and value["d"][0] != value["d"][0]
 
 
 def test_transfers_become_plain_values():

@@ -149,3 +149,33 @@ def test_watch_knows_packet_streams():
 
     with pytest.raises(StreamRuleError, match=r"^Stream 'packets' breaks rule 3 in cycle"):
         run_testbenches(dut, source, sink, background=[watch({"packets": dut.o})])
+
+
+def test_a_beat_is_checked_in_the_cycle_of_its_transfer_and_cycles_of_a_reset_count():
+    dut = Relay(packet_layout(4))
+    top = Module()
+    top.domains.sync = domain = ClockDomain("sync")
+    top.submodules.dut = dut
+
+    async def source(ctx):
+        ctx.set(domain.rst, 1)
+        for _ in range(2):
+            await ctx.tick()
+        ctx.set(domain.rst, 0)
+        # Taken in cycle 2.
+        await send(ctx, dut.i, [beat(4, 0)])
+        await send(ctx, dut.i, [beat(2, 0)])
+
+    async def sink(ctx):
+        for _ in range(6):
+            await ctx.tick()
+        # The register gets free.
+        ctx.set(dut.o.ready, 1)
+
+    simulator = Simulator(top)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(source)
+    simulator.add_testbench(sink)
+    simulator.add_testbench(watch({"i": dut.i}), background=True)
+    with pytest.raises(StreamRuleError, match=r"^Stream 'i' breaks rule 3 in cycle 6:"):
+        simulator.run()

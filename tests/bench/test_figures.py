@@ -1,0 +1,273 @@
+# amaranth: UnusedElaboratable=no
+"""Each figure is that of its name: parts, plots, estimates, comparisons and counts of cycles."""
+
+from __future__ import annotations
+
+import gc
+import json
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from firm_hdl import Deserializer, Serializer, load_message
+from firm_hdl.bench import BenchError, command, cycles
+from firm_hdl.bench.compare import compare
+from firm_hdl.bench.devices import DEVICES, PARITY, Area
+from firm_hdl.bench.estimates import estimates_json
+from firm_hdl.bench.messages import Stated, values
+from firm_hdl.bench.parts import PARTS, run_parts
+from firm_hdl.bench.parts import run as part_run
+from firm_hdl.bench.plots import clock_plot
+from firm_hdl.bench.results import Result
+from firm_hdl.bench.tables import summary
+from firm_hdl.cli import main
+from firm_hdl.estimates import features_of
+from firm_hdl.gateware.packets import PacketFifo, PacketGate, PacketWidth
+from firm_hdl.plan import build_plan
+from firm_hdl.sim import RunResult
+from firm_hdl.wire import lay_out
+from tests.bench.results import result
+from tests.frontend.workspace import make_files
+from tests.strategies import make
+
+SVG = "{http://www.w3.org/2000/svg}"
+AREA = Area(lut=1001, ff=202, carry=33, lutram=4, bram=5)
+
+
+def measured(found: Result, **changes: Any) -> Result:
+    """Return a result with other figures of the circuit."""
+    assert found.measured is not None
+    return replace(found, measured=replace(found.measured, **changes))
+
+
+def test_each_change_of_a_figure_has_its_name_and_its_direction() -> None:
+    old = measured(result(), area=AREA)
+    for name, figure in zip(
+        ("lut", "ff", "carry", "lutram", "bram"),
+        ("LUT", "FF", "carry", "RAM", "BRAM"),
+        strict=True,
+    ):
+        number = getattr(AREA, name)
+        for change in (1, -1):
+            new = measured(old, area=replace(AREA, **{name: number + change}))
+            (found,) = compare([old], [new], 0.0)
+            assert (found.figure, found.old, found.new) == (figure, number, number + change)
+            assert found.is_worse == (change > 0)
+
+
+@pytest.mark.parametrize(("beats", "is_worse"), [(40, True), (90, False)])
+def test_fewer_beats_per_cycle_are_worse(beats: int, is_worse: bool) -> None:
+    # 80 beats in 100 cycles before.
+    (found,) = compare([result()], [result(beats=beats)], 0.02)
+    assert (found.figure, found.is_worse) == ("beats per cycle", is_worse)
+    assert (found.old, found.new) == (pytest.approx(0.8), pytest.approx(beats / 100))
+
+
+def test_each_mapping_is_told_with_its_own_tools() -> None:
+    one = result()
+    other = measured(result("p/msg/B"), mapping="abc", tools={"Yosys": "0.99"}, placement="--25k")
+    assert summary([one, other], None).splitlines()[:2] == [
+        "Yosys 0.99: abc; --25k",
+        "Yosys 0.70, nextpnr-ecp5 0.11.1: synth_ecp5 -top top; --45k",
+    ]
+
+
+def test_cells_of_all_kinds_are_added_up() -> None:
+    assert DEVICES["gowin"].area({"LUT1": 1, "LUT4": 20, "DFF": 300, "DFFNRE": 4000}) == Area(
+        lut=21, ff=4300
+    )
+    assert DEVICES["xc7"].area({"RAMB18E1": 1, "RAMB36E1": 2, "SRL16E": 4}) == Area(
+        lutram=4, bram=3
+    )
+    # With any edge, enable, and set or reset, synchronous or not.
+    kinds = {f"SB_DFF{n}{e}{r}" for n in ("", "N") for e in ("", "E") for r in ("", "R", "SS")}
+    assert DEVICES["ice40"].area(dict.fromkeys(kinds, 1)) == Area(ff=12)
+    assert "SB_DFFNESS" in kinds
+
+
+def test_the_table_of_parity_is_the_xor_of_four_bits() -> None:
+    ones = [bin(number).count("1") for number in range(16)]
+    assert "".join(str(ones[number] % 2) for number in reversed(range(16))) == PARITY
+
+
+def test_estimates_are_of_circuits_with_a_clock_rate_on_one_device() -> None:
+    ecp5 = measured(result("std_msgs/msg/Header", bus_bytes=4), area=AREA)
+    others = [
+        measured(ecp5, device=DEVICES["ice40"]),
+        replace(ecp5, measured=None),
+        measured(ecp5, placed=()),
+    ]
+    (entry,) = json.loads(estimates_json([*others, ecp5]))
+    message = load_message("std_msgs/msg/Header")
+    plan = build_plan(lay_out(message, "cdr"), bus_bytes=4, max_message_bytes=1 << 27)
+    assert entry == {
+        "type": "std_msgs/msg/Header",
+        "wire": "cdr",
+        "bus_bytes": 4,
+        "direction": "deserializer",
+        "part": "ECP5 LFE5U-45F-8",
+        "lut": 1001,
+        "ff": 202,
+        "mhz": 82.5,
+        **features_of(plan),
+    }
+
+
+def test_numbers_of_messages_have_all_their_bits() -> None:
+    message = make("ros2", {"b": "uint8", "c": "int8", "w": "uint64", "v": "int64"})
+    drawn = [value for value, _ in zip(values(message, Stated(seed=3)), range(300), strict=False)]
+    assert max(value["b"] for value in drawn) > 240 and max(v["c"] for v in drawn) > 120
+    assert max(value["w"] for value in drawn) >> 63 == 1
+    assert max(value["v"] for value in drawn) >> 62 == 1
+
+
+@pytest.mark.parametrize("component", [Deserializer, Serializer])
+def test_cycles_are_those_between_two_runs_and_latency_is_that_of_the_first(
+    component: type, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given = []
+
+    class Run:
+        def __init__(self, *converters: Any, message: Any) -> None:
+            assert [each is None for each in converters] == [
+                component is Serializer,
+                component is Deserializer,
+            ]
+
+        def run_packets(self, sent: Sequence[Any]) -> RunResult:
+            given.append(len(sent))
+            # The last leaf comes in cycle 20 of one message, and the status three cycles later.
+            end = 10 * len(sent) + 10
+            return RunResult(
+                last_cycle_in=end - 7 * len(sent), last_cycle=end, last_status_cycle=end + 3
+            )
+
+        run_messages = run_packets
+
+    monkeypatch.setattr(cycles, "Harness", Run)
+    message = load_message("std_msgs/msg/Bool")
+    found = cycles.count_cycles(component(message), message, Stated(count=6))
+    assert given == [1, 7]
+    assert (found.cycles, found.latency, found.beats, found.bytes) == (60, 7, 6, 30)
+    assert found.messages == Stated(count=6) and found.bits_per_cycle == 4
+
+
+def test_lines_of_a_plot_reach_from_the_slowest_seed_to_the_fastest() -> None:
+    found = result(mhz=(80.0, 90.0, 82.5))
+    other = replace(found, converter=replace(found.converter, wire="ros1"))
+    root = ElementTree.fromstring(clock_plot([found, other]))
+    bars = [bar for bar in root.findall(f"{SVG}rect") if bar.findall(f"{SVG}title")]
+    # Two wires are two rows.
+    assert len(bars) == 2 and len({bar.get("y") for bar in bars}) == 2
+    start, width = float(bars[0].get("x") or 0), float(bars[0].get("width") or 0)
+    for line in root.findall(f"{SVG}line[@class='whisker']"):
+        ends = [(float(line.get(end) or 0) - start) * 82.5 / width for end in ("x1", "x2")]
+        assert ends == pytest.approx([80.0, 90.0], abs=0.2)
+    assert len(root.findall(f"{SVG}line[@class='whisker']")) == 2
+
+
+PLACES = {f"{part.name} {part.parameters}": number for number, part in enumerate(PARTS)}
+
+
+@pytest.mark.filterwarnings("ignore::amaranth.hdl.UnusedElaboratable")
+def test_parts_are_those_that_their_names_say() -> None:
+    narrow = PARTS[PLACES["`PacketWidth` 8 to 1 bytes"]].make()
+    wide = PARTS[PLACES["`PacketWidth` 1 to 8 bytes"]].make()
+    for width, sizes in ((narrow, (8, 1)), (wide, (1, 8))):
+        assert isinstance(width, PacketWidth)
+        ports = (width.packets_in, width.packets_out)
+        assert tuple(len(port.payload.data) for port in ports) == sizes
+    for policy in ("wait", "drop"):
+        fifo = PARTS[PLACES[f'`PacketFifo` 64 KiB, 64 packets, `"{policy}"`']].make()
+        gate = PARTS[PLACES[f'`PacketGate` of `PointCloud2` 64 KiB, `"{policy}"`']].make()
+        assert isinstance(fifo, PacketFifo) and isinstance(gate, PacketGate)
+        for each in (fifo, gate):
+            assert each.when_full == policy
+    # They warn when they are collected.
+    del narrow, wide, width, fifo, gate, each
+    gc.collect()
+
+
+def test_a_part_with_a_problem_keeps_its_area(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = result().measured
+    assert found is not None
+    asked = []
+
+    def run_each(work: Any, tasks: Any, *, jobs: int | None) -> Iterator[tuple[int, Any]]:
+        asked.append((work, tasks, jobs))
+        yield 1, replace(found, problem="no room")
+        yield 0, RuntimeError("it was killed")
+
+    monkeypatch.setattr(part_run, "run_each", run_each)
+    first, second = run_parts(parts=[0, 1], seeds=[4, 5], cache="c", jobs=2)
+    assert (first.part, first.problem) == (PARTS[1], "no room")
+    assert first.measured is not None and first.measured.area == found.area
+    assert (second.part, second.measured, second.problem) == (PARTS[0], None, "it was killed")
+    tasks = [(0, (0, (4, 5), "c")), (1, (1, (4, 5), "c"))]
+    assert asked == [(part_run.measure_part, tasks, 2)]
+
+
+@pytest.mark.parametrize(("cache", "folder"), [(None, None), ("c", Path("c"))])
+def test_figures_of_parts_are_kept_in_the_folder(
+    cache: str | None, folder: Path | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def measure_once(text: str, *given: object, **options: object) -> None:
+        assert given == (DEVICES["ecp5"], (4,))
+        assert options == {"mapping": "", "folder": folder}
+        raise BenchError("enough")
+
+    monkeypatch.setattr(part_run, "measure_once", measure_once)
+    place = PLACES["`PacketWidth` 8 to 1 bytes"]
+    assert part_run.measure_part(place, (4,), cache) == "enough"
+
+
+@pytest.fixture
+def given_results(monkeypatch: pytest.MonkeyPatch) -> list[Result]:
+    """The results of the command; without them, none is measured."""
+    results: list[Result] = []
+    monkeypatch.setattr(command, "versions", lambda device, *, with_placer: {})
+    monkeypatch.setattr(command, "run_tasks", lambda tasks, jobs: results)
+    return results
+
+
+def test_a_problem_is_a_failure_also_if_no_figure_is_worse(
+    given_results: list[Result], tmp_path: Path
+) -> None:
+    file = tmp_path / "old.json"
+    words = ["bench", "std_msgs/msg/Bool"]
+    given_results.append(result())
+    assert main([*words, "--json", str(file)]) == 0
+    assert main([*words, "--compare", str(file)]) == 0
+    given_results[:] = [result(problem="no room")]
+    assert main([*words, "--compare", str(file)]) == 1
+    # Eight percent more.
+    given_results[:] = [result(lut=108)]
+    assert main([*words, "--compare", str(file), "--threshold", "9"]) == 0
+    assert main([*words, "--compare", str(file), "--threshold", "7"]) == 1
+    # The old figures are read before the file is replaced.
+    assert main([*words, "--compare", str(file), "--json", str(file)]) == 1
+    assert main([*words, "--compare", str(file)]) == 0
+
+
+def test_tasks_are_of_each_width_once_and_of_all_folders(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    make_files(tmp_path, {"src/p/msg/A.msg": "q/B b", "more/q/msg/B.msg": "int8 b"})
+    src, more = str(tmp_path / "src"), str(tmp_path / "more")
+    asked: list[Any] = []
+    monkeypatch.setattr(command, "run_tasks", lambda tasks, jobs: asked.extend(tasks) or [])
+    words = ["--device", "none", "--path", src, "--depends", more]
+    words += ["--bus-bytes", "8", "--bus-bytes", "2", "--bus-bytes", "8", "--seeds", "0,7,"]
+    words += ["--direction", "serializer", "--direction", "serializer"]
+    assert main(["bench", "p/A", *words]) == 1
+    assert [(task.converter.type, task.converter.bus_bytes) for task in asked] == [
+        ("p/msg/A", 8),
+        ("p/msg/A", 2),
+    ]
+    for task in asked:
+        assert (task.paths, task.seeds, task.device) == ((src, more), (0, 7), None)
+        assert task.converter.direction == "serializer"
