@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
@@ -127,6 +127,28 @@ def test_summary_and_status_count_each_kind_of_result(
     head = f"{len(results)} converters of {len({*results} and {1})} types: {message}"
     assert head in out
     assert [line.split()[0] for line in out[: len(results)]] == results
+
+
+def test_the_summary_has_the_seconds_of_all_proofs(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # In the order in which they end: neither the first nor the last took longest.
+    results = [
+        (replace(TASK, name=name), Attempt(proof=proof))
+        for name, proof in (
+            ("p/A", Proof(result="equal", registers=1, claims=1, seconds=2.0)),
+            ("p/C", Proof(result="equal", registers=1, claims=1, seconds=30.5)),
+            ("p/B", None),
+            ("p/A", Proof(result="equal", registers=1, claims=1, seconds=1.0)),
+        )
+    ]
+    monkeypatch.setattr(command, "find_tools", lambda: None)
+    monkeypatch.setattr(command, "run_tasks", lambda tasks, jobs: iter(results))
+    assert command.run_proofs([TASK] * 4, 1, bar=True) == 1
+    assert capsys.readouterr().out.splitlines()[-2:] == [
+        "4 converters of 3 types: 3 equal, 1 failed",
+        f"seconds per converter: median 2.0, most 30.5 (p/C {TASK.direction}), 34 in total",
+    ]
 
 
 # Without tools: every way in which the two solvers can end.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib
 
 import pytest
@@ -47,9 +48,32 @@ def test_other_options_and_definitions_are_built_anew(tmp_path, monkeypatch):
     build_one(tmp_path)
     assert not build_one(tmp_path, max_message_bytes=1000).was_current
     assert build_one(tmp_path, max_message_bytes=1000).was_current
+    assert not build_one(tmp_path, max_message_bytes=1000, ports="flat").was_current
+    assert not build_one(tmp_path, max_message_bytes=1000).was_current
     assert build_one(tmp_path, bus_bytes=4).folder.name == "std_msgs_msg_Bool_cdr_4"
     monkeypatch.setattr(firm_hdl, "__version__", "9.9.9")
     assert not build_one(tmp_path, max_message_bytes=1000).was_current
+
+
+@pytest.mark.parametrize(
+    "packets", [[b"\1", b"\2\4"], [b"\1\2", b"\3"], [b"\2\3", b"\1"], [b"\1\2\3"], [b"\1"], []]
+)
+@pytest.mark.usefixtures("quick")
+def test_other_packets_of_the_bench_are_built_anew(tmp_path, packets):
+    # The same bytes in other packets, or in another order, are other packets.
+    build_one(tmp_path, stimuli=lambda message, plan: [b"\1", b"\2\3"])
+    assert build_one(tmp_path, stimuli=lambda message, plan: [b"\1", b"\2\3"]).was_current
+    assert not build_one(tmp_path, stimuli=lambda message, plan: packets).was_current
+
+
+@pytest.mark.usefixtures("quick")
+def test_leftovers_beside_a_folder_that_is_current_are_deleted(tmp_path):
+    target = build_one(tmp_path).folder
+    digest = hashlib.sha256(target.name.encode()).hexdigest()[:16]
+    left = target.with_name(f".firm-hdl.{digest}.0123456789abcdef.new")
+    left.mkdir()
+    assert build_one(tmp_path).was_current
+    assert [path.name for path in target.parent.iterdir()] == [target.name]
 
 
 class Notes(BackEnd):

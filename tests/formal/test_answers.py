@@ -64,6 +64,22 @@ def test_a_solver_that_takes_too_long_or_says_nothing_proves_nothing(tmp_path):
         decide(tmp_path / "scene.aig", 2, Said(), **given)
 
 
+@pytest.mark.parametrize(("method", "solve"), [("PDR", "pdr,-T,70;"), ("BMC", "bmc3,-F,12,-T,70;")])
+def test_the_solver_gets_its_claim_depth_and_time_and_yosys_more_time(tmp_path, method, solve):
+    asked = []
+
+    class Asked(Said):
+        def run_yosys(self, folder: Path, script: str, timeout: float | None) -> str:
+            asked.append((script, timeout))
+            return super().run_yosys(folder, script, timeout)
+
+    tools = Asked("snl_UNK -1 0")
+    decide(tmp_path / "scene.aig", 2, tools, method=method, depth=12, timeout=70.5)
+    [(script, limit)] = asked
+    assert f"read_aiger,scene.aig;cone,-O,2;scleanup;{solve}" in script
+    assert limit > 71
+
+
 @pytest.mark.parametrize(
     ("answers", "status"),
     [

@@ -118,6 +118,33 @@ def test_bug_that_is_nowhere_is_refused():
         pass
 
 
+def twice(value: int) -> int:
+    if value:
+        return value + 1
+    return value - 1
+
+
+def closed(value: int):
+    def inner() -> int:
+        return value + 1
+
+    return inner
+
+
+def test_bug_in_a_text_that_occurs_twice_or_needs_its_surroundings_is_refused():
+    with (
+        pytest.raises(ValueError, match="occurs 2 times"),
+        seeded([Bug(twice, "return value", "return 2")]),
+    ):
+        pass
+    with (
+        pytest.raises(ValueError, match="cannot be compiled alone"),
+        seeded([Bug(closed(1), "value + 1", "value + 2")]),
+    ):
+        pass
+    assert (twice(3), twice(0)) == (4, -1)
+
+
 def test_command_says_what_it_found(capsys):
     assert main(["slice/order", "--jobs", "1", "--timeout", "1", "--only-twins"]) == 0
     assert "broken" in capsys.readouterr().out

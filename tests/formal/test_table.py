@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.formal.command import main
 from firm_hdl.formal.run import all_proofs
 from firm_hdl.formal.solve import Answer
 from firm_hdl.formal.table import replace_table, table
@@ -52,10 +51,3 @@ def test_page_without_a_place_is_refused(tmp_path):
     page.write_text("nothing")
     with pytest.raises(ValueError, match="has no lines"):
         replace_table(page, "")
-
-
-def test_a_part_of_the_proofs_does_not_replace_the_table(tmp_path, capsys):
-    page = tmp_path / "page.md"
-    assert main(["slice/*", "--write", str(page)]) == 1
-    assert main(["--only-twins", "--write", str(page)]) == 1
-    assert "--write needs all proofs" in capsys.readouterr().err

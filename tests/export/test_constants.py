@@ -1,0 +1,99 @@
+"""Constants: the bits of floats, and names that do not collide."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from firm_hdl.export.constants import _float_bits, named_constants
+from firm_hdl.export.systemverilog.package import message_package
+from firm_hdl.export.tree import tree_of
+from firm_hdl.export.vhdl.constants import declarations
+from firm_hdl.plan import build_plan
+from firm_hdl.wire import lay_out
+from tests.frontend.workspace import library
+
+
+@pytest.mark.parametrize(
+    ("value", "size", "bits"),
+    [
+        (1.0, 4, 0x3F80_0000),
+        (-2.5, 4, 0xC020_0000),
+        (-2.5, 8, 0xC004_0000_0000_0000),
+        # Numbers of Python that no float32 has.
+        (1e39, 4, 0x7F80_0000),
+        (-1e39, 4, 0xFF80_0000),
+        (1e39, 8, 0x4807_8287_F49C_4A1D),
+        (float("inf"), 4, 0x7F80_0000),
+        (float("-inf"), 8, 0xFFF0_0000_0000_0000),
+        (-0.0, 4, 0x8000_0000),
+    ],
+)
+def test_bits_are_those_of_ieee_754(value: float, size: int, bits: int) -> None:
+    assert _float_bits(value, size) == bits
+
+
+FLOATS = {
+    "p/T": "float32 A=1.0\nint8 A_BITS=2\nfloat32 B=2.0\nfloat32 B_BITS=4.0\nint8 b_bits_2=1\n"
+    "float64 TAKEN=0.5\nint8 x\n"
+}
+
+
+def test_bits_of_a_float_have_a_name_that_no_other_constant_has(tmp_path: Path) -> None:
+    message = library(tmp_path, FLOATS, "ros1").message("p/T")
+    named = named_constants(message, ())
+    # In lower case, as for every name that is taken.
+    text = "".join(declarations(named, ["taken_bits"]))
+    kinds = dict(re.findall(r"constant (\w+) *: ([a-z_]+)", text))
+    # The constants of the definition keep their names.
+    assert {name: kinds.pop(name) for name in ("A", "A_BITS", "B", "B_BITS", "b_bits_2")} == {
+        "A": "real",
+        "A_BITS": "signed",
+        "B": "real",
+        "B_BITS": "real",
+        "b_bits_2": "signed",
+    }
+    assert kinds.pop("TAKEN") == "real"
+    # Four floats; names of VHDL have no case.
+    assert list(kinds.values()) == ["std_logic_vector"] * 4
+    given = [name.lower() for name in re.findall(r"constant (\w+)", text)]
+    assert len(set(given)) == len(given) == 10 and "taken_bits" not in given
+
+
+STRINGS = {
+    "p/T": "string EMPTY=\nstring FULL=" + "a" * 64 + "\nstring MORE=" + "a" * 64 + "b\n"
+    'string ODD=a\\01"é\nint8 LOW=-128\nuint8 HIGH=200\nint16 WIDE=-2\nbool YES=True\nint8 x\n'
+}
+
+
+def test_constants_of_systemverilog_have_their_width_sign_and_bytes(tmp_path: Path) -> None:
+    message = library(tmp_path, STRINGS, "ros1").message("p/T")
+    plan = build_plan(lay_out(message), bus_bytes=8)
+    text = message_package(tree_of(message, plan).package, plan)
+    for line in (
+        "  localparam logic signed [7:0] LOW = 8'sh80;",
+        "  localparam logic [7:0] HIGH = 8'hc8;",
+        "  localparam logic signed [15:0] WIDE = 16'shfffe;",
+        "  localparam logic YES = 1'b1;",
+    ):
+        assert line in text
+    strings = {
+        name: [_bytes(each) for each in re.findall(r'"((?:[^"\\]|\\...)*)"', value)]
+        for name, value in re.findall(r"localparam (\w+) =\n((?:.*\n)*?.*);\n", text)
+    }
+    assert strings == {
+        "EMPTY": [b""],
+        "FULL": [b"a" * 64],
+        "MORE": [b"a" * 64, b"b"],
+        "ODD": ['a\\01"é'.encode()],
+    }
+
+
+def _bytes(literal: str) -> bytes:
+    """Return the bytes of a literal, as IEEE Std 1800-2017, clause 5.9.1 has them."""
+    # An escape ends with its third digit, so digits that follow are characters.
+    parts = re.findall(r"\\([0-7]{3})|([^\\])", literal)
+    assert "".join(f"\\{octal}" if octal else other for octal, other in parts) == literal
+    return bytes(int(octal, 8) if octal else ord(other) for octal, other in parts)
