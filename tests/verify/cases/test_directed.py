@@ -69,6 +69,26 @@ def test_more_cases_are_the_same_for_the_same_seed():
     cases = cases_of(name, made, most=1)
     again = [more_cases(ORACLE, name, made, cases, seed=3) for _ in range(2)]
     assert [c.packet for c in again[0]] == [c.packet for c in again[1]] != []
+    other = more_cases(ORACLE, name, made, cases, seed=4)
+    assert [c.packet for c in other] != [c.packet for c in again[0]]
+
+
+def test_each_further_packet_takes_a_new_decision():
+    name = "nav_msgs/msg/Trajectory"
+    made = plan(name)
+    cases = cases_of(name, made, most=1)
+    whole = cases_of(name, made)
+    bare = [packet for _, packet in bare_packets(made, whole)]
+    assert 0 < len(bare) < len(whole)
+    for given, more in (
+        (cases, [case.packet for case in more_cases(ORACLE, name, made, cases)]),
+        (whole, bare),
+    ):
+        packets = [case.packet for case in given]
+        for packet in more:
+            before = not_taken(made, packets)
+            packets.append(packet)
+            assert not_taken(made, packets) < before
 
 
 def test_bare_strings_mean_the_same():

@@ -12,6 +12,7 @@ from firm_hdl.verify import Options, accept
 from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.wire import lay_out
+from tests.strategies import make
 from tests.verify.judged import assert_passed
 
 HEADER = "std_msgs/msg/Header"
@@ -43,6 +44,71 @@ def test_cases_without_new_decisions_fill_the_remaining_effort(plan):
     packets, taken = [bytes(8), bytes(8), bytes(8)], [some_edges(1)] * 3
     work = effort.work_of(plan, 8)
     assert effort.packets_to_simulate(plan, packets, taken, most=2 * work) == [0, 1]
+
+
+def test_new_decisions_may_cost_four_times_as_much(plan):
+    work = effort.work_of(plan, 8)
+    # The second packet takes what the first one took, the third something else, too.
+    taken = [some_edges(1, 2), some_edges(1, 2), some_edges(2, 3)]
+    assert effort.packets_to_simulate(plan, [bytes(8)] * 3, taken, most=work) == [0, 2]
+    taken = [some_edges(number) for number in range(9)]
+    assert effort.packets_to_simulate(plan, [bytes(8)] * 9, taken, most=work) == [0, 1, 2, 3]
+    assert effort.packets_to_simulate(plan, [bytes(8)] * 9, taken, most=9 * work) == [*range(9)]
+
+
+def test_work_is_beats_times_leaves(plan):
+    # The four streams of a Header count as eight.
+    assert [effort.work_of(plan, size) for size in (0, 1, 8, 9)] == [0, 8, 8, 16]
+    message = make("ros2", {f"f{n}": "uint8" for n in range(11)})
+    assert effort.work_of(build_plan(lay_out(message), bus_bytes=2), 3) == 2 * 11
+
+
+def test_limits_of_sizes_and_work(plan):
+    assert [effort.message_limit(size) for size in (5, 32768, 32769)] == [65536, 65536, 98305]
+    assert not effort.too_large(plan, 1_500_000)
+    assert "has 1500001 bytes, and its circuits 4 streams" in effort.too_large(plan, 1_500_001)
+
+    def cases(*sizes):
+        return [Case(what="", value=None, packet=bytes(n), transfers={}) for n in sizes]
+
+    assert not effort.is_large(plan, cases(100_000, 200_000))
+    assert effort.is_large(plan, cases(100_000, 200_001))
+    many = cases(*range(1, 10))
+    assert effort.cases_to_disturb(plan, many) == [many[0], many[4], many[8]]
+    many = cases(200_000, 1, 1, 1, 100_001, 1, 1, 1, 7)
+    assert effort.cases_to_disturb(plan, many) == [many[4], many[8]]
+
+
+@pytest.mark.parametrize(
+    ("most", "limit", "sizes"),
+    [
+        (None, 100, [10, 20, 30, 7]),
+        (None, 61, [10, 20, 30, 7]),
+        (None, 60, [10, 20, 30]),
+        (None, 30, [10, 20]),
+        (None, 1, [10]),
+        (3, 100, [10, 20, 30]),
+        (2, 1, [10]),
+    ],
+)
+def test_cases_are_completed_unless_there_is_a_limit(plan, monkeypatch, most, limit, sizes):
+    def cases(*sizes):
+        return [Case(what="", value=None, packet=bytes(n), transfers={}) for n in sizes]
+
+    def make_cases(*given, **settings):
+        assert given == ("oracle", HEADER)
+        assert settings == {"wire": "cdr", "bus_bytes": 8, "seed": 5, "most": most}
+        return iter(cases(10, 20, 30)[:most])
+
+    def more_cases(*given, seed):
+        assert given == ("oracle", HEADER, plan, cases(10, 20, 30)) and seed == 5
+        return cases(7)
+
+    monkeypatch.setattr(effort, "make_cases", make_cases)
+    monkeypatch.setattr(effort, "more_cases", more_cases)
+    monkeypatch.setattr(effort, "MOST_CASE_BYTES", limit)
+    made = effort.all_cases("oracle", HEADER, plan, seed=5, most=most)
+    assert [len(case.packet) for case in made] == sizes
 
 
 def test_at_least_one_case_is_simulated(plan):

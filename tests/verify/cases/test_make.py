@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import replace
 
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from firm_hdl.verify import RosbagsOracle, distro_oracle, make_cases
-from firm_hdl.verify.cases.make import run_lengths
+from firm_hdl.verify.cases.make import Case, run_lengths
 
 DEEP = """
 string[] names
@@ -61,6 +62,37 @@ def test_every_place_takes_every_length(deep, bus_bytes):
     assert taken["few",] == {0, 1, 2, 3}
     assert taken["points",] >= {0, 1, 2, 3}
     assert taken["bounded",] == {0, 1, 2, 3, 5}
+
+
+LISTS = "string[<=1] a\nstring[<=3] b\nstring[<=16] c\nstring[<=17] d\nstring[] e\n"
+
+
+def test_lists_have_their_bound_if_it_is_small():
+    store = get_typestore(Stores.EMPTY)
+    store.register(get_types_from_msg(LISTS, "test_msgs/msg/Lists"))
+    oracle = RosbagsOracle(store, "ros2")
+    taken = defaultdict(set)
+    for case in make_cases(oracle, "test_msgs/msg/Lists", wire="cdr"):
+        for name in "abcde":
+            taken[name].update(case.transfers[name, "length"])
+    few = {0, 1, 2, 3}
+    assert taken == {"a": {0, 1}, "b": few, "c": {*few, 16}, "d": few, "e": few}
+
+
+def test_the_modes_come_first_and_mixed_values_stay():
+    cases = list(make_cases(distro_oracle("humble"), "std_msgs/msg/Header", wire="cdr", seed=4))
+    modes = ["zero", "high", "low", "special"]
+    modes += ["mixed"] * (len(cases) - 4)
+    assert len(cases) > 8
+    for number, (case, mode) in enumerate(zip(cases, modes, strict=True)):
+        assert case.what == f"case {number} of std_msgs/msg/Header, seed 4: {mode} values"
+    assert [case.transfers["stamp", "sec"] for case in cases[:3]] == [[0], [2**31 - 1], [-(2**31)]]
+
+
+def test_a_case_sends_its_packet_or_another_one_instead():
+    case = Case(what="", value=None, packet=b"\1", transfers={})
+    assert case.sent == b"\1"
+    assert [replace(case, given=given).sent for given in (b"\2\3", b"")] == [b"\2\3", b""]
 
 
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])

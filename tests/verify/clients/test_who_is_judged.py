@@ -97,6 +97,17 @@ def test_no_library_judges_itself():
     assert reference_of("fastcdr", "cdr", ("fastcdr",)) is None
 
 
+def test_ros_s_own_is_judged_by_rosbags_first_and_others_by_the_newest_release():
+    here = ("rosbags", "fastcdr-2.2", "fastcdr-2.3", "fastcdr", "genpy")
+    without_rosbags, without_own = here[1:], [name for name in here if name != "fastcdr"]
+    assert reference_of("fastcdr", "cdr", here) == "rosbags"
+    assert reference_of("fastcdr", "cdr", without_rosbags) == "fastcdr-2.2"
+    assert reference_of("fastcdr-2.3", "cdr", here) == "fastcdr"
+    assert reference_of("fastcdr-2.3", "cdr", without_own) == "fastcdr-2.2"
+    assert reference_of("rosbags", "cdr", without_own) == "fastcdr-2.3"
+    assert reference_of("mcap-ros1", "ros1", ("rosbags", "fastcdr")) == "rosbags"
+
+
 def test_the_verdict_of_a_trial_follows_its_findings():
     known = {"library": "a", "reference": "b", "type": "t", "comparisons": 5, "answers": 5}
     assert LibraryResult(**known).verdict.name == "passed"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -33,6 +34,10 @@ PACKETS = {
     "02000000 0102 3412 01",
 }
 SPOKEN = [(name, wire) for name, kind in CLIENTS.items() for wire in sorted(kind.wires)]
+
+
+# Our own converters are slower, and have tests of all kinds of fields elsewhere.
+OTHERS = [(name, wire) for name, wire in SPOKEN if name != "firm-hdl"]
 
 
 def packet_of(wire):
@@ -66,6 +71,145 @@ def test_value_becomes_the_known_bytes_and_back(library_here, message_of, name, 
     assert isinstance(second, Refusal) and str(second)
     with pytest.raises(Refusal):
         codec.decode(cut)
+
+
+# All kinds of numbers, alone and in lists; lists of texts and of messages with lists.
+NUMBERS = """\
+int8 a
+bool[2] b
+int16[] c
+uint32 d
+int64[] e
+float32[2] f
+string[] g
+uint64 h
+float32 i
+B[2] j
+uint8[] k
+float64[] l
+"""
+NUMBER_VALUE = {
+    "a": -128,
+    "b": [True, False],
+    "c": [-2, 3],
+    "d": 0xFFFFFFFE,
+    "e": [-3],
+    "f": [bits_of(1.5, 4), 1 << 31],
+    "g": [b"x", b""],
+    "h": (1 << 64) - 1,
+    "i": bits_of(-2.0, 4),
+    "j": [{"x": -1, "y": []}, {"x": 2, "y": [-5]}],
+    "k": [],
+    "l": [bits_of(-0.5, 8)],
+}
+NUMBER_PACKETS = {
+    "ros1": "80 0100 02000000 feff 0300 feffffff 01000000 fdffffffffffffff 0000c03f 00000080 "
+    "02000000 01000000 78 00000000 ffffffffffffffff 000000c0 ff 00000000 02 01000000 fbff "
+    "00000000 01000000 000000000000e0bf",
+    # Alignment counts from the end of the header.
+    "cdr": "00010000 80 0100 00 02000000 feff 0300 feffffff 01000000 00000000 fdffffffffffffff "
+    "0000c03f 00000080 02000000 02000000 7800 0000 01000000 00 00000000000000 ffffffffffffffff "
+    "000000c0 ff 000000 00000000 02 000000 01000000 fbff 0000 00000000 01000000 000000000000e0bf",
+}
+
+
+@pytest.mark.parametrize(("name", "wire"), OTHERS)
+def test_all_kinds_of_numbers_and_lists(library_here, make_message, name, wire):
+    distro = "noetic" if wire == "ros1" else "lyrical"
+    message = make_message(NUMBERS, distro, B="int8 x\nint16[] y\n")
+    codec = library_here(name).open(message, wire)
+    packet = bytes.fromhex(NUMBER_PACKETS[wire])
+    assert codec.encode(NUMBER_VALUE).hex() == packet.hex()
+    found = codec.decode(packet)
+    assert found == NUMBER_VALUE
+    # A number is not a bool, and a bool is not a number.
+    assert repr(found) == repr(NUMBER_VALUE)
+
+
+@pytest.mark.parametrize("name", [name for name, wire in OTHERS if wire == "ros1"])
+def test_times_and_bytes_of_ros1(library_here, make_message, name):
+    message = make_message("duration d\ntime[] t\nbyte b\nbyte[] l\nchar c\n", "noetic")
+    value = {
+        "d": {"secs": -3, "nsecs": 4},
+        "t": [{"secs": 5, "nsecs": 6}],
+        "b": -2,
+        "l": [-1, 7],
+        "c": 200,
+    }
+    packet = "fdffffff04000000 01000000 0500000006000000 fe 02000000 ff07 c8"
+    codec = library_here(name).open(message, "ros1")
+    assert codec.encode(value) == bytes.fromhex(packet)
+    assert codec.decode(bytes.fromhex(packet)) == value
+
+
+@pytest.mark.parametrize("name", [name for name, wire in OTHERS if wire == "cdr"])
+def test_bounds_and_bytes_of_ros2(library_here, make_message, name):
+    text = "string<=3 s\nuint16[<=2] l\nB[<=2] b\nbyte y\nchar c\nstring<=2[<=2] t\nbyte[] z\n"
+    codec = library_here(name).open(make_message(text, B="uint8 x\n"), "cdr")
+    value = {
+        "s": b"abc",
+        "l": [1, 2],
+        "b": [{"x": 3}, {"x": 4}],
+        "y": 5,
+        "c": 6,
+        "t": [b"d", b"ef"],
+        "z": [127],
+    }
+    packet = bytes.fromhex(
+        "00010000 04000000 61626300 02000000 0100 0200 02000000 03 04 05 06 02000000 02000000 6400 "
+        "0000 03000000 656600 00 01000000 7f"
+    )
+    assert codec.encode(value) == packet
+    assert codec.decode(packet) == value
+
+
+@pytest.mark.parametrize(("name", "wire"), OTHERS)
+def test_two_types_of_a_library_do_not_disturb_each_other(library_here, make_message, name, wire):
+    distro = "noetic" if wire == "ros1" else "lyrical"
+    library = library_here(name)
+    one, other = (
+        library.open(make_message(text, distro), wire) for text in ("uint8 a\n", "uint16 b\n")
+    )
+    head = b"" if wire == "ros1" else b"\0\1\0\0"
+    for _ in range(2):
+        assert one.encode({"a": 7}) == head + b"\7"
+        assert other.encode({"b": 8}) == head + b"\x08\0"
+        assert one.decode(head + b"\7") == {"a": 7}
+        assert other.decode(head + b"\x08\0") == {"b": 8}
+
+
+def test_these_are_all_libraries_and_what_they_can_do():
+    kinds = {
+        name: ("".join(sorted(kind.wires)), "/".join(kind.byte_orders), kind.may_confirm)
+        for name, kind in CLIENTS.items()
+    }
+    both = "little/big"
+    assert kinds == {
+        "firm-hdl": ("cdrros1", "little", False),
+        "rosbags": ("cdrros1", both, False),
+        "genpy": ("ros1", "little", True),
+        "fastcdr": ("cdr", both, True),
+        "fastcdr-2.2": ("cdr", both, True),
+        "fastcdr-2.3": ("cdr", both, True),
+        "cyclonedds": ("cdr", both, True),
+        "mcap-ros1": ("ros1", "little", False),
+        "mcap-ros2": ("cdr", both, False),
+    }
+
+
+@pytest.mark.parametrize("name", ["rosbags", "fastcdr", "cyclonedds", "mcap-ros2"])
+def test_big_endian_packets_are_read_by_those_that_say_so(library_here, make_message, name):
+    codec = library_here(name).open(make_message("uint8 a\nuint32 b\nuint16[] c\n"), "cdr")
+    packet = bytes.fromhex("00000000 01 000000 00000002 00000001 0003")
+    assert codec.decode(packet) == {"a": 1, "b": 2, "c": [3]}
+
+
+@pytest.mark.parametrize("name", ["genpy", "mcap-ros1"])
+def test_generated_modules_leave_the_search_path_alone(library_here, make_message, name):
+    before = sys.path, list(sys.path)
+    codec = library_here(name).open(make_message("string s\n", "noetic"), "ros1")
+    assert codec.encode({"s": b"a"}) == b"\1\0\0\0a"
+    assert sys.path is before[0] and sys.path == before[1]
 
 
 @pytest.mark.parametrize(("name", "wire"), SPOKEN)

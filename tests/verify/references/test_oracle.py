@@ -91,14 +91,63 @@ def test_times_of_ros1_have_their_own_names_and_signs():
     ("distro", "wire", "path", "payload"),
     [
         ("noetic", "ros1", ("trigger",), 1),
+        ("humble", "ros1", ("trigger",), 1),
+        ("noetic", "cdr", ("structure_needs_at_least_one_member",), 0),
         ("humble", "cdr", ("structure_needs_at_least_one_member",), 0),
     ],
 )
 def test_empty_messages_transfer_once(distro, wire, path, payload):
+    # What is transferred depends on the wire format, not on the dialect.
     oracle = distro_oracle(distro)
     name = "std_msgs/msg/Empty"
-    value = oracle.read(b"" if wire == "ros1" else b"\0\1\0\0\0", name, wire)
+    value = oracle.store.types[name](*[0] * len(oracle.fields(name)))
     assert oracle.transfers(value, name, wire, 8) == {path: [payload]}
+
+
+SCALARS = {
+    "bool": (True, 1),
+    "int8": (-128, -128),
+    "uint8": (255, 255),
+    "int16": (-2, -2),
+    "uint32": (0xFFFFFFFF, 0xFFFFFFFF),
+    "int64": (-(1 << 63), -(1 << 63)),
+    "uint64": ((1 << 64) - 1, (1 << 64) - 1),
+    "char": (200, 200),
+    "float32": (-1.5, 0xBFC00000),
+    "float64": (-1.5, 0xBFF8000000000000),
+}
+
+
+@pytest.mark.parametrize("name", SCALARS)
+def test_numbers_and_lists_of_them_transfer_their_bits(name):
+    given, payload = SCALARS[name]
+    store = get_typestore(Stores.EMPTY)
+    store.register(get_types_from_msg(f"{name} a\n{name}[2] b\n{name}[] c\n", "p/msg/A"))
+    oracle = RosbagsOracle(store, "ros2")
+    dtype = {"char": "uint8"}.get(name, name)
+    value = store.types["p/msg/A"](
+        a=given, b=np.array([0, given], dtype), c=np.array([given], dtype)
+    )
+    for wire in ("cdr", "ros1"):
+        read = oracle.read(oracle.write(value, "p/msg/A", wire), "p/msg/A", wire)
+        found = oracle.transfers(read, "p/msg/A", wire, 16)
+        assert found["a",] == [payload] and found["c", "length"] == [1]
+        (((first, second, *_), last),) = found["b", "items"]
+        assert (first, second, last) == (0, payload, True)
+        assert found["c", "items"][0][0][0] == payload
+        assert ("b", "length") not in found
+
+
+def test_packets_are_those_of_the_wire_and_little_endian():
+    store = get_typestore(Stores.EMPTY)
+    store.register(get_types_from_msg("uint8 a\nuint32 b\n", "p/msg/A"))
+    for dialect in ("ros1", "ros2"):
+        oracle = RosbagsOracle(store, dialect)
+        value = store.types["p/msg/A"](a=1, b=2)
+        for wire, text in (("ros1", "01 02000000"), ("cdr", "00010000 01 000000 02000000")):
+            packet = oracle.write(value, "p/msg/A", wire)
+            assert packet == bytes.fromhex(text) and type(packet) is bytes
+            assert oracle.read(packet, "p/msg/A", wire) == value
 
 
 def test_structures_differ_for_different_types():
@@ -109,6 +158,36 @@ def test_structures_differ_for_different_types():
     assert set(DISTRO_STORES) == {
         "noetic", "foxy", "humble", "iron", "jazzy", "kilted", "lyrical"
     }  # fmt: skip
+
+
+STRUCTURES = [
+    "uint8 a\np/B b\n",
+    "uint8 c\np/B b\n",
+    "p/B b\nuint8 a\n",
+    "int8 a\np/B b\n",
+    "uint8[] a\np/B b\n",
+    "uint8[2] a\np/B b\n",
+    "uint8[3] a\np/B b\n",
+    "uint8[<=3] a\np/B b\n",
+    "string a\np/B b\n",
+    "string<=3 a\np/B b\n",
+    "uint8 a\np/C b\n",
+    "uint8 a\np/B[] b\n",
+    "uint8 a\n",
+]
+
+
+def test_a_structure_is_all_that_determines_the_bytes():
+    def structure(text, inner="uint8 x\n", dialect="ros2"):
+        store = get_typestore(Stores.EMPTY)
+        for name, each in (("A", text), ("B", inner), ("C", inner)):
+            store.register(get_types_from_msg(each, f"p/msg/{name}"))
+        return RosbagsOracle(store, dialect).structure("p/msg/A")
+
+    first = structure(STRUCTURES[0])
+    assert first == structure(STRUCTURES[0].replace("\n", "  # A comment\n"))
+    others = [structure(STRUCTURES[0], "int8 x\n"), structure(STRUCTURES[0], dialect="ros1")]
+    assert len({*map(structure, STRUCTURES), *others}) == len(STRUCTURES) + 2
 
 
 def test_builtin_times_of_ros1_are_no_types_of_their_own():

@@ -5,13 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from firm_hdl import load_message
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.verify import Options, accept
 from firm_hdl.verify.references import user_oracle as module
-from firm_hdl.verify.references.oracle import distro_oracle
+from firm_hdl.verify.references.oracle import RosbagsOracle, distro_oracle
 from firm_hdl.verify.references.user_oracle import judge_of, oracle_name
 from firm_hdl.verify.results.verdict import NotJudgedError
 from tests.verify.judged import assert_passed
@@ -38,6 +39,75 @@ def test_structure_is_that_of_the_distribution(distro):
 def test_names_are_those_of_rosbags(tmp_path):
     assert oracle_name(load_message("std_msgs/Header", distro="noetic")) == "std_msgs/msg/Header"
     assert oracle_name(load_message("std_msgs/msg/Header")) == "std_msgs/msg/Header"
+
+
+@pytest.mark.parametrize(
+    ("dialect", "name", "found"),
+    [
+        ("ros1", "p/A", "p/msg/A"),
+        ("ros1", "time", "builtin_interfaces/msg/Time"),
+        ("ros1", "duration", "builtin_interfaces/msg/Duration"),
+        ("ros2", "p/msg/A", "p/msg/A"),
+        ("ros2", "p/action/A_Goal", "p/action/A_Goal"),
+        ("ros2", "p/srv/A_Request", "p/srv/msg/A_Request"),
+    ],
+)
+def test_each_kind_of_name_is_that_of_rosbags(dialect, name, found):
+    assert oracle_name(Message(name=name, dialect=dialect, fields=())) == found
+
+
+def test_a_type_that_only_the_user_has_is_judged_by_its_fields(tmp_path):
+    message = own(tmp_path, "std_msgs/Header h\nuint16[<=2] a\n")
+    judge = judge_of(message, "lyrical")
+    assert judge.oracle is not distro_oracle("lyrical") and judge.note == ""
+    assert [name for name, _ in judge.oracle.fields("own_msgs/msg/Own")] == ["h", "a"]
+    # The same type of a distribution is that of the distribution, if it is said to be of it.
+    header = message.fields[0].type
+    assert judge_of(header, "lyrical").oracle is distro_oracle("lyrical")
+    assert judge_of(header).oracle is not distro_oracle("lyrical")
+
+
+def test_times_of_ros1_are_those_of_ros2_to_rosbags(tmp_path):
+    own(tmp_path, "time t\n", "noetic", "Inner")
+    judge = judge_of(own(tmp_path, "time[] t\nduration d\nInner i\n", "noetic"))
+    assert judge.oracle.dialect == "ros1" and judge.note == ""
+    for name in ("Time", "Duration"):
+        fields = judge.oracle.fields(f"builtin_interfaces/msg/{name}")
+        assert [(field, kind[1][0]) for field, kind in fields] == [
+            ("sec", "int32"),
+            ("nanosec", "uint32"),
+        ]
+
+
+def test_a_type_that_is_used_and_not_there_is_named():
+    def unknown(**texts):
+        store = get_typestore(Stores.EMPTY)
+        for name, text in texts.items():
+            store.register(get_types_from_msg(text, f"p/msg/{name}"))
+        return module._unknown(RosbagsOracle(store, "ros2"), "p/msg/A")
+
+    assert unknown(A="uint8 a\nstring[2] s\n") == ""
+    assert unknown(A="B b\nB[] more\n", B="A[] a\n") == ""
+    assert unknown() == "p/A"
+    for suffix in ("", "[]", "[2]", "[<=2]"):
+        assert unknown(A=f"B b\nuint8 x\nq/C{suffix} c\n", B="uint8 x\n") == "q/C"
+        assert unknown(A=f"B{suffix} b\n", B=f"uint8 x\nC{suffix} c\n") == "p/C"
+
+
+def test_a_field_that_no_wire_has_is_not_judged(tmp_path):
+    (tmp_path / "own_msgs" / "msg").mkdir(parents=True)
+    text = "module own_msgs { module msg { struct Own { octet a; long double x; }; }; };"
+    (tmp_path / "own_msgs" / "msg" / "Own.idl").write_text(text)
+    message = load_message("own_msgs/Own", paths=[tmp_path])
+    with pytest.raises(NotJudgedError, match="long double"):
+        judge_of(message)
+
+
+def test_a_definition_that_rosbags_cannot_read_is_noted(tmp_path):
+    message = own(tmp_path, "uint8 a 3\r\nstring s\r\n")
+    assert judge_of(message).note == (
+        "rosbags cannot read the definition, and was given the fields as they were resolved"
+    )
 
 
 def test_wide_strings_are_not_judged(tmp_path):
