@@ -134,7 +134,7 @@ def test_kinds_of_changes_are_listed_by_the_number_of_their_types(folder):
         text = re.sub(r"limit: 1677\d+", "limit: 9", path.read_text())
         path.write_text(text.replace("align: 8", "align: 4"))
     kinds = summarise(check_golden(read_golden(folder)))
-    assert list(kinds.items())[0] == (
+    assert next(iter(kinds.items())) == (
         "steps[*].starts.limit",
         ["sensor_msgs/msg/Imu", "std_msgs/msg/String"],
     )

@@ -64,6 +64,11 @@ def test_a_removed_type_cannot_be_accepted(folder, capsys):
         (["check", "."], "error: '{folder}/.' has no golden plans"),
         (["check", "lyrical"], "error: '{folder}/lyrical' has no golden plans"),
         (["check", "", "std_msgs/msg/Int8"], "error: '{folder}' has no plan of std_msgs/msg/Int8"),
+        # One of two types is there.
+        (
+            ["check", "", TYPES[0], "std_msgs/msg/Int8"],
+            "error: '{folder}' has no plan of std_msgs/msg/Int8",
+        ),
         (["add", ""], "error: name the types to add"),
     ],
 )
