@@ -6,7 +6,8 @@ import os
 
 import pytest
 
-from firm_hdl.verify.results.environment import environment, inputs_digest
+import firm_hdl
+from firm_hdl.verify.results.environment import code_digest, environment, inputs_digest
 from tests.frontend.workspace import make_files
 
 TEXTS = {"p/msg/A.msg": "int8 a\n", "p/msg/B.msg": "int8 b\n", "p/package.xml": "<package/>"}
@@ -51,7 +52,65 @@ def test_a_recording_counts_by_its_size_and_its_time(tmp_path):
     assert inputs_digest([str(bag)]) not in seen
 
 
+def test_a_folder_of_a_recording_counts_with_all_of_its_files(tmp_path):
+    """The data of a recording in a folder is beside ``metadata.yaml``, whatever its name is."""
+    bag = make_files(tmp_path / "bag", {"metadata.yaml": "x", "data.db3": "abc"})
+    first = inputs_digest([str(bag)])
+    (bag / "data.db3").write_text("abcd")
+    assert inputs_digest([str(bag)]) != first
+
+
+def test_linked_folders_count_and_may_be_linked_in_a_circle(tmp_path):
+    elsewhere = make_files(tmp_path / "elsewhere", TEXTS)
+    folder = tmp_path / "src"
+    folder.mkdir()
+    (folder / "linked").symlink_to(elsewhere)
+    (folder / "circle").symlink_to(folder)
+    first = inputs_digest([str(folder)])
+    make_files(elsewhere, {"p/msg/B.msg": "int8 c\n"})
+    assert inputs_digest([str(folder)]) != first
+
+
+def test_each_of_several_folders_counts(tmp_path):
+    one, two = (make_files(tmp_path / name, TEXTS) for name in "ab")
+    first = inputs_digest([str(one), str(two)])
+    make_files(two, {"p/msg/B.msg": "int8 c\n"})
+    assert inputs_digest([str(one), str(two)]) != first
+
+
+CODE = {
+    "a.py": "x = 1",
+    "b/c.lark": "a: b",
+    "b/d.cpp": ";",
+    "b/d.h": ";",
+    "e.j2": "{}",
+    "f.vhd": "",
+}
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        *(CODE | {name: "other"} for name in CODE),
+        {name.replace("a.py", "z.py"): text for name, text in CODE.items()},
+        # The same name in another folder, and the end of one file at the start of the next.
+        {name.replace("b/d.h", "d.h"): text for name, text in CODE.items()},
+        {name: text for name, text in CODE.items() if name != "f.vhd"},
+    ],
+)
+def test_every_change_of_the_code_changes_its_digest(tmp_path, monkeypatch, files):
+    def digest(folder, files):
+        main = make_files(folder, {"__init__.py": "", **files}) / "__init__.py"
+        monkeypatch.setattr(firm_hdl, "__file__", str(main))
+        return code_digest()
+
+    first = digest(tmp_path / "a", CODE)
+    assert digest(tmp_path / "b", CODE | {"notes.md": "no code"}) == first
+    assert digest(tmp_path / "c", files) != first
+
+
 def test_an_environment_has_versions_and_what_is_added():
     found = environment(executor="processes")
     assert found["executor"] == "processes" and found["amaranth"][0].isdigit()
+    assert environment(Python="another")["Python"] == "another"
     assert {"started", "firm-hdl", "Python", "system", "processors"} <= found.keys()

@@ -109,7 +109,12 @@ NO_OPTIONS = json.dumps({"format": FORMAT, "options": 7, "planned": []}).encode(
 
 
 @pytest.mark.parametrize(
-    "content", [b"hello", b"hello\n", b"{}\n", b'{"format": "other"}\n', b"[]\n", NO_OPTIONS]
+    "content",
+    [
+        *(b"hello", b"hello\n", b"{}\n", b"[]\n", NO_OPTIONS),
+        # With and without a line end: only the start of our own first line is torn.
+        *(b'{"format": "other"}\n', b'{"format": "other"', b'{"of": "mine"}'),
+    ],
 )
 def test_other_files_are_refused_and_left_alone(tmp_path, content):
     path = tmp_path / "mine"
@@ -140,6 +145,14 @@ def test_other_runs_are_refused(tmp_path, change, output):
         f"'{path}' is of another run: {output}; name another file, or remove it"
     )
     assert path.read_bytes() == before
+
+
+def test_options_are_compared_as_they_are_written(tmp_path):
+    """JSON has no tuples."""
+    path = written(tmp_path / "r", options={"widths": (8, 16)})
+    assert read_results(path).options == {"widths": [8, 16]}
+    written(path, options={"widths": (8, 16)})
+    assert len(read_results(path).sessions) == 2
 
 
 def test_file_has_one_writer_at_a_time(tmp_path):

@@ -111,3 +111,31 @@ def test_a_plan_that_is_not_that_of_the_layout_has_problems(folder, monkeypatch)
         each for each in check_golden(read_golden(folder)) if "Twist" in each.golden.plan.message
     )
     assert twist.problems and isinstance(twist.verdict, Failed)
+
+
+def test_each_plan_is_made_by_its_own_distribution_bus_and_limit(tmp_path):
+    for distro, name in (("noetic", "std_msgs/String"), ("lyrical", "std_msgs/msg/String")):
+        message = Library(distro).message(name)
+        for width in (2, 8):
+            plan = build_plan(lay_out(message), bus_bytes=width, max_message_bytes=4000 + width)
+            add(tmp_path, distro, message, plan)
+    found = check_golden(read_golden(tmp_path))
+    assert [assert_passed(each) for each in found] == [1, 1, 1, 1]
+    assert [(each.golden.distro, each.golden.plan.bus_bytes) for each in found] == [
+        ("lyrical", 2),
+        ("lyrical", 8),
+        ("noetic", 2),
+        ("noetic", 8),
+    ]
+
+
+def test_kinds_of_changes_are_listed_by_the_number_of_their_types(folder):
+    for path in (folder / "lyrical").iterdir():
+        text = re.sub(r"limit: 1677\d+", "limit: 9", path.read_text())
+        path.write_text(text.replace("align: 8", "align: 4"))
+    kinds = summarise(check_golden(read_golden(folder)))
+    assert next(iter(kinds.items())) == (
+        "steps[*].starts.limit",
+        ["sensor_msgs/msg/Imu", "std_msgs/msg/String"],
+    )
+    assert {len(types) for types in list(kinds.values())[1:]} == {1}

@@ -8,6 +8,7 @@ import pytest
 
 from firm_hdl.cli import main
 from tests.frontend.recordings import make_recording
+from tests.frontend.workspace import make_files
 
 TYPES = ["sensor_msgs/msg/Imu", "std_msgs/msg/String"]
 
@@ -63,6 +64,11 @@ def test_a_removed_type_cannot_be_accepted(folder, capsys):
         (["check", "."], "error: '{folder}/.' has no golden plans"),
         (["check", "lyrical"], "error: '{folder}/lyrical' has no golden plans"),
         (["check", "", "std_msgs/msg/Int8"], "error: '{folder}' has no plan of std_msgs/msg/Int8"),
+        # One of two types is there.
+        (
+            ["check", "", TYPES[0], "std_msgs/msg/Int8"],
+            "error: '{folder}' has no plan of std_msgs/msg/Int8",
+        ),
         (["add", ""], "error: name the types to add"),
     ],
 )
@@ -83,3 +89,28 @@ def test_plans_of_recorded_types_are_kept_and_checked(tmp_path, capsys):
     # No other source has the type.
     assert main(["golden", "check", folder]) == 1
     assert "package 'my_msgs'" in capsys.readouterr().out
+
+
+def test_types_need_the_same_folders_and_keep_their_limit(tmp_path, capsys):
+    texts = {"own/p/msg/A.msg": "q/B b\nstring s\n", "other/q/msg/B.msg": "int8 x\n"}
+    make_files(tmp_path, texts)
+    folder = str(tmp_path / "golden")
+    own = ["--path", str(tmp_path / "own")]
+    both = [*own, "--depends", str(tmp_path / "other")]
+    assert main(["golden", "add", folder, "p/msg/A", *both, "--max-message-bytes", "999"]) == 0
+    (path,) = (tmp_path / "golden").glob("*/*.yaml")
+    assert "max_message_bytes: 999\n" in path.read_text()
+    assert main(["golden", "check", folder, *both]) == 0
+    assert main(["golden", "check", folder, *own]) == 1
+    assert "package 'q'" in capsys.readouterr().out
+
+
+def test_one_plan_that_cannot_be_accepted_does_not_keep_the_others(folder, capsys):
+    """The status tells of it, although the plan after it is accepted."""
+    first, second = sorted((folder / "lyrical").iterdir())
+    first.write_text(first.read_text().replace("sensor_msgs/msg/Imu", "sensor_msgs/msg/Imo"))
+    second.write_text(re.sub(r"limit: 1677\d+", "limit: 9", second.read_text()))
+    assert main(["golden", "accept", str(folder)]) == 1
+    output = capsys.readouterr()
+    assert output.err == f"not accepted: {first}\n" and f"accepted {second}\n" in output.out
+    assert main(["golden", "check", str(folder), TYPES[1]]) == 0

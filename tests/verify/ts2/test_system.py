@@ -9,13 +9,16 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.cli import main
-from firm_hdl.export.build import plan_of
+from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.frontend import DEFAULT_DISTRO
 from firm_hdl.plan import to_yaml
+from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.records import Test
 from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.systems.system import Stopwatch
+from firm_hdl.verify.ts2 import golden
 from firm_hdl.verify.ts2 import system as ts2
+from tests.frontend.workspace import make_files
 from tests.verify.judged import assert_passed
 
 GOLDEN = Path(__file__).parents[1] / "golden"
@@ -85,3 +88,72 @@ def test_a_folder_that_has_no_plans_is_an_error(tmp_path, capsys):
     arguments = ["verify", "--systems", "ts2", "--golden", str(tmp_path), "std_msgs/msg/Int8"]
     assert main(arguments) == 1
     assert "is not below a distribution's name" in capsys.readouterr().err
+
+
+def test_plans_are_counted_by_bus_and_only_if_they_are_judged(tmp_path, monkeypatch, capsys):
+    """Of three types, one cannot be judged, and one has no plan for the wider bus."""
+
+    def narrow(message, wire, bus_bytes, most):
+        if message.name == "p/msg/B" and bus_bytes == 8:
+            raise BuildError("too wide for B")
+        return plan_of(message, wire, bus_bytes, most)
+
+    monkeypatch.setattr(ts2, "plan_of", narrow)
+    wide = "module p { module msg { struct C { long double x; }; }; };"
+    texts = {"p/msg/A.msg": "int8 x\n", "p/msg/B.msg": "string s\n", "p/msg/C.idl": wide}
+    source = str(make_files(tmp_path, texts))
+    call = ["verify", "--systems", "ts2", "--all", "--path", source, "--jobs", "1"]
+    assert main([*call, "--bus-bytes", "2", "--bus-bytes", "8"]) == 1
+    out = capsys.readouterr().out
+    assert (
+        "lyrical     2 of    2 plans are sound (2-byte bus)\n"
+        "lyrical     1 of    2 plans are sound (8-byte bus)\n"
+        "2 of 6 plans not judged\n"
+        "3 different circuits\n"
+    ) in out
+    assert "FAIL p/msg/B (lyrical), 8-byte bus\n    too wide for B\n" in out
+
+
+def test_golden_plans_are_those_of_the_types_and_distributions_asked_for(
+    tmp_path, monkeypatch, capsys
+):
+    folder, path = str(tmp_path / "golden"), str(tmp_path / "r.jsonl")
+    for distro, name, width in (
+        ("noetic", "std_msgs/String", "8"),
+        ("lyrical", "std_msgs/msg/String", "8"),
+        ("lyrical", "std_msgs/msg/String", "4"),
+        # Not asked for: another type, and another distribution.
+        ("lyrical", "std_msgs/msg/Int8", "8"),
+        ("humble", "std_msgs/msg/String", "8"),
+    ):
+        options = ["--distro", distro, "--bus-bytes", width]
+        assert main(["golden", "add", folder, name, *options]) == 0
+    compared = []
+
+    def noting(goldens, *more):
+        compared.extend((each.distro, each.plan.bus_bytes) for each in goldens)
+        return golden.check_golden(goldens, *more)
+
+    monkeypatch.setattr(ts2, "check_golden", noting)
+    call = ["verify", "--systems", "ts2", "--golden", folder, "--results", path, "--jobs", "1"]
+    call += ["--distro", "noetic", "--distro", "lyrical", "std_msgs/msg/String"]
+    for _ in range(2):
+        capsys.readouterr()
+        assert main(call) == 0
+        assert "golden plans: 3 compared, 0 differ\n" in capsys.readouterr().out
+        # The second run has all results in its file.
+        assert sorted(compared) == [("lyrical", 4), ("lyrical", 8), ("noetic", 8)]
+    assert len(read_results(path).records) == 2 + 3
+
+
+def test_golden_plans_of_own_types_are_compared_with_their_folder(tmp_path, capsys):
+    own = ["--path", str(make_files(tmp_path / "src", {"p/msg/A.msg": "int8 x\n"}))]
+    folder = str(tmp_path / "golden")
+    assert main(["golden", "add", folder, "p/msg/A", *own]) == 0
+    call = ["verify", "--systems", "ts2", "--golden", folder, "p/msg/A", *own, "--jobs", "1"]
+    assert main(call) == 0
+    make_files(tmp_path / "src", {"p/msg/A.msg": "int16 x\n"})
+    # The library of a folder is read once in a process.
+    ts2.library_of.__globals__["_opened"].cache_clear()
+    assert main(call) == 1
+    assert "golden plans: 1 compared, 1 differ\n" in capsys.readouterr().out

@@ -6,11 +6,15 @@ from types import SimpleNamespace
 
 import pytest
 
+from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.verify.results.records import Seconds
-from firm_hdl.verify.results.verdict import Failed
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged
 from firm_hdl.verify.simulators.crosscheck import Comparison
+from firm_hdl.verify.systems.options import Options, Request
+from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3 import system
-from firm_hdl.verify.ts3.result import Result
+from firm_hdl.verify.ts3.result import Result, command_of
+from tests.verify.report.samples import a_record, a_test
 
 
 def result(name, took, **more):
@@ -95,3 +99,87 @@ def test_eight_failures_are_printed_with_the_command_to_repeat_them(count, more)
 def test_long_failures_are_cut():
     assert system.clipped("x" * 600, system.MOST_CHARACTERS) == "x" * 600
     assert system.clipped("x" * 601, system.MOST_CHARACTERS) == "x" * 600 + "... (601 characters)"
+
+
+def test_types_are_counted_for_each_of_their_distributions(capsys):
+    """A type with the circuit of another has passed only if the other has."""
+    failed = a_record(a_test("p/Failed"), verdict=Failed(("no",)), shape="1")
+    silent = a_record(a_test("p/Silent"), verdict=NotJudged("nobody knows"), shape="2")
+    records = [
+        (a_record(a_test("p/Good")), ("kilted", "lyrical")),
+        (a_record(a_test("p/Known"), verdict=KnownDifference(("z", "y"), 1)), ("lyrical",)),
+        (a_record(a_test("p/Other"), verdict=KnownDifference(("y",), 1)), ("kilted",)),
+        (failed, ("kilted", "lyrical")),
+        (silent, ("lyrical",)),
+        (a_record(a_test("p/Twin"), same_as=failed.test.key, shape="1"), ("lyrical",)),
+        (a_record(a_test("p/Twin2"), same_as=silent.test.key, shape="2"), ("lyrical",)),
+    ]
+    tasks = {
+        TypeUnderTest(distro=same[-1], name=record.test.type, same=same): record
+        for record, same in records
+    }
+    system._count(tasks, SimpleNamespace(bus_bytes=4))
+    assert capsys.readouterr().out.splitlines() == [
+        "kilted      2 of    3 types pass (4-byte bus)",
+        "lyrical     2 of    4 types pass (4-byte bus)",
+        "2 of them with a known difference between libraries: y, z",
+        "2 of 7 types not judged",
+        "2 of 7 types have the circuit of another, which was simulated",
+    ]
+
+
+def test_a_type_that_ends_its_process_fails_with_the_command_to_repeat_it(monkeypatch):
+    task = TypeUnderTest(distro="lyrical", name="p/A", same=("lyrical",))
+
+    def die(work, tasks, **options):
+        yield from ((each, ExecutorError("it died")) for each, _ in tasks)
+
+    monkeypatch.setattr(system, "run_each", die)
+    options = Options(bus_bytes=4)
+    ((found, failed),) = system.run_tasks([task], options)
+    assert found is task and isinstance(failed.verdict, Failed)
+    assert "it died" in failed.verdict.failures[0]
+    assert failed.command == command_of(options, "lyrical", "p/A")
+
+
+def test_only_tasks_without_a_circuit_of_their_own_are_not_simulated(monkeypatch):
+    asked = []
+
+    def note(work, tasks, **options):
+        asked.append((work, [(key.name, given[2].simulated) for key, given in tasks], options))
+        return iter(())
+
+    monkeypatch.setattr(system, "run_each", note)
+    one, two = (TypeUnderTest(distro="lyrical", name=n, same=("lyrical",)) for n in "AB")
+    assert not [*system.run_tasks([one, two], Options(), 3, golden_only={two})]
+    assert not [*system.run_tasks([one], Options(bags=("x",)), executor="dask://host:1")]
+    assert asked == [
+        (system.accept, [("A", True), ("B", False)], {"executor": "processes", "jobs": 3}),
+        (system.replay, [("A", True)], {"executor": "dask://host:1", "jobs": None}),
+    ]
+
+
+def test_results_are_bound_to_the_options_of_the_cases():
+    request = Request(
+        simulator="ghdl",
+        seed=2,
+        most_cases=3,
+        stalled=False,
+        bags=("x",),
+        longest=4,
+        references=("genpy",),
+        types=("p/A",),
+    )
+    assert system.Ts3([], request).options == {
+        "simulator": "ghdl",
+        "seed": 2,
+        "cases": 3,
+        "stalls": False,
+        "broken": True,
+        "share_circuits": False,
+        "bags": ["x"],
+        "longest": 4,
+        "references": ["genpy"],
+    }
+    usual = system.Ts3([], Request()).options
+    assert usual["references"] is None and usual["share_circuits"] is True

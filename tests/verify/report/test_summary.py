@@ -1,0 +1,95 @@
+"""What counts for each part of a report, and what does not."""
+
+from __future__ import annotations
+
+from firm_hdl.verify.report.outcomes import NotRun, outcomes_of
+from firm_hdl.verify.report.summary import summarise
+from firm_hdl.verify.report.verdicts import reason_groups
+from firm_hdl.verify.results.file import Results
+from firm_hdl.verify.results.records import OracleVerdict, Seconds
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from tests.verify.report.samples import a_record, a_test
+
+
+def run_of(*records, planned=()):
+    tests = (*(record.test for record in records), *planned)
+    return Results(planned=tests, records={record.test.key: record for record in records})
+
+
+def test_a_record_counts_also_if_its_test_is_not_planned():
+    record = a_record(verdict=Failed(("no",)))
+    (outcome,) = outcomes_of([Results(records={record.test.key: record})])
+    assert outcome.test == record.test and outcome.verdict == Failed(("no",))
+
+
+def test_reasons_are_grouped_without_names_and_numbers():
+    reasons = ("p/A has 7 fields", "p/B has 1,234.5 fields", "nobody knows")
+    tests = [a_test(f"p/T{number}") for number in range(3)]
+    records = [
+        a_record(test, verdict=NotJudged(reason))
+        for test, reason in zip(tests, reasons, strict=True)
+    ]
+    missing = [a_test(f"q/T{number}") for number in range(4)]
+    outcomes = outcomes_of([run_of(*records, planned=missing)])
+    assert [(group.text, len(group.outcomes)) for group in reason_groups(outcomes)] == [
+        (NotRun().reason, 4),
+        ("p/A has 7 fields", 2),
+        ("nobody knows", 1),
+    ]
+    by_package = reason_groups(outcomes, lambda outcome: f"of {outcome.test.package}")
+    assert [(group.text, len(group.outcomes)) for group in by_package] == [("of q", 4), ("of p", 3)]
+
+
+def test_notes_of_definitions_are_among_the_words_of_oracles_only():
+    word = OracleVerdict(oracle="genmsg", verdict=NotJudged("it cannot read it"))
+    noted = a_record(a_test("p/A"), note="a note")
+    definition = a_record(a_test("p/B"), note="another note", verdicts=(word,))
+    summary = summarise({"r": run_of(noted, definition, a_record(a_test("p/C")))})
+    assert [each.test.type for each in summary.noted] == ["p/A"]
+    assert [(each.what, each.example) for each in summary.said] == [("it cannot read it", "p/B")]
+
+
+def test_a_stage_has_the_tests_that_it_took_time_of():
+    records = [
+        a_record(
+            a_test(f"p/T{number}"),
+            seconds=Seconds(generation=1.0 + number, testing=2.0 if number < 2 else 0.0),
+            cpu_seconds=9.0 * (number > 0),
+        )
+        for number in range(4)
+    ]
+    silent = a_record(a_test("p/X"), verdict=NotJudged("no"), seconds=Seconds(generation=99.0))
+    (curve,) = summarise({"r": run_of(*records, silent)}).curves
+    assert {name: box.count for name, box in curve.stages.items()} == {
+        "generation": 4,
+        "testing": 2,
+    }
+    assert curve.stage_values == {"generation": (1.0, 2.0, 3.0, 4.0), "testing": (2.0, 2.0)}
+    assert curve.seconds.count == 4 and curve.seconds.most == 4.0
+    assert curve.cpu_seconds.count == 3 and curve.cpu_seconds.least == 9.0
+
+
+def test_trends_are_of_tests_with_a_circuit_and_a_figure():
+    first = a_test("p/T0")
+    records = [
+        a_record(
+            a_test(f"p/T{number}"),
+            metrics={"leaves": number + 1.0} | ({"depth": number} if number else {}),
+            seconds=Seconds(testing=1.0 + number * number),
+            verdict=Passed(1),
+        )
+        for number in range(8)
+    ]
+    twin = a_record(
+        a_test("p/Twin"), same_as=first.key, metrics={"leaves": 9.0}, seconds=Seconds(testing=7.0)
+    )
+    trends = {
+        (trend.metric, trend.time): trend
+        for trend in summarise({"r": run_of(*records, twin)}).trends
+    }
+    assert trends["leaves", "total"].correlation.count == 8
+    # A test without the figure is left out; it is not one whose figure is 0.
+    assert trends["depth", "total"].correlation.count == 7
+    assert trends["depth", "total"].points == tuple((n, 1.0 + n * n) for n in range(1, 8))
+    assert trends["depth", "testing"].points == ()
+    assert ("depth", "simulation") not in trends

@@ -1,0 +1,59 @@
+"""The request of a user: what follows from its arguments, and the command that repeats a test."""
+
+from __future__ import annotations
+
+import shlex
+
+import pytest
+
+from firm_hdl.verify.systems.options import Request, command_again
+
+
+@pytest.mark.parametrize(
+    ("given", "alone"),
+    [
+        ({"systems": ("ts1",)}, True),
+        ({"systems": ("ts1",), "libraries": ("rosbags",)}, False),
+        ({"systems": ("ts1", "ts2")}, False),
+        ({"systems": ("ts3",)}, False),
+    ],
+)
+def test_ts1_alone_looks_up_its_types(given, alone):
+    assert Request(**given).is_ts1_alone is alone
+
+
+@pytest.mark.parametrize(
+    ("given", "named", "shares"),
+    [
+        ({}, False, True),
+        ({"types": ("p/A",)}, True, False),
+        ({"node": "node.yaml"}, True, True),
+        ({"types": ("p/A",), "mutations": 9}, False, False),
+        ({"bags": ("run.bag",)}, False, False),
+        ({"share_circuits": False}, False, False),
+        ({"types": ("p/A",), "share_circuits": True}, True, True),
+    ],
+)
+def test_what_is_named_has_to_be_judged_and_simulated(given, named, shares):
+    request = Request(**given)
+    assert (request.is_named, request.shares_circuits) == (named, shares)
+
+
+def test_wires_are_named_by_distributions_or_by_themselves():
+    assert not Request(types=("p/A",)).names_wires
+    assert Request(wire="ros1").names_wires and Request(distros=("noetic",)).names_wires
+
+
+def test_each_bus_has_options_of_its_own():
+    request = Request(widths=(1, 64), seed=7, stalled=False)
+    assert [each.bus_bytes for each in request.each_width] == [1, 64]
+    assert {(each.seed, each.stalled) for each in request.each_width} == {(7, False)}
+
+
+def test_the_command_is_one_that_a_shell_reads_back():
+    options = {"path": ("a b", "c"), "seed": 0, "wire": None, "no_stalls": True, "broken": False}
+    text = command_again("p/A", "p/It's", **options)
+    assert shlex.split(text) == [
+        *("firm-hdl", "verify", "--path", "a b", "--path", "c", "--seed", "0", "--no-stalls"),
+        *("p/A", "p/It's"),
+    ]

@@ -1,0 +1,156 @@
+"""The types of a request, the run of a workload, and what its results are bound to."""
+
+from __future__ import annotations
+
+import os
+from typing import ClassVar
+
+import pytest
+
+import firm_hdl.verify.run as run
+from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.verify.request import Workload, resolve
+from firm_hdl.verify.results.file import read_results
+from firm_hdl.verify.results.verdict import NotJudged, Passed
+from firm_hdl.verify.systems.options import Request
+from firm_hdl.verify.systems.system import Judged, System
+from firm_hdl.verify.systems.tasks import UnknownTypeError
+from tests.frontend.recordings import make_recording
+from tests.frontend.workspace import make_files
+from tests.verify.report.samples import a_record, a_test
+
+
+def names_of(work):
+    return [(task.distro, task.name) for task in work.tasks]
+
+
+def test_ts1_looks_up_its_types_itself():
+    assert resolve(Request(systems=("ts1",), types=("no_msgs/Such",))).tasks == ()
+    with pytest.raises(UnknownTypeError):
+        resolve(Request(systems=("ts1",), libraries=("rosbags",), types=("no_msgs/Such",)))
+
+
+def test_types_of_several_packages_of_the_workspace_are_found(tmp_path, monkeypatch):
+    texts = {"a/share/a_msgs/msg/A.msg": "int8 x\n", "b/share/b_msgs/msg/B.msg": "int8 x\n"}
+    make_files(tmp_path, texts)
+    prefixes = [str(tmp_path / name) for name in "ab"]
+    monkeypatch.setenv("AMENT_PREFIX_PATH", os.pathsep.join(prefixes))
+    work = resolve(Request(types=("a_msgs/A", "b_msgs/B")))
+    assert names_of(work) == [("lyrical", "a_msgs/msg/A"), ("lyrical", "b_msgs/msg/B")]
+    assert {os.path.commonpath([path, tmp_path]) for path in work.request.paths} == {str(tmp_path)}
+    assert len(work.request.paths) == 2
+    monkeypatch.delenv("AMENT_PREFIX_PATH")
+    with pytest.raises(DefinitionError):
+        resolve(Request(types=("b_msgs/B",), paths=(f"{prefixes[0]}/share",)))
+
+
+def test_of_names_that_are_partly_unknown_the_others_are_tested():
+    work = resolve(Request(types=("std_msgs/Bool", "no_msgs/Such"), distros=("lyrical",)))
+    assert names_of(work) == [("lyrical", "std_msgs/msg/Bool")]
+    assert list(work.problems) == ["error: no distribution has no_msgs/msg/Such"]
+
+
+def test_own_types_are_read_by_the_rules_of_each_distribution(tmp_path):
+    texts = {"own/p/msg/A.msg": "q/B b\n", "own/p/msg/Bad.msg": "int8\n", "more/q/msg/B.msg": ""}
+    make_files(tmp_path, texts)
+    own, more = str(tmp_path / "own"), str(tmp_path / "more")
+    request = Request(paths=(own, more), depends=(more,), distros=("noetic", "lyrical"))
+    work = resolve(request)
+    assert sorted(names_of(work)) == [("lyrical", "p/msg/A"), ("noetic", "p/A")]
+    assert work.request == request and work.problems
+    assert names_of(resolve(Request(paths=(own, more), depends=(more,)))) == [
+        ("lyrical", "p/msg/A")
+    ]
+
+
+def test_a_recording_has_one_wire(tmp_path):
+    bag = str(make_recording(tmp_path, "mcap"))
+    assert ("lyrical", "my_msgs/msg/Wheel") in names_of(resolve(Request(bags=(bag,), wire="cdr")))
+    with pytest.raises(UnknownTypeError, match="has messages of cdr, not of ros1"):
+        resolve(Request(bags=(bag,), wire="ros1"))
+
+
+class FixedSystem(System):
+    """A test system with one test and a given verdict."""
+
+    tests: ClassVar = []
+    options: ClassVar = {}
+
+    def __init__(self, name, verdict):
+        self.name, self.verdict = name, verdict
+        self.tests = [a_test(system=name)]
+        self.options = {f"of {name}": 1}
+
+    def run(self, recorder):
+        recorder.add(a_record(self.tests[0]))
+        return [Judged(what=f"it by {self.name}", verdict=self.verdict)]
+
+
+@pytest.fixture
+def fixed(monkeypatch):
+    """Replace the test systems by those with the given verdicts, by their names."""
+
+    def fix(**verdicts):
+        made = {
+            name: lambda work, name=name, each=each: FixedSystem(name, each)
+            for name, each in verdicts.items()
+        }
+        monkeypatch.setattr(run, "SYSTEMS", made)
+
+    return fix
+
+
+def workload(problems=None, **options):
+    return Workload(request=Request(**options), tasks=(), problems=problems or {})
+
+
+def test_results_are_bound_to_all_options_and_inputs(tmp_path, fixed, capsys):
+    fixed(ts1=Passed(1), ts3=Passed(1))
+    make_files(tmp_path, {"src/p/msg/A.msg": "", "golden/x.yaml": "", "node.yaml": "", "b.bag": ""})
+    source, golden, node, bag = (str(tmp_path / n) for n in ("src", "golden", "node.yaml", "b.bag"))
+    given = {"paths": (source,), "golden": golden, "node": node, "bags": (bag,), "wire": "cdr"}
+    given |= {"systems": ("ts3", "ts1"), "widths": (4, 8), "results": str(tmp_path / "r.jsonl")}
+    assert run.run_workload(workload(**given)) == 0
+    found = read_results(tmp_path / "r.jsonl")
+    assert len(found.options.pop("code")) == len(found.options.pop("inputs")) == 12
+    assert found.options == {
+        "systems": ["ts3", "ts1"],
+        "bus_bytes": [4, 8],
+        "wire": "cdr",
+        "paths": [source],
+        "of ts3": 1,
+        "of ts1": 1,
+    }
+    assert [test.system for test in found.planned] == ["ts3", "ts1"] and not found.missing
+    assert found.sessions[0]["executor"] == "processes"
+    assert "definitions that are refused" not in found.sessions[0]
+    for number, name in enumerate(("src/p/msg/A.msg", "golden/x.yaml", "node.yaml", "b.bag")):
+        before = (tmp_path / name).read_text()
+        times = os.stat(tmp_path / name)
+        (tmp_path / name).write_text(f"changed {number}")
+        assert run.run_workload(workload(**given)) == 1
+        assert "is of another run: inputs was" in capsys.readouterr().err
+        (tmp_path / name).write_text(before)
+        os.utime(tmp_path / name, ns=(times.st_atime_ns, times.st_mtime_ns))
+    assert run.run_workload(workload(**given)) == 0
+
+
+def test_definitions_that_are_refused_fail_a_run_that_passes(tmp_path, fixed, capsys):
+    fixed(ts3=Passed(1))
+    problem = Diagnostic(message="it is wrong")
+    given = {"results": str(tmp_path / "r.jsonl"), "report": str(tmp_path / "r.md")}
+    assert run.run_workload(workload({str(problem): problem}, **given)) == 1
+    output = capsys.readouterr()
+    assert output.err == "error: it is wrong\n"
+    assert output.out == f"wrote   {tmp_path / 'r.md'}\n" and (tmp_path / "r.md").exists()
+    (session,) = read_results(tmp_path / "r.jsonl").sessions
+    assert session["definitions that are refused"] == "1: error: it is wrong"
+
+
+def test_what_is_not_judged_counts_for_the_run_as_for_each_system(fixed, capsys):
+    fixed(ts1=Passed(1), ts3=NotJudged("nobody knows"))
+    lines = "not judged: it by ts3: nobody knows\n1 of 2 tests was not judged"
+    assert run.run_workload(workload(systems=("ts1", "ts3"))) == 0
+    assert capsys.readouterr().out == f"{lines}\n"
+    assert run.run_workload(workload(systems=("ts1", "ts3"), types=("p/A",))) == 1
+    assert capsys.readouterr().out == f"{lines}, although named, so the run fails\n"
