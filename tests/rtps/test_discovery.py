@@ -246,7 +246,8 @@ def test_what_is_announced_of_an_endpoint(station):
 
 def test_a_removed_writer_says_nothing_more(station):
     writer = station.writer(Qos(durability=Durability.TRANSIENT_LOCAL))
-    announce(station, 0.0)
+    # A peer that announces readers, and does not listen to announcements.
+    announce(station, 0.0, replace(PEER, endpoints=1 << 4))
     tell(station, 0.0, *announcement(READER, 1, SUBSCRIPTIONS_WRITER))
     station.write(writer, b"abcd")
     # While a reader has not acknowledged, a heartbeat is due soon.
