@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from dataclasses import replace
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -13,9 +14,10 @@ from firm_hdl.rtps.core import Settings
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData
 from firm_hdl.rtps.fragments import Budget, Reassembly, fragment, fragment_count
 from firm_hdl.rtps.pacing import Pacer
+from firm_hdl.rtps.qos import duration, seconds
 from firm_hdl.rtps.transport import address_of
 from firm_hdl.rtps.wire import locators
-from firm_hdl.rtps.wire.guid import Guid, new_prefix
+from firm_hdl.rtps.wire.guid import Guid, is_keyed, new_prefix, user_reader, user_writer
 from firm_hdl.rtps.wire.locators import Address, Ports, nearest
 from firm_hdl.rtps.wire.octets import Cursor, MalformedError
 from firm_hdl.rtps.wire.parameters import ParameterList
@@ -66,6 +68,38 @@ def test_the_oldest_incomplete_sample_makes_room():
     assert budget.used == 0
 
 
+def test_a_budget_counts_what_values_take_besides_their_bytes():
+    budget = Budget(2 * (1000 + 200))
+    assert [budget.take(1000) for _ in range(3)] == [True, True, False]
+    budget.give_back(1000)
+    assert not budget.take(1001)
+    assert budget.take(1000)
+    budget.give_back(2000, 2)
+    assert budget.used == 0
+
+
+def test_incomplete_samples_are_limited():
+    """64 of them; the oldest goes. 64 MiB of each, and 131,072 fragments."""
+    reassembly = Reassembly(Budget(1 << 20))
+    for number in range(1, 66):
+        sample = Data(reader=1, writer=2, sequence_number=number, payload=bytes(8))
+        assert reassembly.add(fragment(sample, 2, 4)) is None
+    assert [number in reassembly for number in (1, 2, 65)] == [False, True, True]
+    # There is no fragment beyond the last one, whatever a heartbeat says.
+    assert reassembly.missing(65, last=9) == [1]
+    part = fragment(Data(reader=1, writer=2, sequence_number=99, payload=bytes(8)), 1, 4)
+    for size, whole, begun in (
+        (1024, 64 << 20, True),
+        (1024, (64 << 20) + 1, False),
+        (4, 4 << 17, True),
+        (4, (4 << 17) + 1, False),
+    ):
+        new = replace(part, fragment_bytes=size, sample_bytes=whole, payload=bytes(size))
+        assert reassembly.add(new) is None
+        assert (99 in reassembly) is begun
+        reassembly.drop(99)
+
+
 def test_samples_below_a_number_are_forgotten():
     budget = Budget(1 << 20)
     reassembly = Reassembly(budget)
@@ -95,6 +129,9 @@ def test_tables_of_policies():
         ({"partitions": ("a", "b")}, {"partitions": ("b",)}, None),
         ({"representations": (2,)}, {}, "DATA_REPRESENTATION"),
         ({"representations": (0,)}, {"representations": (2, 0)}, None),
+        # A writer uses the first of those that it names.
+        ({"representations": (2, 0)}, {}, "DATA_REPRESENTATION"),
+        ({"representations": (0, 2)}, {}, None),
     ]
     for offered, asked, problem in pairs:
         expected = () if problem is None else (problem,)
@@ -157,6 +194,63 @@ def test_participants_are_read_as_they_are_written(domain, name, user):
     assert ParticipantData.decode(data.encode()) == data
 
 
+def test_policies_on_the_wire_by_hand():
+    def written(pid, **policies):
+        return dict(Qos(**policies).parameters())[pid].hex(" ", 4)
+
+    # HISTORY: KEEP_LAST is 0, KEEP_ALL is 1.
+    assert written(0x40, depth=3) == "00000000 03000000"
+    assert written(0x40, depth=0) == "01000000 01000000"
+    assert written(0x1A) == "02000000 00000000 9a999919"
+    assert written(0x1D, durability=Durability.TRANSIENT_LOCAL) == "01000000"
+    assert written(0x1B, liveliness=1, lease=2.5) == "01000000 02000000 00000080"
+    assert written(0x23) == "ffffff7f ffffffff"
+    assert written(0x1F, exclusive=True) == "01000000"
+    assert written(0x29, partitions=("abc", "d")) == "02000000 04000000 61626300 02000000 64000000"
+
+
+def test_durations_that_are_infinite():
+    """9.3.2: the largest number of seconds, whatever the fraction is."""
+    assert duration(2**31 - 1) == duration(1e99) == bytes.fromhex("ffffff7f ffffffff")
+    assert duration(2**31 - 2) == bytes.fromhex("feffff7f 00000000")
+    for fraction in ("00000000", "ffffffff"):
+        assert seconds(Cursor(bytes.fromhex("ffffff7f" + fraction), True)) == float("inf")
+    assert seconds(Cursor(bytes.fromhex("feffff7f 00000080"), True)) == 2**31 - 1.5
+
+
+def test_defaults_of_participants():
+    """9.6.2.2.2: what an announcement leaves out."""
+    bare = ParameterList(((0x50, bytes(GUID)),))
+    read = ParticipantData.decode(bare.encode_payload())
+    assert (read.prefix, read.vendor, read.lease) == (GUID.prefix, bytes(2), 100.0)
+    assert (read.discovery, read.user, read.user_data, read.name) == ((), (), b"", "")
+    assert read.domain is None
+    # SPDP, and SEDP of publications and subscriptions.
+    assert [bit for bit in range(32) if read.has(bit)] == [0, 1, 2, 3, 4, 5]
+    with pytest.raises(MalformedError, match=r"^a participant without GUID$"):
+        ParticipantData.decode(ParameterList(()).encode_payload())
+
+
+def test_user_data_is_limited():
+    guid = (0x50, bytes(GUID))
+    for size, wrong in ((4096, None), (4097, r"^user data of 4097 bytes$")):
+        value = size.to_bytes(4, "little") + b"u" * size
+        payload = ParameterList((guid, (0x2C, value))).encode_payload()
+        if wrong is None:
+            assert ParticipantData.decode(payload).user_data == b"u" * size
+        else:
+            with pytest.raises(MalformedError, match=wrong):
+                ParticipantData.decode(payload)
+
+
+def test_kinds_of_endpoints():
+    """Table 9.1: the two upper bits of the kind say whose they are, the others what they are."""
+    assert (user_writer(1), user_reader(0x203)) == (0x103, 0x20304)
+    for kind, keyed in ((0x02, True), (0x03, False), (0x04, False), (0x07, True)):
+        for owner in (0x00, 0x40, 0xC0):
+            assert is_keyed(0x100 | owner | kind) is keyed
+
+
 def test_participants_in_big_endian_by_hand():
     payload = bytes.fromhex(
         "00020000"
@@ -178,7 +272,8 @@ def test_ports_of_the_standard():
     assert Ports.of(0, 0) == (7400, 7410, 7411)
     assert Ports.of(0, 3) == (7400, 7416, 7417)
     assert Ports.of(42, 1) == (17900, 17912, 17913)
-    for domain, participant in ((-1, 0), (233, 0), (232, 200)):
+    assert Ports.of(232, 62) == (65400, 65534, 65535)
+    for domain, participant in ((-1, 0), (233, 0), (232, 63)):
         with pytest.raises(ValueError, match=r"[Dd]omain"):
             Ports.of(domain, participant)
 
@@ -243,6 +338,13 @@ def test_prefixes_are_of_our_vendor_and_differ():
 def test_values_out_of_range():
     with pytest.raises(ValueError, match=r"^Depth must be at least 0, not -1$"):
         Qos(depth=-1)
+    with pytest.raises(ValueError, match=r"^Limit of samples must be at least 1, not 0$"):
+        Qos(max_samples=0)
     own = ParticipantData(prefix=bytes(12), discovery=(), user=(), lease=1)
-    with pytest.raises(ValueError, match=r"^Fragments must have from 256 to 65000 bytes, not 9$"):
-        Settings(own=own, host="", targets=(), fragment_bytes=9)
+    given = {"own": own, "host": "", "targets": ()}
+    for size in (255, 65_001):
+        wrong = f"^Fragments must have from 256 to 65000 bytes, not {size}$"
+        with pytest.raises(ValueError, match=wrong):
+            Settings(**given, fragment_bytes=size)
+    for size in (256, 65_000):
+        assert Settings(**given, fragment_bytes=size).fragment_bytes == size

@@ -9,6 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.rtps.wire import message
+from firm_hdl.rtps.wire.guid import Guid, SampleIdentity
 from firm_hdl.rtps.wire.infos import InfoDestination, InfoSource, InfoTimestamp
 from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.octets import Cursor, MalformedError
@@ -147,6 +148,41 @@ def test_bytes_of_both_byte_orders_by_hand():
     )
 
 
+def test_fields_of_later_versions_are_skipped():
+    """9.4.5.4: the inline QoS begins where the header says."""
+    head = "0000 {} 00000001 00000002 00000000 07000000"
+    data = bytes.fromhex("15 07 2c00" + head.format("1800") + "ffffffffffffffff")
+    tail = bytes.fromhex("70000400 01020304 01000000 61626364")
+    (read,) = message.read(message.write(OTHER, []) + data + tail, ME).received
+    assert read.submessage.payload == b"abcd"
+    assert read.submessage.inline.items == ((0x70, b"\1\2\3\4"),)
+    sizes = "01000000 0100 0400 04000000"
+    part = bytes.fromhex("16 03 3400" + head.format("2000") + sizes + "ffffffff")
+    (read,) = message.read(message.write(OTHER, []) + part + tail, ME).received
+    assert (read.submessage.payload, len(read.submessage.inline.items)) == (b"abcd", 1)
+
+
+def test_a_source_by_hand():
+    body = bytes.fromhex("00000000 0203 0110") + ME
+    read = InfoSource.decode(0, Cursor(body, little=True))
+    assert (read.prefix, read.version, read.vendor) == (ME, b"\2\3", b"\1\x10")
+
+
+def test_a_set_has_at_most_256_numbers():
+    full = NumberSet.of(5, range(400))
+    assert (full.base, full.members) == (5, tuple(range(5, 5 + 256)))
+    assert full.bitmap("<") == bytes.fromhex("00010000") + b"\xff" * 32
+
+
+def test_the_sample_that_is_answered_by_vendor():
+    value = OTHER + bytes.fromhex("00000103 00000000 05000000")
+    answered = SampleIdentity(Guid(OTHER, 0x103), 5)
+    fast_dds, standard = (ParameterList(((pid, value),)) for pid in (0x800F, 0x83))
+    for vendor, known in ((b"\1\x0f", True), (b"\1\xff", True), (b"\1\x10", False)):
+        assert standard.related(vendor) == answered
+        assert fast_dds.related(vendor) == (answered if known else None)
+
+
 def test_a_size_of_0_means_to_the_end():
     whole = encode(Data(reader=1, writer=2, sequence_number=7, payload=bytes(70_000)))
     assert whole[2:4] == bytes(2)
@@ -211,6 +247,9 @@ def test_unknown_kinds_are_skipped():
         ),
         ("06011800 0000000100000002 0000000001000000 01010000 00000000", "a set of 257 numbers"),
         ("08011c00 0000000100000002 00000000ffffffff ffffffffffffffff 00000000", "a set of 0 num"),
+        ("13011c00 0000000100000002 0000000000000000 02000000 01000000 00000000", "sequence numb"),
+        ("12011c00 0000000100000002 0000000000000000 02000000 00000000 00000000", "sequence numb"),
+        ("15011400 00001000 0000000100000002 0000000000000000", "sequence number 0"),
         ("15010800 0000100000000001", "4 bytes at 8 of 8"),
         ("150d1400 00001000 0000000100000002 0000000001000000", "data and key at once"),
         ("15031800 00001000 0000000100000002 0000000001000000 70000800", "8 bytes at 24 of 24"),
@@ -259,8 +298,11 @@ def test_parameter_lists():
     for bad in ("70000400", "", "7000"):
         with pytest.raises(MalformedError):
             ParameterList.decode(Cursor(bytes.fromhex(bad), little=True))
+    most = bytes.fromhex("70000000") * 512
+    end = bytes.fromhex("01000000")
+    assert len(ParameterList.decode(Cursor(most + end, little=True)).items) == 512
     with pytest.raises(MalformedError, match=r"^more than 512 parameters$"):
-        ParameterList.decode(Cursor(bytes.fromhex("70000000") * 600, little=True))
+        ParameterList.decode(Cursor(most + most[:4] + end, little=True))
     with pytest.raises(MalformedError, match=r"^encapsulation 0001 is no parameter list$"):
         ParameterList.decode_payload(bytes.fromhex("00010000 01000000"))
     with pytest.raises(ValueError, match=r"^parameter 0x0070 has 65536 bytes$"):

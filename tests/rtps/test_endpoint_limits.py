@@ -1,0 +1,140 @@
+"""Writers and readers alone: windows, memory, and what a later submessage must not take back."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.rtps import Durability, Guid, Qos
+from firm_hdl.rtps.fragments import Budget
+from firm_hdl.rtps.reader import Reader
+from firm_hdl.rtps.wire.numbers import NumberSet
+from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat
+from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.writer import Writer
+from tests.rtps.test_endpoints import (
+    ADDRESS,
+    BEST_EFFORT,
+    HERE,
+    KEEP_ALL,
+    THERE,
+    Outbox,
+    ack,
+    data,
+    endpoint,
+    heartbeat,
+    part,
+)
+
+
+@pytest.fixture
+def sent():
+    return Outbox()
+
+
+def listening(sent, qos=KEEP_ALL, limit=1 << 20):
+    """Return a reader that waits for sample 1, the numbers that it delivers, and its memory."""
+    got, budget = [], Budget(limit)
+    deliver = lambda writer, data, timestamp: got.append(data.sequence_number)  # noqa: E731
+    reader = Reader(THERE, qos, sent.append, deliver, budget)
+    reader.match(endpoint(HERE, qos), ADDRESS, 0.0)
+    reader.on_heartbeat(HERE, heartbeat(1, 0), 0.0)
+    return reader, got, budget
+
+
+def test_what_a_best_effort_reader_lost_begins_with_its_first_sample(sent):
+    reader, got, _ = listening(sent, BEST_EFFORT)
+    for number, lost in ((5, 0), (6, 0), (9, 2), (8, 2), (10, 2)):
+        reader.on_data(HERE, data(number), None, 1.0)
+        assert reader.lost == lost
+    assert got == [5, 6, 9, 10]
+    assert not sent
+
+
+def test_samples_far_ahead_take_no_memory(sent):
+    reader, _, budget = listening(sent)
+    for number, takes in ((4097, False), (4096, True)):
+        reader.on_data(HERE, data(number), None, 1.0)
+        assert bool(budget.used) is takes
+
+
+def test_early_samples_without_memory_are_dropped_and_asked_for(sent):
+    # A sample of 4 bytes takes 204.
+    reader, got, budget = listening(sent, limit=410)
+    for number in (2, 3, 4):
+        reader.on_data(HERE, data(number), None, 1.0)
+    assert budget.used == 408
+    # One that waits is not put together again.
+    reader.on_data_frag(HERE, part(3, 1), None, 1.0)
+    assert budget.used == 408
+    sent.clear()
+    reader.on_heartbeat(HERE, heartbeat(1, 4, count=2), 1.0)
+    (answer,) = sent.take(AckNack)
+    assert answer.missing == NumberSet(1, (1, 4))
+    reader.on_data(HERE, data(1), None, 1.0)
+    assert (got, budget.used) == ([1, 2, 3], 0)
+
+
+def test_fragments_of_a_sample_that_will_not_come_are_forgotten(sent):
+    reader, got, budget = listening(sent)
+    reader.on_data_frag(HERE, part(1, 2), None, 1.0)
+    assert budget.used == 204
+    reader.on_gap(HERE, Gap(reader=0, writer=0x103, start=1, numbers=NumberSet(2)), 1.0)
+    assert (got, budget.used) == ([], 0)
+
+
+def test_an_old_heartbeat_takes_nothing_back(sent):
+    reader, _, _ = listening(sent)
+    for count, last in ((2, 3), (3, 1)):
+        reader.on_heartbeat(HERE, heartbeat(1, last, count=count), 1.0)
+        (answer,) = sent.take(AckNack)
+        assert answer.missing == NumberSet(1, (1, 2, 3))
+
+
+def test_a_writer_that_says_nothing_is_asked_ever_more_seldom(sent):
+    reader = Reader(THERE, KEEP_ALL, sent.append, lambda *_: None, Budget(1 << 20))
+    reader.match(endpoint(HERE), ADDRESS, 1.0)
+    now, times = 1.0, []
+    while now < float("inf"):
+        due = reader.tick(now)
+        times += [now for each in sent.take(AckNack) if not each.final]
+        now = due
+    assert times == [1.0, 1.25, 1.75, 2.75, 4.75, 8.75]
+
+
+def test_an_old_answer_takes_no_acknowledgement_back(sent):
+    writer = Writer(HERE, KEEP_ALL, sent.append)
+    writer.match(endpoint(THERE), ADDRESS, 0.0)
+    writer.write(b"abcd", 1.0)
+    writer.write(b"abcd", 1.0)
+    for count, base in ((1, 2), (2, 3), (3, 2)):
+        writer.on_ack_nack(THERE, ack(base, count=count), 1.1)
+        assert writer.acknowledged is (count > 1)
+
+
+def test_a_sample_is_kept_until_the_slowest_reader_has_it(sent):
+    slow = Guid(bytes(11) + b"\1", 0x204)
+    writer = Writer(HERE, KEEP_ALL, sent.append)
+    for each in (THERE, slow):
+        writer.match(endpoint(each), ADDRESS, 0.0)
+    writer.write(b"abcd", 1.0)
+    writer.on_ack_nack(THERE, ack(2), 1.1)
+    sent.clear()
+    writer.on_ack_nack(slow, ack(1, (1,)), 1.2)
+    assert [each.sequence_number for each in sent.take(Data, slow.prefix)] == [1]
+    writer.on_ack_nack(slow, ack(2, count=2), 1.3)
+    sent.clear()
+    writer.on_ack_nack(slow, ack(1, (1,), count=3), 1.4)
+    assert len(sent.take(Gap)) == 1
+
+
+def test_a_durable_writer_whose_history_is_empty(sent):
+    durable = Qos(durability=Durability.TRANSIENT_LOCAL)
+    writer = Writer(HERE, durable, sent.append)
+    for _ in range(3):
+        writer.write(b"abcd", 1.0)
+    for number in (1, 2, 3):
+        writer.forget(number)
+    writer.match(endpoint(THERE, durable), ADDRESS, 2.0)
+    (first,) = sent.take(Heartbeat)
+    assert (first.first, first.last) == (4, 3)
+    assert writer.acknowledged
