@@ -245,6 +245,12 @@ def test_includes_are_read_from_folders_first(tmp_path):
     # Files in ROS's own form need no IDL text: their types are found by name.
     assert have.include("pkg/msg/B.idl").text == ""
     assert have.include("std_msgs/msg/String.idl").text == ""
+    make_files(tmp_path / "two", {"own/srv/S.srv": "---", "own/action/A.action": "---\n---"})
+    make_files(tmp_path / "two", {"own/action/B.idl": "// b"})
+    others = sources(tmp_path / "ws", tmp_path / "two")
+    found = [others.include(f"own/{name}.idl").text for name in ("srv/S", "action/A", "action/B")]
+    assert found == ["", "", "// b"]
+    assert others.include("own/msg/S.idl") is None
     absent = ["pkg/msg/C.idl", "pkg/srv/A.idl", "none/msg/A.idl", "A.idl", "", "pkg/msg"]
     absent += ["pkg/msg/B", "pkg/msg/B.msg/x.idl", "/pkg/msg/A.idl"]
     for path in absent:
