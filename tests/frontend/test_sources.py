@@ -67,6 +67,7 @@ def test_only_definitions_in_the_folder_of_their_kind_count(tmp_path):
 def test_package_xml_names_the_package(tmp_path, xml, name):
     make_files(tmp_path, {"folder/package.xml": xml, "folder/msg/A.msg": ""})
     assert found(tmp_path) == [(name, "A")]
+    assert sources(tmp_path).find(name, "msg", "A").source.text == ""
 
 
 @pytest.mark.parametrize("marker", ["AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"])
