@@ -27,6 +27,9 @@ def test_distributions():
     assert [*DISTROS] == ["noetic", "foxy", "humble", "iron", "jazzy", "kilted", "lyrical"]
     assert {d.name for d in DISTROS.values() if d.dialect == "ros1"} == {"noetic"}
     assert DEFAULT_DISTRO == "lyrical"
+    # Each has the types of its own name.
+    for name, distro in DISTROS.items():
+        assert distro.store.value == f"{distro.dialect}_{name}"
 
 
 @pytest.mark.parametrize("distro", DISTROS)

@@ -156,10 +156,10 @@ def test_idl_is_shown_as_msg(tmp_path):
     idl = """
         #include "q/msg/U.idl"
         module p { module msg {
-          module T_Constants { const short LIMIT = 3; };
+          module T_Constants { @unit("s") const short LIMIT = 3; };
           @verbatim(language="comment", text="A type." "\\n\\n  More. ")
           struct T {
-            @unit(value="m") @default(value=2.5)
+            @verbatim(language="comment", text="Of x.") @unit(value="m") @default(value=2.5)
             double x;
             sequence<q::msg::U, 4> us;
             string<5> s;
@@ -169,8 +169,8 @@ def test_idl_is_shown_as_msg(tmp_path):
     files = {"p/msg/T.idl": idl, "q/msg/U.msg": SERVICE["q/msg/U.msg"], "p/msg/V.msg": "T[2] t # v"}
     library = Library("lyrical", [make_files(tmp_path, files)])
     assert show(library, "p/msg/T") == (
-        "# A type.\n#\n# More.\nint16 LIMIT=3\nfloat64 x 2.5  # [m]\nq/U[<=4] us\n\tint8 x\n"
-        "string<=5 s\n"
+        "# A type.\n#\n# More.\nint16 LIMIT=3  # [s]\n# Of x.\nfloat64 x 2.5  # [m]\n"
+        "q/U[<=4] us\n\tint8 x\nstring<=5 s\n"
     )
     assert show(library, "p/msg/V") == (
         "T[2] t # v\n\tint16 LIMIT=3\n\tfloat64 x 2.5\n\tq/U[<=4] us\n\t\tint8 x\n\tstring<=5 s\n"

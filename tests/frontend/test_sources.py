@@ -67,6 +67,7 @@ def test_only_definitions_in_the_folder_of_their_kind_count(tmp_path):
 def test_package_xml_names_the_package(tmp_path, xml, name):
     make_files(tmp_path, {"folder/package.xml": xml, "folder/msg/A.msg": ""})
     assert found(tmp_path) == [(name, "A")]
+    assert sources(tmp_path).find(name, "msg", "A").source.text == ""
 
 
 @pytest.mark.parametrize("marker", ["AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"])
@@ -245,6 +246,12 @@ def test_includes_are_read_from_folders_first(tmp_path):
     # Files in ROS's own form need no IDL text: their types are found by name.
     assert have.include("pkg/msg/B.idl").text == ""
     assert have.include("std_msgs/msg/String.idl").text == ""
+    make_files(tmp_path / "two", {"own/srv/S.srv": "---", "own/action/A.action": "---\n---"})
+    make_files(tmp_path / "two", {"own/action/B.idl": "// b"})
+    others = sources(tmp_path / "ws", tmp_path / "two")
+    found = [others.include(f"own/{name}.idl").text for name in ("srv/S", "action/A", "action/B")]
+    assert found == ["", "", "// b"]
+    assert others.include("own/msg/S.idl") is None
     absent = ["pkg/msg/C.idl", "pkg/srv/A.idl", "none/msg/A.idl", "A.idl", "", "pkg/msg"]
     absent += ["pkg/msg/B", "pkg/msg/B.msg/x.idl", "/pkg/msg/A.idl"]
     for path in absent:

@@ -182,3 +182,13 @@ def test_positions_that_no_file_has_are_damage(tmp_path, position):
     start = data.index(b"index_pos=") + len(b"index_pos=")
     path.write_bytes(data[:start] + position.to_bytes(8, "little") + data[start + 8 :])
     assert refused(path).endswith("cannot be read as a recording: it is damaged")
+
+
+def test_separators_have_three_signs_or_more_and_headings_may_be_of_services(tmp_path):
+    text = "B b\n===\nMSG: p/B\nint8 x\n=====\nSRV: p/srv/S\nint8 y\n---\nint8 z\n"
+    ours = open_library("humble", bags=[record(tmp_path / "r", "p/msg/A", text)])
+    assert ours.interfaces() == ["p/msg/A", "p/msg/B", "p/srv/S"]
+    assert [len(part.fields) for part in ours.interface("p/S").messages] == [1, 1]
+    text = text.replace("===\nMSG", "==\nMSG")
+    ours = open_library(bags=[record(tmp_path / "two", "p/msg/A", text)])
+    assert ours.interfaces() == ["p/msg/A", "p/srv/S"]

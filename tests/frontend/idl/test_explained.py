@@ -54,6 +54,10 @@ CASES = [
      "expected a definition or '}', not ';'"),
     ("struct S { long «;» };", "expected 'long' or a name, not ';'"),
     ("struct S { long a «}»;", "expected '[', ',' or ';', not '}'"),
+    # Words and signs that are wrong in another way than elsewhere.
+    ("struct S { long a «home»; };", "expected '[', ',' or ';', not 'home'"),
+    ("struct S { long a «:» 3; };", "expected '[', ',' or ';', not ':'"),
+    ("struct S { long a«>»; };", "expected '[', ',' or ';', not '>'"),
     ("struct«»", "expected a name, but the file ends here"),
 ]  # fmt: skip
 
