@@ -259,6 +259,16 @@ OFFSETS: list[tuple[str, dict[str, Any], set[str]]] = [
         wrong_padding(8, "grid.item.row.items", [(offset, 2, 0) for offset in (0, 2, 4, 6)])
         | {"step 10: padding that no value follows"},
     ),
+    # The right padding for the first element, but outside the loop.
+    (
+        "pairs",
+        {
+            "steps.0.slices": (*PLANS["pairs"].steps[0].slices, Pad(at=5, bytes=1)),
+            "steps.0.bytes": 6,
+            "steps.1.align": 1,
+        },
+        {"step 1: padding that no value follows"},
+    ),
     (
         "side",
         {
