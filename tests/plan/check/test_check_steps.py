@@ -47,6 +47,8 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
         ["leaf e.trigger: a trigger is of type bool, not uint8"],
     ),
     ("rich", {"runs.3.items": 2}, ["two runs have the same items"]),
+    # They need not be equal runs.
+    ("rich", {"runs.2.items": 2}, ["two runs have the same items"]),
     ("rich", {"runs.1.items": 0}, ["run 1: its leaf is not of kind 'items'"]),
     ("rich", {"runs.1.items": 15}, ["run 1: its leaf is not of kind 'items'"]),
     ("rich", {"runs.1.items": -1}, ["run 1: its leaf is not of kind 'items'"]),
