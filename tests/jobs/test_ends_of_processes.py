@@ -150,16 +150,19 @@ def test_error_of_a_task_has_the_name_of_its_type():
 
 
 def test_terminated_process_runs_its_cleanup():
-    before = signal.getsignal(signal.SIGTERM)
-    tidied = []
-    with pytest.raises(SystemExit) as caught, unwound_when_terminated():
-        try:
-            signal.raise_signal(signal.SIGTERM)
-        finally:
-            tidied.append(True)
+    tidied, own = [], lambda number, frame: None
+    before = signal.signal(signal.SIGTERM, own)
+    try:
+        with pytest.raises(SystemExit) as caught, unwound_when_terminated():
+            try:
+                signal.raise_signal(signal.SIGTERM)
+            finally:
+                tidied.append(True)
+        assert signal.getsignal(signal.SIGTERM) is own
+    finally:
+        signal.signal(signal.SIGTERM, before)
     assert caught.value.code == 128 + signal.SIGTERM
     assert tidied == [True]
-    assert signal.getsignal(signal.SIGTERM) is before
 
 
 def test_threads_install_no_signal_handler():

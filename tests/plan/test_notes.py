@@ -16,6 +16,7 @@ from tests.strategies import make
 
 POINT = make("ros2", {"x": "uint8", "name": "string"}, "Point")
 PAIR = make("ros2", {"x": "uint64", "y": "uint64"}, "Pair")
+PAIRS = make("ros2", {"p": (PAIR, "[2]")}, "Pairs")
 TWICE, POINTS = "in loop 0 (2 times)", "in loop 0 (p.length)"
 
 
@@ -50,6 +51,13 @@ TWICE, POINTS = "in loop 0 (2 times)", "in loop 0 (p.length)"
         ("ros2", {"q": (PAIR, "[2]"), "b": "uint8"}, 8, ["packet bytes 0..3", TWICE, ""]),
         # Items wider than the bus are a loop, whose count is not in the packet.
         ("ros1", {"b": "float32[3]", "c": "uint8"}, 2, ["in loop 0 (3 times)", ""]),
+        # Loops in loops, outer ones first.
+        (
+            "ros2",
+            {"q": (PAIRS, "[3]")},
+            8,
+            ["packet bytes 0..3", "in loop 0 (3 times), in loop 1 (2 times)"],
+        ),
         # Loops are found after steps that start something else.
         (
             "ros2",

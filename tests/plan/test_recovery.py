@@ -115,6 +115,11 @@ def test_without_a_budget_a_packet_takes_longer_than_the_bound():
 def test_types_of_fixed_size_recover_at_once():
     plan = build_plan(lay_out(load_message("geometry_msgs/msg/Twist")))
     assert recovery(plan, 7) == Recovery(cycles=len(plan.steps) + AFTER, longest_packet=7)
+    # A run, and a loop of a run and another step, from the first byte on.
+    row = make("ros1", {"b": "uint8[40]", "c": "uint8"}, "Row")
+    for fields, steps in (({"b": "uint8[40]"}, 5), ({"rows": (row, "[7]")}, 7 * (5 + 1))):
+        plan = build_plan(lay_out(make("ros1", fields)))
+        assert recovery(plan, 7) == Recovery(cycles=steps + AFTER, longest_packet=7)
 
 
 @pytest.mark.parametrize(("characters", "words"), [(793, 100), (800, 100), (801, 101)])

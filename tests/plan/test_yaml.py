@@ -218,6 +218,8 @@ MISTAKES = [
     ("wire: cdr", "wire: can", f"Line 2: wire must be {' or '.join(map(repr, RULES))}, not 'can'"),
     ("wire: cdr", "wire: cdr\nwires: 2", "Line 3: a plan has no 'wires'"),
     ("bus_bytes: 8", "bus_bytes: wide", "Line 3: bus_bytes must be a number, not 'wide'"),
+    ("bus_bytes: 8", "bus_bytes: -8", "Line 3: bus_bytes must be a number, not '-8'"),
+    ("bus_bytes: 8", "bus_bytes: \u00b2", "Line 3: bus_bytes must be a number, not '\u00b2'"),
     ("bus_bytes: 8", "bus_bytes: [8]", "Line 3: bus_bytes must be a single value"),
     ("stamp: uint32", "stamp: uint31", "Line 9: 'uint31' is not a primitive"),
     ("stamp: uint32", "stamp: a b c", "Line 9: 'a b c' is not a leaf"),

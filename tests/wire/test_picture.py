@@ -250,3 +250,16 @@ def test_a_long_title_and_few_bytes_fit(tmp_path):
     title = "t" * 200
     picture = ElementTree.fromstring(to_svg(layout, title))
     assert int(picture.get("width")) >= 8 + 6.7 * len(title)
+
+
+def test_what_varies_is_dashed_and_loops_are_not(tmp_path):
+    layout = lay_out(library(tmp_path, TEXTS).message("p/T"), "cdr")
+    picture = ElementTree.fromstring(to_svg(layout, "p/T"))
+    notes = [band for band in bands(layout) if isinstance(band, Note)]
+    drawn = [
+        each.get("stroke-dasharray") is not None
+        for each in picture.iter(f"{SVG}rect")
+        if each.get("fill") and each.find(f"{SVG}title") is None
+    ]
+    assert drawn == [note.kind != "loop" for note in notes]
+    assert {note.kind for note in notes} == {"data", "padding", "loop"}

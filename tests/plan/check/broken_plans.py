@@ -40,6 +40,10 @@ PLANS = {
     "nested": plan_of({"a": (make("ros1", {"t": "uint16[]"}, "T"), "[]"), "b": "uint16[]"}),
     # Padding of items only, before the first one.
     "gap": plan_of({"a": "uint8[]", "d": "float64[]"}, 8, "ros2"),
+    # Padding of the first of two elements only.
+    "pairs": plan_of(
+        {"a": "uint8", "p": (make("ros2", {"x": "uint16", "y": "uint16"}, "P"), "[2]")}, 8, "ros2"
+    ),
 }
 
 

@@ -47,6 +47,8 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
         ["leaf e.trigger: a trigger is of type bool, not uint8"],
     ),
     ("rich", {"runs.3.items": 2}, ["two runs have the same items"]),
+    # They need not be equal runs.
+    ("rich", {"runs.2.items": 2}, ["two runs have the same items"]),
     ("rich", {"runs.1.items": 0}, ["run 1: its leaf is not of kind 'items'"]),
     ("rich", {"runs.1.items": 15}, ["run 1: its leaf is not of kind 'items'"]),
     ("rich", {"runs.1.items": -1}, ["run 1: its leaf is not of kind 'items'"]),
@@ -258,6 +260,16 @@ OFFSETS: list[tuple[str, dict[str, Any], set[str]]] = [
         {"steps.9.slices": (*RICH_STEPS[9].slices, Pad(at=2, bytes=2)), "steps.9.bytes": 4},
         wrong_padding(8, "grid.item.row.items", [(offset, 2, 0) for offset in (0, 2, 4, 6)])
         | {"step 10: padding that no value follows"},
+    ),
+    # The right padding for the first element, but outside the loop.
+    (
+        "pairs",
+        {
+            "steps.0.slices": (*PLANS["pairs"].steps[0].slices, Pad(at=5, bytes=1)),
+            "steps.0.bytes": 6,
+            "steps.1.align": 1,
+        },
+        {"step 1: padding that no value follows"},
     ),
     (
         "side",

@@ -1,0 +1,51 @@
+"""What a plan tells of itself, beside its steps."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.plan import Jump, build_plan
+from firm_hdl.wire import lay_out
+from tests.strategies import make
+
+LIST = make("ros2", {"a": "uint8[]"}, "List")
+
+
+def plan_of(fields, wire="ros1", bus_bytes=8):
+    return build_plan(lay_out(make("ros2", fields), wire), bus_bytes=bus_bytes)
+
+
+@pytest.mark.parametrize(
+    ("fields", "lanes", "has_claims"),
+    [
+        # Arrays of up to two transfers are no runs.
+        ({"a": "uint8[3]"}, 1, False),
+        ({"a": "uint8[3]", "q": "uint32[]"}, 2, False),
+        ({"q": "uint32[]", "p": "uint16[]"}, 4, False),
+        ({"q": "uint32[]", "l": (LIST, "[]")}, 8, True),
+    ],
+)
+def test_runs_and_claims(fields, lanes, has_claims):
+    plan = plan_of(fields)
+    assert (plan.max_run_lanes, plan.has_claims) == (lanes, has_claims)
+
+
+@pytest.mark.parametrize(("wire", "nul"), [("ros1", 0), ("cdr", 1)])
+def test_counts_on_the_wire_include_the_nul(wire, nul):
+    plan = plan_of({"s": "string<=5", "q": "uint16[<=5]"}, wire)
+    text, items = (plan.begins[leaf] for leaf in (0, 2))
+    assert [plan.has_nul(begin) for begin in (text, items)] == [bool(nul), False]
+    assert [plan.max_count(begin) for begin in (text, items)] == [5 + nul, 5]
+    assert [plan.word(run) for run in (0, 1)] == [8 + nul, 4]
+    assert [plan.item_bytes(run) for run in (0, 1)] == [1, 2]
+    assert str(plan.items_leaf(1)) == "q.items"
+
+
+def test_jumps_are_listed_from_the_start_and_in_the_order_in_which_they_are_tried():
+    inner = make("ros2", {"x": "uint8"}, "Inner")
+    outer = make("ros2", {"i": (inner, "[2]")}, "Outer")
+    plan = plan_of({"o": (outer, "[3]"), "z": "uint8"})
+    start = Jump(enter=((0, 3), (1, 2)), step=0)
+    again = (Jump(step=0), Jump(enter=((1, 2),), step=0), Jump(step=1))
+    assert plan.steps[0].exits.jumps == again
+    assert list(plan.jumps()) == [start, *again, Jump(step=None)]
