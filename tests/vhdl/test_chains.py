@@ -166,7 +166,9 @@ class Maker:
             few = self.chosen.choices(patterns, k=self.chosen.choice([1, 1, 1, 2, 3]))
             cases.append(Case(patterns=tuple(few), body=self.body(depth - 1, whole)))
         if self.chosen.random() < 0.4:
-            cases.append(Case(patterns=(), body=self.body(depth - 1, whole)))
+            # Nothing after the default counts.
+            at = self.chosen.choice([len(cases), len(cases), len(cases) - 1])
+            cases.insert(at, Case(patterns=(), body=self.body(depth - 1, whole)))
         return Switch(selector=selector, cases=tuple(cases))
 
     def body(self, depth: int, whole: bool = False) -> Body:

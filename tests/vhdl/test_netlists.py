@@ -74,6 +74,76 @@ def test_a_next_state_that_only_its_register_reads_is_none() -> None:
     assert "if s(0) = '1' then\n        q <= unsigned(a);\n      end if;" in body
 
 
+def test_a_read_port_is_transparent_for_the_ports_in_its_mask_only() -> None:
+    ports = [
+        rf"""
+  cell $memwr_v2 $w{number}
+    parameter \MEMID "\\m"
+    parameter \PORTID {number}
+    parameter \CLK_POLARITY 1'1
+    connect \ADDR \a [1:0]
+    connect \DATA \{name} [3:0]
+    connect \EN {{ \s [{number}] \s [{number}] \s [{number}] \s [{number}] }}
+    connect \CLK \clk [0]
+  end
+"""
+        for number, name in enumerate("asas")
+    ]
+    read = r"""
+  cell $memrd_v2 $r
+    parameter \MEMID "\\m"
+    parameter \TRANSPARENCY_MASK 4'0010
+    parameter \CLK_ENABLE 1
+    parameter \CLK_POLARITY 1'1
+    connect \ADDR \s [1:0]
+    connect \DATA \q
+    connect \EN 1'1
+    connect \CLK \clk [0]
+  end
+"""
+    body = body_of("memory width 4 size 4 \\m", *ports, read, r"connect \o \q [3:0]")
+    start = "if unsigned(s(1 downto 0)) = unsigned(a(1 downto 0)) and s({}) = '1' then"
+    assert [f"{start.format(n)}  -- transparent" in body for n in range(4)] == [
+        False,
+        True,
+        False,
+        False,
+    ]
+
+
+@pytest.mark.parametrize("enable", ["0", "1"])
+def test_a_read_port_that_is_never_enabled_keeps_its_value(enable: str) -> None:
+    read = rf"""
+  memory width 4 size 4 \m
+  cell $memrd_v2 $r
+    parameter \MEMID "\\m"
+    parameter \CLK_ENABLE 1
+    parameter \CLK_POLARITY 1
+    connect \ADDR \a [1:0]
+    connect \DATA \q
+    connect \EN 1'{enable}
+    connect \CLK \clk [0]
+  end
+"""
+    assert ("q <= m(" in body_of(read, r"connect \o \q [3:0]")) == (enable == "1")
+
+
+@pytest.mark.parametrize("kind", ["shl", "shr"])
+def test_all_bits_of_a_distance_count_for_a_cut_result(kind: str) -> None:
+    shift = rf"""
+  wire width 2 $7
+  cell ${kind} $8
+    parameter \A_SIGNED 0
+    parameter \B_SIGNED 0
+    parameter \Y_WIDTH 2
+    connect \A \a [1:0]
+    connect \B \s [3:0]
+    connect \Y $7
+  end
+"""
+    assert "to_integer(unsigned(s))" in body_of(shift, r"connect \o { 2'00 $7 }")
+
+
 def test_a_memory_without_bits_has_no_text() -> None:
     memory = r"""
   memory width 0 size 4 \m

@@ -210,3 +210,15 @@ def test_a_clear_beside_an_asynchronous_reset_is_one_more_condition() -> None:
         'q_q <= "0011";',
         "end if;",
     ]
+
+
+def test_an_asynchronous_reset_may_be_an_expression() -> None:
+    def fill(d: FilledComponent, m: Module) -> None:
+        m.domains.fast = fast = ClockDomain(async_reset=True)
+        m.d.comb += [fast.clk.eq(d.ck), fast.rst.eq(d.one & d.other)]
+        m.d.fast += d.q.eq(d.a)
+
+    text = vhdl_of(fill, ck=In(1), one=In(1), other=In(1), a=In(4), q=Out(4))
+    assert "fast_rst <= one and other;" in text
+    (lines,) = processes(text)
+    assert lines[0] == "(ck, fast_rst)" and lines[2] == "if fast_rst = '1' then"
