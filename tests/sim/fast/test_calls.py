@@ -282,11 +282,12 @@ def test_packets_are_joined_over_messages_of_any_size():
     cycles = np.arange(len(beats), dtype="<u8").view(np.uint8).reshape(-1, 8)
     records = np.hstack([cycles, beats])
     found = []
-    for start, end in ((0, 3), (3, 19_203), (19_203, None)):
+    for start, end in ((0, 3), (3, 5), (5, 19_203), (19_203, None)):
         found += joiner.add(records[start:end].tobytes())
     assert [packet.data for packet in found] == packets
     assert [packet.cycle for packet in found] == [19_199, 19_200, 19_202, 19_203]
     assert joiner.partial == b""
     # A count that no beat may have is not one of bytes of the next beat.
-    wrong = bytes(8) + b"abcd\7" + bytes(8) + b"ef\0\0\x0a"
-    assert joiner.add(wrong) == [Packet(b"abcdef", 0)]
+    wrong = [b"abcd\7", b"ef\0\0\x0a", b"gh\0\0\x0a"]
+    found = joiner.add(b"".join(bytes(8) + beat for beat in wrong))
+    assert found == [Packet(b"abcdef", 0), Packet(b"gh", 0)]
