@@ -25,6 +25,19 @@ def test_a_file_up_to_its_limit_is_read(file, most):
     check_file(file, most)
 
 
+def test_a_link_to_a_file_is_read(file, tmp_path):
+    (tmp_path / "link").symlink_to(file)
+    assert read_file(tmp_path / "link", 5) == b"12345"
+    check_file(tmp_path / "link", 5)
+
+
+def test_a_file_that_grows_meanwhile_is_measured_again(file, monkeypatch):
+    # It was short enough when it was examined.
+    monkeypatch.setattr("firm_hdl.files.check_file", lambda *given: None)
+    with pytest.raises(OSError, match="it has 5 bytes, and at most 4 are read"):
+        read_file(file, 4)
+
+
 @pytest.mark.parametrize("most", [0, 4])
 def test_a_file_beyond_its_limit_is_refused(file, most):
     for read in (read_file, check_file):

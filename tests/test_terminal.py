@@ -25,9 +25,16 @@ CONTROL_CHARACTERS = [
 
 
 def test_control_characters_are_escaped_and_letters_are_not():
-    for character in (*CONTROL_CHARACTERS, "\u2028", "\u202e", "\u2066"):
+    # Separators of lines and paragraphs, and all that changes the direction of writing.
+    others = [*range(0x2028, 0x202F), *range(0x2066, 0x206A)]
+    for character in (*CONTROL_CHARACTERS, *map(chr, others)):
         assert printable(f"a{character}b") == f"a{ascii(character)[1:-1]}b"
-    for text in ("grün 雪 \N{SNOWFLAKE} שלום\t\n", "caf\u0065\u0301", "\U0001f916"):
+    for text in (
+        "\u2027\u202f\u2065\u206a",
+        "grün 雪 \N{SNOWFLAKE} שלום\t\n",
+        "caf\u0065\u0301",
+        "\U0001f916",
+    ):
         assert printable(text) == text
 
 
@@ -67,10 +74,16 @@ def test_streams_are_restored_afterwards(capsys):
         print("\x1b[2J")
         print("\rbar \x1b[2J", file=sys.stderr)
         print("\x1b[A", end="", file=sys.stderr)
+        # Only a whole text moves the cursor, and only where there are bars.
+        print("\x1b[A\x1b[2J", end="", file=sys.stderr)
+        print("\rno bar\x1b[A", end="")
         sys.stdout.writelines(["\x07\n"])
     assert (sys.stdout, sys.stderr) == before
     # Progress bars move the cursor; control characters in their text do not act.
-    assert capsys.readouterr() == ("\\x1b[2J\n\\x07\n", "\rbar \\x1b[2J\n\x1b[A")
+    assert capsys.readouterr() == (
+        "\\x1b[2J\n\\rno bar\\x1b[A\\x07\n",
+        "\rbar \\x1b[2J\n\x1b[A\\x1b[A\\x1b[2J",
+    )
 
 
 def test_caret_stands_below_the_marked_text():
