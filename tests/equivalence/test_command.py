@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import resource
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from amaranth.back import rtlil
 
+from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.cli import main
-from firm_hdl.equivalence import Proof, Tools, command, converters, tools
+from firm_hdl.equivalence import Proof, ProofError, Tools, command, converters, tools
 from firm_hdl.equivalence.converters import Attempt, ProofTask
 from firm_hdl.equivalence.covering import covering_tasks, write_definitions
+from firm_hdl.errors import UserError
+from firm_hdl.export.top import DIRECTIONS, Direction, Top
 from firm_hdl.jobs import ToolError, programs
 from firm_hdl.jobs.programs import find_ghdl
 from tests.frontend.recordings import make_recording
@@ -196,10 +201,112 @@ def test_type_that_cannot_be_built_is_a_failure() -> None:
     assert "no/msg/T" in attempt.problem or "package 'no'" in attempt.problem
 
 
+def test_type_that_is_too_large_is_a_failure(tmp_path: Path) -> None:
+    (tmp_path / "big_msgs" / "msg").mkdir(parents=True)
+    fields = "".join(f"uint8[] f{k}\n" for k in range(120))
+    (tmp_path / "big_msgs" / "msg" / "Big.msg").write_text(fields)
+    task = replace(TASK, name="big_msgs/msg/Big", paths=(str(tmp_path),), bus_bytes=64)
+    assert "Amaranth elaborates at most 65535" in converters.attempt(task).problem
+
+
+@pytest.mark.parametrize("error", [ProofError("no"), UserError("no"), ValueError("no")])
+def test_an_error_is_a_converter_without_a_proof(
+    error: Exception, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*arguments: object, **options: object) -> None:
+        raise error
+
+    monkeypatch.setattr(converters, "prove_converter", fails)
+    found = converters.attempt(replace(TASK, name="std_msgs/msg/Bool"))
+    assert found == Attempt(proof=None, problem=str(error)) and found.result == "failed"
+
+
+def test_a_process_that_died_is_a_converter_without_a_proof(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    other = replace(TASK, direction="deserializer")
+
+    def in_processes(work: object, tasks: object, jobs: int | None) -> object:
+        assert (work, tasks, jobs) == (converters.attempt, [(TASK, (TASK,)), (other, (other,))], 3)
+        return iter([(other, RuntimeError("the process died")), (TASK, EQUAL)])
+
+    monkeypatch.setattr(converters, "in_processes", in_processes)
+    assert list(converters.run_tasks([TASK, other], 3)) == [
+        (other, Attempt(proof=None, problem="the process died")),
+        (TASK, EQUAL),
+    ]
+
+
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_the_circuit_has_the_options_that_are_proved(
+    direction: Direction, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    message = load_message("std_msgs/msg/String")
+    options = {"wire": "ros1", "bus_bytes": 2, "max_message_bytes": 100}
+    circuit = Deserializer if direction == "deserializer" else Serializer
+    name = f"std_msgs_msg_string_ros1_2_{direction}_flat"
+    text = rtlil.convert(Top(circuit(message, **options)), name=name, emit_src=False)
+    other = rtlil.convert(
+        Top(circuit(message, wire="ros1", bus_bytes=2)), name=name, emit_src=False
+    )
+    monkeypatch.setattr(converters, "convert", lambda design, name: name)
+    assert converters.converter_vhdl(message, direction, **options) == (text, name)
+    # The option is not without effect.
+    assert text != other
+
+
+def test_options_of_the_command_reach_every_proof(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[tuple[object, ...]] = []
+    monkeypatch.setattr(
+        command, "run_proofs", lambda tasks, jobs, bar: asked.append((tasks, jobs, bar)) or 0
+    )
+    options = ["--distro", "jazzy", "--path", str(tmp_path), "--bus-bytes", "4"]
+    options += ["--max-message-bytes", "999", "--timeout", "7", "--jobs", "3"]
+    assert main(["prove", "std_msgs/msg/Bool", "std_msgs/Int8", *options]) == 0
+    [(tasks, jobs, bar)] = asked
+    assert (jobs, bar) == (3, False)
+    assert tasks == [
+        ProofTask(
+            distro="jazzy",
+            name=name,
+            direction=direction,
+            paths=(str(tmp_path),),
+            bus_bytes=4,
+            max_message_bytes=999,
+            timeout=7.0,
+        )
+        for name in ("std_msgs/msg/Bool", "std_msgs/msg/Int8")
+        for direction in ("deserializer", "serializer")
+    ]
+    assert main(["prove", "std_msgs/Bool", "--distro", "noetic", "--wire", "cdr"]) == 0
+    assert {(task.wire, task.distro, task.timeout) for task in asked[1][0]} == {
+        ("cdr", "noetic", 300.0)
+    }
+
+
+COVERED = {
+    "noetic": "geometry_msgs/Twist nav_msgs/Odometry sensor_msgs/PointCloud2 proved_msgs/Arrays "
+    "proved_msgs/Deep proved_msgs/Fixed proved_msgs/Inner proved_msgs/Nested proved_msgs/Nothing "
+    "proved_msgs/Nothings proved_msgs/Times",
+    "lyrical": "geometry_msgs/msg/Twist nav_msgs/msg/Odometry sensor_msgs/msg/Image "
+    "sensor_msgs/msg/Imu sensor_msgs/msg/JointState sensor_msgs/msg/LaserScan "
+    "sensor_msgs/msg/PointCloud2 tf2_msgs/msg/TFMessage proved_msgs/msg/Arrays "
+    "proved_msgs/msg/Bounded proved_msgs/msg/Deep proved_msgs/msg/Fixed proved_msgs/msg/Inner "
+    "proved_msgs/msg/Nested proved_msgs/msg/Nothing proved_msgs/msg/Nothings proved_msgs/msg/Wide "
+    "proved_msgs/msg/WideFixed",
+}
+
+
 def test_at_least_50_types_of_both_wires_are_covered(tmp_path: Path) -> None:
     write_definitions(tmp_path)
     tasks = covering_tasks(tmp_path, timeout=1.0)
     names = {(task.distro, task.name) for task in tasks}
     assert len(names) * 2 == len(tasks) >= 100
     assert {distro for distro, _ in names} == {"noetic", "lyrical"}
-    assert ("lyrical", "proved_msgs/msg/Wide") in names
+    for distro, wanted in COVERED.items():
+        assert {(distro, name) for name in wanted.split()} <= names
+    ours = {task.paths for task in tasks if task.name.startswith("proved_msgs/")}
+    assert ours == {(str(tmp_path / "noetic"),), (str(tmp_path / "lyrical"),)}
+    assert {task.timeout for task in tasks} == {1.0}

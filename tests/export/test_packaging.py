@@ -11,9 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from firm_hdl.export.build import build
 from firm_hdl.export.packaging import packaging
+from firm_hdl.export.packaging.fusesoc import cores
 from firm_hdl.verify.cases.stimuli import stimuli
 from tests.tools import need
 
@@ -66,6 +68,83 @@ def test_only_what_depends_on_definitions_names_the_distribution(folders):
             is_of_bus = name in shared and not shared[name]["message"]
             is_common = name in ("firm_hdl_common.core", "firm_hdl_bench.core")
             assert (one[name] == two[name]) is (is_of_bus or is_common), name
+
+
+# A message with a message in it, in the order in which files compile.
+SECTION = {
+    "name": "t",
+    "ports": "records",
+    "files": ["types.vhd", "bus.vhd", "part.vhd", "t_pkg.vhd", "t_flat.vhd", "t.vhd"],
+    "common_files": ["types.vhd"],
+    "shared_packages": [
+        {"name": "bus", "file": "bus.vhd", "message": None, "needs": []},
+        {"name": "part", "file": "part.vhd", "message": "p/Part", "needs": ["bus"]},
+        {"name": "t_pkg", "file": "t_pkg.vhd", "message": "p/T", "needs": ["bus", "part"]},
+    ],
+    "bench": {
+        "entity": "t_tb",
+        "entities": ["t_tb", "t_record_tb"],
+        "files": ["source.vhd", "sink.vhd", "t_tb.vhd", "t_record_tb.vhd"],
+        "common_files": ["source.vhd", "sink.vhd"],
+        "stimuli": "stimuli.txt",
+    },
+}
+OPTIONS = {"wire": "cdr", "bus_bytes": 4}
+INPUTS = {"message": "p/T", "distro": "humble", "options": OPTIONS, "generator": {"firm-hdl": "7"}}
+
+
+def cores_of(**changes: object) -> dict[str, Any]:
+    """Return the cores of FuseSoC by their files, for a section with changes."""
+    made = cores({"inputs": INPUTS, "vhdl": {**SECTION, **changes}})
+    assert all(text.startswith("CAPI=2:\n") for text in made.values())
+    return {name: yaml.safe_load(text.partition("\n")[2]) for name, text in made.items()}
+
+
+def test_each_core_has_its_own_files_and_depends_on_those_with_the_others():
+    found = cores_of()
+    parts = {
+        (core["name"], name): (each.get("depend", []), each["files"])
+        for core in found.values()
+        for name, each in core["filesets"].items()
+    }
+    common, bus = "firm-hdl:vhdl:common:7", "firm-hdl:vhdl:bus:7"
+    part, own, t = "firm-hdl:humble:part:7", "firm-hdl:humble:t_pkg:7", "firm-hdl:humble:t:7"
+    bench = "firm-hdl:vhdl:bench:7"
+    assert parts == {
+        (common, "all"): ([], ["types.vhd"]),
+        (bench, "all"): ([], ["source.vhd", "sink.vhd"]),
+        (bus, "all"): ([common], ["bus.vhd"]),
+        (part, "all"): ([common, bus], ["part.vhd"]),
+        (own, "all"): ([common, bus, part], ["t_pkg.vhd"]),
+        (t, "rtl"): ([common, bus, part, own], ["t_flat.vhd", "t.vhd"]),
+        (t, "bench"): ([bench], ["t_tb.vhd", "t_record_tb.vhd"]),
+        (t, "stimuli"): (
+            [],
+            [{"stimuli.txt": {"file_type": "user", "copyto": "stimuli.txt"}}],
+        ),
+    }
+    targets = found["t.core"]["targets"]
+    assert {name: each.get("toplevel") for name, each in targets.items()} == {
+        "default": None,
+        "sim": "t_tb",
+        "sim_record": "t_record_tb",
+    }
+    assert targets["default"]["filesets"] == ["rtl"]
+    assert targets["sim"]["filesets"] == ["rtl", "bench", "stimuli"]
+    defaults = {name: each["default"] for name, each in found["t.core"]["parameters"].items()}
+    assert defaults == {"seed": 1, "stalls": 40}
+
+
+def test_flat_entities_have_other_common_files_so_their_core_has_another_name():
+    found = cores_of(ports="flat", shared_packages=[])
+    assert found["firm_hdl_common.core"]["name"] == "firm-hdl:vhdl:flat:7"
+    assert found["t.core"]["filesets"]["rtl"]["depend"] == ["firm-hdl:vhdl:flat:7"]
+
+
+def test_without_packets_a_core_has_no_simulation():
+    core = cores_of(bench={**SECTION["bench"], "stimuli": None})["t.core"]
+    assert set(core["targets"]) == {"default"} and "parameters" not in core
+    assert set(core["filesets"]) == {"rtl", "bench"}
 
 
 def test_everything_comes_from_the_manifest(folders):

@@ -11,6 +11,7 @@ import time
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -99,6 +100,54 @@ def test_what_the_runtime_says_is_the_error(monkeypatch, tmp_path):
     monkeypatch.setattr(runtime, "_started", [])
     with pytest.raises(YosysError, match=r"^mmap failed to reserve memory$"):
         run_yosys("write_rtlil")
+
+
+FAILS = """\
+import pathlib, sys
+folder = pathlib.Path(sys.stdin.readline().strip())
+(folder / "out").write_text("half of a module")
+(folder / "errors").write_text({said!r})
+print({answer!r}, flush=True)
+sys.stdin.readline()
+"""
+
+
+@pytest.mark.parametrize(
+    ("said", "answer", "message"),
+    [
+        # What Yosys has printed before counts for nothing.
+        ("", '{"status": 7}', "^Yosys ended with exit status 7$"),
+        ("ERROR: no\n", '{"status": 1}', "^ERROR: no$"),
+        ("Some words. ", '{"failed": "a trap"}', "^Some words. a trap$"),
+    ],
+)
+def test_each_failure_is_an_error(monkeypatch, tmp_path, said, answer, message):
+    failing = tmp_path / "script.py"
+    failing.write_text(FAILS.format(said=said, answer=answer))
+    monkeypatch.setattr(runtime, "_SCRIPT", failing)
+    monkeypatch.setattr(runtime, "_started", [])
+    with pytest.raises(YosysError, match=message):
+        run_yosys("write_rtlil")
+    runtime._started[-1].close()
+
+
+def test_an_interrupted_run_leaves_no_answer_for_the_next_one(monkeypatch, tmp_path):
+    """The process ends, because the answer to the run before may still come."""
+    slow = tmp_path / "script.py"
+    slow.write_text("input(); print('{}', flush=True); input()")
+    monkeypatch.setattr(runtime, "_SCRIPT", slow)
+    monkeypatch.setattr(runtime, "_started", [])
+
+    def interrupted(*arguments: object) -> None:
+        raise KeyboardInterrupt
+
+    process = runtime._process()
+    monkeypatch.setattr(runtime, "json", SimpleNamespace(loads=interrupted))
+    with pytest.raises(KeyboardInterrupt):
+        run_yosys("write_rtlil")
+    assert not process.is_usable
+    assert runtime._process() is not process
+    runtime._started[-1].close()
 
 
 def test_it_ends_with_the_process_that_asks_even_in_the_middle_of_a_run(tmp_path):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import resource
 import subprocess
 from pathlib import Path
 
@@ -12,7 +14,7 @@ import firm_hdl
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.errors import UserError
 from firm_hdl.export.top import DIRECTIONS, Top, ports_of
-from firm_hdl.export.verilog import to_verilog
+from firm_hdl.export.verilog import out_of_memory, to_verilog
 from firm_hdl.export.verilog.runtime import YosysError
 from firm_hdl.plan import Plan, build_plan, encode
 from firm_hdl.sim import to_transfers
@@ -175,3 +177,24 @@ def test_errors_of_the_system_are_passed_on(monkeypatch):
     monkeypatch.setattr(runs, broken("a fault"))
     with pytest.raises(YosysError, match=r"^a fault$"):
         to_verilog(top, module="m", header="")
+
+
+def test_lack_of_memory_states_what_yosys_needs_and_what_there_is(monkeypatch):
+    runs = "firm_hdl.export.verilog.yosys.run_yosys"
+    monkeypatch.setattr(runs, broken("mmap failed: Cannot allocate memory (os error 12)"))
+    limits = {resource.RLIMIT_AS: (5_300_000_000, resource.RLIM_INFINITY)}
+    monkeypatch.setattr(resource, "getrlimit", limits.__getitem__)
+    top = Top(Deserializer(load_message("std_msgs/msg/Bool")))
+    with pytest.raises(UserError, match=r"^m: .* 4\.1 GB .* this process may have 5\.3 GB"):
+        to_verilog(top, module="m", header="")
+    limits[resource.RLIMIT_AS] = (resource.RLIM_INFINITY, 5_300_000_000)
+    pages = {"SC_AVPHYS_PAGES": 500_000, "SC_PAGE_SIZE": 4_096}
+    monkeypatch.setattr(os, "sysconf", pages.__getitem__)
+    assert out_of_memory().endswith("; 2.0 GB are free now")
+    assert "reserves" not in out_of_memory(None)
+
+    def sysconf(name: str) -> int:
+        raise ValueError(name)
+
+    monkeypatch.setattr(os, "sysconf", sysconf)
+    assert out_of_memory().endswith("; the amount of free memory is unknown on this system")
