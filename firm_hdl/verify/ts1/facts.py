@@ -23,7 +23,7 @@ Facts are a dictionary. Each reader gives the parts that it knows:
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from firm_hdl.model import (
@@ -55,14 +55,11 @@ class Difference:
         The place of the difference: ``verdict``, or a path through the facts.
     ours, theirs : str
         Our fact and the oracle's, in one line each.
-    values : tuple
-        Both facts as objects.
     """
 
     path: str
     ours: str
     theirs: str
-    values: tuple[Any, Any] = field(default=(None, None), compare=False, repr=False)
 
     def __str__(self) -> str:
         return f"{self.path}: firm-hdl {self.ours}; oracle {self.theirs}"
@@ -110,7 +107,7 @@ def count_facts(facts: Any) -> int:
 
 
 def _differ(path: str, ours: Any, theirs: Any) -> Difference:
-    return Difference(path=path, ours=_show(ours), theirs=_show(theirs), values=(ours, theirs))
+    return Difference(path=path, ours=_show(ours), theirs=_show(theirs))
 
 
 def _is_members(value: Any) -> bool:

@@ -114,6 +114,26 @@ def test_an_element_keeps_the_type_that_it_needs(make_message):
     assert all(len(each) <= 1 for each in items)
 
 
+def test_fields_of_one_name_in_two_types_are_two_fields(make_message):
+    message = make_message("Left l\nRight[] r", Left="uint8 x\nuint8 k", Right="uint8 x\nuint8 y")
+    right = {"x": 3, "y": 4}
+    value = {"l": {"x": 1, "k": 2}, "r": [right, right]}
+
+    def again(message, what, value):
+        is_shown = "k" in value.get("l", {}) and any("x" in each for each in value.get("r", []))
+        return replace(finding, message=message, value=value) if is_shown else None
+
+    finding = Finding(
+        library="", reference="", wire="cdr", what="decode", message=message, value=value,
+        packet=b"", expected=None, got=None,
+    )  # fmt: skip
+    found = shrunk(finding, again)
+    assert found.value == {"l": {"k": 0}, "r": [{"x": 0}]}
+    head, *others = full_text(found.message).split("=" * 80 + "\n")
+    assert head == "p/Left l\np/Right[] r\n"
+    assert sorted(others) == ["MSG: p/Left\nuint8 k\n", "MSG: p/Right\nuint8 x\n"]
+
+
 def test_shrinking_ends_at_the_time_limit(make_message):
     message = make_message("uint8 a\nuint8 b")
     finding = Finding(

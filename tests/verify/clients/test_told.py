@@ -9,7 +9,10 @@ import pytest
 
 from firm_hdl.verify.clients import command
 from firm_hdl.verify.clients.finding import Finding
+from firm_hdl.verify.clients.judge import LibraryResult
+from firm_hdl.verify.references.client import ClientMissingError, Refusal
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.systems.options import Request
 
 OPTIONS = SimpleNamespace(libraries=("mine", "yours"))
 
@@ -134,6 +137,10 @@ def test_a_difference_is_described_completely(make_message, monkeypatch):
         "value", "packet", "yours", "mine"
     ]  # fmt: skip
     assert "    packet: 0102" in lines
+    odd = Finding(what="cut-1", packet=b"\1", expected=Refusal("no"), got={}, **given)
+    assert command.described(odd)[-3:] == [
+        "    packet: 01", "    yours: refuses: no", "    mine: {}"
+    ]  # fmt: skip
     none = Finding(what="decode", packet=b"", expected=b"\7", got=b"", **given)
     assert command.described(none)[-3:] == [
         "    packet: no bytes", "    yours: 07", "    mine: no bytes"
@@ -147,3 +154,68 @@ def test_long_answers_are_cut():
     most = command.MOST_CHARACTERS
     assert command.clipped("x" * most, most) == "x" * most
     assert command.clipped("x" * (most + 1), most) == f"{'x' * most}... ({most + 1} characters)"
+
+
+def test_each_library_is_told_its_judge_on_each_wire_that_it_has():
+    names = ("genpy", "rosbags", "cyclonedds", "fastcdr", "fastcdr-2.3")
+    versions = {name: f"{number}.0" for number, name in enumerate(names)}
+    options = SimpleNamespace(libraries=("genpy", "rosbags", "cyclonedds"))
+    lines = command._judges(["ros1", "cdr"], options, versions, {}, names)
+    assert list(lines) == [
+        "genpy 0.0 on ros1: judged by rosbags 1.0",
+        "rosbags 1.0 on ros1: judged by genpy 0.0",
+        "rosbags 1.0 on cdr: judged by fastcdr 3.0",
+        "cyclonedds 2.0 on cdr: judged by fastcdr 3.0",
+    ]
+    missing = {"fastcdr": "no Fast CDR", "fastcdr-2.2": "none either"}
+    lines = command._judges(["cdr"], options, versions, missing, names[:3])
+    assert list(lines) == [
+        "fastcdr, which is ROS's own on cdr, is not installed: no Fast CDR",
+        "rosbags 1.0 on cdr: judged by no reference",
+        "cyclonedds 2.0 on cdr: judged by rosbags 1.0",
+    ]
+
+
+OF_ROS1, OF_CDR = ["rosbags", "genpy"], ["rosbags", "fastcdr", "fastcdr-2.2", "fastcdr-2.3"]
+
+
+@pytest.mark.parametrize(
+    ("distros", "wire", "references"),
+    [
+        (["lyrical", "humble"], None, OF_CDR),
+        (["noetic"], None, OF_ROS1),
+        (["lyrical", "noetic"], None, [*OF_ROS1, *OF_CDR[1:]]),
+        (["noetic"], "cdr", OF_CDR),
+    ],
+)
+def test_references_of_all_wires_are_looked_for(monkeypatch, capsys, distros, wire, references):
+    asked, given, ended = [], [], []
+
+    def find_clients(names):
+        asked.extend(names)
+        return {name: "1" for name in names if name != "genpy"}, {"genpy": "no genpy"}
+
+    def judge_types(tasks, options, installed):
+        given.append(installed)
+        for task in tasks:
+            yield task, [
+                LibraryResult(
+                    library="cyclonedds", reference="x", type="T", comparisons=1, answers=1,
+                    is_asked=task.distro != "noetic",
+                )
+            ]  # fmt: skip
+
+    monkeypatch.setattr(command, "find_clients", find_clients)
+    monkeypatch.setattr(command, "judge_types", judge_types)
+    monkeypatch.setattr(command, "close_clients", lambda: ended.append(True))
+    tasks = [SimpleNamespace(distro=name, name="T", same=(name,)) for name in distros]
+    found = command.run_sut(tasks, Request(libraries=("cyclonedds",), wire=wire))
+    assert asked == ["cyclonedds", *references] and ended == [True]
+    assert given == [tuple(name for name in references if name != "genpy")]
+    assert [each.what for each in found] == [
+        f"T ({name}), cyclonedds" for name in distros if name != "noetic"
+    ]
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-1].startswith(f"{len(tasks)} types, ") and lines[-1].endswith(" 0 differ")
+    with pytest.raises(ClientMissingError, match=r"^no genpy$"):
+        command.run_sut(tasks, Request(libraries=("cyclonedds", "genpy")))

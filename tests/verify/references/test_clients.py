@@ -18,6 +18,7 @@ from firm_hdl.verify.references.clients import CLIENTS, client
 from firm_hdl.verify.references.fastcdr import FastCdr
 from firm_hdl.verify.references.genpy import Genpy
 from firm_hdl.verify.references.values import bits_of
+from tests.frontend.workspace import make_files
 from tests.verify.references.plain import plain
 
 TEXT = "string s\nfloat64[2] d\nB[] b\nuint16 from\nbool t\n"
@@ -220,6 +221,18 @@ def test_messages_without_fields(library_here, make_message, name, wire):
     value = {"b": [{}, {}], "one": {}}
     assert codec.encode(value) == packet
     assert codec.decode(packet) == value
+
+
+@pytest.mark.parametrize("name", [name for name, wire in OTHERS if wire == "cdr"])
+def test_messages_of_services_have_names_with_underscores(library_here, tmp_path, name):
+    root = make_files(tmp_path, {"p/srv/S.srv": "int8 x\n---\nuint16[] b\n"})
+    service = Library("lyrical", [root]).interface("p/srv/S")
+    request, response = service.messages[:2]
+    codec = library_here(name).open(request, "cdr")
+    assert codec.encode({"x": -1}) == b"\0\1\0\0\xff"
+    codec = library_here(name).open(response, "cdr")
+    packet = bytes.fromhex("00010000 01000000 0200")
+    assert codec.encode({"b": [2]}) == packet and codec.decode(packet) == {"b": [2]}
 
 
 @pytest.mark.parametrize("name", ["fastcdr", "fastcdr-2.2", "fastcdr-2.3", "firm-hdl"])

@@ -6,7 +6,7 @@ from firm_hdl.frontend import Library, load_message
 from firm_hdl.identity.md5 import md5sum
 from firm_hdl.identity.rihs import type_hash
 from firm_hdl.verify.ts1.comparison import compared
-from firm_hdl.verify.ts1.facts import differences, structure
+from firm_hdl.verify.ts1.facts import count_facts, differences, structure
 from firm_hdl.verify.ts1.oracles.oracle import Accepted
 from tests.frontend.workspace import make_files
 
@@ -89,6 +89,19 @@ def test_a_missing_fact_of_ours_is_a_difference_and_one_of_the_oracle_is_none():
         "b: firm-hdl has none; oracle 2"
     ]
     assert list(differences({"a": 1, "b": 2}, {"b": 2})) == []
+    # An empty fact is a fact.
+    for nothing in (None, "", [], {}, 0, False):
+        (found,) = differences({"a": 1}, {"a": 1, "b": nothing})
+        assert str(found) == f"b: firm-hdl has none; oracle {nothing!r}"
+    ours = {"a": {"b": {"c": 1, "d": 2, "e": 3, "f": 4}}}
+    theirs = {"a": {"b": {"c": 1, "d": 0, "e": 3, "f": 5}}, "g": 6}
+    assert [each.path for each in differences(ours, theirs)] == ["a/b/d", "a/b/f", "g"]
+
+
+def test_single_facts_are_counted():
+    assert [count_facts(each) for each in (1, "a", None, [1, 2], {}, [])] == [1, 1, 1, 1, 0, 1]
+    fields = [{"name": "a", "type": "b"}, {"name": "c", "type": "d", "default": [1, 2]}]
+    assert count_facts({"s": {"A": {"fields": fields, "constants": []}}, "md5": {"A": "x"}}) == 7
 
 
 def test_values_are_compared_with_their_types_and_signs():

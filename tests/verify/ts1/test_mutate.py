@@ -100,6 +100,11 @@ def test_words_and_values_are_others_in_one_place():
         for each in rules._NUMBERS
         for text in ("int8[{}] a\nstring b\nint8[4] c", "int8[3] a\nstring b\nint8[{}] c")
     }
+    assert mutants(rules._change_value, "string<3> a; int8[4] b") == {
+        text.format(each)
+        for each in rules._NUMBERS
+        for text in ("string<{}> a; int8[4] b", "string<3> a; int8[{}] b")
+    }
     assert mutants(rules._change_type, "int8 a\nq/B b") == {
         text for each in rules._TYPES for text in (f"{each} a\nq/B b", f"int8 a\n{each} b")
     }
@@ -119,6 +124,33 @@ def test_comments_are_spared_where_anything_else_is():
     assert mutants(rules._change_digit, "a1 # 2") == {f"a{n} # 2" for n in range(10)}
     assert mutants(rules._change_digit, "a # 2") == {f"a # {n}" for n in range(10)}
     assert mutants(rules._change_digit, "a # 2\nb1") == {f"a # 2\nb{n}" for n in range(10)}
+
+
+def test_characters_of_comments_are_seldom_changed():
+    text = "ab # cdefghijklmnopqrstuvwxyz\n"
+    for rule in (rules._drop_character, rules._double_character, rules._insert_sign):
+        found = [rule(random.Random(number), text) for number in range(400)]
+        spared = [each for each in found if each.endswith("# cdefghijklmnopqrstuvwxyz\n")]
+        # Without the rule for comments, it would be 80.
+        assert 120 < len(spared) < 400
+
+
+def test_one_rule_is_applied_and_sometimes_a_second(monkeypatch):
+    monkeypatch.setattr(rules, "_RULES", (lambda _, text: f"{text}a", lambda _, text: f"{text}b"))
+    found = [rules.mutate("", random.Random(number)) for number in range(500)]
+    assert {*found} == {"a", "b", "aa", "ab", "ba", "bb"}
+    assert 50 < sum(len(each) == 2 for each in found) < 200
+
+
+def test_only_texts_of_some_length_are_changed(court):
+    files = {"p/msg/A.msg": "int8 a\n", "p/msg/B.msg": "# " + "x" * 19_998, "p/msg/C.msg": "int8 c"}
+    cases = court("lyrical", files).universe.select([])
+    names = {mutation(cases, number).name for number in range(60)}
+    assert names == {"A", "B", "C"}
+    longer = [replace(case, text=case.text + "x" * (case.name == "B")) for case in cases]
+    assert {mutation(longer, number).name for number in range(60)} == {"A", "C"}
+    # If all texts are long, they are changed nevertheless.
+    assert mutation(longer[1:2], 3).before == longer[1].text
 
 
 def test_lines_are_dropped_repeated_moved_indented_joined_and_ended():

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.errors import DefinitionError
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.explain import _needed_names as needed_names
 from firm_hdl.verify.ts1.universe import Universe, write_definitions
 from tests.frontend.workspace import make_files
@@ -76,6 +77,55 @@ def test_types_come_in_the_order_in_which_they_are_named_and_all_in_that_of_thei
 def test_without_folders_all_that_a_distribution_has_is_taken():
     found = {case.package for case in Universe("lyrical").select([])}
     assert {"std_msgs", "sensor_msgs"} <= found and "p" not in found
+
+
+def test_definitions_of_an_active_workspace_come_after_those_of_the_folders(tmp_path, monkeypatch):
+    files = {
+        "own/p/msg/A.msg": "q/B b\nq/C c\nstd_msgs/Empty e\n",
+        "own/q/msg/B.msg": "int8 own\n",
+        "active/q/msg/B.msg": "int8 active\n",
+        "active/q/msg/C.msg": "int8 active\n",
+        "active/std_msgs/msg/Empty.msg": "int8 active\n",
+        **{f"active/{name}/package.xml": f"<name>{name}</name>" for name in ("q", "std_msgs")},
+    }
+    make_files(tmp_path, files)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "active"))
+    universe = Universe("noetic", [str(tmp_path / "own")], str(tmp_path / "all"))
+    (case,) = universe.select(["p/A"])
+    fields = {each.name: each.type.fields for each in universe.interface(case).fields}
+    assert [[each.name for each in found] for found in fields.values()] == [
+        ["own"],
+        ["active"],
+        ["active"],
+    ]
+    texts = [each.text for each in universe.select(["q/B", "q/C", "std_msgs/Empty"])]
+    assert texts == ["int8 own\n", "int8 active\n", "int8 active\n"]
+    # Without names, only the folders count. Oracles get the same definitions as we.
+    assert [each.full_name for each in universe.select([])] == ["p/A", "q/B"]
+    write_definitions(universe)
+    for name, text in (
+        ("q/msg/B", texts[0]),
+        ("q/msg/C", texts[1]),
+        ("std_msgs/msg/Empty", texts[2]),
+    ):
+        assert (tmp_path / "all" / f"{name}.msg").read_text() == text
+
+
+def test_changes_are_lines_without_their_surroundings():
+    text = "a\nb\nc\nd\n"
+    case = DefinitionCase(
+        dialect="ros1", package="p", kind="srv", name="S", language="srv", text=text
+    )
+    names = (case.full_name, case.spelled_name, case.file)
+    assert names == ("p/S", "p/srv/S", "S.srv") and not case.is_changed
+    ros2 = replace(case, dialect="ros2", kind="msg", language="idl")
+    assert (ros2.full_name, ros2.spelled_name, ros2.file) == ("p/msg/S", "p/msg/S", "S.idl")
+    changed = replace(case, text="a\nx\tb\nc\n", before=text)
+    assert changed.is_changed and changed.changes == ["-b", "+x\\tb", "-d"]
+    # A text may have been empty before, or have become empty.
+    assert replace(case, before="").is_changed
+    assert replace(case, text="", before="a\nb").changes == ["-a", "-b"]
+    assert replace(case, source="other") == case != changed
 
 
 def test_messages_alone_are_message_cases(universe_of):

@@ -199,9 +199,16 @@ def test_rosbags_does_not_judge_types_that_need_idl(court, monkeypatch):
 
 
 def test_rosbags_does_not_judge_times_that_it_takes_for_those_of_ros1(court):
-    files = {"p/msg/A.msg": "builtin_interfaces/Time t\n"}
-    found = court("noetic", files).outcome("rosbags", "p/A")
-    assert isinstance(found.verdict, NotJudged) and "builtin_interfaces" in found.verdict.reason
+    files = {
+        "p/msg/A.msg": "int8 x\n builtin_interfaces/Duration[] t\n",
+        "p/msg/B.msg": "A a\n",
+        "p/msg/C.msg": "time t # not builtin_interfaces/Time\n",
+    }
+    here = court("noetic", files)
+    for name in "AB":
+        found = here.outcome("rosbags", f"p/{name}")
+        assert isinstance(found.verdict, NotJudged) and "builtin_interfaces" in found.verdict.reason
+    assert_passed(here.outcome("rosbags", "p/C"))
 
 
 def test_rosbags_refuses_recursive_types(court):

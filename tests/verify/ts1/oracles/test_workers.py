@@ -1,0 +1,207 @@
+"""Everything that the readers of ROS tell of a definition, and the types that it needs.
+
+Facts that an oracle leaves out are not compared. So these tests count them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from firm_hdl.verify.ts1.judge import compare
+from firm_hdl.verify.ts1.oracles.oracle import Refused
+from tests.verify.judged import assert_passed
+
+FILES = {
+    "p/msg/A.msg": "# Whole.\n\n# Of x.\nint8 x 3  # More [m].\nq/B[2] bs\nint16 K=-7 # Of K.\n",
+    "p/srv/S.srv": "int8 a\n---\nq/B b\nstring C='c'\n",
+    "p/action/Do.action": "int8 g\n---\nint16 r\n---\nq/B[] f\n",
+    "q/msg/B.msg": "float32[] x [1.5, 2]\n",
+}
+ROS1 = {
+    "p/msg/A.msg": "int8 K=-7 # Of K.\nq/B[2] bs\ntime t\n",
+    "p/srv/S.srv": "int8 a\n---\nq/B b\nstring C=c # d\n",
+    "p/action/Do.action": "int8 g\n--- more\nint16 r\n---\nq/B[] f\n",
+    "q/msg/B.msg": "float32[] x\n",
+}
+
+
+def fields_of(answer):
+    """Names and types of all fields, by message."""
+    return {
+        name: [f"{each['type']} {each['name']}" for each in message["fields"]]
+        for name, message in answer.facts["structure"].items()
+    }
+
+
+def test_rosidl_adapter_tells_of_each_part(court):
+    here = court("lyrical", FILES)
+    assert fields_of(here.answer("rosidl_adapter", "p/Do")) == {
+        "p/action/Do_Goal": ["int8 g"],
+        "p/action/Do_Result": ["int16 r"],
+        "p/action/Do_Feedback": ["q/msg/B[] f"],
+    }
+    service = here.answer("rosidl_adapter", "p/S")
+    assert fields_of(service) == {
+        "p/srv/S_Request": ["int8 a"],
+        "p/srv/S_Response": ["q/msg/B b"],
+    }
+    (constant,) = service.facts["structure"]["p/srv/S_Response"]["constants"]
+    assert (constant["name"], constant["value"]) == ("C", "c")
+    whole = here.answer("rosidl_adapter", "p/A").facts["structure"]["p/msg/A"]
+    assert whole["comment"] == "Whole."
+    remarks = [
+        (e["name"], e["comment"], e["unit"]) for e in (*whole["fields"], *whole["constants"])
+    ]
+    assert remarks == [("x", "Of x.\nMore.", "m"), ("bs", "", None), ("K", "Of K.", None)]
+    assert [each["default"] for each in whole["fields"]] == [3, None]
+
+
+UUID, TIME = "unique_identifier_msgs/msg/UUID goal_id", "builtin_interfaces/msg/Time stamp"
+
+
+def test_rosidl_parser_tells_of_each_part_and_of_derived_messages(court):
+    here = court("humble", FILES)
+    assert fields_of(here.answer("rosidl_parser", "p/Do")) == {
+        "p/action/Do_Goal": ["int8 g"],
+        "p/action/Do_Result": ["int16 r"],
+        "p/action/Do_Feedback": ["q/msg/B[] f"],
+        "p/action/Do_SendGoal_Request": [UUID, "p/action/Do_Goal goal"],
+        "p/action/Do_SendGoal_Response": ["bool accepted", TIME],
+        "p/action/Do_GetResult_Request": [UUID],
+        "p/action/Do_GetResult_Response": ["int8 status", "p/action/Do_Result result"],
+        "p/action/Do_FeedbackMessage": [UUID, "p/action/Do_Feedback feedback"],
+    }
+    assert list(fields_of(here.answer("rosidl_parser", "p/S"))) == [
+        "p/srv/S_Request",
+        "p/srv/S_Response",
+    ]
+    (field,) = here.answer("rosidl_parser", "q/B").facts["structure"]["q/msg/B"]["fields"]
+    assert field == {"name": "x", "type": "float32[]", "default": [1.5, 2.0]}
+    (constant,) = here.answer("rosidl_parser", "p/A").facts["structure"]["p/msg/A"]["constants"]
+    assert constant == {"name": "K", "type": "int16", "value": -7}
+
+
+def test_genmsg_tells_of_each_part_and_of_derived_messages(court):
+    here = court("noetic", ROS1)
+    action = here.answer("genmsg", "p/Do")
+    header, goal_id = "std_msgs/Header header", "actionlib_msgs/GoalID goal_id"
+    status = "actionlib_msgs/GoalStatus status"
+    assert fields_of(action) == {
+        "p/DoGoal": ["int8 g"],
+        "p/DoResult": ["int16 r"],
+        "p/DoFeedback": ["q/B[] f"],
+        "p/DoActionGoal": [header, goal_id, "p/DoGoal goal"],
+        "p/DoActionResult": [header, status, "p/DoResult result"],
+        "p/DoActionFeedback": [header, status, "p/DoFeedback feedback"],
+        "p/DoAction": [
+            "p/DoActionGoal action_goal",
+            "p/DoActionResult action_result",
+            "p/DoActionFeedback action_feedback",
+        ],
+    }
+    assert set(action.facts) == {"structure", "md5"}
+    assert list(action.facts["md5"]) == list(action.facts["structure"])
+    assert len(set(action.facts["md5"].values())) == 7
+    service = here.answer("genmsg", "p/S").facts
+    assert list(service["structure"]) == ["p/SRequest", "p/SResponse"]
+    assert list(service["md5"]) == ["p/S"]
+    assert "int8 a\n---\nstring C=c # d\nq/B b\n  float32[] x" in service["show"]
+    for type_ in ("p/A", "p/S", "p/Do"):
+        assert_passed(here.outcome("genmsg", type_))
+
+
+def test_an_action_of_ros1_has_three_parts(court):
+    for text, count in (("int8 a\n---\n", 2), ("---\n---\n---\n", 4)):
+        answer = court("noetic", {"p/action/Do.action": text}).answer("genmsg", "p/Do")
+        assert answer == Refused(f"ValueError: an action has 3 parts, not {count}")
+
+
+PLACES = {
+    "msg": ["int8 x\n{} n\n", "int8 x\n{}[] n\n", "{}[2] n\n"],
+    "srv": ["{} n\n---\nint8 x\n", "int8 x\n---\n{}[] n\n"],
+    "action": ["{} n\n---\n---\n", "---\n{}[] n\n---\n", "---\n---\n{} n\n"],
+}
+
+
+@pytest.mark.parametrize(
+    ("distro", "oracle"),
+    [("noetic", "genmsg"), ("humble", "rosidl_adapter"), ("humble", "rosidl_parser")],
+)
+def test_a_missing_type_is_refused_wherever_it_is(court, distro, oracle):
+    files = {"q/msg/B.msg": "int8 x\n"}
+    for kind, places in PLACES.items():
+        for number, place in enumerate(places):
+            files[f"p/{kind}/Good{number}.{kind}"] = place.format("q/B")
+            files[f"p/{kind}/Bad{number}.{kind}"] = place.format("q/C")
+    here = court(distro, files)
+    cases = here.universe.select([])
+    answers = list(here.oracle(oracle).judge(cases))
+    assert len(answers) == len(files) == 17
+    for case, answer in zip(cases, answers, strict=True):
+        assert isinstance(answer, Refused) == case.name.startswith("Bad"), (case.text, answer)
+
+
+@pytest.mark.parametrize("oracle", ["rosidl_adapter", "rosidl_parser"])
+def test_a_type_that_is_needed_twice_does_not_contain_itself(court, oracle):
+    files = {
+        "p/msg/A.msg": "B b\nC c\nB[] more\n",
+        "p/msg/B.msg": "D d\n",
+        "p/msg/C.msg": "B b\nD d\n",
+        "p/msg/D.msg": "int8 x\n",
+    }
+    assert_passed(court("humble", files).outcome(oracle, "p/A"))
+    circle = court("humble", {**files, "p/msg/D.msg": "C[] c\n"})
+    for name in "ABCD":
+        assert circle.outcome(oracle, f"p/{name}").is_refused
+
+
+def test_types_that_idl_needs_are_looked_up(court):
+    files = {"p/msg/B.msg": "int8 x\n"}
+    for number, member in enumerate(
+        ("p::msg::{} n", "p::msg::{} n[2]", "sequence<p::msg::{}> n", "sequence<p::msg::{}, 3> n")
+    ):
+        for name, needed in (("Good", "B"), ("Bad", "C")):
+            struct = f"struct {name}{number} {{ long x; {member.format(needed)}; }};"
+            text = f"module p {{ module msg {{ {struct} }}; }};"
+            files[f"p/msg/{name}{number}.idl"] = text
+    here = court("humble", files)
+    cases = [case for case in here.universe.select([]) if case.language == "idl"]
+    refused = Refused("_RefusedError: p/msg/C is not there")
+    for case, answer in zip(cases, here.oracle("rosidl_parser").judge(cases), strict=True):
+        assert (answer == refused) is case.name.startswith("Bad"), (case.text, answer)
+
+
+def test_line_ends_of_a_changed_text_are_those_of_a_file(court):
+    here = court("humble", FILES)
+    (case,) = here.universe.select(["p/A"])
+    expected = here.answer("rosidl_adapter", "p/A")
+    for end in ("\r\n", "\r"):
+        changed = replace(case, text=case.text.replace("\n", end), before=case.text)
+        (answer,) = here.oracle("rosidl_adapter").judge([changed])
+        assert answer == expected
+
+
+def test_a_changed_definition_is_not_what_others_need(court):
+    here = court("lyrical", FILES)
+    oracle = here.oracle("rosidl_parser-4.9")
+    inner, outer = here.universe.select(["q/B", "p/A"])
+    mutant = replace(inner, text="float64 y\n", before=inner.text)
+    (changed,) = oracle.judge([mutant])
+    (whole,) = oracle.judge([outer])
+    (original,) = oracle.judge([inner])
+    assert changed.facts["hash"]["q/msg/B"] != original.facts["hash"]["q/msg/B"]
+    assert compare(oracle, outer, here.universe.interface(outer), whole).verdict.name == "passed"
+
+
+def test_a_type_without_a_number_has_no_hash(court):
+    text = (
+        "module p {{ module msg {{ module A_Constants {{ const long N = 3; }}; "
+        "struct A {{ wstring<{}> w; }}; }}; }};"
+    )
+    here = court("lyrical", {"p/msg/A.idl": text.format("3")})
+    (case,) = here.universe.select(["p/A"])
+    other = replace(case, text=text.format("A_Constants::N"), before=case.text)
+    one, other = here.oracle("rosidl_parser-4.9").judge([case, other])
+    assert "hash" in one.facts and list(other.facts) == ["structure", "names"]
