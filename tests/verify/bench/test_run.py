@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -102,6 +104,52 @@ def test_packets(got, output):
         _compare("packets", got, "00\n01\n")
     assert str(caught.value) == f"packets: {output}"
     _compare("packets", "00\n01\n", "00\n01\n")
+
+
+def test_a_value_is_as_wide_as_its_lanes():
+    """Items of one bit each, and items of two bytes, several at once; and a value of 9 bits."""
+    message = make("ros1", {"flags": "bool[]", "x": "uint16[]"})
+    plan = build_plan(lay_out(message), bus_bytes=4)
+    lanes = {str(leaf): leaf.lanes for leaf in plan.leaves}
+    assert lanes["flags.items"] == 4 and lanes["x.items"] == 2
+    transfers = {
+        ("flags", "length"): [3],
+        ("flags", "items"): [((1, 0, 1), True)],
+        ("x", "length"): [3],
+        ("x", "items"): [((0x1234, 0xABCD), False), ((0x8000, 0), True)],
+    }
+    cases = [Case(what="", value=None, packet=b"", transfers=transfers)]
+    lines = ["flags.length 00000003", "flags.items 5 *", "x.length 00000003"]
+    lines += ["x.items ABCD1234", "x.items 00008000 *"]
+    text = "".join(f"{number} {line}\n" for number, line in enumerate(lines))
+    assert _check_transfers(plan, cases, text) == 5
+
+
+def test_only_a_bench_that_says_so_has_passed(monkeypatch, tmp_path):
+    said = []
+    monkeypatch.setattr(run, "run_tool", lambda *given, **more: said[-1])
+    said.append("PASS all of them")
+    assert run._simulate("bench", tmp_path, "ghdl") == tmp_path / "work_bench"
+    for words in ("", "\n", "FAIL packet 0", "it will PASS later", "PASSED by"):
+        said.append(words)
+        with pytest.raises(run.ToolError, match=words.strip() or "without a word"):
+            run._simulate("bench", tmp_path, "ghdl")
+
+
+def test_any_word_of_an_analysis_is_an_error(monkeypatch, tmp_path):
+    manifest = {"folder": "vhdl", "files": ["a.vhd"]}
+    manifest["bench"] = {"files": ["tb.vhd"], "entities": ["tb", "tb_record"]}
+    (tmp_path / "vhdl").mkdir()
+    (tmp_path / run.MANIFEST).write_text(json.dumps({"vhdl": manifest}))
+    asked, said = [], ["", "tb.vhd:1:1:warning: it is unused\n"]
+    monkeypatch.setattr(run, "run_tool", lambda command, folder: asked.append(command) or said[0])
+    vhdl, entities = run._analyse(SimpleNamespace(folder=tmp_path), "ghdl")
+    assert (vhdl, entities) == (tmp_path / "vhdl", ["tb", "tb_record"])
+    assert asked[0][:3] == ["ghdl", "-a", "--std=08"] and "--warn-error" in asked[0]
+    assert asked[0][-2:] == [str(vhdl / "a.vhd"), str(vhdl / "tb.vhd")]
+    del said[0]
+    with pytest.raises(run.ToolError, match="it is unused"):
+        run._analyse(SimpleNamespace(folder=tmp_path), "ghdl")
 
 
 RIGHT = "0001\n02\n"

@@ -9,14 +9,15 @@ import firm_hdl.verify.references.choice as references
 from firm_hdl.cli import main
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
 from firm_hdl.frontend import Library
-from firm_hdl.verify.bench.system import Benches
+from firm_hdl.verify.bench import system
+from firm_hdl.verify.bench.system import Benches, _lines_of, _table
 from firm_hdl.verify.references.clients import client
 from firm_hdl.verify.results.file import read_results
-from firm_hdl.verify.results.records import Test
-from firm_hdl.verify.results.verdict import Failed, NotJudged
+from firm_hdl.verify.results.records import Record, Seconds, Test
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Recorder
-from firm_hdl.verify.systems.tasks import collect_tasks
+from firm_hdl.verify.systems.tasks import TypeUnderTest, collect_tasks
 from tests.tools import need
 from tests.verify.judged import assert_passed
 from tests.verify.samples import own_package
@@ -148,6 +149,38 @@ def test_table_and_status_have_failures_and_the_command_to_repeat(ghdl, monkeypa
     assert "FAIL std_msgs/msg/Bool (lyrical)\n" in output
     again = "firm-hdl verify --systems bench --distro lyrical --wire ros1 --bus-bytes 4"
     assert f"again: {again} std_msgs/msg/Bool\n" in output
+
+
+def test_each_distribution_has_a_row_with_its_own_sums(capsys):
+    def record(distro, verdict, packets):
+        test = Test(system="bench", distro=distro, type=f"p/T{packets}")
+        figures = {"transfers": 10.0 * packets}
+        seconds = Seconds(simulation=packets)
+        return Record(test=test, verdict=verdict, packets=packets, metrics=figures, seconds=seconds)
+
+    records = [
+        record("lyrical", Passed(1), 1),
+        record("lyrical", Passed(1), 2),
+        record("noetic", Passed(1), 3),
+        record("lyrical", Failed(("no",)), 4),
+        record("noetic", NotJudged("nobody knows"), 5),
+        record("noetic", NotJudged("nobody knows"), 6),
+    ]
+    _table(records, "4-byte bus")
+    assert [line.split()[-8:] for line in capsys.readouterr().out.splitlines()[1:]] == [
+        ["noetic", "3", "1", "0", "2", "14", "140", "14"],
+        ["lyrical", "3", "2", "1", "0", "7", "70", "7"],
+    ]
+    assert [len(_lines_of(each)) for each in records] == [0, 0, 0, 1, 0, 0]
+
+
+def test_each_distribution_and_each_bus_has_a_bench(monkeypatch):
+    monkeypatch.setattr(system, "find_ghdl", lambda: "ghdl")
+    task = TypeUnderTest(distro="jazzy", name="p/A", same=("humble", "jazzy"))
+    tests = Benches([task], Request(widths=(2, 8))).tests
+    assert [(test.distro, test.same, test.bus_bytes, test.simulator) for test in tests] == [
+        (name, (name,), width, "ghdl") for width in (2, 8) for name in ("humble", "jazzy")
+    ]
 
 
 def test_results_are_kept_and_not_repeated(ghdl, tmp_path, monkeypatch, capsys):

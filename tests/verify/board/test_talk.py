@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from firm_hdl.node.frame import FLAG_START, HEADER_BYTES
+from firm_hdl.verify.board import talk as talking
 from firm_hdl.verify.board.talk import Talk, TalkError, _Window, room_for
 from tests.node.bridge.fakes import FakeBoard
 from tests.verify.board.fakes import STRING, LoopNode, described
@@ -135,6 +136,21 @@ def test_a_second_session_begins_anew(talk):
     talk.open()
     assert not talk.losses() and talk.take(back) == []
     assert talk.exchange(LOOP, [packet], [True]) == [packet] and came.id != back.id
+
+
+def test_a_slow_board_has_its_time_again_after_each_packet(talk, monkeypatch):
+    """Each packet takes 0.25 s of the 0.3 s that the board may be silent."""
+    clock, waits, (_, back) = [100.0], [], LOOP
+    monkeypatch.setattr(talking, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+
+    def wait(until):
+        waits.append(until)
+        clock[0] += 0.05 if len(waits) % 2 else 0.2
+        if len(waits) % 2 == 0:
+            talk._came[back.id].append(b"answer")
+
+    monkeypatch.setattr(talk, "_wait", wait)
+    assert talk.exchange(LOOP, [b"packet"] * 4, [True] * 4) == [b"answer"] * 4
 
 
 def test_packets_are_taken_once(talk):

@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from firm_hdl.verify.report.outcomes import NotRun, outcomes_of
-from firm_hdl.verify.report.summary import summarise
+from firm_hdl.verify.report.stats import Correlation, Fit
+from firm_hdl.verify.report.summary import Trend, summarise
+from firm_hdl.verify.report.tables import (
+    coverage_table,
+    every_table,
+    group_table,
+    oracle_table,
+    trend_table,
+    within_table,
+)
 from firm_hdl.verify.report.verdicts import reason_groups
 from firm_hdl.verify.results.file import Results
-from firm_hdl.verify.results.records import OracleVerdict, Seconds
-from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.results.records import OracleVerdict, PlanCoverage, Seconds
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from tests.verify.report.samples import a_record, a_test
 
 
@@ -93,3 +102,60 @@ def test_trends_are_of_tests_with_a_circuit_and_a_figure():
     assert trends["depth", "total"].points == tuple((n, 1.0 + n * n) for n in range(1, 8))
     assert trends["depth", "testing"].points == ()
     assert ("depth", "simulation") not in trends
+
+
+def test_known_differences_are_part_of_the_share_that_is_drawn():
+    verdicts = (Passed(1), KnownDifference(("k",), 1), Failed(("no",)), NotJudged("no"))
+    records = [a_record(a_test(f"p/T{n}"), verdict=each) for n, each in enumerate(verdicts)]
+    table = group_table(summarise({"r": run_of(*records)}).by_suite, "Test system")
+    (share,) = (cell for row in table.rows for cell in row if cell.counts is not None)
+    assert share.value == 2 / 4
+
+
+def test_an_oracle_that_differs_is_marked_and_no_other():
+    words = {"one": Passed(1), "two": Failed(("no",))}
+    verdicts = tuple(OracleVerdict(oracle=name, verdict=each) for name, each in words.items())
+    table = oracle_table(summarise({"r": run_of(a_record(verdicts=verdicts))}))
+    at = table.headings.index("Differ#")
+    assert [(row[1].text, row[at].text, row[at].verdict) for row in table.rows] == [
+        ("one", "0", ""),
+        ("two", "1", "failed"),
+    ]
+
+
+def test_one_of_many_keeps_a_share_below_all():
+    records = [
+        a_record(
+            a_test(f"p/T{number}"),
+            seconds=Seconds(testing=0.005 if number else 30.0),
+            coverage=PlanCoverage(taken=10 - (not number), possible=10),
+        )
+        for number in range(4000)
+    ]
+    summary = summarise({"r": run_of(*records)})
+    shares = within_table(summary.curves).rows[0][2:]
+    assert {cell.text for cell in shares[:-1]} == {"99.9%"} and shares[-1].text == "100.0%"
+    assert shares[0].value == 3999 / 4000
+    (row,) = coverage_table(summary).rows
+    assert [cell.text for cell in row[1:]] == ["4,000", "3,999", "39,999", "40,000", "99.9%"]
+    # A plan without decisions has taken all of them.
+    empty = a_record(coverage=PlanCoverage(taken=0, possible=0))
+    table = every_table(summarise({"r": run_of(empty)}).outcomes)
+    assert table.rows[0][table.headings.index("Plan coverage#")].value == 1.0
+
+
+def test_figures_of_a_trend_are_in_their_columns():
+    found = Correlation(
+        count=9,
+        pearson=-0.25,
+        spearman=0.5,
+        linear=Fit(a=1.0, b=2.0, r2=0.75),
+        power=Fit(a=3.0, b=4.0, r2=0.125),
+    )
+    trend = Trend(suite="ts3", metric="case_bytes", time="total", correlation=found, points=())
+    (row,) = trend_table([trend]).rows
+    assert [cell.text for cell in row] == [
+        *("ts3", "case bytes", "total", "9", "+0.50", "-0.25"),
+        *("3·x^4.00", "0.12", "1 + 2·x", "0.75"),
+    ]
+    assert [cell.value for cell in row[3:6]] == [9, 0.5, -0.25]

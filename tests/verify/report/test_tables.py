@@ -81,6 +81,16 @@ def test_a_test_that_did_not_run_has_a_row():
     assert found["Result"] == "? not run" and found["Time"] == "-" and found["Packets"] == "0"
 
 
+def test_a_column_is_left_out_only_if_all_of_it_is_empty():
+    with_command = a_record(a_test("p/A"), verdict=Failed(("no",)))
+    without = a_record(a_test("p/B"), verdict=Failed(("no",)), command="")
+    both = failure_table(summary_of(with_command, without).failed)
+    assert both.headings[-1] == "Repeat it"
+    assert [row[-1] for row in texts(both)] == [with_command.command, ""]
+    alone = failure_table(summary_of(without).failed)
+    assert alone.headings == both.headings[:-1] and len(alone.rows[0]) == len(alone.headings)
+
+
 def test_titles_of_tests_are_unique():
     (whole,) = summary_of(a_record(a_test("p/msg/A", same=("iron", "jazzy")))).outcomes
     assert title_of(whole) == "p/msg/A, iron jazzy, ts3, python, cdr, 8-byte bus, seed=0"

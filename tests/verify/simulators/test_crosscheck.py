@@ -9,14 +9,17 @@ from pathlib import Path
 
 import pytest
 
+import firm_hdl.verify.simulators.crosscheck as crosscheck
 import firm_hdl.verify.simulators.ghdl as exported
 import firm_hdl.verify.ts3.circuit as circuit
 from firm_hdl import Serializer, load_message
+from firm_hdl.export.build import BuildError
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import ToolError
 from firm_hdl.jobs.programs import ProgramMissingError, find_ghdl
 from firm_hdl.sim import Harness, RunOptions, Stalls
 from firm_hdl.verify import Options, Result, accept
+from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.simulators import Ghdl, TextSimulator
 from firm_hdl.verify.simulators.crosscheck import first_difference
 from firm_hdl.verify.simulators.semantics import traffic
@@ -236,6 +239,18 @@ def test_cycles_that_are_missing_are_found(monkeypatch):
     cycles = result.simulated_cycles + 4
     assert result.failures[0] == f"short: {cycles - 9} cycles instead of {cycles}"
     assert "packets differ" in result.failures[1]
+    # Those that the other simulator showed.
+    assert result.comparison is not None and result.comparison.cycles == cycles - 9
+
+
+def test_converters_that_are_too_large_to_export_are_not_judged(monkeypatch):
+    def refuse(plan):
+        raise BuildError("it is too large")
+
+    monkeypatch.setattr(crosscheck, "check_size", refuse)
+    monkeypatch.setattr(circuit, "simulator", lambda name: ShortSimulator())
+    result = accepted("lyrical", "std_msgs/msg/Bool")
+    assert result.verdict == NotJudged("it cannot be exported: it is too large")
 
 
 class ShortSimulator:

@@ -179,6 +179,7 @@ FLIP = str.maketrans("01", "10")
         ("serializer", "m_axis_tdata", lambda bits: bits[:-1] + "1", "packets differ: number 0"),
         ("serializer", "m_axis_tdata", lambda bits: bits[:-1] + "X", "packets differ: number 0"),
         ("serializer", "m_axis_tlast", lambda bits: "0", "packets differ: number 0 of 3 is []"),
+        ("serializer", "m_axis_tlast", lambda bits: "X", "packets differ: number 0 of 3 is []"),
         # Before the first packet, that is a beat without a byte; after a packet, its last beat
         # again. Only in the second run are there pauses between packets.
         (

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.verify import Options
-from firm_hdl.verify.ts3.recording import Selection, select, topics_of
+from firm_hdl.verify.systems.tasks import UnknownTypeError
+from firm_hdl.verify.ts3 import recording
+from firm_hdl.verify.ts3.recording import Selection, Topic, collect_recorded, select, topics_of
 from firm_hdl.verify.ts3.replay import replay
 from tests.tools import need
 from tests.verify.judged import assert_passed
@@ -63,6 +66,9 @@ def test_long_messages_are_known_before_any_is_selected(tmp_path: Path) -> None:
     topics = topics_of(str(counted(tmp_path / "run", {"/a": [9, 1, 9, 2, 12]})))
     found = select(topics, most=10, longest=5)
     assert (chosen(found), found.too_long, found.total) == ([("/a", 1), ("/a", 3)], (9, 9, 12), 5)
+    # The limit itself is not too long.
+    limit = select(topics, most=10, longest=9)
+    assert ([n for _, n in chosen(limit)], limit.too_long) == ([0, 1, 2, 3], (12,))
     nothing = select(topics, most=10, longest=0)
     assert (chosen(nothing), len(nothing.too_long)) == ([], 5)
 
@@ -76,6 +82,60 @@ def test_all_together_have_so_many_bytes_at_most(tmp_path: Path) -> None:
     sizes = topics_of(str(counted(tmp_path / "other", {"/a": [300, 200, 400]})))
     one = select(sizes, most=3, longest=EVERYTHING, most_bytes=100)
     assert chosen(one) == [("/a", 1)] and one.sparse
+
+
+def test_topics_of_the_same_name_in_several_recordings_are_apart(tmp_path: Path) -> None:
+    one = str(counted(tmp_path / "one", {"/a": [5] * 3, "/b": [6] * 2}))
+    two = str(counted(tmp_path / "two", {"/a": [7] * 4}))
+    topics = [*topics_of(one), *topics_of(two)]
+    found = select(topics, most=100, longest=9)
+    assert [(m.bag, m.topic, m.number, len(m.data)) for m in found.messages] == [
+        *((one, "/a", 0, 5), (one, "/b", 0, 6), (one, "/a", 1, 5), (one, "/b", 1, 6)),
+        *((one, "/a", 2, 5), (two, "/a", 0, 7), (two, "/a", 1, 7), (two, "/a", 2, 7)),
+        (two, "/a", 3, 7),
+    ]
+    assert (found.total, found.topics, found.too_long) == (9, 3, ())
+    few = select(topics, most=3, longest=9)
+    assert [(m.bag, m.topic, m.number) for m in few.messages] == [
+        *((one, "/a", 0), (one, "/b", 0), (two, "/a", 0)),
+    ]
+    short = select(topics, most=100, longest=5)
+    assert len(short.messages) == 3 and sorted(short.too_long) == [6, 6, 7, 7, 7, 7]
+    # Topics that were not asked for do not count.
+    alone = select(topics_of(two), most=100, longest=9)
+    assert (alone.total, alone.topics, len(alone.messages)) == (4, 1, 4)
+
+
+def test_a_topic_without_messages_is_not_counted(tmp_path: Path) -> None:
+    messages = [("/a", STRING, number, bytes(5)) for number in range(2)]
+    topics = topics_of(str(write(tmp_path / "run", "mcap", messages, [("/never", STRING)])))
+    found = select(topics, most=9, longest=9)
+    assert (len(topics), found.topics, found.total) == (2, 1, 2)
+
+
+def test_names_of_dds_tools_are_those_of_ros(monkeypatch: pytest.MonkeyPatch) -> None:
+    connection = SimpleNamespace(topic="/a", msgtype="p::msg::A", digest=None)
+    reader = SimpleNamespace(connections=[connection, connection])
+    monkeypatch.setattr(recording, "use_recording", lambda bag, take: take(reader))
+    assert topics_of("x") == [Topic(bag="x", name="/a", type="p/msg/A", digest="")]
+
+
+def test_types_of_all_recordings_are_found_once(tmp_path: Path) -> None:
+    one = str(counted(tmp_path / "one", {"/a": [5], "/b": [5]}))
+    two = str(write(tmp_path / "two", "mcap", [], [("/c", "std_msgs/msg/Bool")]))
+
+    def names(*given: str) -> list[str]:
+        found = collect_recorded(None, given, [one, two], wire=None, problems={})
+        assert all(task.same == (task.distro,) == ("lyrical",) for task in found)
+        return [task.name for task in found]
+
+    assert names() == [STRING, "std_msgs/msg/Bool"]
+    assert names("std_msgs/String", STRING) == [STRING]
+    three = str(write(tmp_path / "three", "mcap", robot("mcap", 1)))
+    # One of two has a definition, as a part of the other, and no topic.
+    wheels = ("my_msgs/msg/Wheels", "my_msgs/msg/Wheel")
+    with pytest.raises(UnknownTypeError, match=r"^There is no topic of my_msgs/msg/Wheel, only"):
+        collect_recorded(None, wheels, [three], wire=None, problems={})
 
 
 def test_recordings_without_messages_have_none(tmp_path: Path) -> None:

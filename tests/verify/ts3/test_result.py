@@ -120,13 +120,14 @@ def test_a_record_has_what_the_result_has():
 def test_circuits_are_those_of_the_first_task_with_the_same_plan(tmp_path):
     texts = {f"p/msg/{name}.msg": "string s\n" for name in "ABC"}
     texts |= {"p/msg/Other.msg": "int8 s\n", "p/msg/Wrong.msg": "Such s\n"}
-    # Only the limit of the message differs from that of `A`.
-    texts |= {"p/msg/Huge.msg": "uint8[20000000] x\n", "p/msg/Huger.msg": "uint8[20000001] x\n"}
+    # These are longer than the usual limit of a message, which their circuits raise.
+    texts |= {f"p/msg/{name}.msg": "uint8[20000000] x\n" for name in ("Long", "Longer")}
     options = Options(paths=(str(make_files(tmp_path, texts)),))
-    names = ("Wrong", "A", "Other", "B", "C", "Huge", "Huger")
+    names = ("Wrong", "A", "Other", "B", "C", "Long", "Longer")
     tasks = [TypeUnderTest(distro="lyrical", name=f"p/msg/{n}", same=("lyrical",)) for n in names]
     found = same_circuits(tasks, options)
-    assert [(one.name[-1], other.name[-1]) for one, other in found.items()] == [
-        ("B", "A"),
-        ("C", "A"),
+    assert [(one.name, other.name) for one, other in found.items()] == [
+        ("p/msg/B", "p/msg/A"),
+        ("p/msg/C", "p/msg/A"),
+        ("p/msg/Longer", "p/msg/Long"),
     ]

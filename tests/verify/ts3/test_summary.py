@@ -183,3 +183,24 @@ def test_results_are_bound_to_the_options_of_the_cases():
     }
     usual = system.Ts3([], Request()).options
     assert usual["references"] is None and usual["share_circuits"] is True
+
+
+def test_each_type_is_a_test_on_each_bus():
+    tasks = [TypeUnderTest(distro="lyrical", name=n, same=("lyrical",)) for n in ("p/A", "p/B")]
+    tests = system.Ts3(tasks, Request(widths=(2, 4))).tests
+    assert [test.key for test in tests] == [
+        f"ts3 python lyrical {name} cdr/{width} seed=0"
+        for width in (2, 4)
+        for name in ("p/A", "p/B")
+    ]
+
+
+def test_libraries_confirm_cases_and_no_recordings(monkeypatch, capsys):
+    monkeypatch.setattr(
+        system, "find_references", lambda wanted, wires: [f"{wanted} for {','.join(wires)}"]
+    )
+    task = TypeUnderTest(distro="noetic", name="p/A", same=("noetic",))
+    with system.Ts3([task], Request(references=("genpy",))):
+        assert capsys.readouterr().out == "('genpy',) for ros1\n"
+    with system.Ts3([task], Request(bags=("x",))):
+        assert capsys.readouterr().out == ""
