@@ -73,7 +73,8 @@ class ClockKeeper:
         delay = received_ns - sent_ns
         self._delays.append(delay)
         node_ns = response.seconds * SECOND_NS + response.nanoseconds
-        offset = node_ns - (sent_ns + received_ns) / 2
+        # The times are integers up to here: as a float, one of today is a multiple of 256 ns.
+        offset = (2 * node_ns - sent_ns - received_ns) / 2
         if abs(offset) > max(STEP_NS, delay):
             self._last_ns = None
             # A time further ahead would have to be set back if the next delay is shorter.

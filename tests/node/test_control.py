@@ -42,6 +42,16 @@ def test_registers_are_numbered_in_the_order_of_topics():
     twist = [each.name for each in found if each.topic == 1]
     assert twist[0] == "passed" and twist[-2:] == ["bytes_low", "bytes_high"]
     assert {each.part for each in found if each.topic == 4} == {"in", "out"}
+    names = [(each.owner, each.part, each.name) for each in found]
+    assert [name for owner, _, name in names if owner == "/robot/odom"] == [
+        *("passed", "aborted", "full", "large"),
+        *("bytes_low", "bytes_high"),
+    ]
+    assert [name for _, part, name in names if part == "node"] == [
+        *("unknown", "control", "control_full"),
+    ]
+    # Two registers of a service have one name, in different directions, and none is twice.
+    assert len(set(names)) == len(names)
 
 
 def test_rates_are_nanoseconds():

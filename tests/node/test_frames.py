@@ -177,6 +177,33 @@ def test_a_message_beyond_the_limit_is_counted():
     assert (out, counters.large, counters.stray) == ([], 1, 3)
 
 
+def test_what_is_late_and_what_is_cut_counts_by_messages():
+    sender = MessageSender(32)
+    first, second, third = (
+        sender.frames(NodeMessage(topic=1, packet=bytes(size))) for size in (1, 40, 40)
+    )
+    # The third overtakes all but one fragment of the second, which is cut, and then late.
+    out, counters = received([*first, second[0], *third, *second])
+    assert [len(each.packet) for each in out] == [1, 40]
+    assert (counters.cut, counters.late, counters.lost, counters.stray) == (1, 1, 1, 0)
+
+
+def test_a_fragment_without_bytes_cuts_its_message():
+    frames = frames_of([NodeMessage(topic=1, packet=bytes(40))], 32)[0]
+    empty = frames[1][:HEADER_BYTES]
+    out, counters = received([frames[0], empty])
+    assert (out, counters.cut) == ([], 1)
+
+
+@pytest.mark.parametrize(("field", "at"), [("topic", 2), ("length", 4), ("tag", 8)])
+def test_fragments_of_different_messages_are_not_put_together(field, at):
+    frames = frames_of([NodeMessage(topic=1, packet=bytes(40), tag=7)], 32)[0]
+    other = bytearray(frames[1])
+    other[at] ^= 1
+    out, counters = received([frames[0], bytes(other)])
+    assert (out, counters.cut) == ([], 1), field
+
+
 def test_a_wrong_length_is_found():
     frame = bytearray(frames_of([NodeMessage(topic=1, packet=bytes(9))])[0][0])
     for wrong in (8, 10):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 import pytest
 
@@ -78,9 +79,31 @@ def test_a_node_that_was_reset_is_set_again():
     keeper = ClockKeeper(NOMINAL)
     run(0, 1_000, seconds=5, keeper=keeper)
     response = ControlResponse(operation=1, result=Result.OK, value=0, seconds=3, nanoseconds=4)
-    request = keeper.sample(START + 10**10, response, START + 10**10 + 100_000)
+    # Half of the shortest delay of late is added to the time at which the answer came.
+    request = keeper.sample(START + 10**10, response, START + 10**10 + 300_000)
     assert request.operation == Operation.SET_TIME
-    assert request.seconds == START // 10**9 + 10 and request.nanoseconds == 150_000
+    assert request.seconds == START // 10**9 + 10
+    assert 350_000 <= request.nanoseconds < 350_500
+    # What was measured before the clock was set says nothing of its rate.
+    for second in (11, 12):
+        now = START + second * 10**9
+        seconds, part = divmod(now + 50_000, 10**9)
+        same = replace(response, seconds=seconds, nanoseconds=part)
+        assert (keeper.sample(now, same, now + 100_000) is None) is (second == 11)
+
+
+@pytest.mark.parametrize(("delay", "counts"), [(200_000, True), (200_001, False)])
+def test_a_delay_of_more_than_twice_the_usual_one_does_not_count(delay, counts):
+    keeper = ClockKeeper(NOMINAL)
+    for second, took in enumerate((100_000, 100_000, 100_000, delay)):
+        now = START + second * 10**9
+        seconds, part = divmod(now + took // 2 + 1000 * second, 10**9)
+        response = ControlResponse(
+            operation=1, result=Result.OK, value=0, seconds=seconds, nanoseconds=part
+        )
+        keeper.sample(now, response, now + took)
+    # Of an odd delay, half a nanosecond is left: times are not rounded.
+    assert keeper.offset_ns == (3000 if counts else 2000)
 
 
 def test_a_keeper_that_never_changes_the_rate_is_found():

@@ -284,6 +284,39 @@ def test_at_the_end_the_counters_are_read_once_what_was_sent_has_passed():
     assert len(talk.node.read) > count + 1
 
 
+def test_an_answer_to_a_request_of_before_is_none_to_the_last_ones():
+    talk = Talk()
+    talk.run(6)
+    asked, answers = [], []
+    while asked != [0]:
+        talk.now += 0.01
+        count = len(talk.node.read)
+        for frame in talk.session.due(talk.now, talk.wall):
+            answers = talk.node.take(frame)
+        asked = talk.node.read[count:]
+        if asked != [0]:
+            for answer in answers:
+                talk.session.take(answer, talk.now, talk.wall)
+            answers = []
+    # The answer is under way when the end begins, whose first request is the same one.
+    talk.session.finish(talk.now)
+    for answer in answers:
+        talk.session.take(answer, talk.now, talk.wall)
+    count = len(talk.node.read)
+    talk.step(0.001)
+    assert talk.node.read[count:] == [0]
+
+
+@pytest.mark.parametrize("sessions", [1, 2, 3])
+def test_counters_of_all_sessions_are_kept(sessions):
+    talk = Talk()
+    talk.run(6)
+    for _ in range(sessions):
+        next_talk(talk, FakeNode())
+        talk.run(6)
+    assert [value for _, value in talk.session.drops()] == [7 * (sessions + 1)]
+
+
 def test_messages_that_wait_when_a_session_ends_are_counted():
     talk = Talk()
     talk.session.take(published(talk.node), talk.now, talk.wall)

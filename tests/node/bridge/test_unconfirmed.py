@@ -78,6 +78,15 @@ def test_what_confirms(answers, left):
     assert found.take() == Counter({"/a": left} if left else {}) and not len(found)
 
 
+def test_a_request_that_follows_an_answer_after_just_the_time_confirms():
+    for later, left in ((0.0, 0), (-0.001, 1)):
+        found = Unconfirmed()
+        found.sent("/a", -2.0)
+        found.answered(-1.0, 0.0)
+        found.answered(PASS_SECONDS + later, 1.0)
+        assert len(found) == left
+
+
 def test_answers_of_before_confirm_nothing_of_the_next_board():
     found = Unconfirmed()
     found.answered(1.0, 1.1)
