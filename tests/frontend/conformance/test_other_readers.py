@@ -145,7 +145,7 @@ def test_mistakes_in_one_of_several_messages_are_shown_where_they_are(tmp_path):
         "module p { struct B { long b; }; struct A { long a; }; };",
         "struct B { long b; }; struct A { long a; };",
         "module p { struct B { long b; }; module msg { struct A { long a; }; }; };",
-        STRUCTS.replace("struct B ", "struct B_Request "),
+        "module p { module msg { struct B_Request { long b; }; struct A { long a; }; }; };",
     ],
 )
 def test_several_structs_that_are_no_messages_of_ros_are_one_message_per_file(tmp_path, text):
