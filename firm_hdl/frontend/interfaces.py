@@ -279,7 +279,7 @@ def _derived_syntax(name: TypeName, suffix: str, text: str) -> MessageSyntax:
 
         package, word, bound, field_name = match.groups()
         is_builtin = word in PRIMITIVES[name.dialect]
-        is_of_interface = package is None and word.startswith(name.name) and word != "Header"
+        is_of_interface = package is None and word.startswith(name.name)
         type_ = TypeSyntax(
             package=package,
             name=word,

@@ -68,6 +68,18 @@ d: !!binary |
 e: [0]
 f: [0, 0]""",
     ),
+    "p/Packed": (
+        "uint8[9] a\nchar[] b\nPlain c\n",
+        """\
+a: !!binary |
+  AAAAAAAAAAAA
+b: !!binary ""
+c:
+  a: 0
+  b: 0.0
+  c: ''
+  d: false""",
+    ),
     "p/Lists": (
         "float64[] a\nstring[] b\nbool[] c\nstring[2] d\nfloat32[4] e\n",
         """\

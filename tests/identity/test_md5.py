@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 
 import pytest
 from rosbags.typesys import Stores, get_typestore
@@ -84,6 +85,13 @@ def test_blanks_at_the_end_do_not_count(tmp_path):
     ours = library(tmp_path, {"p/A": "string S=x  ", "p/B": "string S=x"}, "ros1")
     assert ours.message("p/A").constants[0].text != ""
     assert md5sum(ours.message("p/A")) == md5sum(ours.message("p/B"))
+
+
+def test_values_of_constants_count_as_they_are_written(tmp_path):
+    text = "int8 X= +07 # c\nbool a\nfloat32 Y =1.50\nstring S= x # y\n"
+    message = library(tmp_path, {"p/A": text}, "ros1").message("p/A")
+    want = "int8 X=+07\nfloat32 Y=1.50\nstring S=x # y\nbool a"
+    assert md5sum(message) == hashlib.md5(want.encode()).hexdigest()
 
 
 def test_types_of_ros2_have_none():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from firm_hdl.errors import Source, Span
@@ -108,6 +110,10 @@ def test_messages_of_different_contents_are_different():
     assert message("p/msg/Pair", a=INT8) != PAIR and PAIR != OTHER_PAIR
     again = message("p/msg/Pair", a=INT8, b=Array(element=INT8, count=7))
     assert again == PAIR and len({again, PAIR, OTHER_PAIR}) == 2
+    # Texts and comments mean nothing.
+    told = replace(PAIR, text="int8 a", comment="Two.")
+    assert told == PAIR and len({told, PAIR}) == 1
+    assert replace(PAIR, dialect="ros1") != PAIR
 
 
 @pytest.mark.parametrize(

@@ -121,6 +121,14 @@ def test_a_section_in_idl_may_declare_several_messages_in_recordings(tmp_path):
     }
 
 
+def test_names_of_structs_in_other_modules_keep_their_meaning_in_recordings(tmp_path):
+    text = """module q { module msg { struct B { long x; }; }; };
+      module p { module msg { typedef short B; struct A { B b; q::msg::B c; }; }; };"""
+    heading = f"{'=' * 80}\nIDL: p/msg/A\n"
+    ours = open_library(bags=[recorded(tmp_path / "r", heading + text)])
+    assert [str(f.type) for f in ours.message("p/A").fields] == ["int16", "q/msg/B"]
+
+
 def test_mistakes_in_one_of_several_messages_are_shown_where_they_are(tmp_path):
     heading = f"{'=' * 80}\nIDL: p/msg/A\n"
     text = SEVERAL.replace("long B_last", "lang B_last")
@@ -137,7 +145,7 @@ def test_mistakes_in_one_of_several_messages_are_shown_where_they_are(tmp_path):
         "module p { struct B { long b; }; struct A { long a; }; };",
         "struct B { long b; }; struct A { long a; };",
         "module p { struct B { long b; }; module msg { struct A { long a; }; }; };",
-        STRUCTS.replace("struct B ", "struct B_Request "),
+        "module p { module msg { struct B_Request { long b; }; struct A { long a; }; }; };",
     ],
 )
 def test_several_structs_that_are_no_messages_of_ros_are_one_message_per_file(tmp_path, text):
