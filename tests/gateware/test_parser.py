@@ -359,11 +359,16 @@ def test_the_size_of_a_packet_saturates():
             ctx.set(sizes.next, 1)
             await ctx.tick()
             ctx.set(sizes.next, 0)
-        # A beat in the middle of such a packet.
+        # Beats in the middle of such a packet.
         ctx.set(sizes.beats, (1 << 29) - 1)
         ctx.set(sizes.beat, {"valid": 1, "last": 0, "count": 8})
-        await ctx.tick()
+        await ctx.tick().repeat(3)
         ctx.set(sizes.beat, {"valid": 1, "last": 1, "count": 1})
+        await ctx.tick()
+        seen.append(ctx.get(sizes.bytes))
+        # The packet after it begins at 0.
+        ctx.set(sizes.beat, {"valid": 1, "last": 1, "count": 5})
+        ctx.set(sizes.next, 1)
         await ctx.tick()
         seen.append(ctx.get(sizes.bytes))
 
@@ -371,7 +376,7 @@ def test_the_size_of_a_packet_saturates():
     simulator.add_clock(1e-6)
     simulator.add_testbench(bench)
     simulator.run()
-    assert seen == [(1 << 32) - 1] * 4
+    assert seen == [*[(1 << 32) - 1] * 4, 5]
 
 
 def test_parameters_are_those_of_converters():

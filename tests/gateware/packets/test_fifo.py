@@ -190,7 +190,8 @@ def test_without_a_consumer_the_link_is_held_exactly_when_nothing_has_room():
 @pytest.mark.parametrize("packets", [1, 2, 3, 8])
 def test_the_number_of_packets_is_a_limit(packets):
     fifo = PacketFifo(4, 1024, packets)
-    sent = [of_beats(1, 4, seed) for seed in range(20)]
+    # No size is that of a packet a power of two before.
+    sent = [random.Random(seed).randbytes(1 + seed % 3) for seed in range(20)]
     waits = 60
     run = Run(fifo, sent, stalls={"out": Stalls.bits("0" * waits + "1" * 1000)})
     assert run.outcomes == [KEPT] * 20
@@ -390,7 +391,10 @@ def test_parameters_are_checked():
             PacketFifo(8, size, 4)
     with pytest.raises(ValueError, match=r"^Number of packets must be at least 1, not 0$"):
         PacketFifo(8, 64, 0)
-    with pytest.raises(TypeError, match=r"^Memory size must be an integer, not '64'$"):
-        PacketFifo(8, "64", 4)
+    for other in ("64", 64.0):
+        with pytest.raises(TypeError, match=f"^Memory size must be an integer, not {other!r}$"):
+            PacketFifo(8, other, 4)
+        with pytest.raises(TypeError, match=f"^Number of packets must .* integer, not {other!r}$"):
+            PacketFifo(8, 64, other)
     with pytest.raises(ValueError, match=r"^Policy must be 'wait' or 'drop', not 'hold'$"):
         PacketFifo(8, 64, 4, when_full="hold")

@@ -122,6 +122,7 @@ def test_parameters_are_checked():
         PacketRouter(8, 0)
     with pytest.raises(ValueError, match=r"^5 topics do not fit into 2 bits$"):
         PacketRouter(8, 5, topic_bits=2)
+    assert PacketRouter(8, 4, topic_bits=2).topics == 4
 
 
 class _ForgetsTheTopic(PacketRouter):
