@@ -19,6 +19,7 @@ from firm_hdl.fuzz.report import HEAD, failure_text, line, summary
 from firm_hdl.fuzz.run import judged, run_task
 from firm_hdl.fuzz.table import table_of
 from firm_hdl.fuzz.types import message_of
+from firm_hdl.gateware.packets import PacketGate
 from firm_hdl.jobs.processes import ToolError
 from tests.fuzz.samples import EMPTY, STRING
 from tests.strategies import make
@@ -301,7 +302,12 @@ def test_values_of_an_output_are_whole_words():
 
 
 def test_gates_have_little_memory_and_their_own_policy(monkeypatch):
-    texts = []
+    texts, asked = [], []
+
+    class Gate(PacketGate):
+        def __init__(self, message, **options):
+            asked.append(options)
+            super().__init__(message, **options)
 
     def to_verilog(text, *, module, header):
         texts.append(text)
@@ -309,6 +315,7 @@ def test_gates_have_little_memory_and_their_own_policy(monkeypatch):
 
     # Yosys is slow.
     monkeypatch.setattr("firm_hdl.fuzz.circuits.to_verilog", to_verilog)
+    monkeypatch.setattr("firm_hdl.fuzz.circuits.PacketGate", Gate)
     message = make("ros2", {"data": "float64[40]"})
     table = table_of(message, wire="cdr", bus_bytes=4, max_message_bytes=500)
     made = circuits_of(
@@ -321,6 +328,11 @@ def test_gates_have_little_memory_and_their_own_policy(monkeypatch):
     # Two of the shortest packets fit: of 4 and 320 bytes.
     assert [(each.drops, each.memory_bytes) for each in made] == [(False, 1024), (True, 1024)]
     assert texts[0] != texts[1]
+    assert [(each["when_full"], each["max_message_bytes"]) for each in asked] == [
+        ("wait", 500),
+        ("drop", 500),
+    ]
+    assert {(each["wire"], each["bus_bytes"], each["packets"]) for each in asked} == {("cdr", 4, 8)}
     for each, module in zip(made, ("gate_wait", "gate_drop"), strict=True):
         assert each.files[f"{module}.v"] == f"module {module}\n// altered {module}\n"
         assert (each.name, each.counters, each.memory_packets) == (module.replace("_", "-"), 9, 8)

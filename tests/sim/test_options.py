@@ -12,7 +12,7 @@ import pytest
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import Status, packet_layout
 from firm_hdl.sim import Harness, RunOptions, Stalls, decode, encode, loopback
-from firm_hdl.sim.bench import Bench
+from firm_hdl.sim.bench import CHUNK, Bench, in_chunks
 from firm_hdl.sim.record import RunResult
 from tests.strategies import make
 
@@ -154,3 +154,10 @@ def test_a_value_without_fields_is_no_mapping_of_transfers():
     empty = make("ros1", {})
     result = encode(empty, [{}, {0: [1]}])
     assert (result.packets, result.statuses) == ([b"", b""], [Status.OK] * 2)
+
+
+@pytest.mark.parametrize("count", [0, 1, CHUNK - 1, CHUNK, CHUNK + 1, 3 * CHUNK + 1])
+def test_every_stream_is_in_a_chunk(count):
+    chunks = list(in_chunks(range(count)))
+    assert [each for chunk in chunks for each in chunk] == list(range(count))
+    assert all(0 < len(chunk) <= CHUNK for chunk in chunks)

@@ -126,6 +126,15 @@ def test_cycles_are_counted_from_the_first_in_to_the_last_out():
     assert run.finish().cycles == 7
 
 
+def test_cycle_0_is_the_first_of_all():
+    run = recorder()
+    takes = run.takes()
+    takes["packets_in"](0, 0)
+    takes["packets_in"](1, 0)
+    takes["packets_out"](9, beat(b"ab"))
+    assert run.finish().cycles == 10
+
+
 def test_latency_is_from_the_last_in_to_the_last_out():
     run = recorder()
     takes = run.takes()

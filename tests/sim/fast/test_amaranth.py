@@ -62,6 +62,19 @@ def test_the_last_value_of_an_input_counts(start):
     assert simulation.get("y") == 0x81 and simulation.cycle == 0
 
 
+def test_calls_after_a_look_at_a_cycle_still_change_that_cycle(start):
+    simulation = start()
+    simulation.send("i", b"a")
+    simulation.run(1)
+    assert simulation.get("y") == 1
+    # In cycle 1, `o` would transfer. Of four cycles, three are stalled, and cycle 3 is not.
+    simulation.stall("o", [True] * 3 + [False])
+    simulation.send("j", b"b")
+    simulation.run(6)
+    assert simulation.transfers("o") == [(3, ord("a"))]
+    assert simulation.transfers("p") == [(2, ord("b"))]
+
+
 def test_a_reset_forgets_what_was_offered(start):
     simulation = start()
     simulation.stall("o", [True] * 9 + [False])
