@@ -199,6 +199,15 @@ def test_costs_are_those_of_packets(name, bus_bytes):
         assert hardest == cost
 
 
+def test_a_bad_packet_holds_a_deserializer_longer_than_the_longest_good_one():
+    _, made = manifest_of(Library().message("geometry_msgs/msg/Twist"), bus_bytes=8)
+    recovery = made["timing"]["recovery"]
+    # All good packets have 52 bytes, and 7 beats.
+    assert recovery["longest_packet_cycles"] == 7 < recovery["most_cycles"]
+    # As docs/interface.md says.
+    assert made["timing"]["latency_cycles"] == {"deserializer": 5, "serializer": 4}
+
+
 def test_shortest_and_hardest_packets_are_those_of_the_plan():
     _, made = manifest_of(Library().message("diagnostic_msgs/msg/DiagnosticArray"), bus_bytes=8)
     figures = made["timing"]
