@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from firm_hdl.verify.report import html, markdown
 from firm_hdl.verify.report.command import write_report
 from firm_hdl.verify.report.outcomes import NotRun, outcomes_of
 from firm_hdl.verify.report.stats import Correlation, Fit
 from firm_hdl.verify.report.summary import Trend, summarise
 from firm_hdl.verify.report.tables import (
+    TableCell,
     coverage_table,
     every_table,
     group_table,
@@ -168,3 +170,11 @@ def test_the_form_of_a_report_is_that_of_its_name_in_any_case(tmp_path):
         pass
     write_report([path], out)
     assert out.read_text().startswith("{") and [*tmp_path.glob("*.part")] == []
+
+
+def test_a_bar_is_in_pages_only_and_a_number_may_have_a_colour():
+    table = group_table(summarise({"r": run_of(a_record())}).by_suite, "Test system")
+    written = markdown._table(table).splitlines()[0]
+    assert "Share" in table.headings and "Share" not in written and "Result" in written
+    assert 'class="n failed"' in html._cell(TableCell("1", 1.0, verdict="failed"))
+    assert 'class="n"' in html._cell(TableCell("1", 1.0))
