@@ -133,3 +133,38 @@ def test_a_packet_that_nobody_asked_for_fails_its_type():
     node.first, node.is_late = next(iter(node.loops)), False
     first, second = verdicts(node).values()
     assert isinstance(first, Passed) and isinstance(second, Failed)
+
+
+class TalksAhead(LoopNode):
+    """While the first type is tested, it sends a packet of the second."""
+
+    def take(self, frame):
+        frames = super().take(frame)
+        if self.heard == 3:
+            self.heard += 1
+            return [*frames, *self.send(list(self.loops.values())[1], b"\0\1\0\0\7")]
+        return frames
+
+
+def test_what_came_before_a_type_does_not_count_for_it():
+    found = verdicts(TalksAhead(described(*BOTH)), broken=False)
+    assert [type(each) for each in found.values()] == [Passed, Passed]
+
+
+def test_a_case_may_be_as_long_as_the_limit():
+    text = loop_text([BOOL], "lyrical").replace("Bool}", "Bool, max_message_bytes: 5}")
+    assert verdicts(LoopNode(read_description_text(text))) == {BOOL: Passed(5)}
+
+
+class DropsAndCounts(LoopNode):
+    """Its gate drops a good packet, and counts that."""
+
+    def status(self, message):
+        return "TRUNCATED" if self.heard == 3 else super().status(message)
+
+
+def test_a_packet_that_is_missing_does_not_hide_how_it_was_counted():
+    failures = verdicts(DropsAndCounts(ONE), silent_seconds=0.3, broken=False)[STRING].failures
+    assert "board: 1 of 7 packets did not come back" in failures[0]
+    name = "/loopback/in/std_msgs/String"
+    assert f"board: 'truncated' of {name} counts 1 instead of 0" in failures

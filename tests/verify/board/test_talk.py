@@ -170,6 +170,30 @@ def test_what_the_board_lost_before_does_not_count():
         assert talk.losses() == {"overrun": 2}
 
 
+def test_everything_that_is_lost_on_the_way_back_is_told(talk):
+    causes = {"lost": 1, "late": 2, "cut": 3, "stray": 4, "malformed": 5, "large": 6}
+    for cause, count in causes.items():
+        setattr(talk._receiver.counters, cause, count)
+    assert talk.losses() == causes
+
+
+@pytest.mark.parametrize("waits", [False, True])
+def test_what_waits_to_be_sent_is_sent_as_soon_as_there_is_room(waits):
+    flushed = []
+
+    class Busy(FakeBoard):
+        """A board that has frames to send, or none."""
+
+        waits_to_send = waits
+
+        def flush(self):
+            flushed.append(True)
+
+    with Talk(Busy(LoopNode(ONE)), ONE, 0.3) as talk:
+        talk.open()
+    assert bool(flushed) is waits
+
+
 def test_registers_are_returned_in_the_order_of_the_request(talk):
     node, kept = talk._board.node, []
     right = node.control

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from firm_hdl.verify.report import html, markdown
+from firm_hdl.verify.report.command import write_report
 from firm_hdl.verify.report.outcomes import NotRun, outcomes_of
 from firm_hdl.verify.report.stats import Correlation, Fit
 from firm_hdl.verify.report.summary import Trend, summarise
 from firm_hdl.verify.report.tables import (
+    TableCell,
     coverage_table,
     every_table,
     group_table,
@@ -14,7 +17,7 @@ from firm_hdl.verify.report.tables import (
     within_table,
 )
 from firm_hdl.verify.report.verdicts import reason_groups
-from firm_hdl.verify.results.file import Results
+from firm_hdl.verify.results.file import Results, ResultsWriter
 from firm_hdl.verify.results.records import OracleVerdict, PlanCoverage, Seconds
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from tests.verify.report.samples import a_record, a_test
@@ -130,14 +133,14 @@ def test_one_of_many_keeps_a_share_below_all():
             seconds=Seconds(testing=0.005 if number else 30.0),
             coverage=PlanCoverage(taken=10 - (not number), possible=10),
         )
-        for number in range(4000)
+        for number in range(2500)
     ]
     summary = summarise({"r": run_of(*records)})
     shares = within_table(summary.curves).rows[0][2:]
     assert {cell.text for cell in shares[:-1]} == {"99.9%"} and shares[-1].text == "100.0%"
-    assert shares[0].value == 3999 / 4000
+    assert shares[0].value == 2499 / 2500
     (row,) = coverage_table(summary).rows
-    assert [cell.text for cell in row[1:]] == ["4,000", "3,999", "39,999", "40,000", "99.9%"]
+    assert [cell.text for cell in row[1:]] == ["2,500", "2,499", "24,999", "25,000", "99.9%"]
     # A plan without decisions has taken all of them.
     empty = a_record(coverage=PlanCoverage(taken=0, possible=0))
     table = every_table(summarise({"r": run_of(empty)}).outcomes)
@@ -159,3 +162,19 @@ def test_figures_of_a_trend_are_in_their_columns():
         *("3·x^4.00", "0.12", "1 + 2·x", "0.75"),
     ]
     assert [cell.value for cell in row[3:6]] == [9, 0.5, -0.25]
+
+
+def test_the_form_of_a_report_is_that_of_its_name_in_any_case(tmp_path):
+    path, out = tmp_path / "r.jsonl", tmp_path / "R.JSON"
+    with ResultsWriter(path, options={}, planned=[a_test()]):
+        pass
+    write_report([path], out)
+    assert out.read_text().startswith("{") and [*tmp_path.glob("*.part")] == []
+
+
+def test_a_bar_is_in_pages_only_and_a_number_may_have_a_colour():
+    table = group_table(summarise({"r": run_of(a_record())}).by_suite, "Test system")
+    written = markdown._table(table).splitlines()[0]
+    assert "Share" in table.headings and "Share" not in written and "Result" in written
+    assert 'class="n failed"' in html._cell(TableCell("1", 1.0, verdict="failed"))
+    assert 'class="n"' in html._cell(TableCell("1", 1.0))

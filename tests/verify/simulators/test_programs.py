@@ -31,6 +31,12 @@ def test_vvp_is_that_beside_its_compiler(monkeypatch, tmp_path):
     assert icarus.Icarus().run_path == str(beside)
 
 
+def test_verilator_is_that_of_the_environment(monkeypatch, tmp_path):
+    own = program(tmp_path / "my-verilator")
+    monkeypatch.setenv("VERILATOR", str(own))
+    assert verilated.find_verilator() == str(own)
+
+
 def test_icarus_reads_the_language_that_was_asked_for(monkeypatch, tmp_path):
     monkeypatch.setenv("IVERILOG", str(program(tmp_path / "iverilog")))
     program(tmp_path / "vvp")

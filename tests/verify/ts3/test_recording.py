@@ -106,6 +106,16 @@ def test_topics_of_the_same_name_in_several_recordings_are_apart(tmp_path: Path)
     assert (alone.total, alone.topics, len(alone.messages)) == (4, 1, 4)
 
 
+def test_messages_of_another_type_on_the_same_topic_are_left_out(tmp_path: Path) -> None:
+    kinds = (STRING, "std_msgs/msg/Bool", STRING, "std_msgs/msg/Bool", "std_msgs/msg/Bool")
+    messages = [("/a", kind, number, bytes(5 + number)) for number, kind in enumerate(kinds)]
+    topics = topics_of(str(write(tmp_path / "run", "mcap", messages)))
+    assert [topic.type for topic in topics] == [STRING, "std_msgs/msg/Bool"]
+    found = select(topics[:1], most=9, longest=9)
+    assert [(m.number, len(m.data)) for m in found.messages] == [(0, 5), (1, 7)]
+    assert (found.total, found.topics) == (2, 1)
+
+
 def test_a_topic_without_messages_is_not_counted(tmp_path: Path) -> None:
     messages = [("/a", STRING, number, bytes(5)) for number in range(2)]
     topics = topics_of(str(write(tmp_path / "run", "mcap", messages, [("/never", STRING)])))

@@ -1,0 +1,83 @@
+"""The description of a node that loops types: its text, and the loops that are tested."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.errors import UserError
+from firm_hdl.verify.board import description
+from firm_hdl.verify.board.description import chosen_loops, loop_text, write_description
+from firm_hdl.verify.systems.options import Request
+from tests.verify.board.fakes import BOTH, STRING, described
+
+REQUEST = Request(distros=("lyrical",), widths=(4,))
+
+
+def test_each_type_comes_in_once_and_goes_out_once_in_the_order_of_names():
+    names = ["q/srv/Ask_Request", "p/B", "p/msg/A", "p/B"]
+    text = loop_text(names, "jazzy", paths=["/a/b", "/a"], folder="/a/c", bus_bytes=4)
+    assert text.splitlines()[1:] == [
+        "node: loopback",
+        "distro: jazzy",
+        'paths: ["../b", ".."]',
+        "bus_bytes: 4",
+        "clock_mhz: 100",
+        "link: {kind: udp}",
+        "accelerator: firm_hdl.node.loop:Loop",
+        "subscribe:",
+        "  /loopback/in/p/B: {type: p/B}",
+        "  /loopback/in/p/A: {type: p/msg/A}",
+        "  /loopback/in/q/Ask_Request: {type: q/srv/Ask_Request}",
+        "publish:",
+        "  /loopback/out/p/B: {type: p/B}",
+        "  /loopback/out/p/A: {type: p/msg/A}",
+        "  /loopback/out/q/Ask_Request: {type: q/srv/Ask_Request}",
+    ]
+    assert "paths" not in loop_text(names, "jazzy")
+
+
+@pytest.mark.parametrize(
+    ("board", "link"),
+    [
+        (None, "{kind: udp}"),
+        ("udp://a", "{kind: udp}"),
+        ("udp://a:99", "{kind: udp, port: 99}"),
+        # That the name of a board is wrong is told where it is opened.
+        ("udp://a:99999", "{kind: udp}"),
+        ("tcp://a:99", "uart"),
+        ("serial:///dev/a?baud=9600&baud=115200", "{kind: uart, baud: 115200}"),
+        ("serial:///dev/a?baud=fast", "uart"),
+        ("sim", "stream"),
+    ],
+)
+def test_the_link_is_that_of_the_board(board, link):
+    assert f"link: {link}" in loop_text([STRING], "lyrical", board=board).splitlines()
+
+
+def test_a_type_that_is_named_needs_a_loop():
+    node = described(*BOTH)
+    assert chosen_loops(node, ()) == node.loops()
+    assert chosen_loops(node, ["std_msgs/String"]) == chosen_loops(node, [STRING])
+    with pytest.raises(UserError, match=r"has no loop of std_msgs/Char$"):
+        chosen_loops(node, [STRING, "std_msgs/msg/Char"])
+
+
+def test_a_description_that_cannot_be_built_is_not_written(tmp_path, monkeypatch):
+    path = tmp_path / "node.yaml"
+    with pytest.raises(UserError, match="the bus of a node has"):
+        write_description(Request(distros=("lyrical",), widths=(64,)), [STRING], str(path))
+
+    def refuse(text, **options):
+        raise UserError("it cannot be built")
+
+    monkeypatch.setattr(description, "read_description_text", refuse)
+    with pytest.raises(UserError, match="it cannot be built"):
+        write_description(REQUEST, [STRING], str(path))
+    assert not path.exists()
+    monkeypatch.undo()
+    write_description(REQUEST, [STRING], str(path))
+    written = path.read_text()
+    assert "bus_bytes: 4\n" in written and "type: std_msgs/msg/String" in written
+    with pytest.raises(UserError, match="exists already"):
+        write_description(REQUEST, BOTH, str(path))
+    assert path.read_text() == written
