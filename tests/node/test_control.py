@@ -1,8 +1,10 @@
-"""Control messages on the host, and the registers of a node."""
+"""Control messages on the host: registers of a node, and its clock, which follows the host's."""
 
 from __future__ import annotations
 
+import random
 import struct
+from dataclasses import replace
 
 import pytest
 
@@ -15,7 +17,11 @@ from firm_hdl.node.control import (
     nominal_rate,
     registers,
 )
+from firm_hdl.node.timekeeping import ClockKeeper
 from tests.node.samples import read
+
+NOMINAL = nominal_rate(100e6)
+START = 1_700_000_000 * 10**9
 
 
 def test_requests_are_the_documented_bytes():
@@ -57,3 +63,107 @@ def test_registers_are_numbered_in_the_order_of_topics():
 def test_rates_are_nanoseconds():
     assert nominal_rate(100e6) == 10 << 22
     assert nominal_rate(156.25e6) == round(6.4 * (1 << 22))
+
+
+class SimulatedClock:
+    """A node's clock with a crystal that is wrong."""
+
+    def __init__(self, error):
+        self.error, self.rate = error, NOMINAL
+        self.host_ns, self.node_ns = START, 0.0
+
+    def at(self, host_ns):
+        passed = host_ns - self.host_ns
+        self.node_ns += passed * (1 + self.error) * self.rate / NOMINAL
+        self.host_ns = host_ns
+        return self.node_ns
+
+    def do(self, host_ns, request):
+        self.at(host_ns)
+        if request.operation == Operation.SET_TIME:
+            self.node_ns = request.seconds * 10**9 + request.nanoseconds
+        else:
+            self.rate = request.argument
+
+
+def run(error, jitter_ns, seconds=90, keeper=None):
+    """Return the offsets in ns after each second, and how often the time was set."""
+    clock, keeper, rng = SimulatedClock(error), keeper or ClockKeeper(NOMINAL), random.Random(1)
+    offsets, sets, now = [], 0, START
+    for second in range(seconds):
+        now = START + second * 10**9
+        there, back = (rng.randint(50_000, 50_000 + jitter_ns) for _ in range(2))
+        node = int(clock.at(now + there))
+        whole, part = divmod(node, 10**9)
+        response = ControlResponse(
+            operation=1, result=Result.OK, value=0, seconds=whole, nanoseconds=part
+        )
+        request = keeper.sample(now, response, now + there + back)
+        if request is not None:
+            sets += request.operation == Operation.SET_TIME
+            clock.do(now + 2 * (there + back), request)
+        later = now + 900_000_000
+        offsets.append(clock.at(later) - later)
+    return offsets, sets
+
+
+@pytest.mark.parametrize("error", [-100e-6, 0, 37e-6, 100e-6])
+def test_a_clock_is_set_once_and_then_kept_in_step(error):
+    offsets, sets = run(error, jitter_ns=20_000)
+    assert sets == 1
+    assert all(abs(offset) < 30_000 for offset in offsets[60:])
+
+
+def test_samples_with_a_long_delay_do_not_count():
+    keeper = ClockKeeper(NOMINAL)
+    run(0, 1_000, seconds=20, keeper=keeper)
+    node, part = divmod(START + 20 * 10**9 + 700_000, 10**9)
+    response = ControlResponse(
+        operation=1, result=Result.OK, value=0, seconds=node, nanoseconds=part
+    )
+    before = keeper.offset_ns
+    assert keeper.sample(START + 20 * 10**9, response, START + 20 * 10**9 + 800_000) is None
+    assert keeper.offset_ns == before
+
+
+def test_a_node_that_was_reset_is_set_again():
+    keeper = ClockKeeper(NOMINAL)
+    run(0, 1_000, seconds=5, keeper=keeper)
+    response = ControlResponse(operation=1, result=Result.OK, value=0, seconds=3, nanoseconds=4)
+    # Half of the shortest delay of late is added to the time at which the answer came.
+    request = keeper.sample(START + 10**10, response, START + 10**10 + 300_000)
+    assert request.operation == Operation.SET_TIME
+    assert request.seconds == START // 10**9 + 10
+    assert 350_000 <= request.nanoseconds < 350_500
+    # What was measured before the clock was set says nothing of its rate.
+    for second in (11, 12):
+        now = START + second * 10**9
+        seconds, part = divmod(now + 50_000, 10**9)
+        same = replace(response, seconds=seconds, nanoseconds=part)
+        assert (keeper.sample(now, same, now + 100_000) is None) is (second == 11)
+
+
+@pytest.mark.parametrize(("delay", "counts"), [(200_000, True), (200_001, False)])
+def test_a_delay_of_more_than_twice_the_usual_one_does_not_count(delay, counts):
+    keeper = ClockKeeper(NOMINAL)
+    for second, took in enumerate((100_000, 100_000, 100_000, delay)):
+        now = START + second * 10**9
+        seconds, part = divmod(now + took // 2 + 1000 * second, 10**9)
+        response = ControlResponse(
+            operation=1, result=Result.OK, value=0, seconds=seconds, nanoseconds=part
+        )
+        keeper.sample(now, response, now + took)
+    # Of an odd delay, half a nanosecond is left: times are not rounded.
+    assert keeper.offset_ns == (3000 if counts else 2000)
+
+
+def test_a_keeper_that_never_changes_the_rate_is_found():
+    """The twin: without corrections, 100 ppm are 10 ms after 100 s."""
+
+    class Idle(ClockKeeper):
+        def sample(self, sent_ns, response, received_ns):
+            request = super().sample(sent_ns, response, received_ns)
+            return request if request and request.operation == Operation.SET_TIME else None
+
+    offsets, _ = run(100e-6, 1_000, keeper=Idle(NOMINAL))
+    assert max(map(abs, offsets[60:])) > 30_000

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,9 +10,9 @@ import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from firm_hdl.rtps import Guid, Sample, SampleIdentity
-from firm_hdl.rtps.ros import names
+from firm_hdl.rtps.ros import names, services
 from firm_hdl.rtps.ros.graph import GraphInfo, NodeInfo
-from firm_hdl.rtps.ros.services import Client
+from firm_hdl.rtps.ros.services import Client, Service
 from firm_hdl.rtps.wire.octets import MalformedError
 
 GUIDS = [Guid(bytes(range(12)), entity) for entity in (0x1C1, 0x103, 0x204, 0x304)]
@@ -55,6 +56,8 @@ def test_names_on_the_wire():
     assert names.type_name("a_b/srv/Go", "_Request") == "a_b::srv::dds_::Go_Request_"
     assert names.demangled_type("std_msgs::msg::dds_::String_") == "std_msgs/msg/String"
     assert names.demangled_type("std_msgs::String") is None
+    for kind in ("msg", "srv", "action"):
+        assert names.demangled_type(names.type_name(f"a/{kind}/B")) == f"a/{kind}/B"
     assert names.demangled_topic("rt/ns/chatter") == "/ns/chatter"
     assert names.demangled_topic("rq/goRequest") is None
     for bad in ("String", "std_msgs/String", "Std/msg/String", "std_msgs/msg/1s"):
@@ -115,6 +118,20 @@ def test_the_graph_is_what_rosbags_writes(gid_bytes):
         assert gid_bytes == 24 and size in range(24, 28) and part.nodes == ()
 
 
+def test_graphs_are_limited():
+    """4,096 nodes, and no more behind them than padding."""
+    head = b"\0\1\0\0" + bytes(GUIDS[0])
+    node = bytes.fromhex("02000000 2f000000 02000000 6e000000 00000000 00000000")
+    for count, known in ((1, True), (4096, True), (4097, False)):
+        payload = head + count.to_bytes(4, "little") + node * count
+        for rest, good in ((b"", True), (bytes(3), True), (bytes(4), False)):
+            if known and good:
+                assert len(GraphInfo.decode(payload + rest).nodes) == count
+                continue
+            with pytest.raises(MalformedError, match=r"^no graph in \d+ bytes$"):
+                GraphInfo.decode(payload + rest)
+
+
 def test_identities():
     sample = Sample(payload=b"", writer=GUIDS[1], sequence_number=5)
     assert sample.identity == SampleIdentity(GUIDS[1], 5)
@@ -160,3 +177,85 @@ def test_a_reply_names_the_writer_of_its_request_or_the_reader_of_replies(names_
     assert not future.done()
     reply(own, 7)
     assert future.result(0) == b"!"
+
+
+class Replies:
+    """A writer of replies, which writes down what it sends."""
+
+    def __init__(self):
+        self.matched, self.sent = (), []
+
+    def write(self, reply, identity):
+        self.sent.append((reply, identity))
+
+
+def request(number, related=None):
+    payload = b"%d" % number
+    return Sample(payload=payload, writer=GUIDS[1], sequence_number=number, related=related)
+
+
+def serving(handler=lambda payload: payload):
+    service, replies = Service(None, handler), Replies()
+    service.open(SimpleNamespace(), replies)
+    return service, replies
+
+
+# A reader of replies, as a request names it: of its number, only the writer knows.
+READER = SampleIdentity(GUIDS[3], -1 << 32)
+
+
+def test_a_reply_has_the_name_of_its_request():
+    service, replies = serving()
+    nobody = SampleIdentity(Guid(bytes(12), 0), 9)
+    for number, related in ((3, None), (4, nobody)):
+        service.on_request(request(number, related))
+    assert [each.sequence_number for _, each in replies.sent] == [3, 4]
+    assert {each.writer for _, each in replies.sent} == {GUIDS[1]}
+    replies.matched = (SimpleNamespace(guid=READER.writer),)
+    service.on_request(request(5, READER))
+    assert replies.sent[2:] == [(b"5", SampleIdentity(READER.writer, 5))]
+
+
+def test_a_reply_waits_for_its_reader():
+    service, replies = serving()
+    service.on_request(request(1, READER))
+    other, own = (SimpleNamespace(guid=each) for each in (GUIDS[2], READER.writer))
+    for reader, came in ((other, True), (own, False)):
+        service.on_match(reader, came)
+        assert replies.sent == []
+    for _ in range(2):
+        service.on_match(own, True)
+        assert replies.sent == [(b"1", SampleIdentity(READER.writer, 1))]
+
+
+@pytest.mark.parametrize(("patience", "left"), [(100.0, [b"2", b"3"]), (-1.0, [])])
+def test_replies_wait_neither_long_nor_in_great_number(monkeypatch, patience, left):
+    monkeypatch.setattr(services, "_MOST_WAITING", 2)
+    monkeypatch.setattr(services, "_PATIENCE", patience)
+    service, replies = serving()
+    for number in (1, 2, 3):
+        service.on_request(request(number, READER))
+    service.on_match(SimpleNamespace(guid=READER.writer), True)
+    assert [reply for reply, _ in replies.sent] == left
+
+
+def test_requests_that_come_before_the_service_is_open_are_answered_in_order():
+    service, replies = Service(None, lambda payload: payload), Replies()
+    for number in (1, 2):
+        service.on_request(request(number))
+    for _ in range(2):
+        service.open(SimpleNamespace(), replies)
+        assert [reply for reply, _ in replies.sent] == [b"1", b"2"]
+
+
+def test_replies_of_futures(caplog):
+    futures = [Future() for _ in range(3)]
+    service, replies = serving(lambda payload: futures[int(payload)])
+    for number in range(3):
+        service.on_request(request(number))
+    futures[0].cancel()
+    assert replies.sent == [] and not caplog.records
+    futures[1].set_exception(ValueError("no"))
+    assert replies.sent == [] and [each.message for each in caplog.records] == ["a service failed"]
+    futures[2].set_result(b"!")
+    assert replies.sent == [(b"!", SampleIdentity(GUIDS[1], 2))]

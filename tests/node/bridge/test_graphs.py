@@ -7,12 +7,13 @@ import json
 import os
 import sys
 import time
+from types import ModuleType
 
 import pytest
 
 from firm_hdl.errors import UserError
 from firm_hdl.node import read_description_text
-from firm_hdl.node.graphs import GraphError, graph_of
+from firm_hdl.node.graphs import GraphError, graph_of, rtps
 from firm_hdl.node.graphs.lines import LinesGraph
 from firm_hdl.node.graphs.ros1 import definitions
 from firm_hdl.node.graphs.ros2 import RclpyGraph, has_rclpy
@@ -73,6 +74,13 @@ def test_names_of_graphs(monkeypatch):
     assert isinstance(graph_of(None, ECHO), RclpyGraph if has_rclpy() else RtpsGraph)
     # An interface is what rclpy cannot choose.
     assert isinstance(graph_of("ros2", ECHO, interface="lo"), RtpsGraph)
+    ours = graph_of("rtps", ECHO, domain=3, interface="lo")
+    assert (ours._options["domain"], ours._options["interface"]) == (3, "lo")
+    monkeypatch.setitem(sys.modules, "rclpy", ModuleType("rclpy"))
+    theirs = graph_of(None, ECHO, domain=4)
+    assert isinstance(theirs, RclpyGraph) and theirs._domain == 4
+    assert isinstance(graph_of("ros2", ECHO, interface="lo"), RtpsGraph)
+    assert isinstance(graph_of("rtps", ECHO), RtpsGraph)
     with pytest.raises(UserError, match="which the graph 'ros1' does not carry"):
         graph_of("ros1", ECHO)
     old = read_description_text(
@@ -88,9 +96,30 @@ def test_names_of_graphs(monkeypatch):
 def test_the_domain_of_the_environment(monkeypatch):
     monkeypatch.setenv("ROS_DOMAIN_ID", "7")
     assert RtpsGraph(ECHO)._options["domain"] == 7
+    # What the caller says counts more, also if that is 0.
+    assert RtpsGraph(ECHO, domain=0)._options["domain"] == 0
+    monkeypatch.setenv("ROS_DOMAIN_ID", "")
+    assert RtpsGraph(ECHO)._options["domain"] == 0
     monkeypatch.setenv("ROS_DOMAIN_ID", "seven")
     with pytest.raises(UserError, match="ROS_DOMAIN_ID is 'seven', and should be a number"):
         RtpsGraph(ECHO)
+
+
+@pytest.mark.parametrize(
+    ("options", "policies"),
+    [
+        ("", (2, 0, 10)),
+        (", reliability: best_effort, depth: 3", (1, 0, 3)),
+        (", durability: transient_local, depth: 1", (2, 1, 1)),
+        # All samples are kept, whatever the depth is.
+        (", history: keep_all, depth: 7", (2, 0, 0)),
+    ],
+)
+def test_policies_of_a_topic_are_those_of_its_endpoints(options, policies):
+    text = f"node: n\npublish: {{a: {{type: std_msgs/msg/Bool{options}}}}}\n"
+    (topic,) = read_description_text(text).topics
+    found = rtps._qos(topic.qos)
+    assert (found.reliability, found.durability, found.depth) == policies
 
 
 def test_our_own_participant():

@@ -23,3 +23,22 @@ def test_losses_on_the_way_add_up_over_all_sessions():
         assert run_until(made, lambda: made.is_ready)
     assert made.on_the_way == {"lost": 6}
     made.close()
+
+
+def test_restarts_add_up_over_all_sessions():
+    board = FakeBoard()
+    made, _ = bridge_of(board, FakeGraph())
+    assert run_until(made, lambda: made.is_ready)
+    for count in (2, 4):
+        # It starts again while the way to it stays open, and is then gone with the way.
+        board.node = FakeNode()
+        board.come(board.node.sender.frames(NodeMessage(topic=2, packet=b"a")))
+        assert run_until(made, lambda count=count: made.restarts == count - 1)
+        assert run_until(made, lambda: made.is_ready)
+        board.is_dead = True
+        assert run_until(made, lambda count=count: made.restarts == count)
+        board.node, board.is_dead = FakeNode(), False
+        assert run_until(made, lambda: made.is_ready)
+        assert made.restarts == count
+    made.close()
+    assert made.restarts == 4
