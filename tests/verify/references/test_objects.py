@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 
+from firm_hdl.model import Field, Message
 from firm_hdl.verify.references.client import Refusal, UnsupportedError
 from firm_hdl.verify.references.genpy import field_table
 from firm_hdl.verify.references.objects import (
@@ -74,6 +76,13 @@ def test_messages_of_services_get_different_names_without_underscores(make_messa
     assert [item.name for item in named.fields] == [item.name for item in event.fields]
     plain = make_message("B b\n", B="int8 x\n")
     assert plainly_named(plain) == plain
+    # Names that differ only in the place of the `_` stay different.
+    parts = [
+        Message(name=f"p/action/{name}", dialect="ros2", fields=()) for name in ("A_BC", "AB_C")
+    ]
+    fields = tuple(Field(name=f"f{n}", type=part) for n, part in enumerate(parts))
+    whole = plainly_named(replace(plain, fields=fields))
+    assert len({item.type.name for item in whole.fields}) == 2
 
 
 @pytest.mark.parametrize(
