@@ -78,6 +78,7 @@ def test_fixed_fields_take_no_more_cycles_than_beats(bus_bytes):
 
 PAIR = make("ros1", {"x": "uint16", "y": "uint16"}, "Pair")
 TEXT = make("ros1", {"s": "string"}, "Text")
+NAMED = make("ros1", {"s": "string", "x": "uint32"}, "Named")
 
 
 @pytest.mark.parametrize(
@@ -88,6 +89,7 @@ TEXT = make("ros1", {"s": "string"}, "Text")
         # Otherwise, short packets end with a step of one word, wherever a length is.
         ({"p": (PAIR, "[]")}, [4, 4, 4, 4]),
         ({"p": (TEXT, "[2]")}, [4, 4, 4]),
+        ({"p": (NAMED, "[2]")}, [4, 4, 4, 4]),
         ({"s": "string"}, [4, 4, 4]),
     ],
 )
