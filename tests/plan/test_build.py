@@ -78,6 +78,7 @@ def test_fixed_fields_take_no_more_cycles_than_beats(bus_bytes):
 
 PAIR = make("ros1", {"x": "uint16", "y": "uint16"}, "Pair")
 TEXT = make("ros1", {"s": "string"}, "Text")
+NAMED = make("ros1", {"s": "string", "x": "uint32"}, "Named")
 
 
 @pytest.mark.parametrize(
@@ -88,6 +89,7 @@ TEXT = make("ros1", {"s": "string"}, "Text")
         # Otherwise, short packets end with a step of one word, wherever a length is.
         ({"p": (PAIR, "[]")}, [4, 4, 4, 4]),
         ({"p": (TEXT, "[2]")}, [4, 4, 4]),
+        ({"p": (NAMED, "[2]")}, [4, 4, 4, 4]),
         ({"s": "string"}, [4, 4, 4]),
     ],
 )
@@ -129,3 +131,13 @@ def test_arrays_are_values_runs_or_loops(wire, kind, bus_bytes, runs, levels):
         plan = build_plan(layout, bus_bytes=bus_bytes)
         assert (len(plan.runs) - ("s" in before), plan.levels) == (runs, levels)
         assert check(plan, layout) == []
+
+
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@pytest.mark.parametrize("wire", ["ros1", "cdr"])
+@pytest.mark.parametrize(("inner", "outer"), [("[2]", "[]"), ("[]", "[2]"), ("[2]", "[3]")])
+def test_a_step_takes_the_rest_of_one_run_only(wire, bus_bytes, inner, outer):
+    """The first step of both loops may follow the text of either."""
+    texts = make("ros2", {"ts": (TEXT, inner), "t": "string"}, "Texts")
+    layout = lay_out(make("ros2", {"o": (texts, outer), "z": "uint8"}), wire)
+    assert check(build_plan(layout, bus_bytes=bus_bytes), layout) == []
