@@ -19,13 +19,14 @@ from firm_hdl.export.build import BuildError, check_size
 from firm_hdl.export.top import Top
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.jobs.processes import ToolError
+from firm_hdl.plan import Plan
 from firm_hdl.sim.record import RunResult
 from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Passed, Verdict
 from firm_hdl.verify.simulators import TextSimulator
 from firm_hdl.verify.simulators.semantics import traffic
 from firm_hdl.verify.simulators.trace import Trace, read_row
 
-__all__ = ["Comparison", "Crosscheck", "first_difference"]
+__all__ = ["Comparison", "Crosscheck", "check_exportable", "first_difference"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,11 +72,6 @@ class Crosscheck:
         Returns new instances of the same converters, to be exported.
     message : str
         Name of the type.
-
-    Raises
-    ------
-    NotJudgedError
-        If the converters are too large to be exported.
     """
 
     simulator: TextSimulator
@@ -86,10 +82,6 @@ class Crosscheck:
     seen: list[RunResult | None] = field(init=False, default_factory=list)
 
     def __post_init__(self) -> None:
-        try:
-            check_size(self.cores[0].plan)
-        except BuildError as error:
-            raise NotJudgedError(f"it cannot be exported: {error}") from None
         self.trace = Trace(self.cores, self.message)
 
     def start(self, name: str) -> Callable[[list[int]], None]:
@@ -131,6 +123,14 @@ class Crosscheck:
             statuses=sum(len(run.statuses) + len(run.sent_statuses) for run in found),
             seconds=time.perf_counter() - began,
         )
+
+
+def check_exportable(plan: Plan) -> None:
+    """Raise `NotJudgedError` if converters with that plan are too large to be exported."""
+    try:
+        check_size(plan)
+    except BuildError as error:
+        raise NotJudgedError(f"it cannot be exported: {error}") from None
 
 
 def first_difference(trace: Trace, rows: Sequence[str]) -> str | None:

@@ -16,7 +16,7 @@ from firm_hdl.sim.record import RunResult
 from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.simulators import simulator
-from firm_hdl.verify.simulators.crosscheck import Crosscheck
+from firm_hdl.verify.simulators.crosscheck import Crosscheck, check_exportable
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.ts3.result import Result
 
@@ -47,8 +47,10 @@ class Circuit:
     def __init__(self, message: Message, plan: Plan, options: Options, result: Result):
         self._message, self._plan, self._options, self._result = message, plan, options, result
         self._runs = 0
-        rx, tx = self._converters()
         other = simulator(options.simulator)
+        if other is not None:
+            check_exportable(plan)
+        rx, tx = self._converters()
         self._cross = (
             None if other is None else Crosscheck(other, (rx, tx), self._converters, message.name)
         )
