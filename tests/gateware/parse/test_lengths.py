@@ -8,6 +8,7 @@ import random
 import pytest
 from amaranth.sim import Simulator
 
+from firm_hdl import Parser
 from firm_hdl.gateware.parse.lengths import (
     LENGTH_BYTES,
     Lengths,
@@ -20,6 +21,7 @@ from firm_hdl.gateware.positions import Ring
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.geometry import geometry
 from firm_hdl.wire import lay_out
+from tests.gateware.test_parser import run
 from tests.strategies import make
 
 TEXT = make("ros2", {"s": "string", "d": "float64[]"}, "Text")
@@ -147,3 +149,23 @@ def test_each_field_matters(field):
 
     with pytest.raises(AssertionError):
         compare(plan_of("cdr", 8), tamper)
+
+
+NOTHING, BYTE = make("ros1", {}, "Nothing"), make("ros1", {"x": "uint8"}, "Byte")
+MANY = "40420f00"
+# Two bytes in elements, a million elements without bytes, and the other way round.
+BOTH = {
+    "bytes first": ({"b": (BYTE, "[]"), "n": (NOTHING, "[]")}, f"02000000aabb{MANY}"),
+    "nothing first": ({"n": (NOTHING, "[]"), "b": (BYTE, "[]")}, f"{MANY}02000000aabb"),
+}
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 8])
+@pytest.mark.parametrize("order", BOTH)
+def test_a_parser_skips_elements_without_bytes_and_no_others(order, bus_bytes):
+    fields, text = BOTH[order]
+    packet = bytes.fromhex(text)
+    seen = run(Parser(make("ros1", fields), bus_bytes=bus_bytes), [packet, packet[:-1], packet])
+    assert [status.name for status in seen.statuses] == ["OK", "TRUNCATED", "OK"]
+    # All beats, and a few cycles: none for each of the million elements.
+    assert max(seen.times) <= 3 * len(packet) + 20

@@ -30,6 +30,8 @@ MESSAGES = {
     # Every alignment of maps and items; a loop; a constant count; a rest at the end.
     "cdr": make("ros2", {"a": "uint8", "s": "string", "d": "float64[]", "t": (TEXT, "[]")}),
     "ros1": make("ros1", {"a": "uint8", "s": "string", "d": "float64[]", "t": (OLD, "[]")}),
+    # Lengths of one kind, and the same kind of step after each.
+    "same": make("ros1", {"s": "string", "t": "string", "d": "float64[]", "e": "float64[]"}),
     "array": make("ros2", {"a": "uint8[40]", "s": "uint16[]", "x": "float64"}),
 }
 
