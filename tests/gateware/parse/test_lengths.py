@@ -66,6 +66,8 @@ def expected(plan, meaning, length, key, phase):
         meaning.single: fields["single"],
         meaning.double: fields["double"],
     }
+    if meaning.begin.claim is not None:
+        named[meaning.counted] = int(length >= meaning.begin.claim.least)
     if isinstance(meaning, RunMeaning):
         named[meaning.rest] = fields["rest"]
         if length <= plan.word(meaning.begin.run):
@@ -94,7 +96,9 @@ def compare(plan, tamper=lambda name, value: value):
     meanings = list(meanings_of(plan).values())
     dut = Lengths(plan, geometry(plan), meanings)
     bus, ring, rng = plan.bus_bytes, Ring(plan), random.Random(plan.bus_bytes)
-    edges = {m.max_count + d for m in meanings for d in (-1, 0, 1)} | {0, 1, 2, (1 << 32) - 1}
+    edges = {m.max_count + d for m in meanings for d in (-1, 0, 1)}
+    edges |= {m.begin.claim.least + d for m in meanings if m.begin.claim for d in (-1, 0)}
+    edges |= {0, 1, 2, (1 << 32) - 1}
     values = sorted(edges | set(range(4 * bus if bus < 16 else 70)))
     compared = 0
 
@@ -142,7 +146,9 @@ def test_lengths_are_decoded(name, bus_bytes):
     assert compare(plan_of(name, bus_bytes)) >= 100
 
 
-@pytest.mark.parametrize("field", ["zero", "over", "skips", "single", "double", "rest", "last"])
+@pytest.mark.parametrize(
+    "field", ["zero", "over", "skips", "single", "double", "counted", "rest", "last"]
+)
 def test_each_field_matters(field):
     def tamper(name, value):
         return value ^ 1 if name.startswith(field) else value
