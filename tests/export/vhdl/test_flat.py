@@ -8,6 +8,7 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.cli import main
+from firm_hdl.export import top
 from firm_hdl.export.backend import Options
 from firm_hdl.export.build import build
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
@@ -85,6 +86,17 @@ def test_ports_of_a_core_have_the_names_that_vhdl_gave_them():
     assert names_before(":", package) == wanted
     text = bench("tb", flat_view(plan, "p", cores), bus_bytes=8, what="points")
     assert set(wanted) <= set(names_before("=>", text))
+
+
+def test_a_port_that_vhdl_forbids_is_connected_by_its_new_name(monkeypatch):
+    monkeypatch.setattr(top, "leaf_names", lambda plan: {("data",): "on__off"})
+    made, _ = vhdl_of(load_message("std_msgs/msg/Bool"), bus_bytes=1)
+    for way in DIRECTIONS:
+        stem = f"std_msgs_msg_bool_cdr_1_{way}"
+        core = made.files[f"{stem}_flat.vhd"].rpartition(f"entity {stem}_flat is")[2]
+        ports = names_before(":", core.partition("architecture")[0])
+        assert "on_off_data" in ports
+        assert set(names_before("=>", made.files[f"{stem}.vhd"])) == set(ports)
 
 
 def test_no_constant_has_the_name_of_the_package_or_of_a_component(tmp_path):

@@ -19,7 +19,7 @@ from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.wire import lay_out
-from tests.export.vhdl.test_layer import WARNINGS, analyse, vhdl_of, write
+from tests.export.vhdl.test_layer import WARNINGS, analyse, layer, own_package, vhdl_of, write
 from tests.strategies import make
 from tests.tools import run_script
 
@@ -208,6 +208,14 @@ def test_the_widest_record_of_values_has_65535_bits(bools, bits):
     assert {name: kind.bits for name, kind in found.items()} == (
         {"p/msg/Wide": bits} if bits else {}
     )
+
+
+def test_an_array_of_one_bool_is_a_vector_of_one_bit():
+    message = make("ros2", {"a": "bool", "b": "bool[1]", "c": "uint8"}, "Flags")
+    text = own_package(layer(message))
+    assert "    bits(0) := value.a;\n    bits(1 downto 1) := to_slv(value.b);\n" in text
+    assert "    value.a := all_bits(0);\n" in text
+    assert "    value.b := to_bool_items(all_bits(1 downto 1));\n" in text
 
 
 def test_ports_are_those_of_the_converter_around_the_record():
