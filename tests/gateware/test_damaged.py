@@ -29,16 +29,16 @@ WHOLE = {
 }
 
 
-def compare(message, packets):
+def compare(message, packets, bus_bytes=BUS_BYTES):
     """Read packets in a deserializer and a parser; return the statuses."""
-    rx = Deserializer(message, bus_bytes=BUS_BYTES)
+    rx = Deserializer(message, bus_bytes=bus_bytes)
     seen = Harness(rx, None).run_packets(packets)
     decoded = [decode(rx.plan, packet) for packet in packets]
     statuses = [str(one.status) for one in decoded]
     assert [status.name for status in seen.statuses] == statuses
     carried = {leaf: payloads for leaf, payloads in seen.transfers.items() if payloads}
     assert carried == join_transfers(one.streams for one in decoded)
-    agree(rx.plan, packets, run(Parser(message, bus_bytes=BUS_BYTES), packets))
+    agree(rx.plan, packets, run(Parser(message, bus_bytes=bus_bytes), packets))
     return statuses
 
 
@@ -58,3 +58,10 @@ def test_a_string_without_nul_keeps_its_other_characters():
     packets = [bytes([0, 1, 0, 0, len(text), 0, 0, 0]) + text + b"\x55" for text in texts]
     message = make("ros2", {"s": "string", "x": "uint8"})
     assert compare(message, packets) == ["STRING"] * len(packets)
+
+
+def test_the_last_transfer_of_an_array_in_elements_is_marked():
+    """On a narrow bus, an array of wide items is a loop inside the loop of elements."""
+    row = make("ros1", {"x": "uint8", "m": "float64[3]"}, "Row")
+    packets = [bytes([rows, 0, 0, 0]) + bytes(range(25)) * rows for rows in range(4)]
+    assert compare(make("ros1", {"r": (row, "[]")}), packets, bus_bytes=4) == ["OK"] * 4
