@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""A serializer after messages with errors: the next packets are right."""
+"""A serializer and messages with errors: the first error counts, and the next packets are right."""
 
 from __future__ import annotations
 
@@ -41,3 +41,26 @@ def test_padding_is_right_after_a_message_with_an_error(bus_bytes):
     seen = Harness(None, tx, message=message).run_messages(messages)
     assert seen.packets == [packet for packet, _ in want]
     assert [status.name for status in seen.statuses] == [status for _, status in want]
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 8])
+def test_the_first_error_in_wire_order_is_the_status(bus_bytes):
+    """The items of one field and the length of the next one may be taken in one step."""
+    message = make("ros2", {"s": "uint8[<=9]", "t": "uint8[<=3]", "u": "uint8[<=9]"})
+    tx = Serializer(message, bus_bytes=bus_bytes)
+    leaves = {str(leaf): number for number, leaf in enumerate(tx.plan.leaves)}
+
+    def field(name, count, is_wrong=False):
+        words = -(-count // bus_bytes)
+        items = [((1,) * bus_bytes, (at == words - 1) ^ is_wrong) for at in range(words)]
+        return {leaves[f"{name}.length"]: [count], leaves[f"{name}.items"]: items}
+
+    flags = list(product((False, True), repeat=3))
+    messages = [
+        field("s", 2, wrong) | field("t", 4 if is_over else 3) | field("u", 2, last_wrong)
+        for wrong, is_over, last_wrong in flags
+    ]
+    errors = ("ITEMS", "LENGTH", "ITEMS")
+    want = [next((e for e, on in zip(errors, each, strict=True) if on), "OK") for each in flags]
+    seen = Harness(None, tx, message=message).run_messages(messages)
+    assert [status.name for status in seen.statuses] == want
