@@ -86,6 +86,7 @@ def test_ports_of_a_core_have_the_names_that_vhdl_gave_them():
     assert names_before(":", package) == wanted
     text = bench("tb", flat_view(plan, "p", cores), bus_bytes=8, what="points")
     assert set(wanted) <= set(names_before("=>", text))
+    assert re.search(r"s_axis_tkeep_in_vhdl +=> i_tkeep,", text)
 
 
 def test_a_port_that_vhdl_forbids_is_connected_by_its_new_name(monkeypatch):
