@@ -95,8 +95,6 @@ def primitive_name(leaf: Leaf) -> str:
     >>> primitive_name(Leaf(path=("a",), kind="scalar", type="byte", signed=True))
     'int8'
     """
-    if leaf.kind == "trigger":
-        return "bool"
     primitive = leaf.primitive
     if primitive.kind != "int":
         return primitive.kind if primitive.kind == "bool" else primitive.name

@@ -62,6 +62,45 @@ def test_bits_of_a_float_have_a_name_that_no_other_constant_has(tmp_path: Path) 
     assert len(set(given)) == len(given) == 10 and "taken_bits" not in given
 
 
+PIECE = re.compile(r'"((?:[^"]|"")*)"|character\'val\((\d+)\)')
+HARD = [
+    "",
+    "-",
+    "--",
+    "a---b",
+    "a-",
+    "-a",
+    "-" * 99,
+    "a" * 80,
+    "a" * 81,
+    '"',
+    '-"-"--',
+    "\1",
+    "ö",
+    "-ö-",
+]
+
+
+def test_strings_of_vhdl_have_their_bytes_and_no_comment(tmp_path: Path) -> None:
+    definition = "".join(f"string S{at}={text}\n" for at, text in enumerate(HARD))
+    message = library(tmp_path, {"p/T": f"{definition}int8 x\n"}, "ros1").message("p/T")
+    text = "".join(declarations(named_constants(message, ()), []))
+    found = re.findall(r"constant S\d+ *: string :=\n +(.*?);\n(?= +constant|\Z)", text, re.DOTALL)
+    assert len(found) == len(HARD)
+    for expression, want in zip(found, HARD, strict=True):
+        pieces = re.split(r" &\n +", expression)
+        matches = [PIECE.fullmatch(piece) for piece in pieces]
+        parts = [
+            bytes([int(match[2])]) if match[2] else match[1].replace('""', '"').encode("ascii")
+            for match in matches
+            if match is not None
+        ]
+        assert len(parts) == len(pieces) and b"".join(parts) == want.encode()
+        assert not any(b"--" in part or len(part) > 80 for part in parts)
+        # A character alone is no string.
+        assert len(pieces) > 1 or pieces[0].startswith('"')
+
+
 STRINGS = {
     "p/T": "string EMPTY=\nstring FULL=" + "a" * 64 + "\nstring MORE=" + "a" * 64 + "b\n"
     'string ODD=a\\01"é\nint8 LOW=-128\nuint8 HIGH=200\nint16 WIDE=-2\nbool YES=True\nint8 x\n'

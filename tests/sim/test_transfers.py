@@ -65,6 +65,30 @@ def test_each_transfer_changes_what_is_left(steps, changes):
     assert taken(*steps) == {name: count for name, count in expected.items() if count}
 
 
+def test_arrays_in_arrays_multiply_their_transfers():
+    cell = make("ros1", {"x": "uint8", "w": "uint16[5]"}, "Cell")
+    row = make("ros1", {"cells": (cell, "[2]"), "raw": "uint8[6]"}, "Row")
+    grid = make("ros1", {"rows": (row, "[3]"), "more": (row, "[]")})
+    plan = build_plan(lay_out(grid), bus_bytes=4)
+    number = {str(leaf): index for index, leaf in enumerate(plan.leaves)}
+    pending = PendingTransfers(transfer_table(plan, grid))
+
+    def rows(name, count):
+        # Two items of two bytes, or four of one byte, per transfer.
+        return {
+            f"{name}.item.cells.item.x": 2 * count,
+            f"{name}.item.cells.item.w.items": 3 * 2 * count,
+            f"{name}.item.raw.items": 2 * count,
+        }
+
+    def counts():
+        return {str(plan.leaves[leaf]): count for leaf, count in pending.counts.items()}
+
+    assert counts() == {**rows("rows", 3), "more.length": 1}
+    pending.take(number["more.length"], 5)
+    assert counts() == {**rows("rows", 3), **rows("more", 5)}
+
+
 def message(number):
     point = {"x": number, "tags": [number] * number}
     return {

@@ -222,6 +222,23 @@ def test_a_choice_beside_a_division_stays() -> None:
     assert ["unsigned(c) /= 0" in line for line in lines] == [False, True, True], lines
 
 
+def test_a_quotient_has_the_width_of_the_dividend_and_a_remainder_of_the_divisor() -> None:
+    """As in `numeric_std`; a target of another width takes a `resize`."""
+    m = Module()
+    a, b = Signal(8, name="a"), Signal(3, name="b")
+    values = {"q": a // b, "r": a % b, "s": b // a, "t": b % a}
+    outputs = [Signal(8, name=name) for name in values]
+    m.d.comb += [output.eq(value) for output, value in zip(outputs, values.values(), strict=True)]
+    text = convert(m, name="widths", ports=[a, b, *outputs]).files["widths.vhd"]
+    for line in (
+        "q <= std_logic_vector(floor_div(unsigned(a), unsigned(b)));",
+        "r <= std_logic_vector(resize(floor_mod(unsigned(a), unsigned(b)), 8));",
+        "s <= std_logic_vector(resize(floor_div(unsigned(b), unsigned(a)), 8));",
+        "t <= std_logic_vector(floor_mod(unsigned(b), unsigned(a)));",
+    ):
+        assert line in text, line
+
+
 def test_copies_of_a_bit_and_of_a_word() -> None:
     m = Module()
     a, b, o = Signal(4, name="a"), Signal(4, name="b"), Signal(15, name="o")

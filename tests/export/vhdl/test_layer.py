@@ -144,6 +144,15 @@ def test_package_reads_like_the_definition():
     assert '  constant INFRARED   : unsigned(7 downto 0) := x"01";  -- uint8 1\n' in text
 
 
+def test_idle_offers_nothing_and_all_ready_takes_everything():
+    made = layer(load_message("sensor_msgs/msg/JointState", distro="lyrical"))
+    constant = re.compile(r"constant \w+_(IDLE|ALL_READY) +: \w+ := \((.*?)\);", re.DOTALL)
+    found = [each for text in made.packages.values() for each in constant.findall(text)]
+    assert {kind for kind, values in found} == {"IDLE", "ALL_READY"} and len(found) > 20
+    for kind, values in found:
+        assert ("'1'" if kind == "IDLE" else "'0'") not in values
+
+
 def test_comments_and_units_stand_above_their_fields(tmp_path):
     folder = tmp_path / "my_msgs" / "msg"
     folder.mkdir(parents=True)

@@ -12,12 +12,16 @@ import pytest
 from firm_hdl import Deserializer, load_message
 from firm_hdl.export.record_top import RecordTop, record_ports, why_no_record
 from firm_hdl.export.top import DIRECTIONS
+from firm_hdl.export.tree import taken_names, tree_of
 from firm_hdl.export.vhdl.parts import packets_text
+from firm_hdl.export.vhdl.values import values_of
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.cases.stimuli import stimuli
+from firm_hdl.vhdl.names import PREDEFINED
 from firm_hdl.wire import lay_out
-from tests.export.vhdl.test_layer import WARNINGS, analyse, vhdl_of, write
+from tests.export.vhdl.test_layer import WARNINGS, analyse, layer, own_package, vhdl_of, write
+from tests.strategies import make
 from tests.tools import run_script
 
 ARRAYS = """\
@@ -195,6 +199,33 @@ def test_types_without_a_record_state_the_reason(tmp_path, text, reason):
         vhdl, _ = vhdl_of(message)
         assert vhdl.manifest["record_view"] == {"built": False, "reason": reason}
         assert not [name for name in vhdl.files if "record" in name]
+
+
+@pytest.mark.parametrize(("bools", "bits"), [(7, 65535), (8, None)])
+def test_the_widest_record_of_values_has_65535_bits(bools, bits):
+    message = make("ros2", {"a": "uint8[8191]", "b": f"bool[{bools}]"}, "Wide")
+    plan = build_plan(lay_out(message))
+    found = values_of(tree_of(message, plan), plan)
+    assert {name: kind.bits for name, kind in found.items()} == (
+        {"p/msg/Wide": bits} if bits else {}
+    )
+
+
+def test_no_constant_hides_what_a_package_declares():
+    message = load_message("geometry_msgs/msg/Vector3")
+    made = layer(message)
+    declared = re.findall(r"^  (?:type|constant|function) (\w+)", own_package(made), re.MULTILINE)
+    assert {"VECTOR3_ALL_READY", "to_vector3_value", "to_vector3_values"} <= set(declared)
+    taken = taken_names(made.tree.package, build_plan(lay_out(message), bus_bytes=8))
+    assert {name.lower() for name in declared} <= taken | PREDEFINED
+
+
+def test_an_array_of_one_bool_is_a_vector_of_one_bit():
+    message = make("ros2", {"a": "bool", "b": "bool[1]", "c": "uint8"}, "Flags")
+    text = own_package(layer(message))
+    assert "    bits(0) := value.a;\n    bits(1 downto 1) := to_slv(value.b);\n" in text
+    assert "    value.a := all_bits(0);\n" in text
+    assert "    value.b := to_bool_items(all_bits(1 downto 1));\n" in text
 
 
 def test_ports_are_those_of_the_converter_around_the_record():

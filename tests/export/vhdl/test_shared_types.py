@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -191,6 +192,20 @@ def test_package_of_a_type_is_the_same_wherever_the_type_is():
             assert text == before, f"{each.name} in {name} and in {owner}"
             shared += owner != name
     assert shared > 100
+
+
+@pytest.mark.parametrize("name", ["sensor_msgs/msg/JointState", "nav_msgs/msg/Odometry"])
+def test_shared_packages_state_which_others_they_use(name):
+    message = Library("lyrical").message(name)
+    plan = build_plan(lay_out(message))
+    core = {way: Core(entity=way, names={}) for way in ("deserializer", "serializer")}
+    made = user_layer(message, plan, name="t", cores=core)
+    before = set()
+    for each in made.shared:
+        used = set(re.findall(r"\bwork\.(\w+)", made.packages[f"{each.name}.vhd"]))
+        assert set(each.needs) == used - {each.name, "firm_hdl_types_pkg"}, each.name
+        assert before.issuperset(each.needs)
+        before.add(each.name)
 
 
 PACKAGES = ("geometry_msgs/", "sensor_msgs/", "nav_msgs/", "std_msgs/")

@@ -8,6 +8,7 @@ import random
 import pytest
 from amaranth.sim import Simulator
 
+from firm_hdl import Parser
 from firm_hdl.gateware.parse.lengths import (
     LENGTH_BYTES,
     Lengths,
@@ -20,6 +21,7 @@ from firm_hdl.gateware.positions import Ring
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.geometry import geometry
 from firm_hdl.wire import lay_out
+from tests.gateware.test_parser import run
 from tests.strategies import make
 
 TEXT = make("ros2", {"s": "string", "d": "float64[]"}, "Text")
@@ -64,6 +66,8 @@ def expected(plan, meaning, length, key, phase):
         meaning.single: fields["single"],
         meaning.double: fields["double"],
     }
+    if meaning.begin.claim is not None:
+        named[meaning.counted] = int(length >= meaning.begin.claim.least)
     if isinstance(meaning, RunMeaning):
         named[meaning.rest] = fields["rest"]
         if length <= plan.word(meaning.begin.run):
@@ -92,7 +96,9 @@ def compare(plan, tamper=lambda name, value: value):
     meanings = list(meanings_of(plan).values())
     dut = Lengths(plan, geometry(plan), meanings)
     bus, ring, rng = plan.bus_bytes, Ring(plan), random.Random(plan.bus_bytes)
-    edges = {m.max_count + d for m in meanings for d in (-1, 0, 1)} | {0, 1, 2, (1 << 32) - 1}
+    edges = {m.max_count + d for m in meanings for d in (-1, 0, 1)}
+    edges |= {m.begin.claim.least + d for m in meanings if m.begin.claim for d in (-1, 0)}
+    edges |= {0, 1, 2, (1 << 32) - 1}
     values = sorted(edges | set(range(4 * bus if bus < 16 else 70)))
     compared = 0
 
@@ -140,10 +146,32 @@ def test_lengths_are_decoded(name, bus_bytes):
     assert compare(plan_of(name, bus_bytes)) >= 100
 
 
-@pytest.mark.parametrize("field", ["zero", "over", "skips", "single", "double", "rest", "last"])
+@pytest.mark.parametrize(
+    "field", ["zero", "over", "skips", "single", "double", "counted", "rest", "last"]
+)
 def test_each_field_matters(field):
     def tamper(name, value):
         return value ^ 1 if name.startswith(field) else value
 
     with pytest.raises(AssertionError):
         compare(plan_of("cdr", 8), tamper)
+
+
+NOTHING, BYTE = make("ros1", {}, "Nothing"), make("ros1", {"x": "uint8"}, "Byte")
+MANY = "40420f00"
+# Two bytes in elements, a million elements without bytes, and the other way round.
+BOTH = {
+    "bytes first": ({"b": (BYTE, "[]"), "n": (NOTHING, "[]")}, f"02000000aabb{MANY}"),
+    "nothing first": ({"n": (NOTHING, "[]"), "b": (BYTE, "[]")}, f"{MANY}02000000aabb"),
+}
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 8])
+@pytest.mark.parametrize("order", BOTH)
+def test_a_parser_skips_elements_without_bytes_and_no_others(order, bus_bytes):
+    fields, text = BOTH[order]
+    packet = bytes.fromhex(text)
+    seen = run(Parser(make("ros1", fields), bus_bytes=bus_bytes), [packet, packet[:-1], packet])
+    assert [status.name for status in seen.statuses] == ["OK", "TRUNCATED", "OK"]
+    # All beats, and a few cycles: none for each of the million elements.
+    assert max(seen.times) <= 3 * len(packet) + 20

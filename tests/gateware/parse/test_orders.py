@@ -72,3 +72,37 @@ def test_an_order_per_cycle():
 def test_another_order_is_noticed():
     with pytest.raises(AssertionError):
         compare((1, 0.5), tamper=lambda bits: bits ^ 1 << LAYOUT["status"].offset)
+
+
+TEXT = make("ros1", {"s": "string"}, "Text")
+CLAIMS = build_plan(lay_out(make("ros1", {"t": (TEXT, "[]")})), bus_bytes=4)
+
+
+@pytest.mark.parametrize("taken", ["before", "with", "after"])
+@pytest.mark.parametrize("refused", [False, True])
+def test_only_the_newest_order_is_refused(refused, taken):
+    """Send two orders, and refuse the second one; `taken` tells when the first one is taken."""
+    dut, seen = OrderQueue(CLAIMS), []
+    sends, refuses = (0, 1), 4
+    takes = {"before": refuses - 1, "with": refuses, "after": refuses + 1}[taken]
+
+    async def testbench(ctx):
+        for cycle in range(12):
+            ctx.set(dut.i.valid, cycle in sends)
+            ctx.set(dut.i.payload.step, cycle)
+            ctx.set(dut.i.payload.length_good, 1)
+            ctx.set(dut.holds, 1 < cycle <= refuses)
+            ctx.set(dut.refuses, refused and cycle == refuses)
+            # An order enters the first place only if nothing waits there.
+            ctx.set(dut.o.ready, cycle == 0 or cycle >= takes)
+            if ctx.get(dut.o.valid) and cycle >= takes:
+                order = dut.o.payload
+                seen.append((cycle, ctx.get(order.step), ctx.get(order.length_good)))
+            await ctx.tick()
+
+    simulator = Simulator(dut)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(testbench)
+    simulator.run()
+    # Only the second order waits for the check.
+    assert seen == [(takes, 0, 1), (max(takes, refuses) + 1, 1, not refused)]

@@ -26,10 +26,14 @@ from tests.strategies import make
 
 TEXT = make("ros2", {"s": "string", "d": "float64"}, "Text")
 OLD = make("ros1", {"s": "string", "d": "float64"}, "Old")
+CELL = make("ros1", {"x": "uint16"}, "Cell")
+ROW = make("ros1", {"x": "uint32", "c": (CELL, "[]")}, "Row")
 MESSAGES = {
     # Every alignment of maps and items; a loop; a constant count; a rest at the end.
     "cdr": make("ros2", {"a": "uint8", "s": "string", "d": "float64[]", "t": (TEXT, "[]")}),
     "ros1": make("ros1", {"a": "uint8", "s": "string", "d": "float64[]", "t": (OLD, "[]")}),
+    # Lengths of one kind, and the same kind of step after each; loops that end together.
+    "same": make("ros1", {"s": "string", "t": "string", "d": "float64[]", "r": (ROW, "[]")}),
     "array": make("ros2", {"a": "uint8[40]", "s": "uint16[]", "x": "float64"}),
 }
 
