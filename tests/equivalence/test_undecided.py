@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from amaranth.back import rtlil as amaranth_rtlil
@@ -149,6 +150,31 @@ def test_the_summary_has_the_seconds_of_all_proofs(
         "4 converters of 3 types: 3 equal, 1 failed",
         f"seconds per converter: median 2.0, most 30.5 (p/C {TASK.direction}), 34 in total",
     ]
+
+
+@pytest.mark.parametrize(
+    ("changes", "types"),
+    [
+        ({"distro": "noetic"}, 2),
+        ({"name": "a/msg/C"}, 2),
+        ({"wire": "ros1"}, 2),
+        # The other converter of a type, and a wider bus, are converters of the same type.
+        ({"direction": "deserializer"}, 1),
+        ({"bus_bytes": 4}, 1),
+    ],
+)
+def test_the_summary_counts_types_by_distribution_name_and_wire_format(
+    changes: dict[str, Any],
+    types: int,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    tasks = [TASK, replace(TASK, **changes)]
+    equal = Attempt(proof=Proof(result="equal", registers=1, claims=1, seconds=1.0))
+    monkeypatch.setattr(command, "find_tools", lambda: None)
+    monkeypatch.setattr(command, "run_tasks", lambda *_: iter([(task, equal) for task in tasks]))
+    assert command.run_proofs(tasks, 1, bar=True) == 0
+    assert f"2 converters of {types} types: 2 equal\n" in capsys.readouterr().out
 
 
 # Without tools: every way in which the two solvers can end.
