@@ -16,6 +16,7 @@ from firm_hdl.verify.board.description import chosen_loops, loop_text
 from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request
+from firm_hdl.verify.systems.system import Recorder
 from tests.node.bridge.fakes import FakeBoard
 from tests.verify.board.fakes import BOTH, STRING, LoopNode, described, verdicts
 
@@ -245,6 +246,26 @@ def test_a_board_that_wakes_up_when_it_is_opened_again_passes_the_next_type():
     node.take = sleepy
     found = verdicts(node, silent_seconds=0.2)
     assert [type(each) for each in found.values()] == [Failed, Passed]
+
+
+@pytest.mark.parametrize(
+    ("kind", "opened", "silent"),
+    [
+        (LoopNode, 1, 60.0),
+        # A wrong packet is no reason to begin anew; silence is, for the next type.
+        (FlipsAByte, 1, 60.0),
+        (FallsSilent, 2, 0.2),
+        # A board that does not answer from the start is not asked about the next type.
+        (Mute, 1, 0.2),
+    ],
+)
+def test_a_board_is_opened_once_as_long_as_it_answers(kind, opened, silent):
+    description = described(*BOTH)
+    board = FakeBoard(kind(description))
+    request = Request(board="fake", most_cases=4, references=(), silent_seconds=silent)
+    with Boards(description, request, board) as system:
+        assert len(system.run(Recorder())) == 2
+    assert board.opened == opened
 
 
 def test_each_repeat_of_a_request_waits_twice_as_long(monkeypatch):
