@@ -18,6 +18,7 @@ from firm_hdl.equivalence import proof as proof_module
 from firm_hdl.equivalence.converters import Attempt, ProofTask
 from firm_hdl.equivalence.miter import Claim, Miter
 from firm_hdl.equivalence.solve import solve
+from firm_hdl.equivalence.tools import answer_of
 from firm_hdl.jobs import ToolError, TooSlowError
 from firm_hdl.vhdl.convert import Vhdl, convert
 
@@ -291,3 +292,13 @@ def test_an_answer_about_other_claims_is_none(bits: list[str], tmp_path: Path) -
 def test_a_tool_that_fails_proves_nothing(message: str, match: str, tmp_path: Path) -> None:
     with pytest.raises(ProofError, match=match):
         solve(some_miter(), Solvers(ToolError(message)), tmp_path, 1)
+
+
+def test_what_a_tool_has_written_is_read_once(tmp_path: Path) -> None:
+    file = tmp_path / "claims.json"
+    for text in ("first", "second é"):
+        file.write_text(text, encoding="utf-8")
+        assert answer_of("Yosys", file) == text
+        # The next run may write nothing, and must not get this answer.
+        with pytest.raises(ToolError, match=r"^Yosys ended .* did not write claims\.json"):
+            answer_of("Yosys", file)
