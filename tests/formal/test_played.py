@@ -17,6 +17,7 @@ from firm_hdl.formal.bugs import Bug, seeded
 from firm_hdl.gateware.collect.collector import _CollectorLogic as _Collect
 from firm_hdl.gateware.packer import _PackerLogic as _Pack
 from firm_hdl.gateware.packets.tail_drop import TailDrop
+from firm_hdl.gateware.parse.claims import Claims
 from firm_hdl.gateware.parse.packet_judge import PacketJudge
 from tests.formal.play import play
 
@@ -131,3 +132,28 @@ def test_a_parser_and_its_scene_judge_each_packet_alike(name):
         assert judge(name, packet) == set(), packet
     with seeded([_OTHER_STATUS]):
         assert judge(name, JUDGED[name][0]) == judge(name, JUDGED[name][1]) == {"statuses"}
+
+
+def lengths(first, second):
+    """Execute the length that renews the budget, and then one of what the budget has left."""
+    given = {"issue": 1, "counted": 1}
+    # The number of a step is chosen in its first cycle, and its length comes a cycle later.
+    steps = [given, {**given, "step_choice": 1, "count": first}, {"count": second}]
+    return steps + [{}] * 8
+
+
+# A budget of 688 bytes, and elements of 12 bytes; one of 658 bytes, elements of 16 bytes, and
+# each length claims 14 bytes less. So the first length leaves 256 bytes.
+BUDGETS = {"claims-noetic": (36, 256), "claims-lyrical": (26, 270)}
+
+
+@pytest.mark.parametrize("name", BUDGETS)
+def test_a_length_fails_if_it_claims_a_byte_more_than_is_left(name):
+    first, most = BUDGETS[name]
+    for count, other in ((most, 1), (most + 1, 0)):
+        steps = lengths(first, count)
+        assert not any(play(STUDIES[name].build, steps)[0].values())
+        # A block of the other opinion is wrong.
+        with seeded([Bug(Claims.__init__, "eq(subtracts & left[-1])", f"eq(subtracts & {other})")]):
+            broken = play(STUDIES[name].build, steps)[0]
+        assert broken["fails"]
