@@ -15,6 +15,7 @@ from amaranth.hdl import Const
 from firm_hdl.formal.blocks import all_studies
 from firm_hdl.formal.bugs import Bug, seeded
 from firm_hdl.gateware.collect.collector import _CollectorLogic as _Collect
+from firm_hdl.gateware.mover import _MoverLogic as _Move
 from firm_hdl.gateware.packer import _PackerLogic as _Pack
 from firm_hdl.gateware.packets.tail_drop import TailDrop
 from firm_hdl.gateware.parse.claims import Claims
@@ -96,6 +97,18 @@ def test_a_status_without_a_message_breaks_a_claim():
     with seeded([Bug(_JUDGE, "m.If(state.complete & state.ends)", "m.If(1)")]):
         # Nothing comes, and nothing is taken.
         assert run(BOOL, leaf0_valid=0, status_ready=0)["statuses"]
+
+
+@pytest.mark.parametrize("name", [name for name in STUDIES if name.startswith("deserializer-")])
+def test_a_wrong_status_of_a_deserializer_breaks_a_claim(name):
+    # Behind the streams of the leaves is that of the status; the first packet is followed.
+    leaves = {"bool": 1, "joyfeedback": 3, "time": 2}[name.split("-")[1]]
+    assert run(name, which_choice=leaves, mark=1) == {
+        claim.name: [] for claim in STUDIES[name].claims
+    }
+    other = "Value.cast(port.payload).eq(~Value.cast(status))"
+    with seeded([Bug(_Move._report, "port.payload.eq(status)", other)]):
+        assert run(name, which_choice=leaves, mark=1)["statuses"]
 
 
 # A text of 3 bytes is the longest one of a parser for messages of 7 bytes.
