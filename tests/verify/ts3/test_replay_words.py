@@ -252,3 +252,25 @@ def test_a_model_that_refuses_the_header_of_little_endian_cdr_is_found(
     judged = replay._judge(plan, judge, message, with_bag=False)
     assert finding in judged.finding and bool(judged.finding) is bool(finding)
     assert bool(judged.kind) is not bool(finding)
+
+
+@pytest.mark.parametrize("wrong", ["", "packet", "transfers", "error"])
+def test_a_similar_packet_has_to_have_the_same_bytes_and_transfers(monkeypatch, wrong):
+    plan = plan_of("std_msgs/msg/UInt8")
+    packet = b"\0\1\0\0\7"
+    decoded = decode(plan, packet)
+    (path,) = replay._by_path(plan, decoded.streams)
+
+    def ask(plan, judge, given):
+        assert given == packet
+        if wrong == "error":
+            raise LookupError("nothing")
+        return packet + b"\0" * (wrong == "packet"), {path: [8 if wrong == "transfers" else 7]}
+
+    monkeypatch.setattr(replay, "_ask", ask)
+    here = case("message 3", given=packet)
+    found = replay._judged_by_substitute(plan, None, here, decoded, "of a kind", "rosbags is odd")
+    if wrong:
+        assert (found.kind, found.finding) == ("", replay._misfit(here, "rosbags is odd"))
+    else:
+        assert (found.kind, found.finding) == ("of a kind", "")
