@@ -29,7 +29,7 @@ ASSUMED = {"which_choice": 0, "part_choice": 0, "step_choice": 0, "count": 25}
 ASSUMED |= {"chosen_choice": 0, "other_choice": 1}
 
 
-def run(name, seed=0, **fixed):
+def run(name, **fixed):
     """Play a scene with random inputs; those of `fixed` are the same in all cycles.
 
     Returns
@@ -37,7 +37,7 @@ def run(name, seed=0, **fixed):
     broken : dict of str to list of int
         As `play` returns it.
     """
-    source = random.Random(f"{name} {seed}")
+    source = random.Random(name)
     fixed = ASSUMED | fixed
 
     def value(signal, bits):
