@@ -111,6 +111,18 @@ def test_a_wrong_status_of_a_deserializer_breaks_a_claim(name):
         assert run(name, which_choice=leaves, mark=1)["statuses"]
 
 
+@pytest.mark.parametrize(
+    ("name", "leaf", "part"),
+    # A byte in the second lane, and one in the last lane of a beat.
+    [("serializer-joyfeedback-noetic-2", 1, 0), ("serializer-joyfeedback-lyrical-4", 2, 3)],
+)
+def test_a_wrong_byte_in_any_lane_breaks_a_claim(name, leaf, part):
+    given = {"which_choice": leaf, "part_choice": part, "mark": 1}
+    assert run(name, **given) == {claim.name: [] for claim in STUDIES[name].claims}
+    with seeded([Bug(_Pack._send, "payload.data).eq(beat)", "payload.data).eq(~beat)")]):
+        assert run(name, **given)["values"]
+
+
 # A text of 3 bytes is the longest one of a parser for messages of 7 bytes.
 JUDGED = {
     "parser-bool": [b"", b"\1", b"\1\1", b"\1\0\0"],
