@@ -67,7 +67,8 @@ def resolve(request: Request) -> Workload:
     try:
         tasks = _collect(request, problems)
     except UnknownTypeError:
-        if not request.types or request.paths or request.bags:
+        # With `paths`, the workspace was searched, too, and what is missing is another error.
+        if request.bags:
             raise
         if folders := _workspace(request):
             request = replace(request, paths=folders)

@@ -320,7 +320,16 @@ def test_the_command_needs_its_converters(
     assert "deserializer: a reason\n" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("words", [["--json", "a"], ["--bus-bytes", "8"], ["--cache", "b"]])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--json", "a"],
+        ["--compare", "a"],
+        ["--cache", "b"],
+        ["--bus-bytes", "8"],
+        ["--direction", "serializer"],
+    ],
+)
 def test_options_of_circuits_are_refused(
     words: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:

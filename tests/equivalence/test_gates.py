@@ -1,14 +1,15 @@
-"""Constants of GHDL's netlists, at the borders of their 32-bit words."""
+"""Gates of GHDL's netlists: their form, and constants at the borders of 32-bit words."""
 
 from __future__ import annotations
 
-from itertools import count
+import re
+from itertools import count, islice
 
 import pytest
 
 from firm_hdl.equivalence.circuit import ProofError
 from firm_hdl.equivalence.dump import Instance
-from firm_hdl.equivalence.gates import Gate, renamed
+from firm_hdl.equivalence.gates import Gate, gate_cells, renamed
 
 
 def constant(kind, width, *parameters):
@@ -52,3 +53,84 @@ def test_signed_constants_are_extended_by_their_sign(word, sign):
     assert constant("$const_SB32", 34, word) == ("0", *"1" * 30, *sign * 3)
     assert constant("$const_UB32", 34, word) == ("0", *"1" * 30, *sign[:1] * 1, "0", "0")
     assert constant("$const_SB32", 4, word) == ("0", "1", "1", "1")
+
+
+def gate(kind, widths, width, *parameters):
+    """Return a gate whose inputs are the nets 10, 11 and so on."""
+    nets, fresh = count(10), count(100)
+    inputs = {str(n): tuple(islice(nets, each)) for n, each in enumerate(widths)}
+    instance = Instance(kind=kind, name="g", inputs={}, outputs={}, parameters=parameters)
+    return Gate(instance, inputs, width, lambda n: tuple(islice(fresh, n)))
+
+
+@pytest.mark.parametrize(
+    ("kind", "widths", "width", "parameters", "bits"),
+    [
+        ("$signal", [3], 3, (), (10, 11, 12)),
+        # GHDL has the most significant operand first.
+        ("$concat2", [1, 2], 3, (), (11, 12, 10)),
+        ("$concatn", [1, 1, 1, 1], 4, (), (13, 12, 11, 10)),
+        ("$extract", [4], 2, (1,), (11, 12)),
+        ("$extract", [4], 2, (2,), (12, 13)),
+        ("$utrunc", [4], 3, (), (10, 11, 12)),
+        ("$strunc", [4], 4, (), (10, 11, 12, 13)),
+        ("$uextend", [2], 4, (), (10, 11, "0", "0")),
+        ("$sextend", [2], 4, (), (10, 11, 11, 11)),
+        ("$sextend", [2], 2, (), (10, 11)),
+        ("$and", [2, 2], 2, (), None),
+    ],
+)
+def test_gates_that_only_rename_bits(kind, widths, width, parameters, bits):
+    assert renamed(gate(kind, widths, width, *parameters)) == bits
+
+
+@pytest.mark.parametrize(
+    ("kind", "widths", "width", "parameters"),
+    [
+        ("$signal", [3], 4, ()),
+        ("$concat2", [1, 2], 2, ()),
+        ("$extract", [4], 2, (3,)),
+        ("$utrunc", [3], 4, ()),
+        ("$uextend", [3], 2, ()),
+        ("$sextend", [0], 2, ()),
+        ("$const_UL32", [], 3, (1,)),
+        ("$const_UL32", [], 3, (1, 0, 0)),
+        ("$nand", [2, 1], 2, ()),
+        ("$nor", [2, 2], 1, ()),
+        ("$not", [2], 1, ()),
+        ("$neg", [2], 3, ()),
+        ("$and", [2, 1], 2, ()),
+        ("$add", [2, 2], 3, ()),
+        ("$lsl", [2, 1], 3, ()),
+        ("$eq", [2, 1], 1, ()),
+        ("$slt", [2, 2], 2, ()),
+        ("$mux2", [2, 3, 3], 3, ()),
+        ("$mux2", [1, 3, 2], 3, ()),
+        ("$mux4", [1, 2, 2, 2, 2], 2, ()),
+        ("$mux4", [2, 2, 2, 2, 1], 2, ()),
+        ("$pmux", [2, 1, 1], 1, ()),
+        ("$pmux", [2, 1, 1, 2], 1, ()),
+        ("$pmux", [2, 2, 1, 1], 1, ()),
+    ],
+)
+def test_gates_of_another_form_are_refused(kind, widths, width, parameters):
+    given = gate(kind, widths, width, *parameters)
+    with pytest.raises(ProofError, match=rf"^GHDL's {re.escape(kind)} g has an unknown form$"):
+        assert renamed(given) is None
+        gate_cells(given, tuple(range(200, 200 + width)))
+
+
+@pytest.mark.parametrize("parameters", [(), (1, 2)])
+@pytest.mark.parametrize("kind", ["$extract", "$const_UB32", "$const_SB32"])
+def test_gates_of_one_parameter_have_no_other_number_of_them(kind, parameters):
+    given = gate(kind, [4] if kind == "$extract" else [], 2, *parameters)
+    message = f"^GHDL's {re.escape(kind)} g has {len(parameters)} parameters$"
+    with pytest.raises(ProofError, match=message):
+        renamed(given)
+
+
+def test_gates_that_nobody_knows_are_refused():
+    with pytest.raises(ProofError, match=r"^GHDL's netlist has \$const_Z, which a proof does not"):
+        renamed(gate("$const_Z", [], 2))
+    with pytest.raises(ProofError, match=r"^GHDL's netlist has \$rol, which a proof does not"):
+        gate_cells(gate("$rol", [2, 1], 2), (200, 201))

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from amaranth.back import rtlil as amaranth_rtlil
@@ -17,6 +18,7 @@ from firm_hdl.equivalence import proof as proof_module
 from firm_hdl.equivalence.converters import Attempt, ProofTask
 from firm_hdl.equivalence.miter import Claim, Miter
 from firm_hdl.equivalence.solve import solve
+from firm_hdl.equivalence.tools import answer_of
 from firm_hdl.jobs import ToolError, TooSlowError
 from firm_hdl.vhdl.convert import Vhdl, convert
 
@@ -151,6 +153,31 @@ def test_the_summary_has_the_seconds_of_all_proofs(
     ]
 
 
+@pytest.mark.parametrize(
+    ("changes", "types"),
+    [
+        ({"distro": "noetic"}, 2),
+        ({"name": "a/msg/C"}, 2),
+        ({"wire": "ros1"}, 2),
+        # The other converter of a type, and a wider bus, are converters of the same type.
+        ({"direction": "deserializer"}, 1),
+        ({"bus_bytes": 4}, 1),
+    ],
+)
+def test_the_summary_counts_types_by_distribution_name_and_wire_format(
+    changes: dict[str, Any],
+    types: int,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    tasks = [TASK, replace(TASK, **changes)]
+    equal = Attempt(proof=Proof(result="equal", registers=1, claims=1, seconds=1.0))
+    monkeypatch.setattr(command, "find_tools", lambda: None)
+    monkeypatch.setattr(command, "run_tasks", lambda *_: iter([(task, equal) for task in tasks]))
+    assert command.run_proofs(tasks, 1, bar=True) == 0
+    assert f"2 converters of {types} types: 2 equal\n" in capsys.readouterr().out
+
+
 # Without tools: every way in which the two solvers can end.
 
 CLAIMS = 7
@@ -265,3 +292,13 @@ def test_an_answer_about_other_claims_is_none(bits: list[str], tmp_path: Path) -
 def test_a_tool_that_fails_proves_nothing(message: str, match: str, tmp_path: Path) -> None:
     with pytest.raises(ProofError, match=match):
         solve(some_miter(), Solvers(ToolError(message)), tmp_path, 1)
+
+
+def test_what_a_tool_has_written_is_read_once(tmp_path: Path) -> None:
+    file = tmp_path / "claims.json"
+    for text in ("first", "second é"):
+        file.write_text(text, encoding="utf-8")
+        assert answer_of("Yosys", file) == text
+        # The next run may write nothing, and must not get this answer.
+        with pytest.raises(ToolError, match=r"^Yosys ended .* did not write claims\.json"):
+            answer_of("Yosys", file)

@@ -14,7 +14,7 @@ __all__ = ["play"]
 
 def play(
     build: Callable[[Scene], None],
-    steps: Iterable[Mapping[str, int]],
+    steps: Iterable[Mapping[str, int]] | Callable[[dict[str, int]], Iterable[Mapping[str, int]]],
     *watched: str,
 ) -> tuple[dict[str, list[int]], list[tuple[int, ...]]]:
     """Play a scene.
@@ -22,7 +22,8 @@ def play(
     Parameters
     ----------
     steps : iterable of mapping
-        Inputs that are not 0, by name, for each cycle.
+        Inputs that are not 0, by name, for each cycle; or a function that returns them, and takes
+        the bits of all inputs by name.
     *watched : str
         Names of attributes of the scene, set by `build`, whose values are returned.
 
@@ -37,6 +38,8 @@ def play(
     inputs: dict[str, Signal] = {each.name: each for each in scene.inputs}
     broken: dict[str, list[int]] = {name: [] for name in scene.claims}
     values: list[tuple[int, ...]] = []
+    if callable(steps):
+        steps = steps({name: len(signal) for name, signal in inputs.items()})
 
     async def bench(ctx) -> None:
         for cycle, given in enumerate(steps):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from amaranth.hdl import Fragment, Signal
+from amaranth.lib.memory import Memory
 
 from firm_hdl.formal import run
 from firm_hdl.formal.blocks import all_studies
@@ -99,6 +100,26 @@ def test_a_counterexample_may_have_one_cycle(monkeypatch, method):
     monkeypatch.setattr(run, "all_proofs", lambda: {"wrong": run.Proof(study, study.claims[0])})
     answer = prove("wrong")
     assert (answer.result, answer.cycles, answer.inputs) == ("broken", 1, "go@0")
+
+
+def beyond_a_memory(scene):
+    """Read a place that a memory of three words does not have; a claim says what is there."""
+    memory = Memory(shape=1, depth=3, init=[])
+    scene.m.submodules.memory = memory
+    read, write = memory.read_port(domain="comb"), memory.write_port()
+    at = scene.free(2, "at")
+    scene.m.d.comb += [read.addr.eq(at), write.addr.eq(at), write.en.eq(1)]
+    scene.claim("low", (at != 3) | ~read.data)
+    scene.claim("high", (at != 3) | read.data)
+
+
+@pytest.mark.parametrize("claim", ["low", "high"])
+def test_what_is_undefined_may_be_anything(monkeypatch, claim):
+    claims = tuple(Claim(name, NO_BUG, "BMC", 2) for name in ("low", "high"))
+    study = Study("memory", "", beyond_a_memory, claims)
+    proofs = {each.name: run.Proof(study, each) for each in claims}
+    monkeypatch.setattr(run, "all_proofs", lambda: proofs)
+    assert prove(claim).result == "broken"
 
 
 def test_bug_goes_away_again():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from typing import ClassVar
 
 import pytest
@@ -18,6 +19,7 @@ from firm_hdl.verify.systems.tasks import UnknownTypeError
 from tests.frontend.recordings import make_recording
 from tests.frontend.workspace import make_files
 from tests.verify.report.samples import a_record, a_test
+from tests.verify.robot import robot, write
 
 
 def names_of(work):
@@ -68,6 +70,19 @@ def test_a_recording_has_one_wire(tmp_path):
     assert ("lyrical", "my_msgs/msg/Wheel") in names_of(resolve(Request(bags=(bag,), wire="cdr")))
     with pytest.raises(UnknownTypeError, match="has messages of cdr, not of ros1"):
         resolve(Request(bags=(bag,), wire="ros1"))
+
+
+def test_types_that_a_recording_has_no_topic_of_are_looked_up_nowhere_else(tmp_path, monkeypatch):
+    make_files(tmp_path, {"a/share/std_msgs/msg/Header.msg": "int8 x\n"})
+    bag = str(write(tmp_path / "run", "mcap", robot("mcap")))
+    # It is a part of a recorded type. The distribution and the workspace have it, too.
+    request = Request(types=("std_msgs/Header",), distros=("lyrical",))
+    assert names_of(resolve(request)) == [("lyrical", "std_msgs/msg/Header")]
+    for variable in ("AMENT_PREFIX_PATH", "NO_PREFIX_PATH"):
+        monkeypatch.setenv(variable, str(tmp_path / "a"))
+        with pytest.raises(UnknownTypeError, match=r"^There is no topic of std_msgs/msg/Header, "):
+            resolve(replace(request, bags=(bag,)))
+        monkeypatch.delenv(variable)
 
 
 class FixedSystem(System):

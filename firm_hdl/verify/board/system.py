@@ -130,7 +130,6 @@ class Boards(System):
                         raise TalkError(gone)
                     if not is_open:
                         talk.open()
-                        is_open = True
                 except TalkError as error:
                     gone = str(error)
                     result.failures.append(gone)

@@ -13,7 +13,10 @@ from firm_hdl.node import read_description_text
 from firm_hdl.node.messages import MessageSender
 from firm_hdl.verify.board import talk as talking
 from firm_hdl.verify.board.description import chosen_loops, loop_text
+from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.systems.options import Request
+from firm_hdl.verify.systems.system import Recorder
 from tests.node.bridge.fakes import FakeBoard
 from tests.verify.board.fakes import BOTH, STRING, LoopNode, described, verdicts
 
@@ -245,6 +248,26 @@ def test_a_board_that_wakes_up_when_it_is_opened_again_passes_the_next_type():
     assert [type(each) for each in found.values()] == [Failed, Passed]
 
 
+@pytest.mark.parametrize(
+    ("kind", "opened", "silent"),
+    [
+        (LoopNode, 1, 60.0),
+        # A wrong packet is no reason to begin anew; silence is, for the next type.
+        (FlipsAByte, 1, 60.0),
+        (FallsSilent, 2, 0.2),
+        # A board that does not answer from the start is not asked about the next type.
+        (Mute, 1, 0.2),
+    ],
+)
+def test_a_board_is_opened_once_as_long_as_it_answers(kind, opened, silent):
+    description = described(*BOTH)
+    board = FakeBoard(kind(description))
+    request = Request(board="fake", most_cases=4, references=(), silent_seconds=silent)
+    with Boards(description, request, board) as system:
+        assert len(system.run(Recorder())) == 2
+    assert board.opened == opened
+
+
 def test_each_repeat_of_a_request_waits_twice_as_long(monkeypatch):
     clock = [100.0]
     monkeypatch.setattr(talking, "time", SimpleNamespace(monotonic=lambda: clock[0]))
@@ -314,3 +337,44 @@ def test_what_nothing_can_judge_is_no_pass(tmp_path):
         "w_msgs/msg/Wide": NotJudged("rosbags has no wstring, which w_msgs/msg/Wide.text is")
     }
     assert node.heard == 0
+
+
+def options_of(description, **given):
+    """Return the options of a run, which the results of another run must share to go on."""
+    request = Request(**{"board": "fake", **given})
+    return Boards(description, request, FakeBoard(LoopNode(description))).options
+
+
+def test_results_are_not_continued_with_another_node(tmp_path):
+    definition = tmp_path / "own_msgs" / "msg" / "A.msg"
+    definition.parent.mkdir(parents=True)
+    found = []
+    for line in ("uint8 a\n", "uint16 a\n", "uint8 a\n"):
+        definition.write_text(line)
+        found.append(options_of(described("own_msgs/msg/A", paths=[str(tmp_path)])))
+    assert found[0] == found[2]
+    # Neither the request nor the text of the description names the field.
+    assert [key for key in found[0] if found[0][key] != found[1][key]] == ["fingerprint"]
+
+
+@pytest.mark.parametrize(
+    ("given", "key"),
+    [
+        ({"board": "other"}, "board"),
+        ({"node": "node.yaml"}, "node"),
+        ({"seed": 1}, "seed"),
+        ({"most_cases": 5}, "cases"),
+        ({"broken": False}, "broken"),
+        ({"references": ()}, "references"),
+        ({"references": ("rosbags",)}, "references"),
+        # They determine no case.
+        ({"silent_seconds": 1.0}, None),
+        ({"jobs": 3}, None),
+        ({"engine": "amaranth"}, None),
+    ],
+)
+def test_results_are_continued_with_the_same_cases_only(given, key):
+    description = described(STRING)
+    usual, other = options_of(description), options_of(description, **given)
+    assert [each for each in usual if usual[each] != other[each]] == ([key] if key else [])
+    assert usual.keys() == other.keys()

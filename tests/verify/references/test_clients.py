@@ -250,6 +250,32 @@ def test_who_has_no_wide_text_says_so(library_here, make_message, name):
         library_here(name).open(make_message("wstring w\n"), "cdr")
 
 
+def test_a_name_that_only_ros1_allows_is_refused_by_the_parser_of_mcap(library_here, make_message):
+    with pytest.raises(UnsupportedError, match=r"^mcap-ros2 refuses the definition: .*'A' is an"):
+        library_here("mcap-ros2").open(make_message("uint8 A\n", "noetic"), "cdr")
+
+
+class OddError(Exception):
+    """Like those of the parsers: derived from nothing else."""
+
+
+@pytest.mark.parametrize("error", [OddError, KeyError, NameError, SyntaxError, ValueError])
+@pytest.mark.parametrize(("name", "wire"), [("mcap-ros1", "ros1"), ("mcap-ros2", "cdr")])
+def test_whatever_a_parser_raises_is_a_refusal_of_the_definition(
+    monkeypatch, capsys, message_of, name, wire, error
+):
+    def fails(message):
+        print("the parser prints")
+        raise error(7)
+
+    codec = {"mcap-ros1": "_McapRos1Codec", "mcap-ros2": "_McapRos2Codec"}[name]
+    monkeypatch.setattr(f"firm_hdl.verify.references.libraries.{codec}", fails)
+    with pytest.raises(UnsupportedError) as raised:
+        client(name).open(message_of(wire), wire)
+    assert str(raised.value) == f"{name} refuses the definition: {error.__name__}: 7"
+    assert capsys.readouterr() == ("", "")
+
+
 @pytest.mark.parametrize("release", ["fastcdr", "fastcdr-2.2", "fastcdr-2.3"])
 def test_fast_cdr_writes_and_reads_packets_of_ros_2(library_here, release):
     corpus = os.environ.get("FIRM_HDL_CORPUS")

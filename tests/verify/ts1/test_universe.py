@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -210,6 +211,23 @@ def test_a_file_that_is_no_text_is_a_definition_as_well(universe_of, tmp_path):
     }
     with pytest.raises(DefinitionError):
         universe.interface(cases["Bad"])
+
+
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_a_definition_without_any_text_is_an_error(universe_of, tmp_path, distro):
+    """There is nothing that an oracle could be asked about."""
+    universe_of(distro, {"p/msg/A.msg": "int8 x\n", "p/msg/B.msg": "p/A a\n"})
+    file = tmp_path / "src" / "p" / "msg" / "A.msg"
+    file.unlink()
+    file.symlink_to("A.msg")
+    universe = Universe(distro, [str(tmp_path / "src")])
+    message = rf"^error: '{re.escape(str(file))}' cannot be read: .*symbolic links"
+    for names in (["p/A"], []):
+        with pytest.raises(DefinitionError, match=message):
+            universe.select(names)
+    with pytest.raises(DefinitionError, match=message):
+        write_definitions(universe)
+    assert [case.name for case in universe.select(["p/B"])] == ["B"]
 
 
 def test_definitions_are_written_as_they_are_wherever_they_are_from(tmp_path):

@@ -20,6 +20,7 @@ from firm_hdl.verify import Options, accept, collect_tasks, run_tasks
 from firm_hdl.verify.__main__ import main
 from firm_hdl.verify.cases.damage import DAMAGES, broken_packets
 from firm_hdl.verify.cases.make import Case
+from firm_hdl.verify.results.verdict import Passed
 from firm_hdl.wire import lay_out
 from tests.verify.judged import NAN_KEY, TIME_KEY, assert_passed
 
@@ -49,6 +50,23 @@ def test_types_pass(distro, name, bus_bytes):
     known = KNOWN.get((name, bus_bytes), ())
     assert assert_passed(result, known) >= 2 * result.cases > 0
     assert result.packets > 2 * result.cases and result.cycles >= result.beats
+
+
+@pytest.mark.parametrize(
+    ("options", "judged", "sent"),
+    [
+        # Four packets, once without stalls and once with them; damaged ones have no oracle.
+        ({"stalled": False, "broken": False}, 4, 4),
+        ({"broken": False}, 8, 8),
+        ({"stalled": False}, 4, 12),
+        # The golden model counts only in place of a circuit.
+        ({"simulated": False}, 4, 0),
+    ],
+)
+def test_each_packet_that_is_compared_counts_once(options, judged, sent):
+    given = Options(most_cases=4, references=(), **options)
+    result = accept("lyrical", "std_msgs/msg/Bool", given)
+    assert (result.verdict, result.packets) == (Passed(judged), sent)
 
 
 class Mirror(wiring.Component):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 import firm_hdl.verify.ts3.confirm as references
@@ -164,3 +166,23 @@ def test_the_first_case_is_written_however_large_it_is(monkeypatch):
     for most, count in ((0, 1), (sizes[0], 1), (sum(sizes[:3]), 3), (1 << 30, len(cases))):
         monkeypatch.setattr(references, "MOST_BYTES", most)
         assert references._sample(cases) == cases[:count]
+
+
+def test_a_known_difference_hides_no_other_packet(monkeypatch):
+    packets = [b"known", b"right", b"wrong", b"other", b"refused"]
+    written = [b"?", b"right", b"no", b"??", Refusal("it is odd")]
+    keys = {"known": ["one"], "other": ["two", "one"]}
+    codec = SimpleNamespace(encode_all=lambda values: written)
+    opened = SimpleNamespace(open=lambda message, wire: codec)
+    monkeypatch.setattr(references, "client", {"lib": opened}.__getitem__)
+    monkeypatch.setattr(
+        references, "known_writing", lambda message, wire, value, *_: keys.get(value)
+    )
+    values = [packet.decode() for packet in packets]
+    cases = [SimpleNamespace(what=f"case {n}", packet=each) for n, each in enumerate(packets)]
+    found, known = references._differences(None, "cdr", cases, values, "lib")
+    assert known == ["one", "two", "one"]
+    assert found == [
+        f"case 2: lib writes {b'no'.hex()}, rosbags writes {b'wrong'.hex()}",
+        f"case 4: lib refuses: it is odd, rosbags writes {b'refused'.hex()}",
+    ]

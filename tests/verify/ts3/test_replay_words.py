@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import struct
 from types import SimpleNamespace
 
@@ -13,6 +14,7 @@ from firm_hdl.plan import build_plan
 from firm_hdl.plan.interpret import decode
 from firm_hdl.verify.cases.effort import MAX_MESSAGE_BYTES
 from firm_hdl.verify.cases.make import Case
+from firm_hdl.verify.references.oracle import distro_oracle
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.ts3 import replay
 from firm_hdl.verify.ts3.recording import Selection
@@ -220,3 +222,55 @@ def test_items_with_a_sign_keep_their_highest_bit(name, is_text):
     assert decoded.status == "OK"
     found = replay._changed(plan, decoded.streams, replay._in_ascii)
     assert (found != decoded.streams) is is_text
+
+
+@pytest.mark.parametrize(
+    ("packet", "finding"),
+    [
+        (
+            b"\0\1\0\0\7",
+            "its 5 bytes do not fit the definition: status ENCAPSULATION; rosbags reads",
+        ),
+        (
+            b"\0\1\0\0",
+            "its 4 bytes do not fit the definition: status ENCAPSULATION; rosbags says: ",
+        ),
+        # Only of these packets is the status right, and rosbags is not asked.
+        (b"\0\0\0\0\7", ""),
+    ],
+)
+def test_a_model_that_refuses_the_header_of_little_endian_cdr_is_found(
+    monkeypatch, packet, finding
+):
+    def refuses(plan, packet):
+        return dataclasses.replace(decode(plan, packet), status="ENCAPSULATION")
+
+    monkeypatch.setattr(replay, "decode", refuses)
+    plan, oracle = plan_of("std_msgs/msg/UInt8"), distro_oracle("lyrical")
+    judge = SimpleNamespace(oracle=oracle, name="std_msgs/msg/UInt8")
+    message = SimpleNamespace(bag="b", data=packet)
+    judged = replay._judge(plan, judge, message, with_bag=False)
+    assert finding in judged.finding and bool(judged.finding) is bool(finding)
+    assert bool(judged.kind) is not bool(finding)
+
+
+@pytest.mark.parametrize("wrong", ["", "packet", "transfers", "error"])
+def test_a_similar_packet_has_to_have_the_same_bytes_and_transfers(monkeypatch, wrong):
+    plan = plan_of("std_msgs/msg/UInt8")
+    packet = b"\0\1\0\0\7"
+    decoded = decode(plan, packet)
+    (path,) = replay._by_path(plan, decoded.streams)
+
+    def ask(plan, judge, given):
+        assert given == packet
+        if wrong == "error":
+            raise LookupError("nothing")
+        return packet + b"\0" * (wrong == "packet"), {path: [8 if wrong == "transfers" else 7]}
+
+    monkeypatch.setattr(replay, "_ask", ask)
+    here = case("message 3", given=packet)
+    found = replay._judged_by_substitute(plan, None, here, decoded, "of a kind", "rosbags is odd")
+    if wrong:
+        assert (found.kind, found.finding) == ("", replay._misfit(here, "rosbags is odd"))
+    else:
+        assert (found.kind, found.finding) == ("of a kind", "")
