@@ -158,6 +158,20 @@ def test_one_request_is_under_way_at_any_time():
     assert talk.session.due(talk.now + 0.3, talk.wall)
 
 
+@pytest.mark.parametrize(("sample_seconds", "samples", "rounds"), [(1.0, 15, 3), (7.0, 3, 3)])
+def test_what_is_next_due_is_due_then_and_not_before(sample_seconds, samples, rounds):
+    """Who only wakes up for it misses neither a comparison of the clocks nor a round."""
+    talk = Talk(sample_seconds=sample_seconds)
+    first = min(each.number for each in registers(ECHO) if each.part != "identity")
+    while (at := talk.session.next_due()) < 114.5:
+        if at > talk.now:
+            assert talk.session.due(at - 1e-6, talk.wall) == []
+            talk.now = at
+        (frame,) = talk.session.due(talk.now, talk.wall)
+        talk.say(frame)
+    assert talk.node.read.count(0) == samples and talk.node.read.count(first) == rounds
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_loss_of_two_fifths_of_all_frames(seed):
     rng = random.Random(seed)
