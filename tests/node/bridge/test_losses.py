@@ -38,7 +38,8 @@ def test_restarts_add_up_over_all_sessions():
         assert run_until(made, lambda count=count: made.restarts == count - 1)
         assert run_until(made, lambda: made.is_ready)
         board.is_dead = True
-        assert run_until(made, lambda count=count: made.restarts == count)
+        assert run_until(made, lambda: not made.is_ready)
+        assert made.restarts == count
         board.node, board.is_dead = FakeNode(), False
         assert run_until(made, lambda: made.is_ready)
         assert made.restarts == count
