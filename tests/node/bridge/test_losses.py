@@ -47,6 +47,21 @@ def test_restarts_add_up_over_all_sessions():
     assert made.restarts == 4
 
 
+def test_what_waits_of_a_board_that_is_never_known_is_lost_with_it():
+    board, graph = FakeBoard(), FakeGraph()
+    board.node.is_mute = True
+    made, _ = bridge_of(board, graph)
+    assert run_until(made, lambda: board.opened)
+    for packet in (b"a", b"b"):
+        board.come(board.node.sender.frames(NodeMessage(topic=2, packet=packet)))
+    assert run_until(made, lambda: not board.coming)
+    assert not made.on_the_way
+    board.is_dead = True
+    assert run_until(made, lambda: made.restarts == 1)
+    assert made.on_the_way == {"held back": 2} and not graph.opened
+    made.close()
+
+
 @pytest.mark.parametrize("dies", [False, True])
 def test_a_request_is_answered_or_lost_once(dies):
     board, graph = FakeBoard(), FakeGraph()
