@@ -174,7 +174,7 @@ def test_what_is_next_due_is_due_then_and_not_before(sample_seconds, samples, ro
 
 def test_a_request_that_is_lost_is_repeated_as_one_that_compares_the_clocks():
     talk = Talk()
-    talk.run(1)
+    talk.run(4)
     talk.now = talk.session.next_due()
     assert talk.session.due(talk.now, talk.wall)
     assert talk.session.next_due() == pytest.approx(talk.now + REPEAT_SECONDS)
