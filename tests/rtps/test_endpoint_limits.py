@@ -41,6 +41,22 @@ def listening(sent, qos=KEEP_ALL, limit=1 << 20):
     return reader, got, budget
 
 
+@pytest.mark.parametrize("own", [KEEP_ALL, BEST_EFFORT])
+@pytest.mark.parametrize("other", [KEEP_ALL, BEST_EFFORT])
+def test_nobody_waits_for_the_other_side_unless_both_are_reliable(sent, own, other):
+    both = own is other is KEEP_ALL
+    got = []
+    deliver = lambda writer, data, timestamp: got.append(data.sequence_number)  # noqa: E731
+    reader = Reader(THERE, own, sent.append, deliver, Budget(1 << 20))
+    reader.match(endpoint(HERE, other), ADDRESS, 0.0)
+    reader.on_data(HERE, data(2), None, 1.0)
+    assert got == ([] if both else [2])
+    writer = Writer(HERE, own, sent.append)
+    writer.match(endpoint(THERE, other), ADDRESS, 0.0)
+    writer.write(b"abcd", 1.0)
+    assert writer.acknowledged is not both
+
+
 def test_what_a_best_effort_reader_lost_begins_with_its_first_sample(sent):
     reader, got, _ = listening(sent, BEST_EFFORT)
     for number, lost in ((5, 0), (6, 0), (9, 2), (8, 2), (10, 2)):
