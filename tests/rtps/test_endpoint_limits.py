@@ -155,3 +155,20 @@ def test_a_durable_writer_whose_history_is_empty(sent):
     (first,) = sent.take(Heartbeat)
     assert (first.first, first.last) == (4, 3)
     assert writer.acknowledged
+
+
+@pytest.mark.parametrize(("acknowledged", "sent_again"), [(1, [1, 2, 3]), (2, [1, 3]), (3, [1, 3])])
+def test_a_durable_writer_forgets_the_end_of_an_instance_that_all_have(
+    sent, acknowledged, sent_again
+):
+    durable = Qos(depth=0, durability=Durability.TRANSIENT_LOCAL)
+    writer = Writer(HERE, durable, sent.append)
+    writer.match(endpoint(THERE, durable), ADDRESS, 0.0)
+    for is_end in (False, True, False):
+        writer.write(b"abcd", 1.0, key=is_end)
+    writer.on_ack_nack(THERE, ack(acknowledged + 1), 1.1)
+    late = Guid(bytes(11) + b"\1", 0x204)
+    writer.match(endpoint(late, durable), ADDRESS, 2.0)
+    sent.clear()
+    writer.on_ack_nack(late, ack(1, (1, 2, 3)), 2.1)
+    assert [each.sequence_number for each in sent.take(Data, late.prefix)] == sent_again
