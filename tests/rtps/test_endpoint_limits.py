@@ -172,3 +172,26 @@ def test_a_durable_writer_forgets_the_end_of_an_instance_that_all_have(
     sent.clear()
     writer.on_ack_nack(late, ack(1, (1, 2, 3)), 2.1)
     assert [each.sequence_number for each in sent.take(Data, late.prefix)] == sent_again
+
+
+@pytest.mark.parametrize(
+    ("qos", "large", "asks"),
+    [
+        # Every 50 ms, or every 2 ms while half of the room is in use; samples are 1 ms apart.
+        (Qos(depth=0, max_samples=100), (), []),
+        (Qos(depth=0, max_samples=8), (), [4, 6, 8]),
+        (Qos(depth=8, max_samples=8), (), []),
+        # A sample in fragments is always asked for.
+        (Qos(depth=0, max_samples=100), (3, 7), [3, 7]),
+    ],
+)
+def test_which_samples_ask_for_an_acknowledgement(sent, qos, large, asks):
+    writer = Writer(HERE, qos, sent.append, fragment_bytes=8)
+    writer.match(endpoint(THERE, qos), ADDRESS, 1.0)
+    asking = []
+    for number in range(1, 9):
+        sent.clear()
+        writer.write(b"abcd" * (4 if number in large else 1), 1.0 + 0.00101 * number)
+        (beat,) = sent.take(Heartbeat)
+        asking += [] if beat.final else [number]
+    assert asking == asks
