@@ -11,6 +11,7 @@ from amaranth.hdl import Cat
 
 from firm_hdl.node.control import ControlRequest, ControlResponse, Operation, Result, registers
 from firm_hdl.node.gateware import NodeCore
+from firm_hdl.node.gateware.core import node_counters_layout
 from firm_hdl.node.messages import NodeMessage
 from firm_hdl.sim import Stalls
 from tests.depth import by_depth
@@ -178,12 +179,35 @@ def answers_of(seen):
     }
 
 
+# Each byte of each counter has its highest bit.
+LINK = {
+    name: (0xF0 + number) * 0x0101_0101
+    for number, name in enumerate(
+        ("passed", "lost", "late", "cut", "stray", "malformed", "full", "large", "unsent")
+    )
+}
+
+
+class _Counted(NodeCore):
+    """A core whose link has counted `LINK`."""
+
+    def elaborate(self, platform):
+        m = super().elaborate(platform)
+        m.d.comb += [self.link_counters[name].eq(value) for name, value in LINK.items()]
+        return m
+
+
+def test_each_counter_has_32_bits():
+    owners = [owner.shape for _, owner in node_counters_layout(read())]
+    assert {field.width for owner in owners for _, field in owner} == {32}
+
+
 @pytest.mark.parametrize("bus_bytes", by_depth([16], [1, 2, 4, 8, 16]))
 def test_a_host_reads_all_registers(bus_bytes):
     description = read(bus_bytes=str(bus_bytes))
-    bench, names = CoreBench(description), registers(description)
-    # Identity, the counters of the first topic, and some of the others.
-    names = by_depth(names[:6] + names[18:32] + names[32::6], names)
+    bench, names = CoreBench(description, _Counted(description)), registers(description)
+    # Identity, the counters of the link and of the first topic, and some of the others.
+    names = by_depth(names[:15] + names[18:32] + names[32::6], names)
     # A request has 16 bytes and takes about 15 cycles and as many as its answer has beats.
     pause = Stalls.bits("1" + "0" * (24 * bus_bytes // 16))
     twists = packets_of(description.topics[0].stores[0][1].message, 5)
@@ -205,6 +229,7 @@ def test_a_host_reads_all_registers(bus_bytes):
     assert identity == [0xF1, print_ & 0xFFFFFFFF, print_ >> 32, 4, 100_000_000, 10 << 22]
     found = {each.name: values[each.number] for each in names if each.topic == 1}
     assert (found["passed"], found["truncated"], found["bytes_low"]) == (2, 3, 104)
+    assert {each.name: values[each.number] for each in names if each.owner == "link"} == LINK
     assert [answers[tag].result for tag in (9000, 9001, 9002)] == [
         Result.OPERATION,
         Result.ARGUMENT,

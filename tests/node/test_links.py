@@ -191,8 +191,14 @@ def test_the_node_answers_whom_it_heard_last():
     assert "unsent" not in counters
 
 
-def test_the_host_does_not_change_within_a_datagram():
-    bench, words = udp_bench(8, memory_bytes=4096, packets=64)
+@pytest.mark.parametrize(
+    ("data_bytes", "datagram_bytes", "stalls"),
+    # Where the receiver stalls, the shortest datagrams follow each other without a pause.
+    [(1, 48, Stalls()), (16, 32, Stalls(0.3, max_cycles=3))],
+)
+def test_the_host_does_not_change_within_a_datagram(data_bytes, datagram_bytes, stalls):
+    sizes = {"data_bytes": data_bytes, "datagram_bytes": datagram_bytes}
+    bench, words = udp_bench(8, memory_bytes=4096, packets=64, **sizes)
     layout = datagram_layout(words)
     frames = frames_of(some(30, 1, (5,)))
     source = [
@@ -201,11 +207,11 @@ def test_the_host_does_not_change_within_a_datagram():
         for word in words_of(frame, words, ip=ADDRESS + number, port=PORT + number)
     ]
     # The messages come after the first host has been heard.
-    late = {"sent": Stalls.bits("0" * 60 + "1" * 10**4)}
+    late = {"sent": Stalls.bits("0" * 60 + "1" * 10**4), "datagrams_out": stalls}
+    up = some(12, 2, (32,))
+    total = sum(-(-len(frame) // words) for frame in frames_of(up, datagram_bytes))
     seen, _, _ = bench.run(
-        {"datagrams_in": source, "sent": link_beats(some(12, 2, (32,)), 8)},
-        {"datagrams_out": 12 * 48},
-        stalls=late,
+        {"datagrams_in": source, "sent": link_beats(up, 8)}, {"datagrams_out": total}, stalls=late
     )
     inside, hosts = set(), set()
     for bits in seen.others["datagrams_out"]:
@@ -227,6 +233,20 @@ def test_without_a_host_nothing_is_sent_and_all_is_counted():
         {"sent": link_beats(some(4, 2, (40,)), 8)}, {"sent": 20}, settle=400
     )
     assert seen.others["datagrams_out"] == [] and counters == {"unsent": 8}
+
+
+def test_after_what_was_dropped_without_a_host_all_is_sent_whole():
+    # The shortest datagrams, of two words each, follow each other without a pause.
+    bench, words = udp_bench(16, data_bytes=16, datagram_bytes=32)
+    up, heard = some(2, 2, (200,)), frames_of(some(1, 1, (5,)))[0]
+    sources = {"datagrams_in": words_of(heard, words), "sent": link_beats(up, 16)}
+    # The host is heard in each cycle of a datagram and of the next one.
+    for cycle in range(30, 36):
+        late = {"datagrams_in": Stalls.bits("0" * cycle + "1" * 10**4)}
+        seen, _, counters = bench.run(sources, {"sent": 2 * 13, "received": 1}, stalls=late)
+        datagrams = [each for each, _, _ in datagrams_of(seen.others["datagrams_out"], words)]
+        assert 3 < counters["unsent"] < 2 * 13 - 3
+        assert datagrams == frames_of(up, 32)[counters["unsent"] :]
 
 
 def test_the_port_of_the_node_is_there_while_nothing_is_sent():

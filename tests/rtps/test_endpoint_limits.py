@@ -41,6 +41,22 @@ def listening(sent, qos=KEEP_ALL, limit=1 << 20):
     return reader, got, budget
 
 
+@pytest.mark.parametrize("own", [KEEP_ALL, BEST_EFFORT])
+@pytest.mark.parametrize("other", [KEEP_ALL, BEST_EFFORT])
+def test_nobody_waits_for_the_other_side_unless_both_are_reliable(sent, own, other):
+    both = own is other is KEEP_ALL
+    got = []
+    deliver = lambda writer, data, timestamp: got.append(data.sequence_number)  # noqa: E731
+    reader = Reader(THERE, own, sent.append, deliver, Budget(1 << 20))
+    reader.match(endpoint(HERE, other), ADDRESS, 0.0)
+    reader.on_data(HERE, data(2), None, 1.0)
+    assert got == ([] if both else [2])
+    writer = Writer(HERE, own, sent.append)
+    writer.match(endpoint(THERE, other), ADDRESS, 0.0)
+    writer.write(b"abcd", 1.0)
+    assert writer.acknowledged is not both
+
+
 def test_what_a_best_effort_reader_lost_begins_with_its_first_sample(sent):
     reader, got, _ = listening(sent, BEST_EFFORT)
     for number, lost in ((5, 0), (6, 0), (9, 2), (8, 2), (10, 2)):
@@ -139,3 +155,43 @@ def test_a_durable_writer_whose_history_is_empty(sent):
     (first,) = sent.take(Heartbeat)
     assert (first.first, first.last) == (4, 3)
     assert writer.acknowledged
+
+
+@pytest.mark.parametrize(("acknowledged", "sent_again"), [(1, [1, 2, 3]), (2, [1, 3]), (3, [1, 3])])
+def test_a_durable_writer_forgets_the_end_of_an_instance_that_all_have(
+    sent, acknowledged, sent_again
+):
+    durable = Qos(depth=0, durability=Durability.TRANSIENT_LOCAL)
+    writer = Writer(HERE, durable, sent.append)
+    writer.match(endpoint(THERE, durable), ADDRESS, 0.0)
+    for is_end in (False, True, False):
+        writer.write(b"abcd", 1.0, key=is_end)
+    writer.on_ack_nack(THERE, ack(acknowledged + 1), 1.1)
+    late = Guid(bytes(11) + b"\1", 0x204)
+    writer.match(endpoint(late, durable), ADDRESS, 2.0)
+    sent.clear()
+    writer.on_ack_nack(late, ack(1, (1, 2, 3)), 2.1)
+    assert [each.sequence_number for each in sent.take(Data, late.prefix)] == sent_again
+
+
+@pytest.mark.parametrize(
+    ("qos", "large", "asks"),
+    [
+        # Every 50 ms, or every 2 ms while half of the room is in use; samples are 1 ms apart.
+        (Qos(depth=0, max_samples=100), (), []),
+        (Qos(depth=0, max_samples=8), (), [4, 6, 8]),
+        (Qos(depth=8, max_samples=8), (), []),
+        # A sample in fragments is always asked for.
+        (Qos(depth=0, max_samples=100), (3, 7), [3, 7]),
+    ],
+)
+def test_which_samples_ask_for_an_acknowledgement(sent, qos, large, asks):
+    writer = Writer(HERE, qos, sent.append, fragment_bytes=8)
+    writer.match(endpoint(THERE, qos), ADDRESS, 1.0)
+    asking = []
+    for number in range(1, 9):
+        sent.clear()
+        writer.write(b"abcd" * (4 if number in large else 1), 1.0 + 0.00101 * number)
+        (beat,) = sent.take(Heartbeat)
+        asking += [] if beat.final else [number]
+    assert asking == asks

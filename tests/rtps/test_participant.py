@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import threading
 import time
 from concurrent.futures import Future
@@ -21,8 +22,8 @@ from firm_hdl.rtps.ros import Context, Node, graph
 from firm_hdl.rtps.ros.graph import GraphInfo, NodeInfo
 from firm_hdl.rtps.transport import Transport
 
-# A domain of its own, so that participants on this machine do not come in.
-DOMAIN = 187
+# A domain that no other test has, nor one that runs at the same time, so that nobody else comes in.
+DOMAIN = 160 + os.getpid() % 60
 OPTIONS = {"domain": DOMAIN, "interface": "127.0.0.1", "peers": ("127.0.0.1",), "multicast": False}
 TOPIC, TYPE = "rt/t", "p::msg::dds_::T_"
 STRING = "std_msgs/msg/String"
@@ -112,6 +113,22 @@ def test_a_callback_cannot_wait_for_what_comes_after_it(pair, caplog):
         writer.write(b"1234")
         assert wait(lambda: caplog.records)
     assert "a callback cannot wait for what comes after it" in caplog.text
+
+
+def test_waiting_ends_when_all_is_there_and_not_before(pair, monkeypatch):
+    one, two = pair
+    writer, got = one.writer(TOPIC, TYPE), []
+    two.reader(TOPIC, TYPE, got.append)
+    assert writer.wait_for_match() and not writer.wait_for_match(2, timeout=0.01)
+    second = two.reader(TOPIC, TYPE, got.append)
+    assert writer.wait_for_match(2) and len(writer.matched) == 2
+    monkeypatch.setattr(two._core, "receive", lambda datagram, now: None)
+    writer.write(b"1234")
+    assert not writer.wait_for_acknowledgments(timeout=0.01)
+    monkeypatch.undo()
+    assert writer.wait_for_acknowledgments() and wait(lambda: len(got) == 2)
+    second.close()
+    assert wait(lambda: len(writer.matched) == 1)
 
 
 def test_the_loopback_interface_needs_neither_multicast_nor_peers():

@@ -1,11 +1,15 @@
-"""Messages for a board that has no room."""
+"""Messages for a board that has no room, or takes no more at all."""
 
 from __future__ import annotations
 
+import socket
 import time
 
+import pytest
+
+from firm_hdl.node.boards import BoardError, board_of
 from firm_hdl.node.bridge import bridge
-from tests.node.bridge.fakes import HEARD, FakeBoard, FakeGraph, bridge_of, run_until
+from tests.node.bridge.fakes import ECHO, HEARD, FakeBoard, FakeGraph, bridge_of, run_until
 
 
 def test_messages_wait_for_room_for_a_moment():
@@ -29,3 +33,37 @@ def test_messages_wait_for_room_for_a_moment():
     assert run_until(made, lambda: len(graph.got) == 3)
     assert made.counters.dropped == {("/heard", "board full"): 2}
     made.close()
+
+
+def test_a_socket_that_is_full_or_empty_is_no_error():
+    class Socket:
+        """What the system says if a call would have to wait."""
+
+        def send(self, frame):
+            raise BlockingIOError
+
+        recv = send
+
+        def close(self):
+            pass
+
+    board = board_of("udp://127.0.0.1:9", ECHO)
+    board._socket = Socket()
+    assert board.send([b"x"]) is False and board.receive() == []
+    assert not board.counters
+
+
+def test_a_connection_that_is_reset_takes_no_more():
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        name = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        board = board_of(name, ECHO)
+        board.open()
+        server.accept()[0].close()
+        # The first bytes are answered with a reset, from which on the system takes no more.
+        with pytest.raises(BoardError, match=f"^{name}: (Connection reset by peer|Broken pipe)$"):
+            for _ in range(1000):
+                board.send([b"x"])
+        board.close()
+    for use in (board.fileno, board.receive, lambda: board.send([b"x"])):
+        with pytest.raises(BoardError, match=f"^{name} is closed$"):
+            use()

@@ -158,6 +158,62 @@ def test_one_request_is_under_way_at_any_time():
     assert talk.session.due(talk.now + 0.3, talk.wall)
 
 
+@pytest.mark.parametrize(("sample_seconds", "samples", "rounds"), [(1.0, 15, 3), (7.0, 3, 3)])
+def test_what_is_next_due_is_due_then_and_not_before(sample_seconds, samples, rounds):
+    """Who only wakes up for it misses neither a comparison of the clocks nor a round."""
+    talk = Talk(sample_seconds=sample_seconds)
+    first = min(each.number for each in registers(ECHO) if each.part != "identity")
+    while (at := talk.session.next_due()) < 114.5:
+        if at > talk.now:
+            assert talk.session.due(at - 1e-6, talk.wall) == []
+            talk.now = at
+        (frame,) = talk.session.due(talk.now, talk.wall)
+        talk.say(frame)
+    assert talk.node.read.count(0) == samples and talk.node.read.count(first) == rounds
+
+
+def test_a_request_that_is_lost_is_repeated_as_one_that_compares_the_clocks():
+    talk = Talk()
+    talk.run(4)
+    talk.now = talk.session.next_due()
+    assert talk.session.due(talk.now, talk.wall)
+    assert talk.session.next_due() == pytest.approx(talk.now + REPEAT_SECONDS)
+    count = len(talk.node.read)
+    talk.now = talk.session.next_due()
+    talk.step()
+    assert talk.node.read[count:] == [0]
+
+
+def test_requests_without_an_answer_take_limited_memory():
+    talk = Talk()
+    for number in range(200):
+        # Messages show that the board is there.
+        talk.session.take(published(talk.node, number), talk.now, talk.wall)
+        talk.now += REPEAT_SECONDS
+        assert talk.session.due(talk.now, talk.wall)
+    assert len(talk.session._asked) == 64
+
+
+def test_the_clock_of_a_board_that_starts_again_is_set_at_once():
+    talk = Talk(sample_seconds=3.0)
+    talk.run(1)
+    talk.node = FakeNode()
+    talk.session.take(published(talk.node), talk.now, talk.wall)
+    talk.run(1)
+    assert talk.session.restarts == 1 and talk.session.is_ready
+    assert talk.node.read[:3] == [1, 2, 0] and talk.node.set_ns
+
+
+def test_an_answer_to_another_operation_is_ignored():
+    class Confused(FakeNode):
+        def _control(self, packet):
+            return b"\2" + super()._control(packet)[1:]
+
+    talk = Talk(Confused())
+    talk.run(1)
+    assert talk.node.read and not talk.session.is_ready
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_loss_of_two_fifths_of_all_frames(seed):
     rng = random.Random(seed)

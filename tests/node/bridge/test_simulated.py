@@ -13,6 +13,7 @@ from firm_hdl.node import read_description_text
 from firm_hdl.node.boards import BoardError, simulated
 from firm_hdl.node.boards.simulated import SimulatedBoard
 from firm_hdl.node.bridge import session
+from firm_hdl.sim.fast import SimulationError
 from tests.depth import by_depth
 from tests.node.accelerators import echo_text
 from tests.node.bridge.fakes import FakeGraph, bridge_of, run_until
@@ -111,4 +112,26 @@ def test_a_board_that_is_not_open_is_an_error():
     board = SimulatedBoard(read(echo_text()), engine="amaranth")
     for use in (board.receive, board.fileno, lambda: board.send([b""])):
         with pytest.raises(BoardError, match="the simulation is closed"):
+            use()
+
+
+class _EndedSimulation:
+    """A simulation whose engine was killed as soon as it ran."""
+
+    def _fail(self, *_):
+        raise SimulationError("The simulation ended: killed")
+
+    def _do(self, *_):
+        return
+
+    send_packets = receive_packets = fileno = restart = _fail
+    stall = go_live = close = _do
+
+
+def test_a_simulation_that_ended_is_an_error_whatever_is_asked_of_it(monkeypatch):
+    board = SimulatedBoard(read(echo_text()))
+    monkeypatch.setattr(board, "_start", _EndedSimulation)
+    board.open()
+    for use in (board.receive, board.fileno, lambda: board.send([b""]), board.open):
+        with pytest.raises(BoardError, match=r"^The simulation ended: killed$"):
             use()

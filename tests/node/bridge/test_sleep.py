@@ -1,0 +1,106 @@
+"""How long a bridge sleeps when nothing comes: until something is due, in a time of its own."""
+
+from __future__ import annotations
+
+import select
+from types import SimpleNamespace
+
+import pytest
+
+from firm_hdl.node.bridge import boardside, bridge
+from tests.node.bridge.fakes import HEARD, FakeBoard, FakeGraph, bridge_of
+
+
+class Sleeper:
+    """A bridge whose clock stands still, with what it waits for in seconds."""
+
+    def __init__(self, monkeypatch):
+        self.now, self.slept = 100.0, []
+        clock = SimpleNamespace(monotonic=lambda: self.now, time_ns=lambda: int(self.now * 1e9))
+        for module in (bridge, boardside):
+            monkeypatch.setattr(module, "time", clock)
+        monkeypatch.setattr(bridge, "select", SimpleNamespace(select=self._select))
+        self.board, self.graph = FakeBoard(), FakeGraph()
+        # Nothing else is due of the board for seconds.
+        self.board.sample_seconds = 100.0
+        self.bridge, _ = bridge_of(self.board, self.graph)
+
+    def _select(self, reads, writes, errors, seconds):
+        self.slept.append(seconds)
+        return select.select(reads, writes, errors, 0)
+
+    def sleep(self, after=0.0, end=float("inf")):
+        """Let time pass; return how long the bridge then sleeps, once nothing is left to do."""
+        self.now += after
+        for _ in range(200):
+            self.bridge.step(end)
+            if self.slept[-1] > 1e-9:
+                return pytest.approx(self.slept[-1])
+            # Something is due, if need be after an error of rounding.
+            self.now += self.slept[-1]
+        raise AssertionError("it never sleeps")
+
+
+@pytest.fixture
+def sleeper(monkeypatch):
+    made = Sleeper(monkeypatch)
+    yield made
+    made.bridge.close()
+
+
+def test_half_a_second_at_most_and_never_after_the_end(sleeper):
+    assert sleeper.sleep() == 0.5
+    assert sleeper.sleep(end=sleeper.now + 0.01) == 0.01
+
+
+def test_until_the_clocks_are_compared(sleeper):
+    sleeper.board.sample_seconds = 0.3
+    assert sleeper.sleep() == 0.3
+    assert sleeper.sleep(0.2) == 0.1
+    assert sleeper.sleep(0.1) == 0.3
+
+
+def test_until_a_board_that_is_gone_is_tried_again(sleeper):
+    sleeper.board.is_dead = True
+    assert sleeper.sleep() == 0.2
+    assert sleeper.sleep(0.15) == 0.05
+    assert sleeper.sleep(0.05) == 0.4
+
+
+def test_until_a_graph_that_is_gone_is_tried_again(sleeper):
+    sleeper.graph.is_dead = True
+    assert sleeper.sleep() == 0.2
+    assert sleeper.sleep(0.15) == 0.05
+    assert sleeper.sleep(0.05) == 0.4
+    sleeper.graph.is_dead = False
+    assert sleeper.sleep(0.4) == 0.5
+
+
+def test_until_the_oldest_message_has_waited_for_too_long(sleeper):
+    sleeper.board.is_dead = True
+    sleeper.sleep()
+    sleeper.bridge.on_message(HEARD, b"1", None)
+    assert sleeper.sleep(0.1) == 0.1
+    # The board is tried again in 0.4 s, and the message is dropped in 0.05 s.
+    assert sleeper.sleep(0.1) == 0.05
+    assert sleeper.sleep(0.051) == 0.349
+    assert sleeper.bridge.counters.dropped == {("/heard", "no board"): 1}
+
+
+def test_a_moment_while_a_message_waits_for_room(sleeper):
+    sleeper.sleep()
+    sleeper.board.has_room = False
+    sleeper.graph.say(HEARD, b"1")
+    assert sleeper.sleep() == 0.005
+    sleeper.board.has_room = True
+    assert sleeper.sleep(0.005) == 0.5 and sleeper.graph.got == [("/said", b"1")]
+
+
+def test_not_at_all_while_a_message_can_be_sent(sleeper):
+    sleeper.sleep()
+    sleeper.graph.say(HEARD, *[b"1"] * 1000)
+    sleeper.now += 0.001
+    sleeper.bridge.step()
+    assert sleeper.slept[-1] == 0.0
+    sleeper.sleep()
+    assert len(sleeper.graph.got) == 1000
