@@ -148,3 +148,15 @@ def test_names_after_an_array_are_marked(members, array, good):
         "declare it in a line of its own"
     )
     assert [member.name.text for member in messages["T"].members] == good
+
+
+def test_a_wrong_type_before_many_names_is_reported_once():
+    messages, wrong = read("module p { struct T { any a, b, c[2]; long d; }; };")
+    assert [error.message for error in wrong] == ["type 'any' is not supported"]
+    assert [member.name.text for member in messages["T"].members] == ["d"]
+
+
+def test_each_name_too_many_of_a_typedef_is_reported():
+    _, wrong = read("module p { typedef long A, B, C[2]; struct T { long a; }; };")
+    rule = "a typedef declares one name in ROS 2; '{}' is too many"
+    assert [error.message for error in wrong] == [rule.format("B"), rule.format("C")]
