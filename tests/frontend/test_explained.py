@@ -27,6 +27,8 @@ BRACKETS = "brackets belong to the type"
 
 ROS1 = [
     ("int32« » ", "a name must follow the type"),
+    ("int32«#» c", "a name must follow the type"),
+    ("int32«\t»# c", "a name must follow the type"),
     ("int32  «#» c", "expected a constant name or a name, but the definition ends here"),
     ("int32«\t»a", "a space must separate type and name; tabs alone do not"),
     ("«--- x»", ONE_PART),
@@ -63,6 +65,7 @@ ROS1 = [
 ]
 ROS2 = [
     ("int32« » ", "a name must follow the type"),
+    ("int32[3]«#» c", "a name must follow the type"),
     ("int32  «#» c", "expected a constant name or a field name, but the definition ends here"),
     ("  «int32 a»  ", "a definition must start in the first column"),
     ("  «9»", "a definition must start in the first column"),
