@@ -111,8 +111,6 @@ ROS2 = [
     ("p/«foo» a", f"'foo' {TYPE_FORM}"),
     ("p/«msg/Foo» a", f"'msg/Foo' {TYPE_FORM}"),
     ("«foo» a", f"'foo' is not a type, and {LEGAL}"),
-    # A word like a type of ROS 1.
-    ("«durations» a", f"'durations' is not a type, and {LEGAL}"),
     ("«time»[2] a", "'time' is not a type of ROS 2; use 'builtin_interfaces/Time'"),
     ("«duration» a", "'duration' is not a type of ROS 2; use 'builtin_interfaces/Duration'"),
     ("Foo a «1»", "expected the end of the line, not '1'"),
