@@ -69,6 +69,13 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("rich", {"steps.3.slices.0.leaf": 15}, ["step 3: there is no leaf 15"]),
     ("rich", {"steps.3.slices.0.leaf": -1}, ["step 3: there is no leaf -1"]),
     ("rich", {"steps.11.slices.0.size": 12}, ["step 11: a transfer of m.items has 12 bytes"]),
+    # Items of 4 bytes: no transfer has one and a half, or half of one.
+    ("rich", {"steps.11.slices.0.size": 6}, ["step 11: a transfer of m.items has 6 bytes"]),
+    (
+        "rich",
+        {"steps.11.slices.0.size": 2, "steps.11.slices.0.bytes": 2, "steps.11.bytes": 2},
+        ["step 11: a transfer of m.items has 2 bytes"],
+    ),
     (
         "rich",
         {"steps.11.slices.0.size": 0},
