@@ -145,6 +145,7 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("nested", {"steps.1.begin.claim.bytes": 4}, [f"step 1: {A} claims 4 bytes for each item"]),
     ("nested", {"steps.0.begin.claim.bytes": 0}, ["step 0: a.length claims 0 bytes for each item"]),
     ("nested", {"steps.1.begin.claim.least": 2047}, [f"step 1: {A} is counted from 2047"]),
+    ("nested", {"steps.1.begin.claim.least": 2049}, [f"step 1: {A} is counted from 2049"]),
     ("nested", {"steps.1.begin.claim.saved": 14}, ["lengths save 0, 14 bytes"]),
     ("nested", {"steps.1.begin.claim.total": 9}, [f"step 1: {A} {PLACE}"]),
     ("nested", {"steps.0.begin.claim.total": None}, [f"step 0: a.length {PLACE}"]),
