@@ -99,7 +99,7 @@ def read_message(
             continue
         definition = _collect_comment(tree, comments)
         if definition is not None:
-            draft = _Reader(source, offset, dialect).draft(definition)
+            draft = _Reader(source, offset).draft(definition)
             if isinstance(draft, Diagnostic):
                 diagnostics.append(draft)
             else:
@@ -194,10 +194,9 @@ class _Reader:
         Where the line starts in the source.
     """
 
-    def __init__(self, source: Source, offset: int, dialect: Dialect) -> None:
+    def __init__(self, source: Source, offset: int) -> None:
         self._source = source
         self._offset = offset
-        self._dialect = dialect
 
     def draft(self, tree: Tree[Token]) -> _Draft | Diagnostic:
         """Read a definition. Errors that a grammar cannot express are returned."""
@@ -212,7 +211,8 @@ class _Reader:
             return Diagnostic(message=error.message, span=self._span(error.token))
         is_constant = tree.data == "constant"
         indent = self._source.text[self._offset : type_.span.start]
-        if is_constant and type_.name == "string" and self._dialect == "ros1" and " " in indent:
+        # The grammar of ROS 2 has no indented definitions.
+        if is_constant and type_.name == "string" and " " in indent:
             message = "a string constant must start in the first column: genmsg would read "
             message += f"'string {name}' for its name"
             return Diagnostic(message=message, span=type_.span)

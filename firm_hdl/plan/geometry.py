@@ -1,7 +1,7 @@
 """The lanes at which steps may start, and the sizes of a circuit that follow from them.
 
-Sets of residues of the position are propagated through the control flow of the plan, up to a fixed
-point. A plan in which every word starts in lane 0 needs no rotator.
+Sets of lanes are propagated through the control flow of the plan, up to a fixed point. A plan in
+which every word starts in lane 0 needs no rotator.
 """
 
 from __future__ import annotations
@@ -146,7 +146,9 @@ def may_end_empty(plan: Plan) -> bool:
 class _Flow:
     def __init__(self, plan: Plan):
         self.plan = plan
-        self.modulus = max(rs.MODULUS, plan.bus_bytes)
+        # The lane after padding depends on the lane before padding alone, because an alignment
+        # divides the bus width or is a multiple of this width.
+        self.modulus = plan.bus_bytes
 
     def places(self) -> tuple[Place, ...]:
         first = [0] * len(self.plan.steps)
@@ -157,12 +159,9 @@ class _Flow:
                 first[jump.step] |= residues
                 todo.extend(self.successors(jump.step, first[jump.step]))
         return tuple(
-            Place(self.lanes(residues), self.lanes(self.start(step, residues)))
+            Place(tuple(rs.members(residues)), tuple(rs.members(self.start(step, residues))))
             for step, residues in zip(self.plan.steps, first, strict=True)
         )
-
-    def lanes(self, residues: int) -> tuple[int, ...]:
-        return tuple(sorted({r % self.plan.bus_bytes for r in rs.members(residues)}))
 
     def advance(self, residues: int, count: int) -> int:
         return rs.advance(residues, count, self.modulus)
@@ -182,17 +181,9 @@ class _Flow:
     def successors(self, index: int, residues: int) -> Iterator[tuple[Jump, int]]:
         step = self.plan.steps[index]
         start = self.start(step, residues)
-        is_run = isinstance(step, RunStep)
-        after = into_body = self.repeated(start) if is_run else self.advance(start, step.bytes)
+        # The words of a run are as wide as the bus, so that any number of them ends in this lane.
+        after = into_body = start if isinstance(step, RunStep) else self.advance(start, step.bytes)
         if isinstance(step.begin, BeginRun):
             into_body = self.aligned(after, step.begin.align)
         for way, jump in successors(step):
             yield jump, into_body if isinstance(way, IntoBody) else after | into_body
-
-    def repeated(self, start: int) -> int:
-        """Return the positions after any number of words."""
-        found = 0
-        while start & ~found:
-            found |= start
-            start = self.advance(start, self.plan.bus_bytes)
-        return found

@@ -1,9 +1,9 @@
 """Sets of residues: the statically known part of the offsets where a field may start.
 
 A set is a bit mask: bit r is set if the offset may be r modulo 8. Modulo 8 is enough for alignment,
-because no primitive has a larger one. For positions in a bus word, a plan uses a larger power of
-two. Every operation distributes over union: the image of a set is the union of the images of its
-members.
+because no primitive has a larger one. For lanes of a bus word, a plan uses the width of the bus,
+another power of two. Every operation distributes over union: the image of a set is the union of the
+images of its members.
 """
 
 from __future__ import annotations

@@ -12,10 +12,8 @@ ONE_PART = "a message has one part; '---' is for services and actions"
 NO_CONSTANT = "a constant must have a builtin type and cannot be an array"
 NUMBER = "is not a number of elements or characters"
 BLANK = "expected a number; blanks are not allowed inside a type"
-TYPE_FORM = (
-    "is not a legal message name: letters and digits, a capital first; a type is written 'Name' or "
-    "'package/Name'"
-)
+LEGAL = "not a legal message name: letters and digits, a capital first"
+TYPE_FORM = f"is {LEGAL}; a type is written 'Name' or 'package/Name'"
 NAME = "is not a legal name: letters, digits and underscores"
 FIELD = (
     "is not a legal field name: lower-case letters, digits and single underscores, a letter first "
@@ -27,8 +25,11 @@ BRACKETS = "brackets belong to the type"
 
 ROS1 = [
     ("int32« » ", "a name must follow the type"),
+    ("int32«#» c", "a name must follow the type"),
+    ("int32«\t»# c", "a name must follow the type"),
     ("int32  «#» c", "expected a constant name or a name, but the definition ends here"),
     ("int32«\t»a", "a space must separate type and name; tabs alone do not"),
+    ("int32«\xa0»a", "a space must separate type and name; tabs alone do not"),
     ("«--- x»", ONE_PART),
     ("«---»", ONE_PART),
     ("int32 «1a»", f"'1a' {NAME}, a letter first"),
@@ -37,6 +38,8 @@ ROS1 = [
     ("time «1a»=3", NO_CONSTANT),
     ("int32[] A«=1»", NO_CONSTANT),
     ("p/Foo A« = 1»", NO_CONSTANT),
+    ("p/Foo A« = 1»  ", NO_CONSTANT),
+    ("«\x07» a", r"'\x07' is not a type"),
     ("int32 «a[3]»", f"'a[3]' is not a legal name: {BRACKETS}"),
     (
         "int32 a «b»",
@@ -63,6 +66,7 @@ ROS1 = [
 ]
 ROS2 = [
     ("int32« » ", "a name must follow the type"),
+    ("int32[3]«#» c", "a name must follow the type"),
     ("int32  «#» c", "expected a constant name or a field name, but the definition ends here"),
     ("  «int32 a»  ", "a definition must start in the first column"),
     ("  «9»", "a definition must start in the first column"),
@@ -74,12 +78,15 @@ ROS2 = [
     ("int32 «aB» = 3", f"'aB' {CONSTANT}"),
     ("int32 «A__B»=3", f"'A__B' {CONSTANT}"),
     ("Foo «A» = 1", NO_CONSTANT),
+    ("Foo«=1»", NO_CONSTANT),
+    ("bool a\xa0«true»", "expected a space or the end of the line, not 'true'"),
     ("int32[] «A» = [1]", NO_CONSTANT),
     ("int32 «a[3]»", f"'a[3]' is not a legal field name: {BRACKETS}"),
     ("int32 «A[3]»=1", f"'A[3]' is not a legal constant name: {BRACKETS}"),
     ("int32 a 1 «2»", "expected the end of the line, not '2'"),
     ("int32 a «x y»  # c", "'x y' is not an integer"),
     ("int32[] a «x»", "expected a list in brackets, not 'x'"),
+    ("int32[] a [«x», 2]", "'x' is not an integer"),
     ("int32[] a [1, «x», 2]", "'x' is not an integer"),
     ("int32[] a [1 «2]»", "expected ',' or ']', not '2]'"),
     ("int32[] a [1«»", "expected ',' or ']', but the definition ends here"),
@@ -103,10 +110,7 @@ ROS2 = [
     ("«P/Foo» a", f"'P' {PACKAGE}"),
     ("p/«foo» a", f"'foo' {TYPE_FORM}"),
     ("p/«msg/Foo» a", f"'msg/Foo' {TYPE_FORM}"),
-    (
-        "«foo» a",
-        "'foo' is not a type, and not a legal message name: letters and digits, a capital first",
-    ),
+    ("«foo» a", f"'foo' is not a type, and {LEGAL}"),
     ("«time»[2] a", "'time' is not a type of ROS 2; use 'builtin_interfaces/Time'"),
     ("«duration» a", "'duration' is not a type of ROS 2; use 'builtin_interfaces/Duration'"),
     ("Foo a «1»", "expected the end of the line, not '1'"),

@@ -7,7 +7,7 @@ import pytest
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend.parse import is_type_name
 
-from .reading import constant, field, parse, refused, spelled
+from .reading import constant, field, member, parse, refused, spelled
 
 
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])
@@ -117,9 +117,17 @@ def test_tabs_alone_separate_in_ros2_only():
     assert refused("int32\tx", "ros1") == "a space must separate type and name; tabs alone do not"
 
 
-def test_ros1_lines_may_be_indented_and_ros2_lines_may_not():
-    assert field("  int32 x", "ros1").name.text == "x"
-    assert refused("  int32 x", "ros2") == "a definition must start in the first column"
+@pytest.mark.parametrize("indent", ["  ", "\t", " \t", "\xa0"])
+@pytest.mark.parametrize("line", ["int32 x", "string x", "pkg/Foo x", "int32 X=1"])
+def test_ros1_lines_may_be_indented(indent, line):
+    # Constants of strings are an exception; see test_parse_values.py.
+    assert member(indent + line, "ros1").name.text == member(line, "ros1").name.text
+
+
+@pytest.mark.parametrize("indent", ["  ", "\t", "\xa0"])
+@pytest.mark.parametrize("line", ["int32 x", "pkg/Foo x", "int32 X=1", "string X=a"])
+def test_ros2_lines_may_not_be_indented(indent, line):
+    assert refused(indent + line, "ros2") == "a definition must start in the first column"
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,12 @@
-"""Lanes of a bus word in which steps of plans may start, worked out by hand."""
+"""Lanes of a bus word in which steps of plans may start, worked out by hand and seen in packets."""
 
 from __future__ import annotations
 
+from itertools import product
+
 import pytest
 
-from firm_hdl.plan import build_plan
+from firm_hdl.plan import build_plan, decode, encode
 from firm_hdl.plan.geometry import (
     Place,
     first_step,
@@ -13,6 +15,8 @@ from firm_hdl.plan.geometry import (
     most_beats,
     only_ends,
 )
+from firm_hdl.plan.ir import RunStep
+from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
@@ -44,10 +48,13 @@ def needs(fields, wire, bus_bytes):
         ({"s": "string", "n": "uint32"}, "cdr", 8, (0,), (0, 4)),
         ({"a": "uint16[]", "b": "uint16"}, "cdr", 4, (0,), (0, 2)),
         ({"s": "string", "n": "uint8"}, "ros1", 16, (4,), tuple(range(16))),
+        # A map of one bus word takes nothing from where items are.
+        ({"s": "string", "n": "uint64"}, "ros1", 8, (4,), ANY),
         # The items start at byte 12 of the packet, and end half a bus word later or not.
         ({"a": "uint8", "q": "uint64[]", "b": "uint64"}, "cdr", 16, (12,), (0, 4, 12)),
         # The words of an array are as static as a map.
         ({"a": "uint8[20]"}, "cdr", 8, (0,), (0, 4)),
+        ({"a": "uint8[24]"}, "cdr", 8, (0,), (0, 4)),
         # A map of two words takes the first one from where items are.
         ({"p": (TRIPLE, "[]")}, "ros1", 8, (0, 4), (0, 4)),
     ],
@@ -92,6 +99,32 @@ def test_places_in_a_loop_are_those_of_all_turns():
     assert (words, end) == (Place(ANY, ANY), Place(ANY, ANY))
 
 
+def visited(plan, packet):
+    """Return the step of each cycle, and the lane where its own word starts."""
+    for visit in decode(plan, packet).steps:
+        step = plan.steps[visit.step]
+        taken = visit.bytes if isinstance(step, RunStep) else step.bytes
+        yield visit.step, (visit.end - taken) % plan.bus_bytes
+
+
+@pytest.mark.parametrize("bus_bytes", [2, 8, 16])
+@pytest.mark.parametrize("wire", ["ros1", "cdr"])
+@pytest.mark.parametrize("after", ["uint8", "uint64", "uint8[33]"])
+def test_packets_start_their_steps_in_these_lanes_and_no_others(after, wire, bus_bytes):
+    message = make("ros2", {"s": "string", "a": "uint64[]", "b": "uint16[]", "c": after})
+    plan = build_plan(lay_out(message, wire), bus_bytes=bus_bytes)
+    places = geometry(plan).places
+    found = set()
+    for text, large, small in product(range(1, 18), (0, 3), (0, 1, 3, 9)):
+        value = {"s": "x" * text, "a": [0] * large, "b": [0] * small}
+        value["c"] = [0] * 33 if after.endswith("]") else 0
+        packet, status = encode(plan, to_transfers(plan, message, value))
+        assert status == "OK"
+        found.update(visited(plan, packet))
+    want = {(index, lane) for index, place in enumerate(places) for lane in place.map}
+    assert found == want
+
+
 def test_padding_that_is_computed():
     assert needs({"s": "string", "n": "uint32"}, "cdr", 8).aligns
     assert not needs({"s": "string", "n": "uint32"}, "ros1", 8).aligns
@@ -104,6 +137,12 @@ def test_an_empty_run_ends_before_the_padding_of_items():
     # `b` follows the length at once, or follows items.
     found = needs({"a": "uint64[]", "b": "uint8"}, "cdr", 8)
     assert found.places[-1] == Place((0, 4), (0, 4))
+
+
+def test_items_start_after_their_padding():
+    found = needs({"a": "uint64[]"}, "cdr", 8)
+    # The steps: header and length; words of items, after 4 bytes of padding; the rest, if any.
+    assert found.places == (Place((0,), (0,)), Place((4,), (4,)), Place((0, 4), (0, 4)))
 
 
 WIDE = make("ros2", {"x": "uint64", "s": "string"}, "Wide")
@@ -122,6 +161,8 @@ EMPTY = make("ros2", {}, "Empty")
         # The last step takes the rest of the text, and ends the packet.
         ({"s": "string"}, "ros1", 8, 0, [2], False),
         ({"t": (TEXT, "[]")}, "ros1", 8, 0, [3], False),
+        # The last step takes the rest, and a byte.
+        ({"s": "string", "n": "uint8"}, "ros1", 8, 0, [], False),
         # The last step takes the rest, and may be followed by another turn.
         ({"w": (WIDE, "[]")}, "ros1", 8, 0, [], True),
         # The last step is a trigger.
@@ -143,6 +184,9 @@ def test_steps_before_the_first_leaf_and_at_the_end(fields, wire, bus_bytes, fir
         ({"a": "uint16"}, "ros1", 8, 2),
         ({"a": "uint64", "b": "uint16"}, "ros1", 8, 3),
         ({"e": (EMPTY, "[2]")}, "ros1", 8, 1),
+        ({"e": (EMPTY, "[2]")}, "ros1", 1, 1),
+        # A word of a run.
+        ({"a": "uint8[24]"}, "ros1", 8, 2),
         # The rest of a text, its NUL on CDR, and a byte.
         ({"s": "string", "b": "uint8"}, "ros1", 8, 2),
         ({"s": "string", "b": "uint8"}, "cdr", 8, 3),

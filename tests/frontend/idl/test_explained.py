@@ -124,3 +124,39 @@ def test_structs_whose_names_do_not_fit_are_marked(names, wrong, message):
     first, *_ = read(f"module p {{ {structs} }};")[1]
     text = first.span.source.text
     assert (text[first.span.start : first.span.end], first.message) == (wrong, message)
+
+
+@pytest.mark.parametrize(
+    ("members", "array", "good"),
+    [
+        ("long a[2], «b»;", "a", ["a"]),
+        ("long a[2], «b»[2];", "a", ["a"]),
+        ("long a[2], «b»[3];", "a", ["a"]),
+        # Only the first name that is too many is reported.
+        ("long a, b[2], «c»[3], d, e[4];", "b", ["a", "b"]),
+        # Each declaration may have an array.
+        ("long a[2]; B b[2], «c»; long d[3];", "b", ["a", "b", "d"]),
+    ],
+)
+def test_names_after_an_array_are_marked(members, array, good):
+    marked = f"module p {{ typedef double B; struct T {{ {members} }}; }};"
+    messages, (only,) = read(marked.replace("«", "").replace("»", ""))
+    start, end, text = only.span.start, only.span.end, only.span.source.text
+    assert f"{text[:start]}«{text[start:end]}»{text[end:]}" == marked
+    assert only.message == (
+        f"'{text[start:end]}' follows array '{array}', and ROS 2 gives both the same size; "
+        "declare it in a line of its own"
+    )
+    assert [member.name.text for member in messages["T"].members] == good
+
+
+def test_a_wrong_type_before_many_names_is_reported_once():
+    messages, wrong = read("module p { struct T { any a, b, c[2]; long d; }; };")
+    assert [error.message for error in wrong] == ["type 'any' is not supported"]
+    assert [member.name.text for member in messages["T"].members] == ["d"]
+
+
+def test_each_name_too_many_of_a_typedef_is_reported():
+    _, wrong = read("module p { typedef long A, B, C[2]; struct T { long a; }; };")
+    rule = "a typedef declares one name in ROS 2; '{}' is too many"
+    assert [error.message for error in wrong] == [rule.format("B"), rule.format("C")]

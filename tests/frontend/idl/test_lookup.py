@@ -328,3 +328,17 @@ def test_unknown_constant_in_a_dependency_names_its_file(tmp_path):
         library(tmp_path, files).message("p/msg/T")
     (wrong,) = caught.value.diagnostics
     assert wrong.span.source.name.endswith("q/msg/U.idl")
+
+
+def test_a_constant_keeps_its_first_value_and_place():
+    text = """module p { module T_Constants {
+        const long N = 2;
+        const long N = 3;
+        const long N = 4; const long M = N;
+      }; struct T { long a[T_Constants::N]; }; };"""
+    messages, wrong = read(text)
+    assert [(d.span.line, d.message) for d in wrong] == [
+        (line, "constant 'N' is already declared in line 2") for line in (3, 4)
+    ]
+    n, m, a = messages["T"].members
+    assert (n.name.text, n.value.value, m.value.value, a.type.size.value) == ("N", 2, 2, 2)

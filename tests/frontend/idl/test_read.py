@@ -139,17 +139,20 @@ def test_comments_units_and_defaults_are_in_the_model(tmp_path):
         @default (value="('a, b', \\"c'\\", 'd\\\\\\\\n')") string d[3];
         @default (value="[True, False]") boolean e[2];
         @default (value=TRUE) boolean f;
+        @default (value="('x', 'y')") string g, h[2];
       };
     }; };"""
     found = library(tmp_path, {"p/msg/T.idl": text}).message("p/msg/T")
     assert found.comment == "about T\nand more"
-    a, b, c, d, e, f = found.fields
+    a, b, c, d, e, f, g, h = found.fields
     for item in (a, b):
         assert (item.comment, item.unit, item.default) == ("about a", "m/s", -3)
     assert c.default == (1, 16, -3)
     assert d.default == ("a, b", "c'", "d\n")
     assert e.default == (True, False)
     assert f.default is True
+    # The same default is read as a text and as a list of texts.
+    assert (g.default, h.default) == ("('x', 'y')", ("x", "y"))
 
 
 def test_sizes_have_32_bits(tmp_path):

@@ -47,6 +47,8 @@ AGREED: dict[str, str] = {
     "array of structs": _struct("q::msg::X a[2];"),
     "several names": _struct("long a, b, c;"),
     "array last": _struct("long a, b[2];"),
+    "array after two names of a typedef": _struct("A a, b, c[2];", "typedef double A;"),
+    "names of a typedef of an array": _struct("A a, b;", "typedef double A[9];"),
     "keywords as names": _struct(
         "long struct; long module; string string; boolean boolean; sequence<long> sequence; "
         "long const; long typedef; long TRUE; short short; long enum; char char;"
@@ -125,6 +127,7 @@ AGREED: dict[str, str] = {
     "array of sequences": _struct("sequence<long> a[3];"),
     "two dimensions": _struct("long a[2][3];"),
     "two dimensions in a typedef": _struct(before="typedef long A[2][3];"),
+    "two arrays in a declaration": _struct("long a[2], b[3];"),
     "array of length 0": _struct("long a[0];"),
     "string of length 0": _struct("string<0> a;"),
     "sequence of length 0": _struct("sequence<long, 0> a;"),

@@ -182,6 +182,19 @@ def test_a_needless_alignment_is_named(plan):
     assert check(with_step(plan, index, align=4)) == [f"step {index}: is aligned already"]
 
 
+@pytest.mark.parametrize("fields", ["q r", "r q"])
+def test_a_needless_alignment_of_items_is_named_beside_a_needed_one(fields):
+    # A length of 4 bytes ends at a multiple of 4, where items of 4 bytes may start.
+    kinds = {"q": "uint64[]", "r": "uint32[]"}
+    message = make("ros2", {"s": "string"} | {name: kinds[name] for name in fields.split()})
+    plan = build_plan(lay_out(message))
+    index, begin = length_step(plan, "r.length")
+    assert (begin.align, length_step(plan, "q.length")[1].align) == (1, 8)
+    assert check(plan) == []
+    changed = with_step(plan, index, begin=replace(begin, align=4))
+    assert check(changed) == [f"step {index}: r.items is aligned already"]
+
+
 def test_padding_before_nothing_is_named():
     plan = build_plan(lay_out(make("ros2", {"a": "uint8"})))
     step = plan.steps[0]

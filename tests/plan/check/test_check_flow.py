@@ -7,7 +7,21 @@ from typing import Any
 
 import pytest
 
-from firm_hdl.plan import ArrayEnd, Exits, Jump, LoopEnd, MapStep, Pad, Part, Plan, Step, check
+from firm_hdl.plan import (
+    ArrayEnd,
+    Exits,
+    Jump,
+    LoopEnd,
+    MapStep,
+    Pad,
+    Part,
+    Plan,
+    Step,
+    build_plan,
+    check,
+)
+from firm_hdl.wire import lay_out
+from tests.strategies import make
 
 from .broken_plans import PLANS, problems_of
 
@@ -266,3 +280,13 @@ def test_the_rests_of_two_runs_must_not_meet():
     assert [step.rest for step in plan.steps] == [None, None, 0, 1, None, 1]
     problems = ["step 2: does not take the rest of s.items"]
     assert check(without(plan, 2)) == problems
+
+
+@pytest.mark.parametrize("count", range(2, 10))
+def test_padding_after_a_constant_loop_is_that_of_its_last_round(count):
+    """Rounds end at offsets 3, 7, 3, 7, ... modulo 8, after a start at offset 0."""
+    pair = make("ros2", {"x": "uint16", "y": "uint8"}, "Pair")
+    plan = build_plan(lay_out(make("ros2", {"e": (pair, f"[{count}]"), "z": "uint64"})))
+    assert check(plan) == []
+    padding, _ = plan.steps[-1].slices
+    assert padding == Pad(at=0, bytes=5 if count % 2 else 1)

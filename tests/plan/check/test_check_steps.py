@@ -69,6 +69,13 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("rich", {"steps.3.slices.0.leaf": 15}, ["step 3: there is no leaf 15"]),
     ("rich", {"steps.3.slices.0.leaf": -1}, ["step 3: there is no leaf -1"]),
     ("rich", {"steps.11.slices.0.size": 12}, ["step 11: a transfer of m.items has 12 bytes"]),
+    # Items of 4 bytes: no transfer has one and a half, or half of one.
+    ("rich", {"steps.11.slices.0.size": 6}, ["step 11: a transfer of m.items has 6 bytes"]),
+    (
+        "rich",
+        {"steps.11.slices.0.size": 2, "steps.11.slices.0.bytes": 2, "steps.11.bytes": 2},
+        ["step 11: a transfer of m.items has 2 bytes"],
+    ),
     (
         "rich",
         {"steps.11.slices.0.size": 0},
@@ -138,6 +145,7 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("nested", {"steps.1.begin.claim.bytes": 4}, [f"step 1: {A} claims 4 bytes for each item"]),
     ("nested", {"steps.0.begin.claim.bytes": 0}, ["step 0: a.length claims 0 bytes for each item"]),
     ("nested", {"steps.1.begin.claim.least": 2047}, [f"step 1: {A} is counted from 2047"]),
+    ("nested", {"steps.1.begin.claim.least": 2049}, [f"step 1: {A} is counted from 2049"]),
     ("nested", {"steps.1.begin.claim.saved": 14}, ["lengths save 0, 14 bytes"]),
     ("nested", {"steps.1.begin.claim.total": 9}, [f"step 1: {A} {PLACE}"]),
     ("nested", {"steps.0.begin.claim.total": None}, [f"step 0: a.length {PLACE}"]),
