@@ -90,7 +90,7 @@ class RecordingOrigin:
         self._of_dds: set[_Name] = set()
         for connection in self._connections():
             self._add(connection)
-        for name in sorted(self._empty - self._definitions.keys()):
+        for name in sorted(self._empty):
             self._define(name, "msg", "")
         self._missing -= self._definitions.keys()
         if not self._definitions:
