@@ -108,6 +108,9 @@ ROS2 = [
     ("«@key(a)» x", "annotation '@key(a)' is not supported"),
     ("«\ufeff»int8 a", "a byte order mark is not allowed"),
     ("«P/Foo» a", f"'P' {PACKAGE}"),
+    # A builtin type is no likely package.
+    ("«Bool/Foo» a", f"'Bool' {PACKAGE}"),
+    ("«Strings/Foo»[3] a", f"'Strings' {PACKAGE}"),
     ("p/«foo» a", f"'foo' {TYPE_FORM}"),
     ("p/«msg/Foo» a", f"'msg/Foo' {TYPE_FORM}"),
     ("«foo» a", f"'foo' is not a type, and {LEGAL}"),

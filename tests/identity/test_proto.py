@@ -130,6 +130,17 @@ def test_parts_are_indented_and_arrays_written_out(tmp_path):
     assert proto(message, quotes=False) == want
 
 
+def test_names_that_yaml_takes_for_values_are_quoted(tmp_path):
+    text = "Part on\nPart[2] off\nNone no\nNone[1] yes\nint8[2] null\nstring true 'false'\n"
+    ours = library(tmp_path, {"p/A": text, "p/Part": "int8[1] true\nint8 n\n", "p/None": ""})
+    found = proto(ours.message("p/A"), quotes=False)
+    part = {"true": [0], "n": 0}
+    assert yaml.safe_load(found) == {
+        "on": part, "off": [part, part], "no": {}, "yes": [{}], "null": [0, 0], "true": "false"
+    }  # fmt: skip
+    assert found.startswith("'on':\n  'true':\n  - 0\n  n: 0\n'off':\n- 'true':\n  - 0\n")
+
+
 def test_text_with_line_ends_keeps_its_indentation():
     line = Field(name="s", type=String(), default="one\ntwo\n\nthree")
     leaf = Message(name="p/msg/L", dialect="ros2", fields=(line,))
