@@ -138,7 +138,8 @@ def _converted(value: Value, kind: Any) -> Any:
     """Convert a value to Python's type in rosidl_generator_py, as rosidl_runtime_py prints it."""
     if isinstance(kind, Primitive) and not isinstance(value, str | bytes | tuple):
         if kind.name == "byte" or _is_character(kind):
-            return chr(int(value) & 0xFF if kind.name == "byte" else int(value))
+            # The upper half of Latin-1 is negative in a `char`.
+            return chr(int(value) % (1 << 8 * kind.bytes))
         convert = {"bool": bool, "int": int, "float": float}[kind.kind]
         return convert(value)
     return value

@@ -80,6 +80,16 @@ c:
   c: ''
   d: false""",
     ),
+    "p/FiveWithBytes": (
+        "uint8[3] a\nint8 b\nint8 c\nint8 d\nint8 e\n",
+        """\
+a: !!binary |
+  AAAA
+b: 0
+c: 0
+d: 0
+e: 0""",
+    ),
     "p/Lists": (
         "float64[] a\nstring[] b\nbool[] c\nstring[2] d\nfloat32[4] e\n",
         """\

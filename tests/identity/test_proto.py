@@ -161,6 +161,33 @@ def test_characters_of_idl_are_texts():
     assert proto(message, quotes=False) == 'char: "\\0"\nwchar: A\nmore:\n- "\\0"\n- "\\0"\n'
 
 
+@pytest.mark.parametrize(
+    ("kind", "value", "text"),
+    [
+        ("char", "'z'", "z"),
+        ("char", "'\\x7f'", '"\\x7F"'),
+        # A signed char has the upper half of Latin-1 as negative numbers.
+        ("char", "'\\xe4'", "ä"),
+        ("char", "-1", "ÿ"),
+        ("char", "48", "'0'"),
+        ("wchar", "L'\\u20ac'", "€"),
+        ("wchar", "65535", '"\\uFFFF"'),
+        ("octet", "228", "ä"),
+        ("uint8", "228", "228"),
+    ],
+)
+def test_defaults_of_idl_that_are_characters_are_shown_as_such(tmp_path, kind, value, text):
+    idl = f"module p {{ module msg {{ struct A {{ @default(value={value}) {kind} c; }}; }}; }};"
+    ours = Library("lyrical", [make_files(tmp_path, {"p/msg/A.idl": idl})])
+    assert proto(ours.message("p/A"), quotes=False) == f"c: {text}\n"
+
+
+def test_wide_strings_are_empty_at_first(tmp_path):
+    ours = library(tmp_path, {"p/A": "wstring a\nwstring<=3 b\nwstring[2] c\nwstring[] d\n"})
+    want = "a: ''\nb: ''\nc:\n- ''\n- ''\nd: []\n"
+    assert proto(ours.message("p/A"), quotes=False) == want
+
+
 def test_service_is_shown_by_its_request_and_action_by_its_goal(tmp_path):
     make_files(
         tmp_path,
