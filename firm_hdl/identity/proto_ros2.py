@@ -154,10 +154,8 @@ def _listed(value: Any, kind: Any) -> Any:
     """Round float32 in lists, which are NumPy arrays in ROS 2; a single float32 is not rounded."""
     if not isinstance(kind, Primitive) or kind.name != "float32":
         return value
-    try:
-        (rounded,) = struct.unpack("f", struct.pack("f", value))
-    except OverflowError:
-        return float("inf") if value > 0 else float("-inf")
+    # In native form, a number that is too large becomes infinite.
+    (rounded,) = struct.unpack("f", struct.pack("f", value))
     return rounded
 
 

@@ -81,6 +81,14 @@ def test_services_of_actions_are_those_of_ros2(run):
     assert run("md5", "p/Do_SendGoal") == (0, f"{digest('int8 z')}  p/Do_SendGoal\n", "")
 
 
+@pytest.mark.parametrize("name", ["p/srv/S_SendGoal", "p/msg/A_GetResult", "p/Nothing_SendGoal"])
+def test_only_actions_have_services_of_their_own(run, name):
+    status, out, err = run("hash", name)
+    assert (status, out) == (1, "")
+    base = name.rpartition("/")[2]
+    assert err.startswith(f"error: type '{base}' is not defined in package 'p'")
+
+
 def test_the_same_mistake_in_two_files_is_reported_for_both(run):
     status, _, err = run("md5", "p/Bad", "p/AsBad", "p/Bad")
     assert status == 1
