@@ -88,6 +88,7 @@ def explain(error: UnexpectedInput, line: str, dialect: Dialect) -> tuple[int, i
         _wrong_name,
         _wrong_type,
         _wrong_constant,
+        _wrong_list,
         _wrong_value,
         _wrong_size,
         _wrong_separator,
@@ -192,9 +193,18 @@ def _wrong_constant(line: str, start: int, expected: frozenset[str], dialect: Di
     rest = line[start:].lstrip()
     if not rest.startswith("=") or "_EQUALS" in expected:
         return None
-    if dialect == "ros2" and "LIST_OPEN" not in expected and "COMMENT" in expected:
+    if dialect == "ros2" and "COMMENT" in expected:
         return len(line[start:].rstrip()), "a default cannot contain '='"
     return len(line[start:].rstrip()), "a constant must have a builtin type and cannot be an array"
+
+
+def _wrong_list(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
+    rest = line[start:].partition("#")[0].rstrip()
+    is_empty = line[:start].endswith("[") and expected & {"INTEGER", "FLOAT", "BOOLEAN"}
+    # A bracket closes a list only at the end of the line.
+    if rest.lstrip().startswith("]") and ("LIST_CLOSE" in expected or is_empty):
+        return len(rest), "only a comment may follow the ']' of a list"
+    return None
 
 
 def _wrong_value(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:

@@ -21,6 +21,7 @@ FIELD = (
 )
 CONSTANT = FIELD.replace("field", "constant").replace("lower", "upper")
 PACKAGE = FIELD.replace("field", "package")
+AFTER_LIST = "only a comment may follow the ']' of a list"
 BRACKETS = "brackets belong to the type"
 
 ROS1 = [
@@ -89,6 +90,11 @@ ROS2 = [
     ("int32[] a [«x», 2]", "'x' is not an integer"),
     ("int32[] a [1, «x», 2]", "'x' is not an integer"),
     ("int32[] a [1 «2]»", "expected ',' or ']', not '2]'"),
+    ("int32[] a [1«] x» # c", AFTER_LIST),
+    ("float32[] a [1, 2.5«]]»  ", AFTER_LIST),
+    ("bool[2] a [true« ] = [1]»", AFTER_LIST),
+    ("int32[] a [«] = []»", AFTER_LIST),
+    ("bool[<=3] a [ «]x»", "expected a boolean, not ']x'"),
     ("int32[] a [1«»", "expected ',' or ']', but the definition ends here"),
     ("float32[] a [1, «x»]", "'x' is not a number"),
     ("bool a «yes»", "'yes' is not a boolean: true, false, 1 or 0"),
