@@ -98,7 +98,7 @@ def explain(error: UnexpectedInput, line: str, dialect: Dialect) -> tuple[int, i
             length, message = found
             return start, start + length, message
     start, end, message = _in_general(line, start, expected)
-    if dialect == "ros1" and "=" not in line[:end] and {"COMMENT", "_EQUALS"} <= expected:
+    if dialect == "ros1" and "=" not in line[:end] and "COMMENT" in expected:
         message += "; a field of ROS 1 has no default"
     return start, end, message
 
@@ -133,7 +133,7 @@ _Found = tuple[int, str] | None
 
 
 def _wrong_part(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
-    if start or not line.startswith("---"):
+    if not line.startswith("---"):
         return None
     if dialect == "ros2" and line != "---":
         return len(line), "a line that separates two parts must be '---' and nothing else"
@@ -146,7 +146,7 @@ def _wrong_name(line: str, start: int, expected: frozenset[str], dialect: Dialec
     if not word or not kinds:
         return None
     has_value = line[start + len(word) :].lstrip().startswith("=")
-    if has_value and len(kinds) == 1 and "CONSTANT_NAME" not in kinds:
+    if has_value and "CONSTANT_NAME" not in kinds:
         return len(word), "a constant must have a builtin type and cannot be an array"
     if dialect == "ros1":
         what, rule = "name", NAME_RULES["NAME"]
@@ -191,7 +191,7 @@ def _wrong_type(line: str, start: int, expected: frozenset[str], dialect: Dialec
 
 def _wrong_constant(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
     rest = line[start:].lstrip()
-    if not rest.startswith("=") or "_EQUALS" in expected:
+    if not rest.startswith("="):
         return None
     if dialect == "ros2" and "COMMENT" in expected:
         return len(line[start:].rstrip()), "a default cannot contain '='"
@@ -238,7 +238,7 @@ def _wrong_size(line: str, start: int, expected: frozenset[str], dialect: Dialec
 
 
 def _wrong_separator(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
-    if "_SPACE" not in expected or expected & {"COMMENT", "LIST_OPEN"}:
+    if "_SPACE" not in expected or "COMMENT" in expected:
         return None
     rest = line[start:]
     word = _group(_WORD, line, start)
@@ -248,7 +248,7 @@ def _wrong_separator(line: str, start: int, expected: frozenset[str], dialect: D
         return 1, "a space must separate type and name; tabs alone do not"
     if word.startswith("<=") and dialect == "ros1":
         return len(word), "ROS 1 has no bounds"
-    if word.startswith("[") and "OPEN" not in expected:
+    if word.startswith("["):
         return len(word), "an array has one dimension"
     return None
 

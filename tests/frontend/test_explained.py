@@ -46,6 +46,10 @@ ROS1 = [
         "int32 a «b»",
         "expected '=' or the end of the line, not 'b'; a field of ROS 1 has no default",
     ),
+    (
+        "p/Foo[] a «[]»  # c",
+        "expected the end of the line, not '[]'; a field of ROS 1 has no default",
+    ),
     ("int32 a «b=1»", "expected '=' or the end of the line, not 'b=1'"),
     ("int32 A=«»", "expected an integer, but the definition ends here"),
     ("int32 A=1 «2»", "expected the end of the line, not '2'"),
@@ -61,6 +65,7 @@ ROS1 = [
     ("a«-b/C» x", "expected '[' or a space, not '-b/C'"),
     ("p/«1» x", f"'1' {TYPE_FORM}"),
     ("  «9a» b", "'9a' is not a type"),
+    ("«9/a/B» b", f"'9' {NAME.replace('name', 'package name')}, a letter first"),
     ("«9/A» b", f"'9' {NAME.replace('name', 'package name')}, a letter first"),
     ("«@key»", "annotation '@key' is not supported"),
     ("«\ufeff»int8 a", "a byte order mark is not allowed"),
@@ -159,12 +164,21 @@ def test_wrong_words_are_marked_and_explained(dialect, marked, message):
         "strnig": "string",
         "flaot32": "float32",
         "uint46": "uint64",
+        "bole": "bool",
+        "uint2": "uint32",
     }.items(),
 )
 def test_builtin_types_are_suggested_for_words_that_are_like_them(word, meant):
     with pytest.raises(DefinitionError) as error:
         parse(f"{word}[3] a", "ros2")
     assert error.value.diagnostics[0].message == f"'{word}' is not a type; did you mean '{meant}'?"
+
+
+@pytest.mark.parametrize("word", ["bolean", "flota", "real"])
+def test_builtin_types_are_not_suggested_for_words_that_are_less_like_them(word):
+    with pytest.raises(DefinitionError) as error:
+        parse(f"{word} a", "ros2")
+    assert error.value.diagnostics[0].message == f"'{word}' is not a type, and {LEGAL}"
 
 
 @pytest.mark.parametrize(("length", "shown"), [(60, "x" * 60), (61, "x" * 57 + "...")])
