@@ -156,6 +156,28 @@ def test_a_wrong_type_before_many_names_is_reported_once():
     assert [member.name.text for member in messages["T"].members] == ["d"]
 
 
+@pytest.mark.parametrize(
+    ("text", "messages"),
+    [
+        (
+            "typedef sequence<long, 0> A, B; struct T { A a; B b; };",
+            ["the bound of a sequence must be at least 1, not 0",
+             "a typedef declares one name in ROS 2; 'B' is too many"],
+        ),
+        # The default is read for the plain name, and again for the array.
+        ("struct T { @default(value=N) long a, b[2]; };", ["constant 'N' is not declared above"]),
+        ("typedef fixed<3, 2> A; typedef A B; struct T { A a; sequence<A> b; B c; };",
+         ["type 'fixed' is not supported"]),
+        ("typedef A B; typedef B A; struct T { A a; B b; };", ["typedef 'A' refers to itself"]),
+        ("const long N = M; const long O = N; struct T { long a[N]; long b[O]; };",
+         ["constant 'M' is not declared above"]),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_reported_once_wherever_it_counts(text, messages):
+    _, wrong = read(f"module p {{ {text} }};")
+    assert [error.message for error in wrong] == messages
+
+
 def test_each_name_too_many_of_a_typedef_is_reported():
     _, wrong = read("module p { typedef long A, B, C[2]; struct T { long a; }; };")
     rule = "a typedef declares one name in ROS 2; '{}' is too many"
