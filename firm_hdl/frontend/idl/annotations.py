@@ -130,7 +130,7 @@ _ITEM = re.compile(
 def _list(value: Value, type_: TypeSyntax, span: Span) -> ListSyntax:
     """Read a default of several elements, which rosidl_adapter writes like a Python tuple."""
     text = value.value.strip() if isinstance(value.value, str) else ""
-    if text[:1] + text[-1:] not in ("()", "[]") or len(text) < 2:
+    if text[:1] + text[-1:] not in ("()", "[]"):
         raise _no_list(type_, span)
     items = []
     inside = text[1:-1].rstrip()

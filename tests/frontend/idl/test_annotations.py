@@ -98,11 +98,37 @@ def test_complement_has_the_size_of_an_unsigned_constant(bits):
     assert [each.value.value for each in messages["T"].members[:2]] == [2**bits - 2, -2]
 
 
+@pytest.mark.parametrize(("kind", "value"), [("double", -2.0), ("float", -2.0), ("char", -2)])
+def test_complement_of_other_types_is_that_of_a_signed_integer(kind, value):
+    assert members(f"@default(value=~1) {kind} a;")["a"].default.value == value
+
+
+def test_the_words_of_a_value_are_in_one_line():
+    messages, wrong = read(
+        """module p { module T_Constants { const double A = 1 /
+            // half
+            2.; const wstring W = L"x" ; const string S = "y"; };
+        struct T { @default(value= -
+            3) long a; }; };"""
+    )
+    assert wrong == []
+    half, wide, text, a = messages["T"].members
+    assert (half.value.text, a.default.text) == ("1 / // half 2.", "- 3")
+    assert [(each.type.name, each.value.text) for each in (wide, text)] == [
+        ("wstring", 'L"x"'), ("string", '"y"')
+    ]  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("type_", "text", "want"),
     [
         ("long", "(1, two)", 'expected a list of int32 as a string, such as "(1, 2)"'),
         ("double", "(1.0, 1e999)", 'expected a list of float64 as a string, such as "(1, 2)"'),
+        # Numbers of C, but not of Python.
+        ("long", "(1, 012)", 'expected a list of int32 as a string, such as "(1, 2)"'),
+        ("double", "(1, 1.2.3)", 'expected a list of float64 as a string, such as "(1, 2)"'),
+        ("long", "(", 'expected a list of int32 as a string, such as "(1, 2)"'),
+        ("long", "[1, 2)", 'expected a list of int32 as a string, such as "(1, 2)"'),
         ("long", "(1, None)", 'expected a list of int32 as a string, such as "(1, 2)"'),
         ("long", "(1, True)", "expected an integer, not a boolean"),
         ("long", "(1, 2.0)", "expected an integer, not a number with a fraction"),
@@ -121,8 +147,10 @@ def test_items_of_a_default_keep_their_kinds():
     found = members(
         '@default(value="(1, -2.5e-1)") sequence<double> a; '
         '@default(value="(True, False, 1)") boolean b[3];'
+        r"""@default(value="['it\\\\'s', 'a, b', \"c\"]") string c[3];"""
     )
     values = {name: [item.value for item in each.default.items] for name, each in found.items()}
+    assert values.pop("c") == ["it's", "a, b", "c"]
     assert values == {"a": [1.0, -0.25], "b": [True, False, True]}
     assert [type(value) for value in values["a"] + values["b"]] == [float] * 2 + [bool] * 3
 

@@ -173,7 +173,7 @@ def test_padding_member_alone_is_an_empty_message(tmp_path):
     assert message(tmp_path, member).fields == ()
     assert len(message(tmp_path, member + " long a;").fields) == 2
     # Only the exact member of rosidl_adapter counts: a `long` has four bytes on the wire.
-    for other in (member.replace("uint8", "long"), member.replace(";", "[1];")):
+    for other in (member.replace("uint8", "long"), member.replace(";", "[1];"), "uint8 struct_;"):
         assert len(message(tmp_path, other).fields) == 1
     files = {"q/msg/T.msg": member.rstrip(";")}
     assert len(library(tmp_path, files).message("q/msg/T").fields) == 1
