@@ -194,7 +194,8 @@ def test_annotations_belong_to_their_own_member():
 def test_comments_are_those_in_the_language_of_comments():
     text = """module p { struct T {
       @verbatim(language="comment", text="one") @verbatim(language="c++", text="no")
-      @verbatim(language="comment", text="two" "\\n" "three") @verbatim(text="none") long a;
+      @verbatim(language="comment", text="two" "\\n" "three") @verbatim(text="none")
+      @verbatim(language="comment") @verbatim(language="comment", text="") @verbatim long a;
       @vendor::unit(value="m") @vendor::verbatim(language="comment", text="theirs") long b;
       @unit::vendor(value="s") long c;
     }; };"""

@@ -30,6 +30,11 @@ def value(text, bits=None):
         ("0X2a", 42),
         ("0", 0),
         ("00", 0),
+        # Zeros in front do not make a number long.
+        ("0" * 40 + "52", 42),
+        ("0x" + "0" * 40 + "2A", 42),
+        ("01777777777777777777777", 2**64 - 1),
+        ("+42", 42),
         ("-7 / 2", -3),
         ("7 / -2", -3),
         ("-7 % 2", -1),
@@ -67,7 +72,13 @@ def test_integers(text, want):
 def test_complement_of_an_unsigned_type_has_its_size():
     assert value("~1", 8) == ("integer", 254)
     assert value("~0", 64) == ("integer", 2**64 - 1)
-    for text, want in {"~(~1)": 1, "-(~1)": -254, "~1 | 1": 255, "1 | ~1": 255}.items():
+    for text, want in {
+        "~(~1)": 1,
+        "-(~1)": -254,
+        "~1 | 1": 255,
+        "1 | ~1": 255,
+        "~(-1)": 256,
+    }.items():
         assert value(text, 8) == ("integer", want), text
 
 
@@ -78,6 +89,9 @@ def test_complement_of_an_unsigned_type_has_its_size():
         "1 % 0": "division by zero",
         "1. / 0": "division by zero",
         "1 / 0.0": "division by zero",
+        f"1{'0' * 29}": "this value does not fit 64 bits",
+        f"1{'0' * 30}": "a number of 31 digits is too long",
+        f"0x{'F' * 31}": "a number of 31 digits is too long",
         "1e999": "this value is too large",
         "-1e999": "this value is too large",
         "1e308 * 10": "this value is too large",
@@ -106,6 +120,8 @@ def test_operators_take_numbers_alone(text, message):
     [
         ("1.5", 1.5),
         ("1.", 1.0),
+        ("+1.5", 1.5),
+        ("-(-1.5)", 1.5),
         (".5e1", 5.0),
         ("1e3", 1000.0),
         ("-2E-1", -0.2),
@@ -130,6 +146,10 @@ def test_numbers_with_a_fraction(text, want):
         (r"'\x41'", 65),
         (r"'\101'", 65),
         (r"'\?'", 63),
+        *((rf"'\{letter}'", code) for letter, code in zip("abtnvfr", range(7, 14), strict=True)),
+        (r"'\\'", 92),
+        (r"'\377'", 255),
+        (r"L'\777'", 511),
         ("'é'", 233),
         ("L'é'", 233),
         (r"L'\u2122'", 0x2122),
@@ -137,6 +157,41 @@ def test_numbers_with_a_fraction(text, want):
 )
 def test_characters(text, want):
     assert value(text) == ("character", want)
+
+
+@pytest.mark.parametrize(
+    ("literal", "message"),
+    [
+        (r'"\x4"', r"escape '\x4' needs 2 hexadecimal digits"),
+        (r'L"a\u2"', r"escape '\u2' needs 4 hexadecimal digits"),
+    ],
+)
+def test_escapes_in_texts_have_all_their_digits(literal, message):
+    with pytest.raises(IdlError) as error:
+        value(literal)
+    assert error.value.diagnostic.message == message
+
+
+@pytest.mark.parametrize(
+    ("text", "want"),
+    [
+        (r"a\tb", "a\tb"),
+        (r"\101\x42", "AB"),
+        # Backslashes are undone twice, but a second time only before a quote or a backslash.
+        (r"\\\\n", r"\n"),
+        (r"\\n", r"\n"),
+        (r"\\\"", '"'),
+        (r"\"", '"'),
+        (r"\\'", r"\'"),
+    ],
+)
+def test_texts_have_the_values_that_rosidl_gives_them(text, want):
+    assert value(f'"{text}"') == value(f'L"{text}"') == ("text", want)
+
+
+def test_long_escapes_are_of_wide_texts_alone():
+    assert value(r'"\u2122"') == ("text", r"\u2122")
+    assert value(r'L"\u2122" L"!"') == ("text", "™!")
 
 
 @pytest.mark.parametrize(
@@ -166,7 +221,13 @@ def test_values_become_those_of_a_type(name, text, want):
     assert got == want and type(got) is type(want)
 
 
-@pytest.mark.parametrize("text", ["1 << 64", "1 << -1", "1 >> 64", "-9223372036854775808 - 1"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("1 << 64", "1 << -1", "1 >> 64", "-9223372036854775808 - 1"),
+        *("-(18446744073709551615)", "18446744073709551615 * 2", "~18446744073709551615"),
+    ],
+)
 def test_values_beyond_64_bits_are_refused(text):
     with pytest.raises(IdlError):
         value(text)
@@ -196,6 +257,7 @@ def test_integers_reach_from_border_to_border(bits):
         ("byte", "256"),
         ("char", "128"),
         ("char", r"L'\u2122'"),
+        ("char", r"L'\u0100'"),
         ("int8", "'a'"),
         ("int32", "TRUE"),
         ("int32", "1."),
