@@ -128,6 +128,42 @@ def test_structs_whose_names_do_not_fit_are_marked(names, wrong, message):
     assert (text[first.span.start : first.span.end], first.message) == (wrong, message)
 
 
+FOREIGN = "'{}' is not a type; did you mean '{}'?"
+OF_ROS = "'{}' is not a type; those of ROS are written 'package::msg::Name'"
+ENUM = "enum '{}' cannot be the type of a member in ROS 2; use an integer"
+STRUCT = "'T' is not a typedef; a struct needs its full name, 'p::msg::T'"
+NO_TYPES = {
+    **{
+        word: FOREIGN.format(word, meant)
+        for word, meant in {
+            "bool": "boolean",
+            "byte": "octet",
+            "float32": "float",
+            "float64": "double",
+            "int": "long",
+            "uint": "unsigned long",
+            "time": "builtin_interfaces::msg::Time",
+            "duration": "builtin_interfaces::msg::Duration",
+        }.items()
+    },
+    **{word: f"type '{word}' is not supported" for word in ("any", "map", "Object", "ValueBase")},
+    **{name: ENUM.format(name) for name in ("E", "::E", "msg::E", "p::msg::E", "::p::msg::E")},
+    # What other words mean is said only of words without a scope.
+    **{name: OF_ROS.format(name) for name in ("U", "std::byte", "p::any", "msg::T", "a::b::c::D")},
+    "T": STRUCT,
+}
+
+
+@pytest.mark.parametrize(("name", "message"), NO_TYPES.items(), ids=NO_TYPES)
+@pytest.mark.parametrize("form", ["{} a;", "sequence<{}> a;", "{} a[2], b;"])
+def test_names_that_are_no_types_are_marked(name, message, form):
+    text = f"module p {{ module msg {{ enum E {{ A }}; struct T {{ {form.format(name)} }}; }}; }};"
+    first, *_ = read(text)[1]
+    start, end = first.span.start, first.span.end
+    assert (text[start:end], first.message) == (name, message)
+    assert start == text.index(form.format(name)) + form.index("{")
+
+
 @pytest.mark.parametrize(
     ("members", "array", "good"),
     [
