@@ -80,7 +80,7 @@ def bands(layout: Layout) -> list[Band]:
         drawing.cell("header", header, "encapsulation", f"{header} bytes")
         # Rows start at the end of the header, because alignment counts from there.
         drawing.grid = None
-    drawing.nodes(layout.nodes, header)
+    drawing.nodes(layout.nodes)
     return drawing.bands
 
 
@@ -113,7 +113,7 @@ class _Drawing:
         elif gap.bytes:
             self.cell("padding", gap.bytes, "padding")
 
-    def nodes(self, nodes: tuple[Node, ...], header: int) -> None:
+    def nodes(self, nodes: tuple[Node, ...]) -> None:
         for node in nodes:
             name = ".".join(node.path)
             match node:
@@ -125,7 +125,7 @@ class _Drawing:
                 case RunNode():
                     self.run(node, name)
                 case LoopNode():
-                    self.loop(node, name, header)
+                    self.loop(node, name)
 
     def run(self, node: RunNode, name: str) -> None:
         if isinstance(node.length, ConstantLength):
@@ -146,7 +146,7 @@ class _Drawing:
         self.gap(length.gap)
         self.cell("length", 4, f"{name}.length", "uint32")
 
-    def loop(self, node: LoopNode, name: str, header: int) -> None:
+    def loop(self, node: LoopNode, name: str) -> None:
         match node.length:
             case LengthField(bound=bound) as length:
                 self.length(length, name)
@@ -155,6 +155,6 @@ class _Drawing:
                 times = f"{count} times"
         self.note("loop", f"{name}: {times}")
         self.depth += 1
-        self.nodes(node.body, header)
+        self.nodes(node.body)
         self.depth -= 1
         self.grid, self.at = None, None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ElementTree
+from itertools import pairwise
 
 import pytest
 
@@ -108,6 +109,35 @@ def test_bands_are_the_wire_in_order(tmp_path):
     assert bands_in_words(bands(lay_out(message, "cdr"))) == CDR.splitlines()
     message = library(tmp_path / "ros1", ROS1_TEXTS, "ros1").message("p/T")
     assert bands_in_words(bands(lay_out(message, "ros1"))) == ROS1.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        # The four bytes of the length need four more before an item of eight bytes.
+        (
+            "float64[] a",
+            ["from 4", "- 0+4 length a.length uint32",
+             "data: a: length x float64, after 4 bytes of padding if there are any"],
+        ),
+        (
+            "uint32 a\nfloat64[<=2] b",
+            ["from 4", "- 0+4 field a uint32", "- 4+4 length b.length uint32",
+             "data: b: length x float64, at most 2"],
+        ),
+        (
+            "uint16 a\nuint8[3] b\nuint16[1] c\nfloat64[2] d",
+            ["from 4", "- 0+2 field a uint16", "- 2+3 field b uint8[3]", "- 5+1 padding padding",
+             "- 6+2 field c uint16[1]", "- 8+16 field d float64[2]"],
+        ),
+        ("string a", ["from 4", "- 0+4 length a.length uint32",
+                      "data: a: length x uint8, and a NUL that length counts"]),
+    ],
+)  # fmt: skip
+def test_padding_of_a_known_place_has_a_known_size(tmp_path, text, found):
+    layout = lay_out(library(tmp_path, {"p/T": text}).message("p/T"), "cdr")
+    header = ["from 0", "- 0+4 header encapsulation 4 bytes"]
+    assert bands_in_words(bands(layout)) == header + found
 
 
 def rects(picture):
@@ -250,6 +280,25 @@ def test_a_long_title_and_few_bytes_fit(tmp_path):
     title = "t" * 200
     picture = ElementTree.fromstring(to_svg(layout, title))
     assert int(picture.get("width")) >= 8 + 6.7 * len(title)
+
+
+def test_a_box_has_room_for_its_text_and_is_not_smaller_than_a_row(tmp_path):
+    name = "part_" * 12 + "end"
+    layout = lay_out(library(tmp_path, {"p/T": f"string {name}\nuint8[] b"}).message("p/T"), "ros1")
+    picture = ElementTree.fromstring(to_svg(layout, "p/T"))
+    notes = [each.text for each in bands(layout) if isinstance(each, Note)]
+    boxes = {
+        text.text: tuple(int(rect.get(key)) for key in ("x", "y", "width", "height"))
+        for rect, text in pairwise(picture)
+        if text.text in notes
+    }
+    tops = []
+    for text, (x, y, width, height) in boxes.items():
+        assert (x, height) == (LEFT, 22)
+        assert width == max(ROW_BYTES * BYTE_WIDTH, int(6.7 * len(text)) + 16)
+        tops.append(y)
+    assert [*boxes] == notes and len(name) > 50 > len(notes[1]) and tops == sorted(tops)
+    assert int(picture.get("width")) >= LEFT + 8 + 6.7 * len(notes[0])
 
 
 def test_what_varies_is_dashed_and_loops_are_not(tmp_path):
