@@ -157,4 +157,4 @@ class _Drawing:
         self.depth += 1
         self.nodes(node.body)
         self.depth -= 1
-        self.grid, self.at = None, None
+        self.grid = None
