@@ -144,7 +144,7 @@ def _pieces(cell: BandCell) -> Iterator[_Piece]:
 def _cell(piece: _Piece, left: int, top: int) -> Iterator[str]:
     cell = piece.cell
     x, width = left + piece.first * BYTE_WIDTH, piece.bytes * BYTE_WIDTH
-    short = cell.name.rpartition(".")[2] if cell.kind != "length" else "length"
+    short = cell.name.rpartition(".")[2]
     text = f"... {piece.left_out} rows" if piece.left_out else short if piece.starts else ""
     room = int((width - 6) / CHARACTER_WIDTH)
     if len(text) > room:
