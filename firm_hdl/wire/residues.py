@@ -84,7 +84,7 @@ def repeat(residues: int, body: Callable[[int], int], count: int | None) -> tupl
         entry |= now
         now = body(now)
     if count is None:
-        return entry, entry | now
+        return entry, entry
     if len(seen) < count:
         start = seen.index(now)
         now = seen[start + (count - start) % (len(seen) - start)]

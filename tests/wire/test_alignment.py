@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
+from firm_hdl.model import PRIMITIVES, Array, Field, FieldType, Message, Sequence, String
 from firm_hdl.wire import CDR, ROS1
 from firm_hdl.wire.alignment import LENGTH, Alignment
+from firm_hdl.wire.rules import WireRules
 
 UINT8, UINT32, FLOAT64 = (PRIMITIVES["ros2"][name] for name in ("uint8", "uint32", "float64"))
 EMPTY = Message(name="p/msg/Empty", dialect="ros2", fields=())
@@ -62,6 +63,28 @@ def test_ros1_has_no_alignment() -> None:
     assert alignment.pad(FLOAT64, residues(*range(8))) == 0
     assert alignment.after(EMPTY, residues(3)) == residues(3)
     assert alignment.past(LENGTH, residues(3)) == residues(7)
+
+    assert alignment.shortest(EMPTY, 3) == 0
+    assert alignment.shortest(Array(element=PAIR, count=3), 2) == 15
+
+
+@pytest.mark.parametrize(
+    ("rules", "element", "size"),
+    [
+        # The first element needs no padding, and each later one 3 bytes.
+        (CDR, PAIR, 8),
+        (ROS1, PAIR, 5),
+        (CDR, String(), 4),
+        (CDR, EMPTY, 1),
+        (ROS1, EMPTY, 0),
+        (CDR, Array(element=UINT8, count=3), 3),
+        (CDR, Array(element=PAIR, count=2), 16),
+    ],
+)
+def test_repeated_elements_are_padded_as_those_after_the_first(
+    rules: WireRules, element: FieldType, size: int
+) -> None:
+    assert Alignment(rules).repeated(element) == size
 
 
 def test_padding_that_differs_is_not_known() -> None:

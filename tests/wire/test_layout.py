@@ -2,14 +2,35 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from firm_hdl.model import PRIMITIVES
+from firm_hdl.model import (
+    IDL_PRIMITIVES,
+    PRIMITIVES,
+    Array,
+    Field,
+    Message,
+    Sequence,
+    String,
+)
 from firm_hdl.plan import build_plan, encode
 from firm_hdl.sim.values import to_transfers
-from firm_hdl.wire import RULES, Gap, LengthField, LoopNode, RunNode, Scalar, Trigger, lay_out, walk
+from firm_hdl.wire import (
+    RULES,
+    ConstantLength,
+    Gap,
+    LengthField,
+    LoopNode,
+    RunNode,
+    Scalar,
+    Trigger,
+    lay_out,
+    walk,
+)
 from tests.plan.reference import Reference
 from tests.strategies import definitions, make, values
 
@@ -17,6 +38,8 @@ slow = settings(
     deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 P = PRIMITIVES["ros2"]
+# Up to iron, the default middleware wrote four bytes.
+WCHAR4 = replace(IDL_PRIMITIVES["wchar"], bytes=4)
 
 
 def gaps_of(layout):
@@ -115,6 +138,64 @@ def test_an_empty_message_is_nothing_on_ros1_and_an_octet_on_cdr():
 )
 def test_min_bytes_is_the_size_of_the_emptiest_packet_without_padding(wire, fields, size):
     assert lay_out(make("ros2", fields), wire).min_bytes == size
+
+
+WORD = Gap(align=4, bytes=0)
+
+
+@pytest.mark.parametrize(
+    ("kind", "length", "item_gap", "item", "terminated"),
+    [
+        (String(), LengthField(gap=WORD, bound=None), 0, "uint8", True),
+        (String(bound=5), LengthField(gap=WORD, bound=5), 0, "uint8", True),
+        # A unit of a wide string has four bytes; its number has no NUL.
+        (String(bound=6, wide=True), LengthField(gap=WORD, bound=6), 0, "uint32", False),
+        (
+            Sequence(element=P["float64"], bound=7),
+            LengthField(gap=WORD, bound=7),
+            4,
+            "float64",
+            False,
+        ),
+        (Array(element=P["int16"], count=8), ConstantLength(count=8), 0, "int16", False),
+        # The numbers of a `wchar` are those of an integer.
+        (
+            Sequence(element=IDL_PRIMITIVES["wchar"]),
+            LengthField(gap=WORD, bound=None),
+            0,
+            "uint16",
+            False,
+        ),
+        (Array(element=WCHAR4, count=2), ConstantLength(count=2), 0, "uint32", False),
+    ],
+)
+def test_runs_have_the_length_and_items_of_their_type(kind, length, item_gap, item, terminated):
+    message = Message(name="p/msg/T", dialect="ros2", fields=(Field(name="f", type=kind),))
+    (node,) = lay_out(message).nodes
+    assert (node.path, node.length, node.terminated) == (("f",), length, terminated)
+    assert (node.item, node.item_gap.bytes) == (P[item], item_gap)
+
+
+def test_loops_have_the_sizes_of_their_elements():
+    element = make("ros2", {"x": "uint32", "y": "uint8"}, "E")
+    message = make("ros2", {"a": (element, "[<=9]"), "b": (element, "[3]")})
+    one, two = lay_out(message).nodes
+    assert (one.length, two.length) == (LengthField(gap=WORD, bound=9), ConstantLength(count=3))
+    for node in (one, two):
+        # 5 bytes, and 3 of padding between two of them.
+        assert (node.min_body_bytes, node.repeated_bytes) == (5, 8)
+        assert [(each.path[-2:], each.type) for each in node.body] == [
+            (("item", "x"), P["uint32"]), (("item", "y"), P["uint8"])
+        ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("primitive", "name"), [("wchar", "uint16"), ("char", "char")])
+def test_characters_of_idl_are_numbers_of_their_size(primitive, name):
+    kind = IDL_PRIMITIVES[primitive]
+    message = Message(name="p/msg/T", dialect="ros2", fields=(Field(name="f", type=kind),))
+    (node,) = lay_out(message).nodes
+    assert node == Scalar(path=("f",), gap=Gap(align=kind.bytes, bytes=0), type=node.type)
+    assert (node.type.name, node.type.bytes, node.type.signed) == (name, kind.bytes, kind.signed)
 
 
 def test_an_unknown_wire_is_refused():

@@ -101,6 +101,20 @@ def test_a_message_without_a_text_is_refused_by_its_names():
         assert str(found) == f"error: {sentence('f', 'p/msg/T')}"
 
 
+def test_fields_are_refused_in_the_order_in_which_a_reader_meets_them():
+    def message(name, *fields):
+        parts = tuple(Field(name=each, type=kind) for each, kind in fields)
+        return Message(name=f"p/msg/{name}", dialect="ros2", fields=parts)
+
+    real = IDL_PRIMITIVES["long double"]
+    first, second = message("First", ("a", real)), message("Second", ("b", real))
+    outer = message("Outer", ("x", second), ("c", real), ("y", first), ("z", second))
+    assert [found.message for found in refusals(outer)] == [
+        sentence(name, f"p/msg/{owner}")
+        for name, owner in (("c", "Outer"), ("b", "Second"), ("a", "First"))
+    ]
+
+
 def test_it_is_the_only_primitive_that_no_wire_has():
     tables = [*PRIMITIVES.values(), IDL_PRIMITIVES]
     refused = {item.name for table in tables for item in table.values() if not item.has_wire_format}

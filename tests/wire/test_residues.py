@@ -47,6 +47,28 @@ def test_spread_reaches_every_number_of_units_and_no_more(residues, unit):
     )
 
 
+def mask_of(offsets, modulus):
+    return sum({1 << (offset % modulus) for offset in offsets})
+
+
+@given(data=st.data(), modulus=st.sampled_from([1, 2, 4, 16, 64]))
+def test_sets_may_have_another_modulus(data, modulus):
+    """A plan asks for lanes of a bus of 1 to 64 bytes."""
+    lanes = data.draw(st.sets(st.integers(0, modulus - 1), min_size=1))
+    residues = mask_of(lanes, modulus)
+    count = data.draw(st.integers(0, 200))
+    want = mask_of((lane + count for lane in lanes), modulus)
+    assert rs.advance(residues, count, modulus) == want
+    unit = data.draw(st.integers(1, 16))
+    want = mask_of((lane + n * unit for lane in lanes for n in range(modulus)), modulus)
+    assert rs.spread(residues, unit, modulus) == want
+    align = data.draw(aligns)
+    want = mask_of((next(at for at in range(lane, lane + 8) if at % align == 0)
+                    for lane in lanes), modulus)  # fmt: skip
+    assert rs.aligned(residues, align, modulus) == want
+    assert rs.single(count, modulus) == 1 << count % modulus
+
+
 @given(residues=sets)
 def test_members_are_the_residues_in_ascending_order(residues):
     assert list(rs.members(residues)) == sorted({at % 8 for at in offsets(residues)})
