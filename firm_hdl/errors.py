@@ -90,7 +90,7 @@ class Diagnostic:
         column = span.column
         where = f"{printable(span.source.name)}:{span.line}:{column}"
         text, before = _clip(span.line_text, column - 1)
-        end = before + max(1, span.end - span.start)
+        end = before + span.end - span.start
         head, words, tail = (
             printable(part) for part in (text[:before], text[before:end], text[end:])
         )

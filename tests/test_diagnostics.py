@@ -44,6 +44,22 @@ def test_long_line_is_cut_around_the_place():
     assert line == "..." + "y" * 400
 
 
+def test_a_line_that_fits_is_shown_whole():
+    _, line, carets = str(diagnostic("x" * 396 + "here", 396, 400)).split("\n")
+    assert line == "x" * 396 + "here" and carets == " " * 396 + "^^^^"
+    _, line, _ = str(diagnostic("x" * 397 + "here", 397, 401)).split("\n")
+    assert line == "..." + "x" * 200 + "here"
+
+
+def test_a_carriage_return_is_part_of_a_line_unless_it_ends_it():
+    text = "\rint9 a\r\n"
+    assert str(diagnostic(text, 1, 5)) == "a.msg:1:2: error: no\n\\rint9 a\n  ^^^^"
+
+
+def test_a_place_between_two_characters_has_one_caret():
+    assert str(diagnostic("ab\x07c", 2, 2)) == "a.msg:1:3: error: no\nab\\x07c\n  ^"
+
+
 def test_words_of_several_lines_are_marked_in_the_first():
     assert str(diagnostic("int8 a\nint8 b\n", 5, 12)) == "a.msg:1:6: error: no\nint8 a\n     ^"
     assert str(diagnostic("int8 a", 5, 9)) == "a.msg:1:6: error: no\nint8 a\n     ^"

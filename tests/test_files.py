@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import os
 import socket
+import stat
+from types import SimpleNamespace
 
 import pytest
 
@@ -75,6 +77,15 @@ def test_paths_that_are_no_files_are_named(tmp_path):
                     read(path, 10)
                 assert error.value.errno == errno.EINVAL
                 assert error.value.strerror == f"it is {what}, not a regular file"
+                assert error.value.filename == os.fspath(path)
+
+
+@pytest.mark.parametrize(("mode", "what"), [(stat.S_IFBLK, "a device"), (0, "something else")])
+def test_kinds_of_files_that_few_users_can_make_are_named(file, monkeypatch, mode, what):
+    # Only root can make a block device.
+    monkeypatch.setattr(os, "stat", lambda path: SimpleNamespace(st_mode=mode, st_size=0))
+    with pytest.raises(OSError, match=f"it is {what}, not a regular file"):
+        check_file(file)
 
 
 def test_missing_paths_are_not_read(tmp_path):

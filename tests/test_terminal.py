@@ -74,6 +74,8 @@ def test_streams_are_restored_afterwards(capsys):
         print("\x1b[2J")
         print("\rbar \x1b[2J", file=sys.stderr)
         print("\x1b[A", end="", file=sys.stderr)
+        print("\x1b[0m", end="", file=sys.stderr)
+        print("\n\x1b[A\x1b[0m\n", end="", file=sys.stderr)
         # Only a whole text moves the cursor, and only where there are bars.
         print("\x1b[A\x1b[2J", end="", file=sys.stderr)
         print("\rno bar\x1b[A", end="")
@@ -82,7 +84,7 @@ def test_streams_are_restored_afterwards(capsys):
     # Progress bars move the cursor; control characters in their text do not act.
     assert capsys.readouterr() == (
         "\\x1b[2J\n\\rno bar\\x1b[A\\x07\n",
-        "\rbar \\x1b[2J\n\x1b[A\\x1b[A\\x1b[2J",
+        "\rbar \\x1b[2J\n\x1b[A\x1b[0m\n\x1b[A\x1b[0m\n\\x1b[A\\x1b[2J",
     )
 
 

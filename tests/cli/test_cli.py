@@ -141,6 +141,12 @@ def test_impossible_requests_exit_1(workdir, capsys, arguments, message):
             ["plan", "a/b", "--max-message-bytes", "0"],
             "argument --max-message-bytes: must be from 1 to 4294967295, not 0",
         ),
+        (["build", "a/b", "--jobs", "0"], "argument --jobs: must be at least 1, not 0"),
+        (["part", "fifo", "--packets", "0"], "argument --packets: must be from 1 to 4096, not 0"),
+        (["part", "fifo", "--name", "2x"], "--name: '2x' is not a name in VHDL and Verilog"),
+        (["node", "run", "n", "--seconds", "0"], "--seconds: must be above 0, not 0"),
+        (["node", "run", "n", "--seconds", "s"], "--seconds: 's' is not a number"),
+        (["node", "run", "n", "--domain", "233"], "--domain: must be from 0 to 232, not 233"),
         (
             ["plan", "a/b", "--max-message-bytes", "much"],
             "argument --max-message-bytes: 'much' is not a number",
