@@ -206,6 +206,8 @@ def test_the_module_takes_all_types_unless_some_are_named(monkeypatch, capsys):
         (("std_msgs/Bool",), True),
     ]
     # Types of a node are named by its description.
+    assert alias(["--board", "sim", "--node", "/nowhere/node.yaml"]) == 1
+    assert "/nowhere/node.yaml" in capsys.readouterr().err
     with pytest.raises(SystemExit) as left:
         alias(["--node", "x.yaml"])
     assert left.value.code == 2 and "--node needs --board" in capsys.readouterr().err
