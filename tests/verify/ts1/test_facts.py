@@ -114,6 +114,13 @@ def test_a_missing_fact_of_ours_is_a_difference_and_one_of_the_oracle_is_none():
     assert [each.path for each in differences(ours, theirs)] == ["a/b/d", "a/b/f", "g"]
 
 
+def test_facts_that_the_oracle_does_not_give_are_not_made(tmp_path):
+    ours, shown = model(tmp_path), []
+    for theirs, count in (({"names": ["p/msg/A"]}, 0), ({"show": "text"}, 1)):
+        found = compared(ours, Accepted(theirs), {}, lambda: shown.append("shown") or "text")
+        assert (found.differences, found.cases, len(shown)) == ((), 1, count)
+
+
 def test_single_facts_are_counted():
     assert [count_facts(each) for each in (1, "a", None, [1, 2], {}, [])] == [1, 1, 1, 1, 0, 1]
     fields = [{"name": "a", "type": "b"}, {"name": "c", "type": "d", "default": [1, 2]}]
