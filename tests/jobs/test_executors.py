@@ -76,7 +76,9 @@ def test_nothing_goes_on_after_a_run_was_closed(tmp_path):
     assert len(list(tmp_path.iterdir())) == done
 
 
-@pytest.mark.parametrize("name", ["threads", "dask://", "dask://host", "dask://:1", "dask://h:x"])
+@pytest.mark.parametrize(
+    "name", ["threads", "host:8786", "dask://", "dask://host", "dask://:1", "dask://h:x"]
+)
 def test_unknown_executors_are_refused(name):
     with pytest.raises(ExecutorError, match=r"^executor must be 'processes' or 'dask://HOST:PORT'"):
         check_executor(name)

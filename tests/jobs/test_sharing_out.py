@@ -124,6 +124,12 @@ def test_number_of_submitted_tasks_is_limited(cluster, jobs, threads, most):
     assert sorted(pool.given) == [(number,) for number in range(20)]
 
 
+def test_tasks_that_end_together_have_their_results_in_order(cluster):
+    assert [key for key, _ in cluster.run(tasks(*range(40)), jobs=40)] == [
+        f"task {number}" for number in range(40)
+    ]
+
+
 def test_errors_of_tasks_are_results(cluster):
     found = dict(cluster.run(tasks(2, -3, 4)))
     assert isinstance(found["task -3"], ValueError)

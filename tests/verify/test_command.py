@@ -11,10 +11,16 @@ import pytest
 
 import firm_hdl.verify.run as run
 from firm_hdl.cli import main
+from firm_hdl.errors import DefinitionError, Diagnostic, UserError
+from firm_hdl.export.build import BuildError
+from firm_hdl.jobs import ExecutorError, ProgramMissingError
 from firm_hdl.verify.__main__ import main as alias
+from firm_hdl.verify.references.client import ClientMissingError
+from firm_hdl.verify.results.file import ResultsError
 from firm_hdl.verify.results.verdict import Failed, Passed
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Judged, System
+from firm_hdl.verify.systems.tasks import UnknownTypeError
 from tests.verify.samples import own_package
 
 BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool"]
@@ -164,6 +170,52 @@ def test_default_systems_may_be_named_beside_client_libraries(monkeypatch):
     named = ["--systems", "ts3", "--simulator", "python", "--executor", "processes"]
     assert main([*words, *named]) == 0
     assert asked == [Request(libraries=("rosbags",))] * 2
+
+
+ERRORS = [
+    BuildError("no room"),
+    ClientMissingError("no room"),
+    ExecutorError("no room"),
+    ResultsError("no room"),
+    ProgramMissingError("no room"),
+    UnknownTypeError("no room"),
+    UserError("no room"),
+    DefinitionError([Diagnostic(message="no room")]),
+]
+
+
+@pytest.mark.parametrize("error", ERRORS, ids=lambda error: type(error).__name__)
+def test_an_error_of_the_user_has_status_1_and_a_line_of_text(monkeypatch, capsys, error):
+    def fails(work):
+        raise error
+
+    monkeypatch.setattr(run, "SYSTEMS", {"ts3": fails})
+    assert main(["verify", "std_msgs/Bool"]) == 1
+    assert capsys.readouterr() == ("", "error: no room\n")
+    assert alias(["std_msgs/Bool"]) == 1
+    assert capsys.readouterr() == ("", "error: no room\n")
+
+
+def test_the_module_takes_all_types_unless_some_are_named(monkeypatch, capsys):
+    asked = []
+    monkeypatch.setattr(run, "run_workload", lambda work: asked.append(work.request) or 5)
+    assert alias(["--systems", "ts1"]) == 5
+    assert alias(["--systems", "ts1", "std_msgs/Bool"]) == 5
+    assert [(each.types, each.is_named) for each in asked] == [
+        ((), False),
+        (("std_msgs/Bool",), True),
+    ]
+    # Types of a node are named by its description.
+    assert alias(["--board", "sim", "--node", "/nowhere/node.yaml"]) == 1
+    assert "/nowhere/node.yaml" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as left:
+        alias(["--node", "x.yaml"])
+    assert left.value.code == 2 and "--node needs --board" in capsys.readouterr().err
+    # Wrong calls name the module.
+    with pytest.raises(SystemExit) as left:
+        alias(["--all", "std_msgs/Bool"])
+    assert left.value.code == 2
+    assert "python -m firm_hdl.verify: error: name types, or all" in capsys.readouterr().err
 
 
 def test_interruption_has_a_status_of_its_own(monkeypatch, capsys):

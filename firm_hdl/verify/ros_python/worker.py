@@ -50,10 +50,11 @@ class Worker:
         """Send a request; return the answer, which is ``failed`` if the process dies of it."""
         if self._process is None:
             self._start()
-        answer = self._exchange(json.dumps(request))
+        # A process that died may not start again.
+        answer = None if self._process is None else self._exchange(json.dumps(request))
         if answer is None:
             self.close()
-            return {"failed": DIED}
+            return {"failed": self.missing or DIED}
         return answer
 
     @property
@@ -99,9 +100,11 @@ class Worker:
             if line is not None:
                 process.stdin.write(line + "\n")
                 process.stdin.flush()
-            return dict(json.loads(process.stdout.readline()))
+            answer = json.loads(process.stdout.readline())
         except (OSError, ValueError):
             return None
+        # Another program than Python may have been started, which prints what it likes.
+        return answer if isinstance(answer, dict) else None
 
 
 def _environment(python: str) -> dict[str, str]:

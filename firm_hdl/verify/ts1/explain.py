@@ -172,7 +172,7 @@ class Explainer:
         if isinstance(self._ours, DefinitionError):
             for entry in self._entries():
                 if entry.unavoidable is not None and any(
-                    map(entry.unavoidable, [self._case, *self._texts.values()])
+                    map(entry.unavoidable, self._texts.values())
                 ):
                     yield f"{entry.key}: {entry.text}"
         for need in self._needs():

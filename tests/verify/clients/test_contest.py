@@ -10,6 +10,7 @@ from firm_hdl.model import Message, Primitive, Sequence, String
 from firm_hdl.verify.clients.finding import Finding, KnownDivergence
 from firm_hdl.verify.clients.judge import LibraryComparison, LibraryResult
 from firm_hdl.verify.clients.shrink import shrunk
+from firm_hdl.verify.clients.unusual import unusual_packets
 from firm_hdl.verify.references.client import (
     Client,
     ClientDiedError,
@@ -124,6 +125,45 @@ def test_one_thing_can_be_asked_again(message):
     assert refusing.again(message, "encode", {"a": 9}).expected == Refusal("too large")
     # An irregular packet is made from the plain packet only.
     assert made.again(message, "bare-string", {"a": 9}) is None
+
+
+class Otherwise(Bytes):
+    """Writes one value otherwise than our own writer."""
+
+    def encode(self, value):
+        return b"\0\1\0\0\x08" if value == {"a": 7} else super().encode(value)
+
+
+class Lenient(Bytes):
+    """Ignores what follows, and notes what it reads."""
+
+    def __init__(self):
+        super().__init__()
+        self.packets = []
+
+    def decode(self, packet):
+        self.packets.append(packet)
+        return super().decode(packet[:5])
+
+
+def test_unusual_packets_are_made_of_values_that_the_reference_writes_as_we_do(message):
+    library = Lenient()
+    made = contest(library, Otherwise())
+    made.judge(message, [{"a": 7}, {"a": 1}])
+    plain = [b"\0\1\0\0\x08", b"\0\1\0\0\1"]
+    unusual = [packet for _, _, packet in unusual_packets(message, "cdr", [{"a": 1}])]
+    # Neither library reads big-endian packets.
+    unusual.remove(b"\0\0\0\0\1")
+    assert library.packets == plain + unusual and len(unusual) > 5
+    # The same holds for one question.
+    found = made.again(message, "trailing-4", {"a": 1})
+    assert (found.what, found.packet) == ("trailing-4", plain[1] + bytes(4))
+    assert (found.expected, found.got) == (Refusal("no packet"), {"a": 1})
+    assert made.again(message, "trailing-4", {"a": 7}) is None
+    assert contest(Lenient(), Bytes()).again(message, "trailing-4", {"a": 7}) is not None
+    # A usual packet is that of the reference, however it writes the value.
+    assert made.ask(message, "decode", {"a": 7}) is None
+    assert library.packets[-1] == plain[0]
 
 
 def test_a_codec_that_cannot_be_opened_is_not_judged_or_fails(message):

@@ -8,6 +8,7 @@ from __future__ import annotations
 import stat
 import sys
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -235,4 +236,9 @@ def test_numbers_that_fast_cdr_is_not_asked_about():
     long_double = IDL_PRIMITIVES["long double"]
     with pytest.raises(UnsupportedError, match="is not asked about long double"):
         module._integer(long_double)
+    # A number is not asked about because of its size, but because of what it is.
+    half = replace(IDL_PRIMITIVES["float32"], name="float16", bytes=2)
+    for kind in (long_double, half, IDL_PRIMITIVES["bool"], IDL_PRIMITIVES["float64"]):
+        with pytest.raises(UnsupportedError, match=f"is not asked about {kind.name}$"):
+            module._integer(kind)
     assert module._described(make("ros2", {"a": "uint8"})) == "B\n"

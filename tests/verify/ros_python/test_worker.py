@@ -126,8 +126,10 @@ def test_processor_time_is_that_of_the_process(mine):
     before = mine.cpu_seconds
     mine.ask({"oracle": "slow"})
     assert 0 < before < before + 0.05 < mine.cpu_seconds < before + 20
+    process = mine._process
     mine.close()
-    assert mine.cpu_seconds == 0
+    # It ended by itself, and may have tidied up.
+    assert process.returncode == 0 and mine.cpu_seconds == 0
     mine.close()
 
 
@@ -155,3 +157,53 @@ def test_the_search_path_of_a_sourced_release_is_for_the_python_of_ros(folder, m
     assert given.get("PYTHONPATH") == ("/opt/ros" if is_own else None)
     assert (given["LC_ALL"], given["PYTHONUTF8"]) == ("C.UTF-8", "1")
     assert given["PYTHONHASHSEED"] == "0" and given["PATH"] == os.environ["PATH"]
+
+
+ODD_LINES = ["", "hello", "{", "3", "null", "true", '"ab"', "[]", "[1]", "[[1, 2]]", "{}"]
+
+
+def other_program(folder, *lines):
+    """Make a program that prints lines in place of answers: one at first, one for each request."""
+    first, *others = (f"printf '%s\\n' '{line}'" for line in lines)
+    asked = "".join(f"read -r request\n{line}\n" for line in others)
+    path = folder / "other"
+    path.write_text(f"#!/bin/sh\n{first}\n{asked}read -r request\n")
+    path.chmod(0o755)
+    return str(path)
+
+
+@pytest.mark.parametrize("line", ODD_LINES)
+def test_a_program_that_is_no_python_of_ros_is_missing(tmp_path, line):
+    python = other_program(tmp_path, line)
+    with closing(Worker("fake", "here", modules=tmp_path, python=python)) as found:
+        assert found.missing == "its Python does not start" and found._process is None
+        # It may be asked nevertheless.
+        assert found.ask({"oracle": "repeat"}) == {"failed": found.missing}
+
+
+@pytest.mark.parametrize("line", ODD_LINES[:-1])
+def test_an_answer_that_is_none_is_that_of_a_dead_process(tmp_path, line):
+    hello = '{"ready": [], "versions": {"a": "1"}}'
+    python = other_program(tmp_path, hello, '{"facts": 1}', line)
+    with closing(Worker("fake", "here", modules=tmp_path, python=python)) as found:
+        assert (found.missing, found.versions) == (None, {"a": "1"})
+        first = found._process
+        assert found.ask({}) == {"facts": 1}
+        assert found.ask({}) == {"failed": DIED}
+        assert first.returncode is not None and found._process is None
+        # The next one is asked of a new process.
+        assert found.ask({}) == {"facts": 1}
+
+
+def test_a_process_that_does_not_start_again_has_failed(folder, tmp_path):
+    python = tmp_path / "python"
+    python.symlink_to(sys.executable)
+    with closing(Worker("fake", "here", modules=folder, python=str(python))) as found:
+        assert found.missing is None
+        python.unlink()
+        assert found.ask({"oracle": "die"}) == {"failed": DIED}
+        why = f"{python} cannot be run: No such file or directory"
+        assert found.ask({"oracle": "repeat"}) == {"failed": why}
+        python.symlink_to(sys.executable)
+        assert "facts" in found.ask({"oracle": "repeat"})
+        assert found.missing is None

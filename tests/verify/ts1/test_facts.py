@@ -84,6 +84,22 @@ def test_another_set_or_order_of_fields_is_one_difference(tmp_path):
         ]
 
 
+def test_a_list_without_members_differs_from_one_with_members_by_its_names():
+    members = [{"name": "a", "type": "int8"}, {"name": "b", "type": "int16"}]
+    for ours, theirs, listed in (
+        ([], members, "[]; oracle ['a', 'b']"),
+        (members, [], "['a', 'b']; oracle []"),
+    ):
+        found = [str(each) for each in differences({"s": ours}, {"s": theirs})]
+        assert found == [f"s: firm-hdl {listed}"]
+    assert list(differences([], [])) == []
+    # Other lists are compared as a whole, and so are those with something else among members.
+    for other in ([1, 2], [*members, 1], [1, *members]):
+        assert list(differences(other, [*other])) == [] and count_facts(other) == 1
+        assert len(list(differences(members, other))) == 1
+        assert len(list(differences(other, members))) == 1
+
+
 def test_a_missing_fact_of_ours_is_a_difference_and_one_of_the_oracle_is_none():
     assert [str(each) for each in differences({"a": 1}, {"b": 2})] == [
         "b: firm-hdl has none; oracle 2"
@@ -96,6 +112,13 @@ def test_a_missing_fact_of_ours_is_a_difference_and_one_of_the_oracle_is_none():
     ours = {"a": {"b": {"c": 1, "d": 2, "e": 3, "f": 4}}}
     theirs = {"a": {"b": {"c": 1, "d": 0, "e": 3, "f": 5}}, "g": 6}
     assert [each.path for each in differences(ours, theirs)] == ["a/b/d", "a/b/f", "g"]
+
+
+def test_facts_that_the_oracle_does_not_give_are_not_made(tmp_path):
+    ours, shown = model(tmp_path), []
+    for theirs, count in (({"names": ["p/msg/A"]}, 0), ({"show": "text"}, 1)):
+        found = compared(ours, Accepted(theirs), {}, lambda: shown.append("shown") or "text")
+        assert (found.differences, found.cases, len(shown)) == ((), 1, count)
 
 
 def test_single_facts_are_counted():
@@ -114,6 +137,10 @@ def test_values_are_compared_with_their_types_and_signs():
 def test_long_values_are_shortened():
     (difference,) = differences("x" * 5000, "y")
     assert len(str(difference)) < 400
+    # The quotes count, too.
+    (difference,) = differences("x" * 298, "y" * 299)
+    assert difference.ours == repr("x" * 298)
+    assert difference.theirs == "'" + "y" * 299 + "..."
 
 
 def test_each_part_of_an_action_has_its_own_hash_and_sum(tmp_path):

@@ -185,7 +185,7 @@ class Line:
     def with_value(self, value: str) -> Line:
         """Return the line with another value, and the same comment."""
         _, hash_, comment = self.rest.partition("#")
-        blank = " " if hash_ or not self.equals else ""
+        blank = " " if hash_ else ""
         before = "" if self.equals else " "
         return replace(self, rest=f"{before}{value}{blank}{hash_}{comment}".rstrip(" "))
 

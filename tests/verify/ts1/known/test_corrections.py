@@ -45,6 +45,8 @@ BACK = [
     ("rosbags-constant-bool", "int8", 2, 2),
     ("rosbags-floats", "float32", "inf", math.inf),
     ("rosbags-floats", "float64", "-1e3", -1000.0),
+    ("rosbags-floats", "float32", "inf # a # b", math.inf),
+    ("rosbags-floats", "float64", "1e3#", 1000.0),
     ("rosbags-floats", "float64", "x", "x"),
     ("rosbags-floats", "float64", 1.5, 1.5),
     ("rosbags-floats", "string", "inf", "inf"),

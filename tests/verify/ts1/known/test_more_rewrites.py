@@ -10,9 +10,10 @@ import pytest
 from firm_hdl.model import Constant, Message, String
 from firm_hdl.verify.ts1.known.idl_values import integer_of
 from firm_hdl.verify.ts1.known.rule import KnownRule, Line, by_lines, each_line
-from firm_hdl.verify.ts1.known.texts import renamed, renamed_back
+from firm_hdl.verify.ts1.known.texts import hidden, renamed, renamed_back, shown
 from tests.verify.ts1.known.rewriting import BY_KEY, case_of, numbered, rewritten
 
+DEEP = "-" * 20_000
 MSG = [
     # key, dialect, before, after
     ("ascii-only", "ros2", "wstring A=\xe9\nwstring<=3 \xe9\n", "wstring A=\xe9\nwstring<=3 xe9\n"),
@@ -31,6 +32,8 @@ MSG = [
         "int8 A=1_0\rint8 B=1_1\r\nint8 C=1_2",
         "int8 A=10\rint8 B=11\r\nint8 C=12",
     ),
+    # Python gives up on such a literal.
+    ("ros1-bool-literals", "ros1", f"bool A={DEEP}1\nbool B=2", f"bool A={DEEP}1\nbool B=True"),
 ]
 
 
@@ -54,6 +57,8 @@ IDL = [
      f"struct A {{ long a; long b; long {renamed('a')}0; }};"),
     ("idl-values", '@default(value=300) @default(value=1) octet a; @default(value=2) octet b;',
      "  octet a; @default(value=2) octet b;"),
+    ("idl-values", f'@default(value="({DEEP}1,)") octet a[2]; @default(value="(1,)") octet b[2];',
+     f'@default(value="({DEEP}1,)") octet a[2];  octet b[2];'),
 ]  # fmt: skip
 
 
@@ -89,10 +94,21 @@ def test_a_file_s_own_constants_come_before_those_that_it_includes():
         ("-(1 << 64) - 1", None),
         ("1 << 100000000000000", None),
         ("-7 / 2", -3),
+        ("1" + " + 1" * 20_000, None),
+        ("9" * 5000, None),
     ],
 )
 def test_large_and_negative_values_of_expressions(expression, value):
     assert integer_of(expression, {}, set()) == value
+
+
+def test_every_ascii_character_can_be_hidden():
+    every = "".join(map(chr, range(128)))
+    text = hidden(every, every)
+    assert len(text) == 128 and not any(each in every for each in text)
+    assert shown(text) == every and shown([text, [text], None]) == [every, [every], None]
+    # Others stay, also those of the private-use area that follow.
+    assert shown("\ue080\udfffé") == "\ue080\udfffé"
 
 
 def test_constants_of_wide_text_are_narrow_to_rosbags():

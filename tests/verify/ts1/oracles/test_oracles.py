@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import stat
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -219,10 +220,53 @@ def test_ros2_interface_proto_is_compared_with_ours(court, ros2_command):
     assert outcome.verdict == NotJudged("ros2 does not have it: Unknown package 'p'")
 
 
+@pytest.mark.parametrize(
+    ("printed", "told"),
+    [("x", "x"), (r"x\n", "x"), (r"x\n\n", "x\n"), (r"\nx \n", "\nx "), (r"x\r\n", "x")],
+)
+def test_ros2_prints_one_line_end_after_its_text(court, ros2_command, printed, told):
+    (ros2_command / "ros2").write_text(f"#!/bin/sh\nprintf '{printed}'\n")
+    answer = court("lyrical", ROS2).answer("ros2", "q/B")
+    assert answer == Accepted({"proto": told})
+
+
+def test_ros2_is_asked_in_its_own_words_and_not_for_ever(court, ros2_command, monkeypatch):
+    calls = []
+
+    def run(command, **options):
+        calls.append((command, options["timeout"]))
+        raise subprocess.TimeoutExpired(command, options["timeout"])
+
+    monkeypatch.setattr(subprocess, "run", run)
+    here = court("lyrical", ROS2)
+    for type_, name in (("p/Do", "p/action/Do"), ("p/S", "p/srv/S"), ("p/A", "p/msg/A")):
+        answer = here.answer("ros2", type_)
+        assert isinstance(answer, NotJudged) and answer.reason.startswith("ros2 failed: ")
+        assert calls.pop() == (["ros2", "interface", "proto", name], 60)
+    # One that cannot be run at all has not judged, too.
+    monkeypatch.undo()
+    (ros2_command / "ros2").write_text("#!/nowhere/sh\n")
+    monkeypatch.setenv("PATH", str(ros2_command))
+    answer = here.answer("ros2", "p/A")
+    assert isinstance(answer, NotJudged) and answer.reason.startswith("ros2 failed: [Errno 2]")
+
+
+@pytest.mark.parametrize(
+    ("script", "why"),
+    [("echo a; echo b >&2; exit 1", "b"), ("echo a; echo b; exit 3", "b"),
+     ("echo a >&2; echo b >&2; exit 1", "b")],
+)  # fmt: skip
+def test_the_last_line_of_ros2_says_why(court, ros2_command, script, why):
+    (ros2_command / "ros2").write_text(f"#!/bin/sh\n{script}\n")
+    answer = court("lyrical", ROS2).answer("ros2", "q/B")
+    assert answer == NotJudged(f"ros2 does not have it: {why}")
+
+
 def test_ros2_without_output_has_not_judged(court, ros2_command):
-    (ros2_command / "ros2").write_text("#!/bin/sh\nexit 0\n")
-    outcome = court("lyrical", ROS2).outcome("ros2", "q/B")
-    assert outcome.verdict == NotJudged("ros2 says nothing of it")
+    for script in ("exit 0", "echo", "echo ' '"):
+        (ros2_command / "ros2").write_text(f"#!/bin/sh\n{script}\n")
+        outcome = court("lyrical", ROS2).outcome("ros2", "q/B")
+        assert outcome.verdict == NotJudged("ros2 says nothing of it")
     (ros2_command / "ros2").write_text("#!/bin/sh\nexit 1\n")
     outcome = court("lyrical", ROS2).outcome("ros2", "q/B")
     assert outcome.verdict == NotJudged("ros2 does not have it: it does not say why")
