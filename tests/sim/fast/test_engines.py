@@ -156,6 +156,17 @@ def test_live(start, engine):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
+def test_silence_before_a_live_simulation_does_not_let_it_sleep(start, engine):
+    simulation = start(engine)
+    simulation.run(800)
+    # In its sleep, the engine would run one cycle for each look at it.
+    simulation.go_live(quiet=800, nap_cycles=1, nap_ms=1)
+    cycles = [simulation.get("wide") & ((1 << 40) - 1) for _ in range(100)]
+    simulation.halt()
+    assert cycles[-1] >= 1600
+
+
+@pytest.mark.parametrize("engine", ENGINES)
 def test_a_deadlock_is_an_error(start, engine):
     simulation = start(engine)
     simulation.stall("packets_out", [True] * 5000 + [False])
