@@ -152,16 +152,19 @@ def test_the_summary_counts_types_on_each_wire_and_every_circuit():
     outcomes = [
         judged(
             Outcome(
-                task=FuzzTask(type=STRING, bus_bytes=bus, room=1, seed=1, packets=200), wire=wire
+                task=FuzzTask(type=name, bus_bytes=bus, room=1, seed=1, packets=200), wire=wire
             ),
             [SAID] * 2,
         )
-        for bus, wire in ((4, "cdr"), (8, "cdr"), (8, "ros1"))
+        for name, bus, wire in (
+            *((STRING, 4, "cdr"), (STRING, 8, "cdr"), (STRING, 8, "ros1")),
+            (EMPTY, 8, "ros1"),
+        )
     ]
     text = summary(outcomes)
     assert text.startswith(
-        "1,536 packets, 600 of them bad, through 6 circuits of 2 types on buses of 4, 8 bytes\n"
-        "900 OK, 600 TRUNCATED; 36 lost in 6 resets\n6,000 cycles"
+        "2,048 packets, 800 of them bad, through 8 circuits of 3 types on buses of 4, 8 bytes\n"
+        "1,200 OK, 800 TRUNCATED; 48 lost in 8 resets\n8,000 cycles"
     )
     assert text.endswith("no failures")
 

@@ -11,9 +11,9 @@ import time
 from pathlib import Path
 
 import pytest
-from amaranth.hdl import Elaboratable, Module
+from amaranth.hdl import ClockDomain, Elaboratable, Module
 from amaranth.lib import stream, wiring
-from amaranth.lib.wiring import In
+from amaranth.lib.wiring import In, Out
 
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.jobs import programs as all_programs
@@ -186,6 +186,32 @@ def test_a_compiler_that_fails_is_quoted(source, tmp_path, monkeypatch):
     assert list((tmp_path / "cache").iterdir()) == []
 
 
+@pytest.mark.parametrize(("count", "end"), [(12, "12"), (13, "... and 1 more lines")])
+def test_only_lines_that_are_left_out_are_counted(source, tmp_path, monkeypatch, count, end):
+    compiler = script(tmp_path, "compiler", f"{COMPILES}; seq {count} >&2; exit 1")
+    Path(f"{compiler}.version").write_text("1")
+    monkeypatch.setenv("CXX", compiler)
+    with pytest.raises(BuildError) as caught:
+        compilers.program_of(source, cache=tmp_path / "cache")
+    assert str(caught.value).splitlines()[-1] == end
+
+
+@pytest.mark.parametrize(
+    ("variables", "folder"),
+    [
+        ({"XDG_CACHE_HOME": "/a"}, "/a/firm-hdl/simulation"),
+        # A variable without a value counts as none.
+        ({"XDG_CACHE_HOME": ""}, "/home/me/.cache/firm-hdl/simulation"),
+        ({"XDG_DATA_HOME": "/b"}, "/home/me/.cache/firm-hdl/simulation"),
+    ],
+)
+def test_the_cache_is_the_user_s(monkeypatch, variables, folder):
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    for name, value in {"HOME": "/home/me", **variables}.items():
+        monkeypatch.setenv(name, value)
+    assert compilers.cache_folder() == Path(folder)
+
+
 def test_a_compiler_that_writes_nothing(source, tmp_path, monkeypatch):
     monkeypatch.setenv("CXX", "true")
     with pytest.raises(BuildError, match="did not write program"):
@@ -232,6 +258,19 @@ class AlwaysValid(wiring.Component):
         super().__init__({"i": In(stream.Signature(8, always_valid=True))})
 
 
+class Unused(wiring.Component):
+    """A design that declares a clock domain, and has nothing in it."""
+
+    def __init__(self):
+        super().__init__({"o": Out(1)})
+
+    def elaborate(self, platform):
+        m = Module()
+        m.domains.spare = ClockDomain()
+        m.d.sync += self.o.eq(~self.o)
+        return m
+
+
 class Plain(Elaboratable):
     def elaborate(self, platform):
         return Module()
@@ -243,6 +282,7 @@ class Plain(Elaboratable):
         (Plain, TypeError, "must be a component of amaranth.lib.wiring"),
         (AlwaysValid, ValueError, "Stream 'i' is an input that is always valid"),
         (WithClocks, ClockDomainError, "one clock domain, 'sync'; the design also has 'video'"),
+        (Unused, ClockDomainError, "one clock domain, 'sync'; the design also has 'spare'"),
     ],
 )
 @pytest.mark.parametrize("engine", ["cxxrtl", "amaranth"])

@@ -12,7 +12,8 @@ from firm_hdl.plan import build_plan
 from firm_hdl.verify.bench import run
 from firm_hdl.verify.bench.run import _check_transfers, _compare
 from firm_hdl.verify.cases.make import Case
-from firm_hdl.verify.results.verdict import Failed, Passed
+from firm_hdl.verify.references.wide_oracle import WideOracle
+from firm_hdl.verify.results.verdict import Failed, NotJudgedError, Passed
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.wire import lay_out
 from tests.strategies import make
@@ -192,3 +193,46 @@ def test_all_benches_are_compared_and_the_first_one_has_transfers(monkeypatch, t
 def test_what_one_bench_has_wrong_fails(written, output, monkeypatch, tmp_path):
     verdict, _ = result_of(monkeypatch, tmp_path, *written)
     assert isinstance(verdict, Failed) and verdict.failures[0].startswith(output)
+
+
+def cases_of(monkeypatch, oracle, cases, **found):
+    """Return the cases of a bench, for an oracle and what other libraries say."""
+    asked = []
+
+    def judge_of(message, distro, *, stand_in):
+        asked.append((message, distro))
+        return SimpleNamespace(oracle=oracle)
+
+    def confirm(*given):
+        asked.append(given)
+        return SimpleNamespace(**{"failures": (), "by": (), **found})
+
+    monkeypatch.setattr(run, "judge_of", judge_of)
+    monkeypatch.setattr(run, "stimulus_cases", lambda judge, plan: iter(cases))
+    monkeypatch.setattr(run, "confirm", confirm)
+    assert run._cases(MESSAGE, PLAN, "lyrical") == cases
+    return asked
+
+
+WIDE = WideOracle.__new__(WideOracle)
+
+
+def test_only_wide_text_needs_another_library(monkeypatch):
+    assert cases_of(monkeypatch, object(), CASES) == [(MESSAGE, "lyrical")]
+    asked = cases_of(monkeypatch, WIDE, CASES, by=("fastcdr",))
+    assert asked == [(MESSAGE, "lyrical"), (MESSAGE, "ros1", CASES, run.WIDE_REFERENCES)]
+
+
+@pytest.mark.parametrize(
+    ("oracle", "cases", "found", "error", "words"),
+    [
+        (object(), [], {}, NotJudgedError, "it has no packet that is short enough"),
+        (WIDE, CASES, {"failures": ("a", "b"), "by": ("fastcdr",)}, AssertionError, "a"),
+        (WIDE, CASES, {}, AssertionError, "fastcdr could not write the type's wide text"),
+    ],
+)
+def test_a_bench_without_packets_that_are_right_has_not_passed(
+    monkeypatch, oracle, cases, found, error, words
+):
+    with pytest.raises(error, match=f"^{words}$"):
+        cases_of(monkeypatch, oracle, cases, **found)

@@ -11,6 +11,7 @@ import pytest
 from firm_hdl.errors import UserError
 from firm_hdl.node import read_description_text
 from firm_hdl.node.messages import MessageSender
+from firm_hdl.verify.board import system
 from firm_hdl.verify.board import talk as talking
 from firm_hdl.verify.board.description import chosen_loops, loop_text
 from firm_hdl.verify.board.system import Boards
@@ -31,6 +32,18 @@ def test_a_right_node_passes_and_its_packets_are_counted():
     assert [each.cases for each in found.values() if isinstance(each, Passed)] == [5, 7]
     # And as many damaged packets, each with a good one behind it.
     assert node.heard == 5 + 7 + 2 * 5 + 2 * 6
+
+
+@pytest.mark.parametrize(
+    ("board", "given"), [("sim", {"engine": "amaranth"}), ("udp://b:1", {}), ("serial:///x", {})]
+)
+def test_only_a_simulation_has_an_engine(monkeypatch, board, given):
+    asked = []
+    monkeypatch.setattr(
+        system, "board_of", lambda name, description, **more: asked.append((name, more))
+    )
+    Boards(ONE, Request(board=board, engine="amaranth"))
+    assert asked == [(board, given)]
 
 
 def test_named_types_of_a_node_are_tested_alone():

@@ -168,3 +168,64 @@ def test_a_packet_that_is_missing_does_not_hide_how_it_was_counted():
     assert "board: 1 of 7 packets did not come back" in failures[0]
     name = "/loopback/in/std_msgs/String"
     assert f"board: 'truncated' of {name} counts 1 instead of 0" in failures
+
+
+class DropsAndFlips(LoopNode):
+    """It drops the third packet, and the fifth comes back with another byte."""
+
+    def answers(self, packet):
+        if self.heard != 3:
+            yield packet[:-1] + bytes([packet[-1] ^ (self.heard == 5)])
+
+
+def test_packets_are_only_called_missing_if_all_others_are_right():
+    failures = verdicts(DropsAndFlips(ONE), silent_seconds=0.3, broken=False)[STRING].failures
+    assert failures[0].startswith("board: packet 2 of 7 differs at byte ")
+    assert "did not come back" not in failures[0]
+
+
+@pytest.mark.parametrize(
+    ("got", "wanted", "missing"),
+    [
+        ("abc", "abc", []),
+        ("ac", "abc", [1]),
+        ("", "ab", [0, 1]),
+        ("b", "ab", [0]),
+        # Packets that are equal: the last one of them is missing.
+        ("aa", "aaa", [2]),
+        # More than expected, another one, and another order.
+        ("abcd", "abc", []),
+        ("ax", "abc", []),
+        ("abx", "abcd", []),
+        ("cb", "abc", []),
+    ],
+)
+def test_which_packets_are_missing(got, wanted, missing):
+    found = judge._missing(*([letter.encode() for letter in text] for text in (got, wanted)))
+    assert found == missing
+
+
+def test_many_missing_packets_are_counted_and_four_are_named():
+    run = judge._Run(
+        where="here",
+        packets=[b"%d" % n for n in range(9)],
+        names=[f"n{n}" for n in range(9)],
+        statuses=["OK"] * 9,
+        # The first one has no answer, so it is not missing.
+        answers=[None, *(b"%d" % n for n in range(1, 9))],
+    )
+    (text,) = judge._differences(run, [b"1", b"3"])
+    assert text == "here: 6 of 8 packets did not come back: n2; n4; n5; n6 and 2 more"
+    (text,) = judge._differences(run, [b"%d" % n for n in (1, 2, 5, 7)])
+    assert text == "here: 4 of 8 packets did not come back: n3; n4; n6; n8"
+
+
+def test_a_damaged_packet_is_cut_to_the_room_of_the_node():
+    """What is larger is dropped for its size, which would hide its damage."""
+    text = loop_text([STRING], "lyrical").replace("String}", "String, memory_bytes: 16}")
+    node = LoopNode(read_description_text(text))
+    sizes, status = [], node.status
+    node.status = lambda message: sizes.append(len(message.packet)) or status(message)
+    for seed in range(3):
+        assert isinstance(verdicts(node, most_cases=20, seed=seed)[STRING], Passed)
+    assert max(sizes) == 16

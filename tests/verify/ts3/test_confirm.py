@@ -11,7 +11,7 @@ from firm_hdl.cli import main
 from firm_hdl.frontend import Library
 from firm_hdl.verify import Options, accept, distro_oracle, make_cases
 from firm_hdl.verify.references.choice import WRITERS, find_references, usable_references
-from firm_hdl.verify.references.client import Refusal, UnsupportedError
+from firm_hdl.verify.references.client import ClientDiedError, Refusal, UnsupportedError
 from firm_hdl.verify.references.clients import CLIENTS, client
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.ts3.confirm import confirm
@@ -186,3 +186,33 @@ def test_a_known_difference_hides_no_other_packet(monkeypatch):
         f"case 2: lib writes {b'no'.hex()}, rosbags writes {b'wrong'.hex()}",
         f"case 4: lib refuses: it is odd, rosbags writes {b'refused'.hex()}",
     ]
+
+
+def test_each_library_is_asked_whatever_became_of_another(monkeypatch):
+    answers = {
+        "dies": ClientDiedError("killed"),
+        "cannot": UnsupportedError(""),
+        "will not": UnsupportedError("it has no wstring"),
+        "differs": (["a difference"], ["key"]),
+        "agrees": ([], ["key", "other"]),
+    }
+
+    def differences(message, wire, cases, values, name):
+        if isinstance(answers[name], Exception):
+            raise answers[name]
+        return answers[name]
+
+    monkeypatch.setattr(references, "_differences", differences)
+    monkeypatch.setattr(references, "usable_references", lambda wanted: ("of ROS 1", *answers))
+    monkeypatch.setattr(
+        references, "WRITERS", {**dict.fromkeys(answers, ("cdr",)), "of ROS 1": ("ros1",)}
+    )
+    found = confirm(Library("lyrical").message("std_msgs/msg/Bool"), "cdr", [])
+    assert found.by == ("differs", "agrees")
+    assert found.failures == ("dies broke down: killed", "a difference")
+    assert found.known == ("key", "other")
+    assert found.unable == {
+        "of ROS 1": "of ROS 1 has no wire 'cdr'",
+        "cannot": "cannot has no such type",
+        "will not": "it has no wstring",
+    }

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from firm_hdl.errors import DefinitionError
+from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.verify import Options
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts3 import recording
@@ -146,6 +146,37 @@ def test_types_of_all_recordings_are_found_once(tmp_path: Path) -> None:
     wheels = ("my_msgs/msg/Wheels", "my_msgs/msg/Wheel")
     with pytest.raises(UnknownTypeError, match=r"^There is no topic of my_msgs/msg/Wheel, only"):
         collect_recorded(None, wheels, [three], wire=None, problems={})
+
+
+@pytest.mark.parametrize("names", [(), ("p/msg/Good",)])
+def test_what_is_wrong_with_other_types_is_kept(
+    monkeypatch: pytest.MonkeyPatch, names: tuple[str, ...]
+) -> None:
+    wrong = {
+        "p/msg/Bad": [Diagnostic(message="it is bad"), Diagnostic(message="it is odd")],
+        "p/msg/Worse": [Diagnostic(message="it is worse")],
+    }
+
+    def message(kind: str) -> object:
+        if kind in wrong:
+            raise DefinitionError(wrong[kind])
+        return SimpleNamespace(name=kind)
+
+    library = SimpleNamespace(distro="lyrical", dialect="ros2", message=message)
+    topics = [Topic(bag="b", name=f"/{n}", type=n, digest="") for n in (*wrong, "p/msg/Good")]
+    monkeypatch.setattr(recording, "open_library", lambda distro, *, bags: library)
+    monkeypatch.setattr(recording, "topics_of", lambda bag: topics)
+    monkeypatch.setattr(recording, "too_large", lambda message: [])
+    before = Diagnostic(message="it was before")
+    problems = {str(before): before}
+    (task,) = collect_recorded(None, names, ["b"], wire=None, problems=problems)
+    assert task.name == "p/msg/Good"
+    # A type that nobody asked for is no error of those that were asked for.
+    expected = [] if names else [each for found in wrong.values() for each in found]
+    assert list(problems.values()) == [before, *expected]
+    assert list(problems) == [str(each) for each in problems.values()]
+    with pytest.raises(DefinitionError, match="it is bad"):
+        collect_recorded(None, ["p/msg/Bad"], ["b"], wire=None, problems={})
 
 
 def test_recordings_without_messages_have_none(tmp_path: Path) -> None:

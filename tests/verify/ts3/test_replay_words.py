@@ -274,3 +274,29 @@ def test_a_similar_packet_has_to_have_the_same_bytes_and_transfers(monkeypatch, 
         assert (found.kind, found.finding) == ("", replay._misfit(here, "rosbags is odd"))
     else:
         assert (found.kind, found.finding) == ("of a kind", "")
+
+
+@pytest.mark.parametrize(
+    ("options", "most", "most_bytes"),
+    [
+        # A string has few leaves, which count as 8: a beat of 8 bytes is 8 of the work of 1000.
+        ({}, 3, 1000),
+        ({"bus_bytes": 4}, 3, 500),
+        # Whoever asks for a number gets it, more or fewer, however long they are.
+        ({"most_cases": 2}, 2, None),
+        ({"most_cases": 70}, 70, None),
+    ],
+)
+def test_how_many_messages_are_asked_for(monkeypatch, options, most, most_bytes):
+    asked = []
+
+    def select(topics, **limits):
+        asked.append((topics, limits))
+        return SimpleNamespace(total=1, messages=("a message",))
+
+    monkeypatch.setattr(replay, "select", select)
+    monkeypatch.setattr(replay, "MOST_MESSAGES", 3)
+    monkeypatch.setattr(replay, "MOST_WORK", 1000)
+    given = Options(longest=99, **options)
+    replay._select(load_message("std_msgs/msg/String"), ["topics"], given)
+    assert asked == [(["topics"], {"most": most, "longest": 99, "most_bytes": most_bytes})]
