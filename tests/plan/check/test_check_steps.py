@@ -285,6 +285,15 @@ OFFSETS: list[tuple[str, dict[str, Any], set[str]]] = [
         wrong_padding(8, "grid.item.row.items", [(offset, 2, 0) for offset in (0, 2, 4, 6)])
         | {"step 10: padding that no value follows"},
     ),
+    # A byte after each of three elements: before the second one, the third one and the next field.
+    (
+        "rows",
+        {
+            "steps.0.slices": (*PLANS["rows"].steps[0].slices, Pad(at=3, bytes=1)),
+            "steps.0.bytes": 4,
+        },
+        wrong_padding(0, "r.item.x", [(3, 1, 0), (7, 1, 0)]) | wrong_padding(1, "y", [(3, 1, 0)]),
+    ),
     # The right padding for the first element, but outside the loop.
     (
         "pairs",
