@@ -25,8 +25,8 @@ MESSAGE = make(
         "d": "float64[]",
     },
 )
-# Which leaves are a single bit, have several items in a transfer, or are other vectors. A bit has no
-# hexadecimal form in VHDL; items of one bit, together, have one.
+# Leaves that are a single bit, have several items in a transfer, or are other vectors. In VHDL, a
+# bit has no hexadecimal form; items of one bit, together, have one.
 BITS, ITEMS = ("b", "p.item.f"), ("bs.items", "s.items", "d.items")
 VECTORS = ("i", "s.length", "d.length")
 
