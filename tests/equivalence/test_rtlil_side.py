@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import count, islice
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 
 from firm_hdl.equivalence import ProofError
 from firm_hdl.equivalence.circuit import Circuit, Flop
+from firm_hdl.equivalence.memories import MemoryCircuit
 from firm_hdl.equivalence.rtlil_side import read_rtlil
 
 # Inputs `a` (nets 2 and 3), `c` (4) and `r` (5); the register `q` (6 and 7) is an output.
@@ -157,13 +159,41 @@ def test_a_design_that_is_no_circuit_is_refused(tmp_path: Path, changes, message
         read(tmp_path, **changes)
 
 
-@pytest.mark.parametrize(("tops", "count"), [(["0"], 1), (["1"], 2), (["0", "1", "1"], 3)])
-def test_there_is_one_outermost_module(tmp_path: Path, tops: list[str], count: int) -> None:
+@pytest.mark.parametrize("offset", [1, -1])
+def test_a_memory_starts_at_address_0(tmp_path: Path, offset: int) -> None:
+    memory = {"attributes": {}, "width": 2, "size": 2, "start_offset": offset}
+    module = {**BASE, "memories": {"mem": memory}}
+    with pytest.raises(ProofError, match=r"^memory mem does not start at address 0$"):
+        read_rtlil("text", Yosys(module), tmp_path, None)  # type: ignore[arg-type]
+    module = {**BASE, "memories": {"mem": {**memory, "start_offset": 0}}}
+    assert read_rtlil("text", Yosys(module), tmp_path, None) == read(tmp_path)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("rising", [True, False])
+def test_the_register_of_a_read_port(rising: bool) -> None:
+    numbers = count(100)
+    memory = MemoryCircuit("mem", 4, 2, lambda width: tuple(islice(numbers, width)))
+    constants = {"CLK_ENABLE": "1", "COLLISION_X_MASK": "0", "TRANSPARENCY_MASK": "0"}
+    parameters = {**constants, "WIDTH": "100", "CLK_POLARITY": f"{rising:d}", "INIT_VALUE": "11x0"}
+    ports = {"DATA": [2, 3, 4, 5], "ADDR": [6], "EN": [7], "CLK": [8], "ARST": "0", "SRST": "0"}
+    memory.add([{"type": "$memrd_v2", "parameters": parameters, "connections": ports}], tuple)
+    assert memory.reads == [(2, 3, 4, 5)]
+    # The lowest bit of the initial value is the last one; a bit without a value starts at 0.
+    assert [memory.flops[net].init for net in (2, 3, 4, 5)] == ["0", "0", "1", "1"]
+    assert {(each.clock, each.rising) for each in memory.flops.values()} == {(8, rising)}
+    # The register keeps its value unless it is enabled.
+    (choice,) = (cell for cell in memory.cells if cell.inputs.get("S") == (7,))
+    assert choice.inputs["A"] == (2, 3, 4, 5)
+    assert choice.outputs["Y"] == tuple(memory.flops[net].data for net in (2, 3, 4, 5))
+
+
+@pytest.mark.parametrize(("tops", "found"), [(["0"], 1), (["1"], 2), (["0", "1", "1"], 3)])
+def test_there_is_one_outermost_module(tmp_path: Path, tops: list[str], found: int) -> None:
     others = [{**BASE, "attributes": {"top": top}} for top in tops]
-    if count == 1:
+    if found == 1:
         assert read(tmp_path, *others, {**BASE, "attributes": {}}) == read(tmp_path)
         with pytest.raises(ProofError, match="the RTLIL has 0 outermost modules"):
             read_rtlil("text", Yosys(*others), tmp_path, None)  # type: ignore[arg-type]
     else:
-        with pytest.raises(ProofError, match=f"^the RTLIL has {count} outermost modules$"):
+        with pytest.raises(ProofError, match=f"^the RTLIL has {found} outermost modules$"):
             read(tmp_path, *others)

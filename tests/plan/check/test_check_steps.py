@@ -97,6 +97,8 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("rich", {"steps.2.slices.0.bytes": 0}, ["step 2: b has no bytes 0 to -1"]),
     ("rich", {"steps.2.slices.0.end": ArrayEnd()}, [f"step 2: b {MARK}"]),
     ("rich", {"steps.2.slices.0.end": LoopEnd(level=0)}, [f"step 2: b {MARK}"]),
+    ("text", {"steps.0.slices.0.end": ArrayEnd()}, [f"step 0: s.length {MARK}"]),
+    ("trigger", {"steps.0.slices.1.end": ArrayEnd()}, [f"step 0: e.trigger {MARK}"]),
     ("rich", {"steps.0.slices.3": Pad(at=5, bytes=0)}, ["step 0: the slice at byte 5 is empty"]),
     ("rich", {"steps.0.slices.1.data": b""}, ["step 0: the slice at byte 2 is empty"]),
     ("rich", {"steps.2.bytes": 7}, ["step 2: the map has 8 bytes, the step 7"]),
