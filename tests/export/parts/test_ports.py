@@ -153,6 +153,8 @@ def test_a_router_sends_to_tdest_and_an_arbiter_says_tid():
     beats = [beat(1, 1, 1, tdest=0), beat(2, 1, 1, tdest=2), beat(3, 1, 1, tdest=9)]
     given = {"bus_bytes": 1, "topics": 3, "topic_bits": 4, "out": "m_axis_2"}
     assert through("router", beats, **given) == [(2, 1, 1)]
+    counted = {"when": "aresetn", "extra": ("count_routed", "count_unknown")}
+    assert through("router", beats, **given, **counted)[-1] == (2, 1)
     sides = [{**each, "tuser": 2} for each in beats]
     given |= {"side_bits": 2, "extra": ("m_axis_2_tuser",)}
     assert through("router", sides, **given) == [(2, 1, 1, 2)]
