@@ -199,7 +199,7 @@ def _keep_user_files(folder: Path, staging: Path, files: Mapping[str, str]) -> d
     for name, is_folder in _walk(folder):
         if name in (folders if is_folder else ours):
             continue
-        kept = staging / _free_name(name, is_folder, files)
+        kept = staging / _free_name(name, files)
         if is_folder:
             kept.mkdir(parents=True, exist_ok=True)
             copies[folder / name] = kept
@@ -216,14 +216,12 @@ def _keep_user_files(folder: Path, staging: Path, files: Mapping[str, str]) -> d
     return renamed
 
 
-def _free_name(name: str, is_folder: bool, files: Mapping[str, str]) -> str:
-    """Return the name for a user file or folder: its own, unless a generated file has that name."""
-    folders = {os.path.dirname(file) for file in files}
+def _free_name(name: str, files: Mapping[str, str]) -> str:
+    """Return the name for a user file or folder, in a folder that no generated file replaces."""
     path = ""
     for part in name.split("/"):
         path += part
-        is_last = path.count("/") == name.count("/")
-        if path in files or (is_last and not is_folder and path in folders):
+        if path in files:
             path += ".kept"
         path += "/"
     return path.removesuffix("/")

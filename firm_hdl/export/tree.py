@@ -245,7 +245,6 @@ class _Maker:
             self.taken.add(f"{name}_pkg")
             wanted = snake(re.sub(r"[^A-Za-z0-9]+", "_", message.base_name)) or "message"
             hidden = {*SHARED_WORDS, *BUS_TYPES, *self.reserved}
-            hidden |= {bus_name(self.plan.bus_bytes), f"{name}_pkg"}
             needs = dict.fromkeys(self.packages[child.name].name for child in message.children)
             found = Package(
                 message=message,

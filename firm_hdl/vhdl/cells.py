@@ -222,7 +222,6 @@ class Cells:
                 for x in (a, b)
             )
             product = infix("*", left, right)
-            natural = 2 * width if signed else natural
         return product if width == natural else call("resize", product, width)
 
     def _division(self, cell: Cell, width: int, signed: bool) -> Expression:

@@ -109,6 +109,22 @@ def test_missing_tools_are_named_with_the_command_that_installs_them(
     assert "pip install 'firm-hdl[prove]'" in stderr
 
 
+def test_what_is_proved_without_vhdl_needs_no_ghdl(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing() -> str:
+        raise programs.ProgramMissingError("no GHDL")
+
+    yosys = programs.Program(title="Yosys", command=("yosys", "-Q"), version="1.0")
+    monkeypatch.setattr(tools, "find_ghdl", missing)
+    monkeypatch.setattr(tools, "find_yosys", lambda install: yosys)
+    tools.find_tools.cache_clear()
+    try:
+        assert tools.find_tools(ghdl=False) == Tools(ghdl=(), yosys=("yosys", "-Q"))
+        with pytest.raises(programs.ProgramMissingError, match=r"^no GHDL$"):
+            tools.find_tools()
+    finally:
+        tools.find_tools.cache_clear()
+
+
 def test_ghdl_is_the_one_that_verification_takes(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

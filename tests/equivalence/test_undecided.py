@@ -271,6 +271,32 @@ def test_only_what_a_solver_proved_is_equal(
         assert where.startswith(f"{names[0]} is 0x1 in the RTLIL and 0x0 in the VHDL")
 
 
+def test_a_difference_names_the_claims_that_fail_and_the_inputs(tmp_path: Path) -> None:
+    # The highest bit comes first; what is unknown is taken for 0. A single bit has no data.
+    values = {"differs": "1x10", "in0": "00x0110", "amaranth1": "1", "vhdl1": "x", "vhdl3": "1"}
+    inputs = {**some_miter().inputs, "register r": (20, 21), "anything": (22,)}
+    values |= {"in1": "00"}
+
+    class Found(Solvers):
+        def run_yosys(self, folder: Path, script: str, timeout: float | None = None) -> None:
+            super().run_yosys(folder, script, timeout)
+            wave = [
+                {"name": name, "wave": bits}
+                if len(bits) == 1
+                else {"name": name, "wave": "=", "data": [bits]}
+                for name, bits in values.items()
+            ]
+            (folder / "model.json").write_text(json.dumps({"signal": wave}))
+
+    verdict = solve(replace(some_miter(), inputs=inputs), Found([1, 2, 5, 6], FOUND), tmp_path, 1)
+    assert verdict.difference is not None
+    assert verdict.difference.where == (
+        "output o2 is 0x1 in the RTLIL and 0x0 in the VHDL",
+        "output o6 is 0x0 in the RTLIL and 0x1 in the VHDL",
+    )
+    assert verdict.difference.inputs == {"input i": 0b110}
+
+
 @pytest.mark.parametrize("bits", [[], ["0"] * (CLAIMS - 1), ["0"] * (CLAIMS + 1)])
 def test_an_answer_about_other_claims_is_none(bits: list[str], tmp_path: Path) -> None:
     class Other(Solvers):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from firm_hdl.equivalence import ProofError
@@ -105,6 +107,18 @@ def test_each_instance_has_nets_of_its_own():
 def test_a_netlist_that_contradicts_itself_is_refused(changes, message):
     with pytest.raises(ProofError, match=message):
         read_vhdl(changed(NESTED, *changes))
+
+
+# GHDL prints the width of a net at each of its uses.
+USES = [(found.start(), found.end()) for found in re.finditer(r"(?<=\{n)\d+w1(?=\})", NESTED)]
+
+
+@pytest.mark.parametrize(("start", "end"), USES)
+def test_a_net_has_one_width_wherever_it_is_used(start, end):
+    for width in (0, 2, 3):
+        other = f"{NESTED[:start]}{NESTED[start:end].removesuffix('1')}{width}{NESTED[end:]}"
+        with pytest.raises(ProofError, match=r"has two widths|different widths|an unknown form"):
+            read_vhdl(other)
 
 
 def only_flop(circuit):

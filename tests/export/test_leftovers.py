@@ -158,6 +158,17 @@ def test_no_other_leftover_is_put_in_its_place(tmp_path, files, what):
     assert left.exists() == ("notes" in files)
 
 
+def test_a_leftover_lists_its_files_while_it_has_files_of_users(tmp_path):
+    """There is no folder to move them to, and only part of the generated files was deleted."""
+    target = tmp_path / "type"
+    left = leftover(target, {**with_manifest(NEW), "notes": "mine"}, "new")
+    module.clear_up(target)
+    assert texts(left) == {"notes": "mine", "manifest.json": with_manifest(NEW)["manifest.json"]}
+    # The next build moves them.
+    module.replace(target, with_manifest(OLD))
+    assert not left.exists() and texts(target) == {**with_manifest(OLD), "notes": "mine"}
+
+
 def test_leftovers_of_other_folders_are_let_alone(target):
     other = target.with_name("other")
     left = leftover(other, with_manifest(OLD))
@@ -198,10 +209,12 @@ def test_files_of_users_make_room_for_new_files_and_folders(target):
     (target / "vhdl" / "c.sh" / "x").write_text("in a folder")
     (target / "mine.txt").write_text("a file")
     (target / "sim").write_text("no folder")
+    # A name with the suffix is a user's, too.
+    (target / "sim.kept").write_text("before")
     renamed = module.replace(target, with_manifest({**NEW, "sim/a": "b"}))
     assert renamed == {
         "mine.txt": "mine.txt.kept",
-        "sim": "sim.kept",
+        "sim": "sim.kept2",
         "vhdl/c.sh/x": "vhdl/c.sh.kept/x",
     }
     assert {old: (target / new).read_text() for old, new in renamed.items()} == {

@@ -217,3 +217,13 @@ def test_shortest_and_hardest_packets_are_those_of_the_plan():
     # Many short strings: more bytes, and more cycles per byte.
     assert hardest["bytes"] > shortest["bytes"]
     assert hardest["cycles"] * shortest["bytes"] > shortest["cycles"] * hardest["bytes"]
+
+
+def test_a_manifest_is_printed_in_its_order_for_people():
+    value = {"z": ["°", 1], "a": {"y": None, "b": True}}
+    assert to_json(value) == (
+        '{\n  "z": [\n    "°",\n    1\n  ],\n  "a": {\n    "y": null,\n    "b": true\n  }\n}\n'
+    )
+    # JSON has no such number.
+    with pytest.raises(ValueError):
+        to_json(float("nan"))

@@ -9,7 +9,7 @@ from amaranth.sim import Simulator
 
 from firm_hdl.formal.scene import Scene
 
-__all__ = ["play"]
+__all__ = ["play", "play_each"]
 
 
 def play(
@@ -57,3 +57,36 @@ def play(
     simulator.add_testbench(bench)
     simulator.run()
     return broken, values
+
+
+def play_each(
+    build: Callable[[Scene], None], runs: Iterable[Iterable[Mapping[str, int]]]
+) -> list[set[str]]:
+    """Play a scene several times, each time from its reset on; return the broken claims of each.
+
+    Parameters
+    ----------
+    runs : iterable of iterable of mapping
+        Of each run, the inputs of each cycle, as for `play`.
+    """
+    scene = Scene(build)
+    inputs = {each.name: each for each in scene.inputs}
+    waiting, broken = [[*run] for run in runs], list[set[str]]()
+
+    async def bench(ctx) -> None:
+        broken.append(set())
+        for given in waiting[len(broken) - 1]:
+            assert given.keys() <= inputs.keys(), given.keys() - inputs.keys()
+            for name, signal in inputs.items():
+                ctx.set(signal, given.get(name, 0))
+            broken[-1] |= {name for name, claim in scene.claims.items() if ctx.get(claim)}
+            await ctx.tick()
+
+    simulator = Simulator(scene)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(bench)
+    for number in range(len(waiting)):
+        if number:
+            simulator.reset()
+        simulator.run()
+    return broken

@@ -182,3 +182,34 @@ def test_a_length_fails_if_it_claims_a_byte_more_than_is_left(name):
         with seeded([Bug(Claims.__init__, "eq(subtracts & left[-1])", f"eq(subtracts & {other})")]):
             broken = play(STUDIES[name].build, steps)[0]
         assert broken["fails"]
+
+
+def alone(count):
+    """Execute one length."""
+    return [{"issue": 1, "counted": 1}, {"count": count}, *[{}] * 8]
+
+
+_PENDING = "starts | loads | multiplies | exceeds"
+_REFUSED = "eq(self.fails | (state.refused & ~state.issue))"
+# A length that nobody has started fails; `pending` lacks a cycle, or has one too many; the refusal
+# of a length that has not failed, none of one that has, and one that does not wait.
+CYCLES_OF = [
+    ("fails", "exceeds.eq(subtracts & left[-1])", "exceeds.eq(1)"),
+    *(
+        ("pending", _PENDING, _PENDING.replace(f"{name} | ", ""))
+        for name in ("starts", "loads", "multiplies")
+    ),
+    ("pending", _PENDING, _PENDING.replace("exceeds", "subtracts")),
+    ("refused", _REFUSED, "eq(1)"),
+    ("refused", _REFUSED, "eq(state.refused & ~state.issue)"),
+    ("refused", _REFUSED, "eq(self.fails)"),
+]
+
+
+@pytest.mark.parametrize(("claim", "old", "new"), CYCLES_OF)
+@pytest.mark.parametrize("name", BUDGETS)
+def test_each_cycle_of_a_signal_counts(name, claim, old, new):
+    first, most = BUDGETS[name]
+    with seeded([Bug(Claims.__init__, old, new)]):
+        runs = {"fails": [{}] * 8, "pending": alone(first), "refused": lengths(first, most + 1)}
+        assert play(STUDIES[name].build, runs[claim])[0][claim]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from amaranth.hdl import Fragment, Signal
+from amaranth.hdl import Const, Fragment, Signal
 from amaranth.lib.memory import Memory
 
 from firm_hdl.formal import run
@@ -87,6 +87,27 @@ def test_answers_count_cycles(monkeypatch, method, depth, result):
     if result == "broken":
         assert answer.cycles == 6
         assert answer.inputs.split()[0] == "go@0"
+
+
+@pytest.mark.parametrize(
+    ("listed", "differs"),
+    [(["less than five"], "more"), (["less than five", "more", "most"], "most")],
+)
+def test_a_study_lists_all_claims_of_its_scene_and_no_others(monkeypatch, listed, differs):
+    scenes = []
+
+    def build(scene):
+        scenes.append(scene)
+        counting(scene)
+        scene.claim("more", Const(1))
+
+    study = Study("count", "", build, tuple(Claim(name, NO_BUG, "BMC", 1) for name in listed))
+    monkeypatch.setattr(run, "all_proofs", lambda: {"count": run.Proof(study, study.claims[0])})
+    for work in (prove, refute):
+        with pytest.raises(ValueError, match=rf"^count: claims differ: {{'{differs}'}}$"):
+            work("count")
+    for scene in scenes:
+        Fragment.get(scene, None)
 
 
 def wrong_at_once(scene):

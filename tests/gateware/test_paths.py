@@ -182,6 +182,30 @@ def test_a_trigger_after_all_bytes_has_no_other_paths():
     assert paths(tx) == allowed(tx)
 
 
+def registers_behind(component, part) -> dict[str, set[str]]:
+    """Return the registers of a part that depend on each `ready` that the part gets."""
+    design = parse(rtlil.convert(component, name="top", emit_src=False))
+    (module,) = (each for name, each in design.modules.items() if name.endswith(part))
+    graph = Paths(design).graph(module)
+    found: dict[str, set[str]] = {}
+    for cell in module.items:
+        if isinstance(cell, Cell) and cell.kind == "$dff":
+            for data, (name, _) in zip(bits(cell.ports["D"]), bits(cell.ports["Q"]), strict=True):
+                for port, _ in reached(graph, data):
+                    if port.endswith("__ready"):
+                        found.setdefault(port, set()).add(name)
+    return found
+
+
+def test_a_step_looks_at_ready_of_leaves_of_one_transfer_a_cycle_later():
+    """Except for `items`, which may transfer in every cycle."""
+    rx = Deserializer(load_message("std_msgs/msg/Header"), bus_bytes=8)
+    found = registers_behind(rx, "mover")
+    assert len(found.pop("message__frame_id__items__ready")) > 10 and found.pop("orders__ready")
+    assert len(found) == 4
+    assert found == {port: {port.replace("ready", "valid"), "slow"} for port in found}
+
+
 class Mixed(wiring.Component):
     """Outputs with paths through every kind of netlist cell, and outputs without paths."""
 

@@ -14,7 +14,7 @@ from firm_hdl.equivalence import find_tools
 from firm_hdl.export.verilog import to_verilog
 from firm_hdl.export.verilog.memories import settled_memories, short_initials
 from firm_hdl.jobs import ProgramMissingError
-from tests.memory_designs import DESIGNS, WHOLE, Stores, rtlil_of, simulated
+from tests.memory_designs import DESIGNS, WHOLE, Store, Stores, rtlil_of, simulated
 from tests.tools import need
 
 STEPS = 200
@@ -117,6 +117,19 @@ def test_only_write_ports_of_one_clock_have_an_order() -> None:
     first, clock, rest = text.partition("connect \\CLK \\clk [0]")
     other = settled_memories(f"{first}connect \\CLK \\rst [0]{rest}")
     assert clock and re.findall(r"PRIORITY_MASK (\S+)", other) == ["0", "1'0"]
+
+
+@pytest.mark.parametrize(("other", "masks"), [(0, ["1'0", "2'10"]), (1, ["1'0", "2'01"])])
+def test_the_order_of_three_write_ports_is_that_of_ports_with_their_clock(
+    other: int, masks: list[str]
+) -> None:
+    parts = rtlil_of({"mem": Store(writes=3, depth=4)}).split("connect \\CLK \\clk [0]")
+    clocks = [f"connect \\CLK \\{'rst' if port == other else 'clk'} [0]" for port in range(3)]
+    # A read port without a clock has none.
+    assert len(parts) == 4
+    text = "".join(part + clock for part, clock in zip(parts, [*clocks, ""], strict=True))
+    # The highest bit is that of the highest port.
+    assert re.findall(r"PRIORITY_MASK (\S+)", settled_memories(text)) == ["0", *masks]
 
 
 def test_a_memory_whose_name_is_a_keyword_is_renamed() -> None:

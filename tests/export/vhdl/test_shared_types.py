@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -206,6 +207,15 @@ def test_shared_packages_state_which_others_they_use(name):
         assert set(each.needs) == used - {each.name, "firm_hdl_types_pkg"}, each.name
         assert before.issuperset(each.needs)
         before.add(each.name)
+
+
+def test_the_manifest_states_which_packages_each_one_uses(folders):
+    for folder in folders:
+        section = json.loads((folder.parent / "manifest.json").read_text())["vhdl"]
+        for each in section["shared_packages"]:
+            used = set(re.findall(r"\bwork\.(\w+)", (folder / each["file"]).read_text()))
+            assert set(each["needs"]) == used - {each["name"], "firm_hdl_types_pkg"}, each
+            assert (each["message"] is None) == (each["name"] == "firm_hdl_bus_8_pkg")
 
 
 PACKAGES = ("geometry_msgs/", "sensor_msgs/", "nav_msgs/", "std_msgs/")

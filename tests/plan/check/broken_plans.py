@@ -38,6 +38,12 @@ PLANS = {
     "texts": plan_of({"s": "string", "ts": (make("ros1", {"t": "string"}, "T"), "[2]")}),
     # Lengths that share a budget.
     "nested": plan_of({"a": (make("ros1", {"t": "uint16[]"}, "T"), "[]"), "b": "uint16[]"}),
+    # Lengths that may save padding.
+    "saving": plan_of(
+        {"a": (make("ros2", {"s": "string", "x": "uint8"}, "T"), "[]")}, dialect="ros2"
+    ),
+    # A loop of constant count that begins at the start.
+    "rows": plan_of({"r": (make("ros1", {"x": "uint8", "w": "uint16"}, "R"), "[3]"), "y": "uint8"}),
     # Padding of items only, before the first one.
     "gap": plan_of({"a": "uint8[]", "d": "float64[]"}, 8, "ros2"),
     # Padding of the first of two elements only.

@@ -21,6 +21,15 @@ CONSTANT = "has a constant count, which neither begins nor has a rest"
 NESTED = PLANS["nested"].steps
 A, NONE = "a.item.t.length", "claims nothing"
 PLACE = "has a budget, or renews it, at the wrong place"
+UNCOUNTED = {"steps.0.begin.claim": None, "steps.1.begin.claim": None}
+SAVED = {f"steps.{step}.begin.claim.saved": 14 for step in (0, 1)}
+SEVEN = {f"steps.{step}.begin.claim.saved": 7 for step in (0, 1)}
+THOUSAND = {"steps.0.begin.limit": 1000}
+
+
+def budget(name, size):
+    return f"step 0: {name}.length has a budget of {size} bytes"
+
 
 # The plan, its changes, and the messages of the check.
 CASES: list[tuple[str, dict[str, Any], list[str]]] = [
@@ -88,6 +97,8 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("rich", {"steps.2.slices.0.bytes": 0}, ["step 2: b has no bytes 0 to -1"]),
     ("rich", {"steps.2.slices.0.end": ArrayEnd()}, [f"step 2: b {MARK}"]),
     ("rich", {"steps.2.slices.0.end": LoopEnd(level=0)}, [f"step 2: b {MARK}"]),
+    ("text", {"steps.0.slices.0.end": ArrayEnd()}, [f"step 0: s.length {MARK}"]),
+    ("trigger", {"steps.0.slices.1.end": ArrayEnd()}, [f"step 0: e.trigger {MARK}"]),
     ("rich", {"steps.0.slices.3": Pad(at=5, bytes=0)}, ["step 0: the slice at byte 5 is empty"]),
     ("rich", {"steps.0.slices.1.data": b""}, ["step 0: the slice at byte 2 is empty"]),
     ("rich", {"steps.2.bytes": 7}, ["step 2: the map has 8 bytes, the step 7"]),
@@ -139,7 +150,7 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("rich", {"steps.0.begin.align": 16}, ["step 0: alignment of items to 16"]),
     ("rich", {"steps.0.begin.body.step": None}, ["step 0, body: goes to step 14, not 1"]),
     # What lengths claim.
-    ("nested", {"steps.0.begin.claim": None, "steps.1.begin.claim": None}, [f"step 1: {A} {NONE}"]),
+    ("nested", UNCOUNTED, [f"step 1: {A} {NONE}"]),
     ("nested", {"steps.0.begin.claim": None}, [f"step 0: a.length {NONE}", f"step 1: {A} {PLACE}"]),
     ("nested", {"steps.1.begin.claim": None}, [f"step 0: a.length {PLACE}", f"step 1: {A} {NONE}"]),
     ("nested", {"steps.1.begin.claim.bytes": 4}, [f"step 1: {A} claims 4 bytes for each item"]),
@@ -149,16 +160,23 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("nested", {"steps.1.begin.claim.saved": 14}, ["lengths save 0, 14 bytes"]),
     ("nested", {"steps.1.begin.claim.total": 9}, [f"step 1: {A} {PLACE}"]),
     ("nested", {"steps.0.begin.claim.total": None}, [f"step 0: a.length {PLACE}"]),
-    (
-        "nested",
-        {"steps.0.begin.claim.total": 1 << 24},
-        [],
-    ),
-    (
-        "nested",
-        {"steps.0.begin.claim.total": (1 << 24) + 1},
-        [f"step 0: a.length has a budget of {(1 << 24) + 1} bytes"],
-    ),
+    ("nested", {"steps.0.begin.claim.total": 1 << 24}, []),
+    ("nested", {"steps.0.begin.claim.total": (1 << 24) + 1}, [budget("a", (1 << 24) + 1)]),
+    # All elements of 4 bytes that a packet has room for, besides the two lengths outside.
+    ("nested", {"steps.0.begin.claim.total": (1 << 24) - 8}, []),
+    ("nested", {"steps.0.begin.claim.total": (1 << 24) - 9}, [budget("a", (1 << 24) - 9)]),
+    ("nested", SAVED, ["lengths save 14 bytes"]),
+    # Padding of 14 bytes may be saved, and need not be in the budget of 1,000 elements.
+    ("saving", THOUSAND | {"steps.0.begin.claim.total": 1000 * 8 - 14}, []),
+    ("saving", THOUSAND | {"steps.0.begin.claim.total": 7985}, [budget("a", 7985)]),
+    # In CDR, the header is no room for elements.
+    ("saving", {"steps.0.begin.claim.total": (1 << 24) - 4}, []),
+    ("saving", {"steps.0.begin.claim.total": (1 << 24) - 3}, [budget("a", (1 << 24) - 3)]),
+    ("saving", {"steps.1.begin.claim.saved": 7}, ["lengths save 7, 14 bytes"]),
+    ("saving", THOUSAND | SEVEN, ["lengths save 7 bytes"]),
+    # Fewer than 4,096 bytes are not counted.
+    ("nested", UNCOUNTED | {"steps.1.begin.limit": 2047}, []),
+    ("nested", UNCOUNTED | {"steps.1.begin.limit": 2048}, [f"step 1: {A} {NONE}"]),
     ("nested", {"steps.3.begin.claim": NESTED[1].begin.claim}, [f"step 3: b.length {PLACE}"]),
     # The header.
     ("rich", {"steps.0.slices.0.data": b"\0\0"}, ["the header is not that of cdr"]),
@@ -268,6 +286,15 @@ OFFSETS: list[tuple[str, dict[str, Any], set[str]]] = [
         {"steps.9.slices": (*RICH_STEPS[9].slices, Pad(at=2, bytes=2)), "steps.9.bytes": 4},
         wrong_padding(8, "grid.item.row.items", [(offset, 2, 0) for offset in (0, 2, 4, 6)])
         | {"step 10: padding that no value follows"},
+    ),
+    # A byte after each of three elements: before the second one, the third one and the next field.
+    (
+        "rows",
+        {
+            "steps.0.slices": (*PLANS["rows"].steps[0].slices, Pad(at=3, bytes=1)),
+            "steps.0.bytes": 4,
+        },
+        wrong_padding(0, "r.item.x", [(3, 1, 0), (7, 1, 0)]) | wrong_padding(1, "y", [(3, 1, 0)]),
     ),
     # The right padding for the first element, but outside the loop.
     (
