@@ -186,7 +186,7 @@ class Session:
             return _read(2 if 1 in self._identity else 1), False
         if self._is_finishing:
             return (self._todo[0] if self._todo else None), False
-        if self._clock_request is not None and not self._is_unanswered:
+        if self._clock_request is not None:
             request, self._clock_request = self._clock_request, None
             return request, False
         if now >= self._next_sample or self._is_unanswered:
@@ -305,7 +305,8 @@ class Session:
         self.unconfirmed.answered(asked.at, now)
         if self._todo and asked.request == self._todo[0]:
             self._todo.popleft()
-            if self._is_finishing and asked.request.argument == 0:
+            if asked.request.argument == 0:
+                # The first request of `finish`: a round reads counters alone.
                 self._waits_until = self._passes_until = now + PASS_SECONDS
         self._is_set |= asked.request.operation == Operation.SET_TIME
         if response.result == Result.OK and asked.request.operation == Operation.READ:
