@@ -232,7 +232,7 @@ class Session:
         WrongBoardError
             If the board has another description.
         """
-        starts = len(frame) > HEADER_BYTES and bool(frame[1] & FLAG_START)
+        starts = len(frame) >= HEADER_BYTES and bool(frame[1] & FLAG_START)
         message = self._receive(frame, now)
         if message is None:
             return []

@@ -248,6 +248,13 @@ def test_a_time_for_a_board_of_before_is_not_set():
     assert script.ask()[:2] == (READ, 0)
 
 
+def test_a_first_message_without_bytes_says_that_a_board_has_started_again():
+    """Such as std_msgs/Empty in ROS 1."""
+    script = Script()
+    assert script.start_again(b"") == []
+    assert script.session.restarts == 1 and not script.session.is_ready
+
+
 @pytest.mark.parametrize(("seconds", "restarts"), [(10**8 - 1, 1), (10**8, 0)])
 def test_a_board_whose_time_is_that_of_before_1973_has_started_again(seconds, restarts):
     script = Script()
