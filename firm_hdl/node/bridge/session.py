@@ -215,7 +215,7 @@ class Session:
     @property
     def is_finished(self) -> bool:
         """Whether all counters of losses were read after :meth:`finish`."""
-        return self._is_finishing and self.is_ready and not self._todo
+        return self._is_finishing and not self._todo
 
     def end(self) -> None:
         """Count the messages of the board that still wait until it is known."""
@@ -287,6 +287,9 @@ class Session:
         self._waits_until = now
         self._keeper = ClockKeeper(nominal_rate(self._description.clock_hz))
         self._next_sample = self._next_round = now
+        if self._is_finishing:
+            # What was read is of before.
+            self.finish(now)
 
     def _answer(self, message: NodeMessage, now: float, wall_ns: int) -> None:
         asked = self._asked.pop(message.tag, None)

@@ -405,3 +405,20 @@ def test_a_late_answer_is_none_to_the_request_that_is_next():
     script.answer(first)
     script.answer(second)
     script.asked(18)
+
+
+def test_a_board_that_starts_again_at_the_end_is_asked_for_all_again():
+    script = Script()
+    script.session.finish(script.now)
+    script.asked(0)
+    script.now += PASS_SECONDS
+    script.asked(17, 18)
+    script.start_again()
+    assert not script.session.is_finished
+    script.know()
+    assert not script.session.is_finished
+    script.asked(0)
+    assert script.session.next_due() == script.now + PASS_SECONDS
+    script.now += PASS_SECONDS
+    script.asked(*LOSSES)
+    assert script.session.is_finished
