@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import struct
-
 import pytest
 
 from firm_hdl.node.bridge import session as sessions
@@ -11,16 +9,12 @@ from firm_hdl.node.bridge.session import (
     REPEAT_SECONDS,
     ROUND_SECONDS,
     SILENT_SECONDS,
-    Session,
     SilentBoardError,
 )
 from firm_hdl.node.bridge.unconfirmed import PASS_SECONDS
 from firm_hdl.node.frame import Header, encode_header
-from firm_hdl.node.messages import MessageReceiver, MessageSender, NodeMessage
-from tests.node.bridge.fakes import ECHO
-
-READ, SET_TIME, SET_RATE = 1, 2, 3
-EPOCH = 1_800_000_000
+from firm_hdl.node.messages import MessageSender, NodeMessage
+from tests.node.bridge.script import EPOCH, READ, SET_RATE, SET_TIME, Script
 
 # Registers of ECHO, as docs/node.md numbers them: from 16 on, those of the link, the node and each
 # topic in turn. What does not count a loss is left out.
@@ -34,70 +28,6 @@ STAMP = dict(zip(range(46, 49), FIFO, strict=True))
 CAL = dict(zip(range(52, 60), GATE, strict=True)) | dict(zip(range(63, 66), FIFO, strict=True))
 LOSSES = LINK | NODE | HEARD | SAID | STAMP | CAL
 COUNTERS = range(16, 68)
-
-
-class Script:
-    """A session with a board that does as it is told; `now` is the time of the host."""
-
-    def __init__(self, frame_bytes=None, is_known=True):
-        self.now = 100.0
-        self.session = Session(ECHO, frame_bytes, self.now)
-        self.receiver, self.sender = MessageReceiver(), MessageSender()
-        if is_known:
-            self.know()
-
-    @property
-    def wall(self):
-        return EPOCH * 10**9 + round((self.now - 100) * 1e9)
-
-    def ask(self):
-        """Let the session ask; return operation, argument, seconds, nanoseconds and tag."""
-        found = [self.receiver.take(f) for f in self.session.due(self.now, self.wall)]
-        if not found:
-            return None
-        (message,) = found
-        assert message.topic == 0
-        return (*struct.unpack("<B3xIII", message.packet), message.tag)
-
-    def answer(self, asked, value=0, *, time=None, result=0, after=0.0):
-        """Let the board answer `asked`, by default at a time that is the host's."""
-        self.now += after
-        seconds, nanoseconds = divmod(self.wall if time is None else time, 10**9)
-        packet = struct.pack("<BBxxIII", asked[0], result, value, seconds, nanoseconds)
-        return self.come(NodeMessage(topic=0, packet=packet, tag=asked[-1]))
-
-    def come(self, message):
-        """Let a message of the board come; return those that are set free."""
-        return [
-            each
-            for frame in self.sender.frames(message)
-            for each in self.session.take(frame, self.now, self.wall)
-        ]
-
-    def publish(self, packet=b"x"):
-        return [each.packet for each in self.come(NodeMessage(topic=2, packet=packet))]
-
-    def start_again(self, packet=b"x"):
-        """Let the board start again, which its first message says."""
-        self.sender = MessageSender()
-        return self.publish(packet)
-
-    def know(self):
-        """Let the board show its fingerprint; return the messages that this sets free."""
-        found = []
-        for number, half in ((1, ECHO.fingerprint & 0xFFFF_FFFF), (2, ECHO.fingerprint >> 32)):
-            asked = self.ask()
-            assert asked[:2] == (READ, number) and not self.session.is_ready
-            found += self.answer(asked, half)
-        assert self.session.is_ready
-        return [each.packet for each in found]
-
-    def asked(self, *arguments):
-        """Let the board answer requests, which have to read these registers in turn."""
-        for argument in arguments:
-            asked = self.ask()
-            assert asked[:2] == (READ, argument)
-            self.answer(asked)
 
 
 def test_the_clocks_are_compared_first_and_then_all_counters_are_read():
