@@ -233,7 +233,7 @@ class Reader:
         `number` is above the one that is next.
         """
         ready = sorted(each for each in proxy.early if each < number)
-        proxy.next = number
+        proxy.next, proxy.repeats = number, 0
         for each in ready:
             self._take_early(proxy, each)
         return len(ready)

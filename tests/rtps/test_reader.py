@@ -203,6 +203,22 @@ def test_requests_are_numbered_modulo_two_to_the_31(sent):
     assert [each.count for each in sent.take(AckNack)] == [0x7FFF_FFFE, 0x7FFF_FFFF, 0]
 
 
+@pytest.mark.parametrize("is_member", [False, True])
+def test_a_writer_that_answers_with_gaps_is_asked_on(sent, is_member):
+    reader = Listener(sent)
+    reader.on_heartbeat(HERE, heartbeat(1, 60, count=2), 1.0)
+    now = 1.0
+    for number in range(1, 61):
+        sent.clear()
+        now += 1.0
+        reader.tick(now)
+        (answer,) = sent.take(AckNack)
+        assert answer.missing.base == number
+        name = gap(number, number, (number,)) if is_member else gap(number, number + 1)
+        reader.on_gap(HERE, name, now)
+    assert reader.tick(now + 1) == float("inf") and not sent
+
+
 # Gaps.
 
 
