@@ -47,23 +47,16 @@ def branches(message: Message, plan: Plan) -> frozenset[str]:
             max_message_bytes=plan.max_message_bytes,
         )
         for converter in (Deserializer, Serializer):
-            _elaborate(
-                converter(
-                    message,
-                    wire=plan.wire,
-                    bus_bytes=plan.bus_bytes,
-                    max_message_bytes=plan.max_message_bytes,
-                )
+            made = converter(
+                message,
+                wire=plan.wire,
+                bus_bytes=plan.bus_bytes,
+                max_message_bytes=plan.max_message_bytes,
             )
+            # This also elaborates the modules inside.
+            Fragment.get(made, None)
 
     return traced(make, [_ROOT / part for part in PARTS])
-
-
-def _elaborate(design: Any) -> None:
-    pending = [design]
-    while pending:
-        fragment = Fragment.get(pending.pop(), None)
-        pending += [inner for inner, *_ in fragment.subfragments]
 
 
 def traced(work: Callable[[], object], folders: Iterable[Path]) -> frozenset[str]:

@@ -224,13 +224,16 @@ class Reader:
         before = proxy.next
         delivered = self._deliver_below(proxy, first)
         if proxy.synced:
-            gone = sum(before <= each < first for each in proxy.gaps)
+            gone = sum(each < first for each in proxy.gaps)
             self.lost += first - before - delivered - gone
 
     def _deliver_below(self, proxy: _Proxy, number: int) -> int:
-        """Deliver the samples that wait below `number`, go on there, and return how many."""
+        """Deliver the samples that wait below `number`, go on there, and return how many.
+
+        `number` is above the one that is next.
+        """
         ready = sorted(each for each in proxy.early if each < number)
-        proxy.next = max(proxy.next, number)
+        proxy.next, proxy.repeats = number, 0
         for each in ready:
             self._take_early(proxy, each)
         return len(ready)

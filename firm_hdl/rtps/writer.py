@@ -256,7 +256,7 @@ class Writer:
         """Whether a reader has to be asked for an answer."""
         if not proxy.reliable:
             return False
-        if not proxy.heard and proxy.unanswered >= _MOST_UNANSWERED:
+        if proxy.unanswered >= _MOST_UNANSWERED:
             return False
         return proxy.acked < self.last or not proxy.heard
 

@@ -51,12 +51,17 @@ def test_each_input_has_figures_of_its_own(tmp_path: Path, monkeypatch: pytest.M
 
     first = [lut(change) for change in changes]
     assert first == [*range(1, len(changes) + 1)]
+    for change, (given, more) in zip(changes, asked, strict=True):
+        inputs = usual | change
+        assert given == (inputs["rtlil"], inputs["device"], inputs["seeds"])
+        assert more == {"mapping": inputs["mapping"]}
     assert [lut(change) for change in changes] == first
     tools["Yosys"] = "2"
     assert lut({}) == len(changes) + 1
     # Without a folder, nothing is kept.
     assert lut({"folder": None}) == len(changes) + 2
-    assert lut({"folder": None}) == len(changes) + 3
+    assert lut({"folder": None, "mapping": "abc"}) == len(changes) + 3
+    assert asked[-1][1] == {"mapping": "abc"}
 
 
 def test_figures_with_a_problem_and_damaged_files_are_measured_again(

@@ -355,6 +355,22 @@ def test_the_committed_page_has_all_parts_and_plots() -> None:
         assert not any(each.problem for each in kept)
 
 
+def test_results_of_a_group_are_in_one_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By type, width as a number, and direction, however their tasks end."""
+    group = Group(title="", types={"lyrical": ("p/msg/A", "p/msg/B")}, bus_bytes=(16, 2))
+    found = [
+        result(name, bus_bytes=bus, direction=direction)
+        for name in ("p/msg/A", "p/msg/B")
+        for bus in (2, 8, 16)
+        for direction in ("deserializer", "serializer")
+    ]
+    mixed = [found[number * 5 % len(found)] for number in range(len(found))]
+    assert mixed != found
+    monkeypatch.setattr(bench, "group_tasks", lambda group, *, cache: [])
+    monkeypatch.setattr(bench, "run_tasks", lambda tasks, jobs: mixed)
+    assert bench._run("", group, None, None) == found
+
+
 def test_estimates_take_the_figures_with_the_most_seeds(page_folder: Path) -> None:
     def mhz() -> dict[tuple[str, str], float]:
         entries = json.loads((page_folder / "e.json").read_text())

@@ -46,6 +46,19 @@ def test_each_bit_of_a_port_gets_a_register_outside() -> None:
     assert top["cells"]["fill_LUT4_A_Z_LUT4_Z"] == lut(6, 5, 7, 8)
 
 
+@pytest.mark.parametrize("place", ["port", "cell", "name"])
+def test_new_nets_have_numbers_that_no_other_net_has(place: str) -> None:
+    top = small()
+    if place == "port":
+        top["ports"]["i"]["bits"][1] = 40
+    elif place == "cell":
+        top["cells"]["$1"]["connections"]["Q"] = [40]
+    else:
+        top["netnames"]["unused"] = {"bits": ["0", 40, 30]}
+    surround(top, placer("ecp5"))
+    assert top["ports"]["i"]["bits"] == [41, 42]
+
+
 def test_a_circuit_without_a_clock_has_no_clock_rate() -> None:
     top = small()
     del top["ports"]["clk"]

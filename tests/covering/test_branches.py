@@ -12,6 +12,8 @@ from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
 
 HERE = Path(__file__).parent
+# Modules inside of converters, and one inside of another one.
+INNER = ("parse/buffer.py", "parse/sequencer.py", "mover.py")
 
 
 def choose(flag):
@@ -55,6 +57,9 @@ def test_types_differ_by_what_the_generator_does_for_them():
         found[name] = branches(message, build_plan(lay_out(message)))
     string, boolean = found["std_msgs/msg/String"], found["std_msgs/msg/Bool"]
     assert any(branch.startswith("gateware/") for branch in string - boolean)
+    # Also of modules inside of a converter.
+    for inner in INNER:
+        assert any(branch.startswith(f"gateware/{inner} elaborate:") for branch in boolean)
     assert boolean == branches(
         load_message("std_msgs/msg/Bool"), build_plan(lay_out(load_message("std_msgs/msg/Bool")))
     )

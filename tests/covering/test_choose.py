@@ -20,6 +20,12 @@ def test_cheap_types_are_preferred():
     assert [each.name for each in chosen] == ["b", "c"]
 
 
+def test_the_first_by_name_of_equal_types_is_taken():
+    for names in ("ab", "ba"):
+        (chosen,) = choose(dict.fromkeys(names, "x"), dict.fromkeys(names, 1.0))
+        assert chosen.name == "a"
+
+
 def test_nothing_to_cover_needs_nothing():
     assert choose({}, {}) == []
     assert choose({"a": ""}, {"a": 1}) == []
@@ -86,7 +92,11 @@ def test_definitions_in_idl_have_productions_of_idl(tmp_path):
     (tmp_path / "own_msgs" / "package.xml").write_text("<package><name>own_msgs</name></package>")
     text = "module own_msgs { module msg { struct Mine { sequence<long, 3> x; }; }; };"
     (folder / "Mine.idl").write_text(text)
+    (folder / "Ours.msg").write_text("Mine[2] mine\n")
     found = every_feature(Library("lyrical", [tmp_path]), "own_msgs/msg/Mine")
     grammar = {feature for feature in found if feature.startswith("grammar: ")}
     assert grammar and all(feature.startswith("grammar: idl ") for feature in grammar)
     assert any("sequence_type" in feature for feature in grammar)
+    # A type of one language in one of another has both.
+    both = every_feature(Library("lyrical", [tmp_path]), "own_msgs/msg/Ours")
+    assert grammar < both and "grammar: ros2 array: OPEN SIZE CLOSE" in both

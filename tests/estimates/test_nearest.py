@@ -42,6 +42,9 @@ def test_features_are_of_the_plan() -> None:
     assert features_of(plan_of(TWIST)) == {"bits": 384, "steps": 6, "lengths": 0}
     found = features_of(plan_of(STRING))
     assert (found["bits"], found["lengths"]) == (32 + 64, 1)
+    # Two strings.
+    found = features_of(plan_of("diagnostic_msgs/msg/KeyValue"))
+    assert (found["bits"], found["lengths"]) == (2 * (32 + 64), 2)
 
 
 def test_measured_type_is_its_own_estimate() -> None:
@@ -71,6 +74,41 @@ def test_the_nearest_is_taken() -> None:
     assert estimates_of(plan_of(POSE), both)["deserializer"].type == "b/msg/B"
 
 
+def far(**factors: int) -> dict[str, Any]:
+    """Return features of `POSE` that are further away by these factors."""
+    own = features_of(plan_of(POSE))
+    return {name: (1 + own[name]) * factor - 1 for name, factor in factors.items()}
+
+
+@pytest.mark.parametrize(
+    ("near", "distant"),
+    [
+        # Distances are 1 and 2, and those of different features add up.
+        (far(bits=2), far(bits=4)),
+        (far(bits=2), far(steps=4)),
+        (far(steps=2), far(lengths=4)),
+        (far(lengths=2), far(bits=4)),
+        (far(bits=4), far(bits=2, steps=2, lengths=2)),
+        (far(steps=4), far(bits=2, steps=2, lengths=2)),
+        # Fewer bits are as far away as more of them.
+        (far(steps=2), {"bits": far(bits=1)["bits"] // 4}),
+        # Another wire counts as much as a factor of 2.
+        (far(lengths=2), {**far(steps=2), "wire": "ros1"}),
+        ({"wire": "ros1"}, far(steps=4)),
+        ({**far(steps=2), "wire": "ros1"}, far(bits=8)),
+    ],
+)
+def test_distances_by_hand(near: dict[str, Any], distant: dict[str, Any]) -> None:
+    # The second name would be taken of two that are equally near.
+    measured = [entry(POSE, type="b/msg/Near", **near), entry(POSE, type="a/msg/Far", **distant)]
+    assert estimates_of(plan_of(POSE), measured)["deserializer"].type == "b/msg/Near"
+
+
+def test_another_type_with_the_same_features_is_not_the_same() -> None:
+    found = estimates_of(plan_of(POSE), [entry(POSE, type="a/msg/Twin")])["deserializer"]
+    assert (found.type, found.is_same) == ("a/msg/Twin", False)
+
+
 def test_other_buses_and_directions_say_nothing() -> None:
     assert estimates_of(plan_of(TWIST, bus_bytes=4), [entry(TWIST)]) == {}
     assert list(estimates_of(plan_of(TWIST), [entry(TWIST, direction="serializer")])) == [
@@ -95,6 +133,11 @@ def test_other_buses_and_directions_say_nothing() -> None:
             [entry(IMU), entry(TWIST, direction="serializer")],
             f"    estimate, P (that of {IMU}, the nearest measured): deserializer about 84 MHz, "
             "1,273 LUT, 1,585 FF; P (measured): serializer about 84 MHz, 1,273 LUT, 1,585 FF",
+        ),
+        (
+            [entry(TWIST), entry(TWIST, direction="serializer", part="Q")],
+            "    estimate, P (measured): deserializer about 84 MHz, 1,273 LUT, 1,585 FF; "
+            "Q (measured): serializer about 84 MHz, 1,273 LUT, 1,585 FF",
         ),
     ],
 )

@@ -195,6 +195,52 @@ def test_features_are_those_of_the_definition(tmp_path, text, features):
     assert metrics_of(library(tmp_path, texts).message("p/A")).features == features
 
 
+@pytest.mark.parametrize(
+    ("text", "features"),
+    [
+        # What ROS 1 has built in is no message of a package.
+        ("time t\n", ()),
+        ("duration[] t\n", ("sequences_of_messages",)),
+        ("Header h\n", ("messages", "strings")),
+        ("string[] a\nint8[2] b\n", ("strings", "arrays_of_primitives", "sequences_of_strings")),
+        (
+            "Texts[] a\n",
+            (
+                "messages",
+                "strings",
+                "sequences_of_strings",
+                "sequences_of_messages",
+                "nested_sequences",
+            ),
+        ),
+        ("Head[] a\n", ("messages", "strings", "sequences_of_messages")),
+    ],
+)
+def test_features_are_those_of_the_definition_in_ros_1(tmp_path, text, features):
+    texts = {"p/A": text, "p/Texts": "string[] x\n", "p/Head": "Header x\n"}
+    found = metrics_of(library(tmp_path, texts, "ros1").message("p/A"))
+    assert found.features == features and found.wire == "ros1"
+
+
+@pytest.mark.parametrize(("more", "is_refused"), [(0, False), (1, True)])
+def test_counts_of_more_than_a_hundred_digits_are_refused(more, is_refused):
+    octet = PRIMITIVES["ros2"]["uint8"]
+    kind = octet
+    for level in range(100):
+        fields = tuple(Field(name=f"f{number}", type=kind) for number in range(10))
+        kind = Message(name=f"p/msg/T{level}", dialect="ros2", fields=fields)
+    rest = tuple(Field(name=f"g{number}", type=octet) for number in range(more))
+    top = Message(name="p/msg/Top", dialect="ros2", fields=(Field(name="f", type=kind), *rest))
+    assert top.leaf_count == 10**100 + more
+    if not is_refused:
+        assert metrics_of(top).leaves == 10**100
+        return
+    with pytest.raises(
+        DefinitionError, match=r"^error: p/msg/Top has more than 10\^100 fields when"
+    ):
+        metrics_of(top)
+
+
 def test_figures_depend_on_the_wire(tmp_path):
     message = library(tmp_path, {"p/A": "uint8 a\nfloat64 b\nstring c\n"}).message("p/A")
     cdr, ros1 = metrics_of(message, "cdr"), metrics_of(message, "ros1")

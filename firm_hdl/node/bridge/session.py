@@ -186,7 +186,7 @@ class Session:
             return _read(2 if 1 in self._identity else 1), False
         if self._is_finishing:
             return (self._todo[0] if self._todo else None), False
-        if self._clock_request is not None and not self._is_unanswered:
+        if self._clock_request is not None:
             request, self._clock_request = self._clock_request, None
             return request, False
         if now >= self._next_sample or self._is_unanswered:
@@ -215,7 +215,7 @@ class Session:
     @property
     def is_finished(self) -> bool:
         """Whether all counters of losses were read after :meth:`finish`."""
-        return self._is_finishing and self.is_ready and not self._todo
+        return self._is_finishing and not self._todo
 
     def end(self) -> None:
         """Count the messages of the board that still wait until it is known."""
@@ -232,7 +232,7 @@ class Session:
         WrongBoardError
             If the board has another description.
         """
-        starts = len(frame) > HEADER_BYTES and bool(frame[1] & FLAG_START)
+        starts = len(frame) >= HEADER_BYTES and bool(frame[1] & FLAG_START)
         message = self._receive(frame, now)
         if message is None:
             return []
@@ -287,6 +287,9 @@ class Session:
         self._waits_until = now
         self._keeper = ClockKeeper(nominal_rate(self._description.clock_hz))
         self._next_sample = self._next_round = now
+        if self._is_finishing:
+            # What was read is of before.
+            self.finish(now)
 
     def _answer(self, message: NodeMessage, now: float, wall_ns: int) -> None:
         asked = self._asked.pop(message.tag, None)
@@ -305,7 +308,8 @@ class Session:
         self.unconfirmed.answered(asked.at, now)
         if self._todo and asked.request == self._todo[0]:
             self._todo.popleft()
-            if self._is_finishing and asked.request.argument == 0:
+            if asked.request.argument == 0:
+                # The first request of `finish`: a round reads counters alone.
                 self._waits_until = self._passes_until = now + PASS_SECONDS
         self._is_set |= asked.request.operation == Operation.SET_TIME
         if response.result == Result.OK and asked.request.operation == Operation.READ:

@@ -128,12 +128,14 @@ class FakeBoard(Board):
 
 
 class FakeGraph(Graph):
-    """Peers that keep what they get."""
+    """Peers that keep what they get. `closed` counts how often they were left."""
+
+    has_ended = False
 
     def __init__(self):
         super().__init__("fake")
         self.on_message = None
-        self.opened = 0
+        self.opened = self.closed = self.checked = 0
         self.is_dead = self.is_full = False
         self.got, self.answers, self.abandoned = [], [], []
 
@@ -162,11 +164,12 @@ class FakeGraph(Graph):
         self.abandoned.append(caller)
 
     def check(self):
+        self.checked += 1
         if self.is_dead:
             raise GraphError("it is dead")
 
     def close(self):
-        return
+        self.closed += 1
 
 
 def bridge_of(board=None, graph=None, description=ECHO):

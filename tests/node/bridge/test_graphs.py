@@ -18,10 +18,10 @@ from firm_hdl.node.graphs.lines import LinesGraph
 from firm_hdl.node.graphs.ros1 import definitions
 from firm_hdl.node.graphs.ros2 import RclpyGraph, has_rclpy
 from firm_hdl.node.graphs.rtps import RtpsGraph
-from firm_hdl.rtps import Qos
+from firm_hdl.rtps import HistoryFullError, Qos
 from firm_hdl.rtps.ros import Node
 from tests.node.accelerators import echo_text
-from tests.node.bridge.fakes import CAL, ECHO, HEARD, SAID
+from tests.node.bridge.fakes import CAL, ECHO, HEARD, SAID, STAMP
 from tests.node.samples import read
 
 # One that no other test has.
@@ -173,6 +173,38 @@ def test_a_dead_reader_does_not_hold_up_others():
         assert time.monotonic() - begin < 5
     finally:
         graph.close()
+
+
+class Writer:
+    """A writer without room, which notes how long each message may wait for it."""
+
+    def __init__(self):
+        self.is_full, self.patience = True, []
+
+    def write(self, packet, timeout):
+        self.patience.append(timeout)
+        if self.is_full:
+            raise HistoryFullError
+
+
+def test_only_the_first_message_waits_for_room():
+    graph, writer, other = RtpsGraph(ECHO, **OPTIONS), Writer(), Writer()
+    graph._writers = {SAID.id: writer, STAMP.id: other}
+    assert [graph.publish(SAID, b"") for _ in range(3)] == [False] * 3
+    # Each topic has a reader of its own.
+    assert not graph.publish(STAMP, b"")
+    writer.is_full = False
+    assert [graph.publish(SAID, b"") for _ in range(2)] == [True] * 2
+    assert not graph.publish(STAMP, b"")
+    room = rtps._ROOM_SECONDS
+    assert writer.patience == [room, 0.0, 0.0, 0.0, room] and other.patience == [room, 0.0]
+    assert room > 0
+    writer.is_full = True
+    graph.publish(SAID, b"")
+    graph.close()
+    graph._writers = {SAID.id: writer}
+    graph.publish(SAID, b"")
+    assert writer.patience[-1] == room
 
 
 def test_definitions_of_ros_1():

@@ -2,43 +2,10 @@
 
 from __future__ import annotations
 
-import select
-from types import SimpleNamespace
-
 import pytest
 
-from firm_hdl.node.bridge import boardside, bridge
-from tests.node.bridge.fakes import HEARD, FakeBoard, FakeGraph, bridge_of
-
-
-class Sleeper:
-    """A bridge whose clock stands still, with what it waits for in seconds."""
-
-    def __init__(self, monkeypatch):
-        self.now, self.slept = 100.0, []
-        clock = SimpleNamespace(monotonic=lambda: self.now, time_ns=lambda: int(self.now * 1e9))
-        for module in (bridge, boardside):
-            monkeypatch.setattr(module, "time", clock)
-        monkeypatch.setattr(bridge, "select", SimpleNamespace(select=self._select))
-        self.board, self.graph = FakeBoard(), FakeGraph()
-        # Nothing else is due of the board for seconds.
-        self.board.sample_seconds = 100.0
-        self.bridge, _ = bridge_of(self.board, self.graph)
-
-    def _select(self, reads, writes, errors, seconds):
-        self.slept.append(seconds)
-        return select.select(reads, writes, errors, 0)
-
-    def sleep(self, after=0.0, end=float("inf")):
-        """Let time pass; return how long the bridge then sleeps, once nothing is left to do."""
-        self.now += after
-        for _ in range(200):
-            self.bridge.step(end)
-            if self.slept[-1] > 1e-9:
-                return pytest.approx(self.slept[-1])
-            # Something is due, if need be after an error of rounding.
-            self.now += self.slept[-1]
-        raise AssertionError("it never sleeps")
+from tests.node.bridge.clocks import Sleeper
+from tests.node.bridge.fakes import HEARD
 
 
 @pytest.fixture

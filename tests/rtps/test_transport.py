@@ -1,0 +1,161 @@
+"""The sockets of a participant, and samples in fragments, at the limits of what they take."""
+
+from __future__ import annotations
+
+import socket
+from types import SimpleNamespace
+
+import pytest
+
+from firm_hdl.rtps.fragments import Budget, Reassembly, fragment
+from firm_hdl.rtps.ros import Context, names
+from firm_hdl.rtps.transport import Transport
+from firm_hdl.rtps.wire.locators import Address
+from firm_hdl.rtps.wire.parameters import ParameterList, Pid
+from firm_hdl.rtps.wire.samples import Data, DataFrag
+from tests.rtps.test_participant import DOMAIN, OPTIONS
+
+THERE = Address("127.0.0.1", 9)
+INLINE = ParameterList(((Pid.KEY_HASH, bytes(16)),))
+
+
+@pytest.fixture
+def transport():
+    made = Transport(DOMAIN, "127.0.0.1")
+    yield made
+    made.close()
+
+
+class Socket:
+    """What the system says, call by call: bytes, or an error that is raised."""
+
+    def __init__(self, *answers):
+        self.answers = list(answers)
+
+    def recv(self, size):
+        answer = self.answers.pop(0)
+        if isinstance(answer, OSError):
+            raise answer
+        return answer
+
+    def sendto(self, datagram, address):
+        return self.recv(0)
+
+    def close(self):
+        return
+
+
+@pytest.mark.parametrize(
+    ("answer", "is_taken"),
+    [
+        (4, True),
+        # Later, there may be room.
+        (BlockingIOError(), False),
+        # The datagram is lost, as it might be on the way.
+        (OSError("no route"), True),
+        (ConnectionRefusedError(), True),
+    ],
+)
+def test_a_datagram_that_cannot_be_sent_is_kept_or_lost(transport, answer, is_taken):
+    (first, second), transport._unicast = transport._unicast, (Socket(answer), Socket())
+    first.close()
+    second.close()
+    assert transport.send(THERE, b"abcd") is is_taken
+
+
+def test_an_error_about_what_was_sent_ends_no_reading(transport):
+    source = Socket(b"1", ConnectionRefusedError(), b"2", BlockingIOError(), b"3")
+    assert list(transport.receive(source)) == [b"1", b"2"]
+    assert list(transport.receive(Socket(*[b"x"] * 70))) == [b"x"] * 64
+    assert list(transport.receive(Socket(b"1", OSError(), b"2", b"3"), limit=3)) == [b"1", b"2"]
+
+
+def test_datagrams_reach_the_ports_that_are_announced(transport):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for number, address in enumerate((transport.discovery, transport.user)):
+            sender.sendto(b"%d" % number, address)
+    discovery, user = transport._unicast
+    for each, datagram in ((discovery, b"0"), (user, b"1")):
+        each.settimeout(10)
+        assert each.recv(99) == datagram
+
+
+def test_topics_of_peers_are_those_of_writers_and_readers(monkeypatch):
+    def endpoint(topic, kind, type_hash=None):
+        name = names.type_name(f"p/msg/{kind}")
+        data = names.user_data(type_hash)
+        return SimpleNamespace(topic=topic, type_name=name, user_data=data)
+
+    remotes = {
+        True: (endpoint("rt/a", "A", "RIHS01_1"), endpoint("rt/b", "B"), endpoint("dds", "D")),
+        False: (endpoint("rt/a", "A", "RIHS01_2"), endpoint("rt/a", "X"), endpoint("rt/c", "C")),
+    }
+    with Context(**OPTIONS) as context:
+        monkeypatch.setattr(context.participant, "remotes", remotes.get)
+        assert context.topics() == {
+            "/a": {"p/msg/A", "p/msg/X"},
+            "/b": {"p/msg/B"},
+            "/c": {"p/msg/C"},
+        }
+        assert context.type_hashes("/a") == {"RIHS01_1", "RIHS01_2"}
+        assert context.type_hashes("/b") == context.type_hashes("/d") == set()
+
+
+# Fragments.
+
+SAMPLE = Data(
+    reader=5, writer=6, sequence_number=7, payload=b"abcdefghij", key=False, inline=INLINE
+)
+
+
+def part(first, payload, **changes):
+    given = {"count": 1, "fragment_bytes": 4, "sample_bytes": 10, "sequence_number": 7, **changes}
+    return DataFrag(reader=5, writer=6, first=first, payload=payload, inline=INLINE, **given)
+
+
+def test_a_fragment_has_all_that_its_sample_has():
+    assert [fragment(SAMPLE, number, 4) for number in (1, 2, 3)] == [
+        part(1, b"abcd"),
+        part(2, b"efgh"),
+        part(3, b"ij"),
+    ]
+
+
+def test_a_sample_that_was_cut_has_all_that_it_had():
+    reassembly = Reassembly(Budget(1 << 20))
+    found = [reassembly.add(fragment(SAMPLE, number, 4)) for number in (3, 1, 2)]
+    assert found == [None, None, SAMPLE]
+
+
+def test_fragments_that_are_announced_and_missing_may_still_come():
+    reassembly = Reassembly(Budget(1 << 20))
+    # It says that there are three, and has one.
+    assert reassembly.add(part(1, b"abcd", count=3)) is None
+    assert reassembly.missing(7) == [2, 3]
+    assert reassembly.add(part(2, b"efghij", count=2)) == SAMPLE
+
+
+@pytest.mark.parametrize("change", [{"fragment_bytes": 5}, {"sample_bytes": 11}])
+def test_fragments_of_other_sizes_are_of_another_sample(change):
+    reassembly = Reassembly(Budget(1 << 20))
+    reassembly.add(part(1, b"abcd"))
+    assert reassembly.add(part(2, b"EFGHI", **change)) is None
+    assert reassembly.missing(7) == [2, 3]
+    assert reassembly.add(part(2, b"efghij", count=2)) == SAMPLE
+
+
+def test_a_sample_without_memory_is_not_put_together():
+    # A fragment of 4 bytes takes 204.
+    for limit, found in ((203, None), (204, b"abcd")):
+        budget = Budget(limit)
+        reassembly = Reassembly(budget)
+        whole = reassembly.add(part(1, b"abcd", sample_bytes=4))
+        assert (whole and whole.payload) == found and budget.used == 0
+        assert 7 not in reassembly
+
+
+def test_no_more_fragments_are_missing_than_one_answer_can_name():
+    reassembly = Reassembly(Budget(1 << 20))
+    reassembly.add(part(1, b"abcd", sample_bytes=4 * 1000))
+    assert reassembly.missing(7) == list(range(2, 258))
+    assert reassembly.missing(7, 4) == [2, 3, 4]
