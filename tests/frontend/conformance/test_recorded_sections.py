@@ -44,7 +44,8 @@ def cut(marked):
         "module p { module msg { «A|struct A{ long a; }\n;»«B| struct\nB\n{ long b; };» }\n; }\n;",
         # Names that are a member's type, and some that only look so.
         """module p { module msg {«A| struct A { ~B a, b; ~B c[2]; sequence<~B> d;
-             sequence< ~B , 3> e; q::B f; B::C g; Bx h; B_last i; long B; string<5> j; ~B /* B k */ l; sequence<B_x> m;
+             sequence< ~B , 3> e; q::B f; B::C g; Bx h; B_last i; long B;
+             string<5> j; ~B /* B k */ l; sequence<B_x> m;
              @unit("B b;") ~B n; // B o;
            };»«B| struct B { long a; };» }; };""",
         "module p { module msg { «A|struct A { ~C c; ~B b; };»«B| struct B { ~C c; };»"
@@ -83,7 +84,8 @@ def test_modules_that_are_empty_without_the_others_are_left_out():
         "module p { module idl { struct A { long a; }; struct B { long b; }; }; };",
         "module p { module msg { module m { struct A { long a; }; }; struct B { long b; }; }; };",
         *(
-            f"module p {{ module msg {{ struct A_{part} {{ long a; }}; struct B {{ long b; }}; }}; }};"
+            f"module p {{ module msg {{ struct A_{part} {{ long a; }}; struct B {{ long b; }};"
+            " }; };"
             for part in ("Request", "Response", "Goal", "Result", "Feedback")
         ),
         # Only what is closed is a struct.
