@@ -164,6 +164,52 @@ def test_names_that_are_no_types_are_marked(name, message, form):
     assert start == text.index(form.format(name)) + form.index("{")
 
 
+DIMENSIONS = "arrays of several dimensions are not supported"
+SIZES = [
+    ("«sequence<sequence<long>>» a;", "a sequence of sequences is not supported"),
+    ("«sequence<S, 3>» a;", "a sequence of sequences is not supported"),
+    ("«sequence<A>» a;", "a sequence of arrays is not supported"),
+    ("sequence<long> a[«2»];", "an array of sequences is not supported"),
+    ("S a[«1 + 1»];", "an array of sequences is not supported"),
+    ("A a[«3»];", DIMENSIONS),
+    ("long a[2][«3»];", DIMENSIONS),
+    ("long a[2][3][«4»];", DIMENSIONS),
+    ("long a[«0»];", "the length of an array must be at least 1, not 0"),
+    ("sequence<long, «-1»> a;", "the bound of a sequence must be at least 1, not -1"),
+    ("string<«4294967296»> a;", "the bound of a string must be at most 4294967295"),
+    ("wstring<«0»> a;", "the bound of a string must be at least 1, not 0"),
+    ("sequence<wstring<2>, «4294967295 + 1»> a;",
+     "the bound of a sequence must be at most 4294967295"),
+    ("long a[«1.5»];", "the length of an array must be an integer"),
+    ("string<«'a'»> a;", "the bound of a string must be an integer"),
+    ("sequence<long, «TRUE»> a;", "the bound of a sequence must be an integer"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("marked", "message"), SIZES)
+def test_wrong_sizes_and_nested_types_are_marked(marked, message):
+    head = "module p { typedef long A[2]; typedef sequence<long> S; struct T { "
+    text = f"{head}{marked.replace('«', '').replace('»', '')} }}; }};"
+    (wrong,) = read(text)[1]
+    start, end = wrong.span.start, wrong.span.end
+    found = f"{text[:start]}«{text[start:end]}»{text[end:]}"
+    assert (found, wrong.message) == (f"{head}{marked} }}; }};", message)
+
+
+def test_sizes_are_numbers_of_32_bits():
+    most = 2**32 - 1
+    members = f"string<{most}> a; sequence<long, {most}> b; long c[{most}]; long d[~{most - 5}];"
+    messages, wrong = read(f"module p {{ struct T {{ {members} }}; }};")
+    assert wrong == []
+    types = [member.type for member in messages["T"].members]
+    assert [(type_.bound or type_.size).value for type_ in types] == [most, most, most, 5]
+
+
+def test_a_struct_outside_of_modules_has_no_full_name():
+    (wrong,) = read("struct T { T a; };")[1]
+    assert wrong.message == OF_ROS.format("T")
+
+
 @pytest.mark.parametrize(
     ("members", "array", "good"),
     [
