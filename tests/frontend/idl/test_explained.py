@@ -21,6 +21,8 @@ def parse_error(marked):
     return f"{text[:start]}«{text[start:end]}»{text[end:]}", found.message
 
 
+SHIFT = "the '>' before this one ends the type; put a right shift in parentheses here"
+INSIDE = "a type cannot be declared inside another declaration"
 CASES = [
     ("«#include» x", "'#include' needs a path in quotes or angle brackets"),
     ("«#define» X", "'#define' is not supported: ROS 2 supports only '#include'"),
@@ -39,9 +41,8 @@ CASES = [
      "between its quotes"),
     ("struct «_a» { long b; };", f"'_a' is not a legal name: {RULE}"),
     ("@annotation «a» { };", "annotations cannot be declared, only used"),
-    ("struct S { struct T «{» long a; }; };",
-     "a type cannot be declared inside another declaration"),
-    ("struct S { enum T «{» A }; };", "a type cannot be declared inside another declaration"),
+    ("struct S { struct T «{» long a; }; };", INSIDE),
+    ("struct S { enum T «{» A }; };", INSIDE),
     ("struct S «:» T { };", "inheritance of structs is not supported"),
     ("struct S { «}»;", "a struct must not be empty"),
     ("enum E { «}»;", "an enum must not be empty"),
@@ -58,7 +59,25 @@ CASES = [
     ("struct S { long a «home»; };", "expected '[', ',' or ';', not 'home'"),
     ("struct S { long a «:» 3; };", "expected '[', ',' or ';', not ':'"),
     ("struct S { long a«>»; };", "expected '[', ',' or ';', not '>'"),
+    ("struct «3» { };", "expected a name, not '3'"),
+    ("struct «3x» { };", "expected a name, not '3x'"),
+    ("struct «__a» { long b; };", f"'__a' is not a legal name: {RULE}"),
+    # What is before the mistake may be long.
+    (f"struct S {{ struct {'T' * 100} «{{»", INSIDE),
+    # Prefixes of wide texts where no name can stand.
+    ('const string S = "a" «L"abc»\n;', "this string is not closed in its line"),
+    ("struct S { long a «L»'x; };", "a character literal must have one character, or one escape, "
+     "between its quotes"),
+    ("struct S { long«<»3> a; };", "expected 'long' or a name, not '<'"),
+    ("struct S { sequence<long, 1>«>»2> a; };", SHIFT),
+    ("struct S { string<3>«>» a; };", SHIFT),
+    ("struct S { long a, «}»;", "a name must follow the comma"),
+    ("struct S { long a[«]»; };", "expected a name, a value, '(' or an operator, not ']'"),
+    ("struct S { unsigned «float» a; };", "expected 'long' or 'short', not 'float'"),
+    ("struct S { fixed<3«>» a; };", "expected ',', not '>'"),
     ("struct«»", "expected a name, but the file ends here"),
+    ("struct« » \n", "expected a name, but the file ends here"),
+    ("struct S { long a; }«\n»", "expected ';', but the file ends here"),
 ]  # fmt: skip
 
 
