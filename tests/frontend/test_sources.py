@@ -96,6 +96,12 @@ def test_link_to_a_folder_above_ends(tmp_path):
     assert found(tmp_path) == [("pkg", "A")]
 
 
+def test_only_the_last_ending_of_a_file_is_not_of_its_name(tmp_path):
+    make_files(tmp_path, {"p/msg/A.old.msg": "# old", "p/msg/A.msg": "# new", "p/msg/B.v2.idl": ""})
+    assert found(tmp_path) == [("p", "A"), ("p", "A.old"), ("p", "B.v2")]
+    assert sources(tmp_path).find("p", "msg", "A").source.text == "# new"
+
+
 def test_links_to_packages_are_followed(tmp_path):
     make_files(tmp_path, {"elsewhere/pkg/msg/A.msg": "", "ws/keep": ""})
     (tmp_path / "ws/pkg").symlink_to(tmp_path / "elsewhere/pkg")
@@ -256,7 +262,16 @@ def test_includes_are_read_from_folders_first(tmp_path):
     absent += ["pkg/msg/B", "pkg/msg/B.msg/x.idl", "/pkg/msg/A.idl"]
     for path in absent:
         assert have.include(path) is None
-    assert have.include("pkg/../../secret.idl") is None
+    # Only files of the package are read, whatever their names.
+    for path in (
+        "pkg/../../secret.idl",
+        "pkg/idl/../../../secret.idl",
+        f"pkg/{tmp_path}/secret.idl",
+    ):
+        assert have.include(path) is None
+    make_files(tmp_path / "ws", {"pkg/idl/a..b.idl": "// d", "pkg/idl/folder/c": ""})
+    assert have.include("pkg/idl/a..b.idl").text == "// d"
+    assert have.include("pkg/idl/folder") is None
 
 
 def test_names_are_sorted_by_their_first_origin(tmp_path):
