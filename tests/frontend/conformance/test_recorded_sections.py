@@ -38,13 +38,14 @@ def cut(marked):
              @verbatim(language="comment", text="struct X { };") @unit("}") struct A {
                long a[N]; // struct Y {
              };»«B|
-             struct B { T t; /* } */ long b[B_Constants::M]; };»
+             struct B { T t; /* }
+               { */ long b[B_Constants::M]; };»
            }; };""",
         # The sign after a declaration may be far from it.
         "module p { module msg { «A|struct A{ long a; }\n;»«B| struct\nB\n{ long b; };» }\n; }\n;",
         # Names that are a member's type, and some that only look so.
         """module p { module msg {«A| struct A { ~B a, b; ~B c[2]; sequence<~B> d;
-             sequence< ~B , 3> e; q::B f; B::C g; Bx h; B_last i; long B;
+             sequence< ~B , 3> e; q::B f; B::C g; Bx h; AB o; B_last i; long B;
              string<5> j; ~B /* B k */ l; sequence<B_x> m;
              @unit("B b;") ~B n; // B o;
            };»«B| struct B { long a; };» }; };""",
@@ -95,6 +96,15 @@ def test_modules_that_are_empty_without_the_others_are_left_out():
 )
 def test_sections_that_are_no_several_messages_are_not_cut(text):
     assert structs_of(text) == {}
+
+
+def test_structs_without_a_semicolon_after_them_are_cut_at_their_braces():
+    head, tail = "module p { module msg {", " }; };"
+    a, b = " struct A { long a; }", " struct B { long b; }"
+    assert structs_of(head + a + b + tail) == {
+        ("p", "msg", "A"): head + a + " " * len(b) + tail,
+        ("p", "msg", "B"): head + " " * len(a) + b + tail,
+    }
 
 
 @pytest.mark.parametrize(
