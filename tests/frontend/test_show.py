@@ -200,6 +200,15 @@ def test_parts_of_an_idl_are_separated(tmp_path, kind, parts):
     assert show(ours, "p/T") == "---\n".join(f"int32 {part.lower()}\n" for part in parts)
 
 
+def test_a_nested_idl_without_fields_is_shown_by_its_constants(tmp_path):
+    idl = """module q { module msg { module U_Constants { const short LIMIT = 3; };
+      struct U { uint8 structure_needs_at_least_one_member; }; }; };"""
+    files = {"q/msg/U.idl": idl, "p/msg/T.msg": "q/U u\nint8 x\n"}
+    ours = Library("lyrical", [make_files(tmp_path, files)])
+    assert show(ours, "p/T") == "q/U u\n\tint16 LIMIT=3\nint8 x\n"
+    assert show(ours, "q/U") == "int16 LIMIT=3\n"
+
+
 def test_values_of_an_idl_are_spelled_as_in_a_msg(tmp_path):
     idl = """module p { module msg {
       module T_Constants { const boolean B = TRUE; const octet O = 0x1F; const double D = 1e3; };
