@@ -88,7 +88,7 @@ def read_unit(
     source = definition.source
     diagnostics: list[Diagnostic] = []
     if definition.language == "idl":
-        messages, wrong = read_idl(source, _with_own_folder(name, include))
+        messages, wrong = read_idl(source, include, folder=f"{name.package}/{name.kind}/")
         wrong = wrong or list(_check_structs(name, source, messages))
         # Drop structs of other names, because nothing can look them up; in ROS 1, that is all.
         wanted = _structs(name) if name.dialect == "ros2" else []
@@ -111,20 +111,6 @@ def read_unit(
         diagnostics=tuple(diagnostics),
         is_message=is_message,
     )
-
-
-def _with_own_folder(
-    name: TypeName, include: Callable[[str], Source | None]
-) -> Callable[[str], Source | None]:
-    """Search for an included file by its path as written, then in the including file's folder."""
-
-    def find(path: str) -> Source | None:
-        found = include(path)
-        if found is None and "/" not in path:
-            found = include(f"{name.package}/{name.kind}/{path}")
-        return found
-
-    return find
 
 
 def _structs(name: TypeName) -> list[str]:

@@ -96,8 +96,10 @@ def _with_scopes(text: str, code: str, struct: _Struct, structs: list[_Struct]) 
     if not siblings:
         return text
     name = f"(?:{'|'.join(map(re.escape, siblings))})"
-    places = re.compile(rf"(?<![\w:]){name}(?=\s+\w+\s*[;,\[])|(?<=<){name}(?=\s*[>,])")
+    # As the type of a member, or as the element of a sequence.
+    places = re.compile(rf"(?<![\w:]){name}(?=\s+\w+\s*[;,\[])|(?<=<)\s*{name}(?=\s*[>,])")
     for match in reversed([*places.finditer(code)]):
-        full = "::".join([*struct.modules, match[0]])
-        text = text[: match.start()] + full + text[match.end() :]
+        start = match.end() - len(match[0].lstrip())
+        full = "::".join([*struct.modules, text[start : match.end()]])
+        text = text[:start] + full + text[match.end() :]
     return text

@@ -46,7 +46,7 @@ def similar_types(
     found: list[tuple[str, Kind, str]] = []
     for kind in kinds:
         packages = sources.packages_of.get((kind, name), [])
-        close = get_close_matches(package, packages, n=len(packages) or 1)
+        close = get_close_matches(package, packages)
         found += [(other, kind, name) for other in [*close, *packages]]
     found += _close_names(sources, package, name, kinds)
     if package not in sources.types and not found:

@@ -146,6 +146,17 @@ def test_every_option_of_a_part_reaches_its_component(kind, monkeypatch):
     assert asked == [(kind, None, defaults), (kind, "mine", changed)]
 
 
+@pytest.mark.parametrize("kind", PARTS)
+def test_a_part_of_any_packets_has_no_origins_of_types(kind, capsys):
+    defaults, needed = PARTS[kind]
+    others = {"kind": kind, "name": None, "out": "parts_out", "force": False}
+    assert parsed("part", kind, *needed) == {**defaults, **others}
+    for option in ("--distro=noetic", "--path=x", "--bag=x", "--depends=x"):
+        assert is_refused("part", kind, *needed, option)
+        assert is_refused("part", option, kind, *needed)
+    assert is_refused("part", "--path=x", "gate", "a/B")
+
+
 @pytest.mark.parametrize("command", [name for name, (words, _) in DEFAULTS.items() if words])
 def test_required_arguments_are_required(command, capsys):
     assert is_refused(command, *DEFAULTS[command][0][:-1])

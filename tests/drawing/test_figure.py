@@ -124,6 +124,8 @@ def test_a_linear_scale_has_fifths():
     assert Scale(0, 1, 0, 100).ticks() == pytest.approx([0, 0.2, 0.4, 0.6, 0.8, 1])
     assert Scale(-5, 5, 100, 0).ticks() == pytest.approx([-5, -3, -1, 1, 3, 5])
     assert [Scale(-5, 5, 100, 0)(value) for value in (-5, 0, 5)] == [100, 50, 0]
+    # A tenth of a pixel is enough.
+    assert [Scale(0, 3, 0, 100)(value) for value in (1, 2)] == [33.3, 66.7]
 
 
 @pytest.mark.parametrize(
@@ -176,3 +178,9 @@ def test_a_file_has_a_size_a_style_sheet_and_a_background():
     assert paper.tag == f"{space}rect"
     assert paper.attrib == {"width": "200", "height": "100", "class": "paper"}
     assert (line.tag, line.get("y2"), text.text) == (f"{space}line", "4", "a<b>c")
+    # Each element has a line, so that two versions of a file can be compared.
+    assert [each[:6] for each in document(figure).splitlines()[-3:]] == [
+        "<line ",
+        "<text ",
+        "</svg>",
+    ]

@@ -83,7 +83,10 @@ def test_neighbours_are_spread():
 
 @pytest.mark.parametrize(
     ("values", "high"),
-    [([], 1), ([0.0], 1), ([1.0], 1), ([156.25, 3], 200), ([2057, 2930], 3000), ([76.0], 100)],
+    [
+        *(([], 1), ([0.0], 1), ([1.0], 1), ([156.25, 3], 200), ([2057, 2930], 3000), ([76.0], 100)),
+        *(([12.0], 15), ([0.22], 0.25), ([31], 40), ([41], 50), ([5.1], 7.5), ([150], 150)),
+    ],
 )
 def test_linear_scales_go_from_zero_to_a_round_figure(values, high):
     scale = Scale.linear(values, 10, 110)

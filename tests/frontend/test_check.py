@@ -48,6 +48,24 @@ def test_field_declared_twice_is_refused_between_any_other_lines(tmp_path, distr
     assert all(line.endswith(f"in line {first}") for line in lines)
 
 
+CAPITAL = "letters and digits, a capital first"
+WORD = "letters, digits and underscores, a letter first"
+PARTS = {"msg": "", "srv": "---\n", "action": "---\n---\n"}
+
+
+@pytest.mark.parametrize(("distro", "rule"), [("noetic", WORD), ("lyrical", CAPITAL)])
+@pytest.mark.parametrize(
+    ("kind", "what"), [("msg", "message"), ("srv", "service"), ("action", "action")]
+)
+def test_the_name_of_a_file_is_called_that_of_its_kind(tmp_path, distro, rule, kind, what):
+    root = make_files(tmp_path, {f"p/{kind}/do-it.{kind}": PARTS[kind]})
+    with pytest.raises(DefinitionError) as error:
+        Library(distro, [root]).interface("p/do-it")
+    (wrong,) = error.value.diagnostics
+    assert wrong.message == f"'do-it' is not a legal {what} name: {rule}"
+    assert (wrong.span.line, wrong.span.column) == (1, 1)
+
+
 @pytest.mark.parametrize(
     ("text", "column"),
     {

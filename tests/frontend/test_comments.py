@@ -36,6 +36,16 @@ def test_signs_in_front_of_a_comment_are_not_of_it():
     assert comments(text) == ("head #1\n\nmore", {"a": "of a\nafter #2\non"})
 
 
+def test_blanks_after_a_comment_are_not_of_it():
+    text = "# head \t\n#  \nint32 a # one  \n  # two \n\n# of b \nint32 b\n"
+    assert comments(text) == ("head", {"a": "one\ntwo", "b": "of b"})
+    assert comments(text, "ros1") == comments(text)
+
+
+def test_an_indented_comment_ends_the_head():
+    assert comments("# head\n  # lost\n# of a\nint32 a\n") == ("head", {"a": "of a"})
+
+
 def test_comment_survives_empty_lines():
     assert comments("\n# above\n\n\nint32 a\n")[1] == {"a": "above"}
 

@@ -273,6 +273,8 @@ def test_file_with_a_derived_name_wins_over_later_origins(tmp_path):
     make_files(tmp_path, {"actionlib/action/Test.action": "string mine\n---\n---\n"})
     library = Library("noetic", [tmp_path])
     assert fields(library.message("actionlib/TestGoal")) == ["string mine"]
+    assert fields(library.interface("actionlib/TestGoal")) == ["string mine"]
+    assert library.source("actionlib/TestGoal").text.startswith("string mine\n")
     assert fields(Library("noetic").message("actionlib/TestGoal")) == ["int32 goal"]
     make_files(tmp_path, {"actionlib/msg/TestGoal.msg": "int8 file"})
     assert fields(Library("noetic", [tmp_path]).message("actionlib/TestGoal")) == ["int8 file"]

@@ -113,6 +113,28 @@ def test_types_of_the_same_name_are_suggested_with_similar_packages_first(tmp_pa
     )
 
 
+def test_similar_names_are_those_of_the_package_that_was_named(tmp_path):
+    names = ("a_msgs/msg/Gizmos", "z_msgs/msg/Gizmo", "own/msg/Else", "owner/msg/Gadget")
+    files = {f"{name}.msg": "" for name in names}
+    lib = Library("lyrical", [make_files(tmp_path, files)], origins=())
+    # Another package has the very name, so a similar name in a similar package is none.
+    assert refused(lib.message, "a_msg/Gizmo") == (
+        "error: package 'a_msg' is not found; did you mean 'z_msgs/msg/Gizmo'?"
+    )
+    # The package is right, so those with a similar name are not searched.
+    assert refused(lib.message, "own/Gadgets") == (
+        "error: type 'Gadgets' is not defined in package 'own'"
+    )
+    assert refused(lib.message, "owne/Gadgets").endswith("did you mean 'owner/msg/Gadget'?")
+
+
+def test_services_do_not_crowd_out_the_messages_that_a_field_may_mean(tmp_path):
+    services = {f"p/srv/{name}.srv": "---" for name in ("Begnia", "Begnib", "Begnic")}
+    files = {**services, "p/msg/Benign.msg": "", "p/msg/A.msg": "Begni a"}
+    with pytest.raises(DefinitionError, match="in package 'p'; did you mean 'Benign'"):
+        Library("lyrical", [make_files(tmp_path, files)]).message("p/A")
+
+
 def test_fields_get_suggestions_of_messages_alone(tmp_path):
     files = {"p/msg/Begin.msg": "", "p/srv/Begin.srv": "---", "p/msg/A.msg": "Begni a"}
     with pytest.raises(DefinitionError) as error:
@@ -124,6 +146,11 @@ def test_fields_get_suggestions_of_messages_alone(tmp_path):
 def test_long_and_invisible_names_are_shown_shortened_and_escaped():
     message = refused(Library().message, "p/\x00" + "x" * 5000)
     assert message == "error: package 'p' is not found"
+    shown = rf"\x00{'x' * 56}..."
+    message = refused(Library().message, "std_msgs/\x00" + "x" * 5000)
+    assert message == f"error: type '{shown}' is not defined in package 'std_msgs'"
+    message = refused(Library().message, "\x00" + "x" * 5000 + "/A")
+    assert message == f"error: package '{shown}' is not found"
     message = refused(Library().message, "\x00" + "x" * 5000)
     assert message.startswith("error: '\\x00xxx") and len(message) < 200
 
@@ -148,6 +175,20 @@ def test_same_name_of_several_kinds(tmp_path):
     assert names == ["p/A", "p/action/A", "p/srv/A"]
     assert [type(lib.interface(name)) for name in names] == [Message, Action, Service]
     assert [lib.interface(name).name for name in names] == ["p/A"] * 3
+
+
+def test_a_name_without_a_kind_is_that_of_the_first_folder_that_has_any(tmp_path):
+    one = make_files(tmp_path / "1", {"p/srv/A.srv": "int8 a\n---\n", "p/action/B.action": ""})
+    idl = "module p { module msg { struct A { long b; }; }; };"
+    two = make_files(tmp_path / "2", {"p/msg/A.idl": idl, "p/srv/B.srv": "---\n"})
+    for paths, kind in (([one, two], Service), ([two, one], Message)):
+        lib = Library("lyrical", paths)
+        assert type(lib.interface("p/A")) is kind
+        assert lib.is_idl("p/A") is (kind is Message)
+        assert lib.source("p/A").text == (idl if kind is Message else "int8 a\n---\n")
+        assert lib.source("p/B").text == ("---\n" if kind is Message else "")
+    # By its kind, the other one is found, too.
+    assert lib.interface("p/srv/A").name == "p/srv/A" and not lib.is_idl("p/srv/A")
 
 
 @pytest.mark.parametrize("name", ["p/B", "p/srv/B"])

@@ -184,6 +184,36 @@ def test_good_types_of_a_library_with_bad_ones_resolve(tmp_path):
     assert lib.message("p/B").fields[0].name == "x"
 
 
+@pytest.mark.parametrize(
+    ("dialect", "type_", "message"),
+    [
+        (
+            "ros1",
+            "flaot32",
+            "type 'flaot32' is not defined in package 'p'; did you mean 'float32'?",
+        ),
+        # A type with a package is no builtin one.
+        ("ros1", "q/flaot32", "type 'flaot32' is not defined in package 'q'"),
+        ("ros1", "Unti", "type 'Unti' is not defined in package 'p'; did you mean 'Unit'?"),
+        ("ros2", "Othre", "type 'Othre' is not defined in package 'p'"),
+        ("ros2", "q/Othre", "type 'Othre' is not defined in package 'q'; did you mean 'q/Other'?"),
+        ("ros2", "Other", "type 'Other' is not defined in package 'p'; did you mean 'q/Other'?"),
+        # In ROS 2, no field has a type of an action, built or not.
+        ("ros2", "Do_Goal", "type 'Do_Goal' is not defined in package 'p'"),
+    ],
+)
+def test_what_is_said_of_a_type_that_is_not_defined(tmp_path, dialect, type_, message):
+    files = {"p/msg/T.msg": f"{type_} a\n", "p/msg/Unit.msg": "", "q/msg/Other.msg": ""}
+    files["p/action/Do.action"] = "---\n---\n"
+    distro = "noetic" if dialect == "ros1" else "lyrical"
+    ours = Library(distro, [make_files(tmp_path, files)], origins=())
+    with pytest.raises(DefinitionError) as error:
+        ours.message("p/T")
+    (found,) = error.value.diagnostics
+    assert (found.message, found.span.line, found.span.column) == (message, 1, 1)
+    assert found.span.end - found.span.start == len(type_)
+
+
 def test_cycle_through_a_sequence_is_a_cycle(tmp_path):
     with pytest.raises(DefinitionError) as error:
         load(tmp_path, "U[] u", U="V v", V="T[<=1] t")

@@ -189,6 +189,39 @@ def test_shown_idl_is_a_definition_that_means_the_same(tmp_path):
     assert Library("lyrical", [root]).message("p/T") == library.message("p/T")
 
 
+@pytest.mark.parametrize(
+    ("kind", "parts"),
+    [("srv", ["Request", "Response"]), ("action", ["Goal", "Result", "Feedback"])],
+)
+def test_parts_of_an_idl_are_separated(tmp_path, kind, parts):
+    structs = " ".join(f"struct T_{part} {{ long {part.lower()}; }};" for part in parts)
+    files = {f"p/{kind}/T.idl": f"module p {{ module {kind} {{ {structs} }}; }};"}
+    ours = Library("lyrical", [make_files(tmp_path, files)])
+    assert show(ours, "p/T") == "---\n".join(f"int32 {part.lower()}\n" for part in parts)
+
+
+def test_a_nested_idl_without_fields_is_shown_by_its_constants(tmp_path):
+    idl = """module q { module msg { module U_Constants { const short LIMIT = 3; };
+      struct U { uint8 structure_needs_at_least_one_member; }; }; };"""
+    files = {"q/msg/U.idl": idl, "p/msg/T.msg": "q/U u\nint8 x\n"}
+    ours = Library("lyrical", [make_files(tmp_path, files)])
+    assert show(ours, "p/T") == "q/U u\n\tint16 LIMIT=3\nint8 x\n"
+    assert show(ours, "q/U") == "int16 LIMIT=3\n"
+
+
+def test_values_of_an_idl_are_spelled_as_in_a_msg(tmp_path):
+    idl = """module p { module msg {
+      module T_Constants { const boolean B = TRUE; const octet O = 0x1F; const double D = 1e3; };
+      struct T { @default(value=FALSE) boolean b; @default(value="(True, False)") boolean c[2];
+                 @default(value="()") sequence<long> d; @default(value="[1.5]") double e[1]; };
+    }; };"""
+    ours = Library("lyrical", [make_files(tmp_path, {"p/msg/T.idl": idl})])
+    assert show(ours, "p/T") == (
+        "bool B=true\nbyte O=31\nfloat64 D=1000.0\n"
+        "bool b false\nbool[2] c [true, false]\nint32[] d []\nfloat64[1] e [1.5]\n"
+    )
+
+
 def test_values_of_an_idl_read_back_as_those_of_a_msg(tmp_path):
     idl = """module p { module msg {
       module T_Constants { const string Q = "say \\"a\\" 'b'"; const boolean B = TRUE; };

@@ -87,13 +87,27 @@ def test_package_contains_no_other_package(tmp_path):
     make_files(tmp_path, {"pkg/package.xml": "<package><name>pkg</name></package>"})
     make_files(tmp_path, {"pkg/msg/A.msg": "", "pkg/test/fixture/msg/B.msg": ""})
     assert found(tmp_path) == [("pkg", "A")]
+    # This holds for packages without definitions, too, but not for folders that are no packages.
+    make_files(tmp_path, {"meta/package.xml": "", "meta/inner/msg/C.msg": ""})
+    make_files(tmp_path, {"outer/msg/D.msg": "", "outer/inner/msg/E.msg": ""})
+    assert found(tmp_path) == [("inner", "E"), ("outer", "D"), ("pkg", "A")]
 
 
-def test_link_to_a_folder_above_ends(tmp_path):
+def test_link_to_a_folder_above_ends(tmp_path, monkeypatch):
     make_files(tmp_path, {"ws/src/pkg/msg/A.msg": ""})
     (tmp_path / "ws/src/back").symlink_to(tmp_path)
     (tmp_path / "ws/src/loop").symlink_to(tmp_path / "ws/src/loop")
+    scanned, scandir = [], os.scandir
+    monkeypatch.setattr(os, "scandir", lambda folder: scanned.append(folder) or scandir(folder))
     assert found(tmp_path) == [("pkg", "A")]
+    # Each of the folders once, and the one above once more.
+    assert len(scanned) == len(["root", "ws", "src", "pkg"]) + 1
+
+
+def test_only_the_last_ending_of_a_file_is_not_of_its_name(tmp_path):
+    make_files(tmp_path, {"p/msg/A.old.msg": "# old", "p/msg/A.msg": "# new", "p/msg/B.v2.idl": ""})
+    assert found(tmp_path) == [("p", "A"), ("p", "A.old"), ("p", "B.v2")]
+    assert sources(tmp_path).find("p", "msg", "A").source.text == "# new"
 
 
 def test_links_to_packages_are_followed(tmp_path):
@@ -181,8 +195,11 @@ def test_search_goes_on_after_a_folder_that_cannot_be_read(tmp_path, monkeypatch
 KLINGON = "<?xml version='1.0' encoding='klingon'?><package><name>p</name></package>"
 
 
-def test_package_whose_name_cannot_be_read_is_refused_when_it_is_used(tmp_path):
-    make_files(tmp_path, {"p/package.xml": KLINGON, "p/msg/A.msg": "", "q/msg/B.msg": "# q"})
+# Python's reader of XML has no such encoding, or has it for single bytes alone.
+@pytest.mark.parametrize("encoding", ["klingon", "gb2312"])
+def test_package_whose_name_cannot_be_read_is_refused_when_it_is_used(tmp_path, encoding):
+    xml = KLINGON.replace("klingon", encoding)
+    make_files(tmp_path, {"p/package.xml": xml, "p/msg/A.msg": "", "q/msg/B.msg": "# q"})
     have = sources(tmp_path)
     assert have.find("q", "msg", "B").source.text == "# q"
     with pytest.raises(DefinitionError) as error:
@@ -256,7 +273,16 @@ def test_includes_are_read_from_folders_first(tmp_path):
     absent += ["pkg/msg/B", "pkg/msg/B.msg/x.idl", "/pkg/msg/A.idl"]
     for path in absent:
         assert have.include(path) is None
-    assert have.include("pkg/../../secret.idl") is None
+    # Only files of the package are read, whatever their names.
+    for path in (
+        "pkg/../../secret.idl",
+        "pkg/idl/../../../secret.idl",
+        f"pkg/{tmp_path}/secret.idl",
+    ):
+        assert have.include(path) is None
+    make_files(tmp_path / "ws", {"pkg/idl/a..b.idl": "// d", "pkg/idl/folder/c": ""})
+    assert have.include("pkg/idl/a..b.idl").text == "// d"
+    assert have.include("pkg/idl/folder") is None
 
 
 def test_names_are_sorted_by_their_first_origin(tmp_path):

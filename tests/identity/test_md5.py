@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import hashlib
+from dataclasses import replace
 
 import pytest
 from rosbags.typesys import Stores, get_typestore
@@ -85,6 +86,11 @@ def test_blanks_at_the_end_do_not_count(tmp_path):
     ours = library(tmp_path, {"p/A": "string S=x  ", "p/B": "string S=x"}, "ros1")
     assert ours.message("p/A").constants[0].text != ""
     assert md5sum(ours.message("p/A")) == md5sum(ours.message("p/B"))
+    # Nor do they count in a constant that was not read from a text.
+    message = ours.message("p/B")
+    (constant,) = message.constants
+    blank = replace(message, constants=(replace(constant, text="x \t"),))
+    assert md5sum(blank) == hashlib.md5(b"string S=x").hexdigest() == md5sum(message)
 
 
 def test_values_of_constants_count_as_they_are_written(tmp_path):

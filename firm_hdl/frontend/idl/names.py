@@ -59,7 +59,9 @@ def definitions(file: FileSyntax) -> Iterator[tuple[Path, Definition]]:
             pending += [(inner, d) for d in reversed(definition.definitions)]
 
 
-def included(file: FileSyntax, include: Callable[[str], Source | None]) -> list[FileSyntax]:
+def included(
+    file: FileSyntax, include: Callable[[str], Source | None], folder: str
+) -> list[FileSyntax]:
     """Read all files that a file includes, directly or not; each comes after its own includes.
 
     A path is searched for as written, then in the folder of the including file. A file that is not
@@ -83,12 +85,12 @@ def included(file: FileSyntax, include: Callable[[str], Source | None]) -> list[
                 if source is not None:
                     break
 
-    pending = [(file, children(file, ""))]
+    pending = [(file, children(file, folder))]
     while pending:
         parent, others = pending[-1]
-        child, folder = next(others, (None, ""))
+        child, place = next(others, (None, ""))
         if child is not None:
-            pending.append((child, children(child, folder)))
+            pending.append((child, children(child, place)))
         else:
             found.append(parent)
             pending.pop()

@@ -67,7 +67,7 @@ _DECLARED: dict[int, tuple[str, Kind]] = {
 
 
 def read_idl(
-    source: Source, include: Callable[[str], Source | None]
+    source: Source, include: Callable[[str], Source | None], *, folder: str = ""
 ) -> tuple[dict[str, MessageSyntax], list[Diagnostic]]:
     """Read an IDL file of a ROS 2 package.
 
@@ -75,6 +75,8 @@ def read_idl(
     ----------
     include : callable
         Gives the text of an included file, by the path between the quotes or angle brackets.
+    folder : str
+        The folder of the file, as included paths name it, such as ``sensor_msgs/msg/``.
 
     Returns
     -------
@@ -85,7 +87,7 @@ def read_idl(
     file = parse_file(source)
     if isinstance(file, Diagnostic):
         return {}, [file]
-    reader = _Reader(file, included(file, include))
+    reader = _Reader(file, included(file, include, folder))
     messages = reader.messages()
     # Errors of included files come first.
     wrong = sorted(reader.wrong, key=lambda d: (_place(d, source), d.message))

@@ -96,6 +96,18 @@ def test_type_whose_topic_lacks_a_definition_has_that_of_another_topic(tmp_path)
         assert [field.name for field in ours.message("p/B").fields] == ["x"]
 
 
+def test_constants_of_an_included_section_are_known(tmp_path):
+    a = """#include "p/msg/B.idl"
+    module p { module msg { struct A { p::msg::B b; Many c; long d[B_Constants::N]; }; }; };"""
+    b = """module p { module msg { module B_Constants { const long N = 3; };
+    typedef sequence<long, 7> Many; struct B { long x; }; }; };"""
+    text = "".join(f"{LINE}\nIDL: p/msg/{name}\n{body}\n" for name, body in (("A", a), ("B", b)))
+    ours = open_library(bags=[record(tmp_path / "r", "p/msg/A", text)])
+    assert [str(f.type) for f in ours.message("p/A").fields] == [
+        "p/msg/B", "int32[<=7]", "int32[3]"
+    ]  # fmt: skip
+
+
 def test_scopes_of_idl_stand_in_names_of_definitions_in_idl_alone(tmp_path):
     (path,) = record(tmp_path / "r", "p/msg//Long", "int8 a\n").glob("*.mcap")
     path.write_bytes(path.read_bytes().replace(b"p/msg//Long", b"p::msg::Lon"))

@@ -61,6 +61,10 @@ def test_a_single_chunk_has_a_limit_of_its_own(tmp_path, form, monkeypatch):
     path = BOMBS[form](tmp_path, 8 * MIB)
     with pytest.raises(DefinitionError, match=f"it has a chunk of more than {4 * MIB} bytes$"):
         use_recording(str(path), sizes)
+    # A chunk of exactly that size is read. It is refused for another reason: it has zeros only.
+    monkeypatch.setattr(expansion, "MAX_CHUNK_BYTES", 8 * MIB)
+    with pytest.raises(DefinitionError, match=r"cannot be read as a recording: (?!it has a chunk)"):
+        use_recording(str(path), sizes)
     assert use_recording(str(BOMBS["mcap of many chunks"](tmp_path, 8 * MIB)), sizes) == []
 
 

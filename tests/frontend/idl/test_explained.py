@@ -21,6 +21,8 @@ def parse_error(marked):
     return f"{text[:start]}«{text[start:end]}»{text[end:]}", found.message
 
 
+SHIFT = "the '>' before this one ends the type; put a right shift in parentheses here"
+INSIDE = "a type cannot be declared inside another declaration"
 CASES = [
     ("«#include» x", "'#include' needs a path in quotes or angle brackets"),
     ("«#define» X", "'#define' is not supported: ROS 2 supports only '#include'"),
@@ -39,9 +41,8 @@ CASES = [
      "between its quotes"),
     ("struct «_a» { long b; };", f"'_a' is not a legal name: {RULE}"),
     ("@annotation «a» { };", "annotations cannot be declared, only used"),
-    ("struct S { struct T «{» long a; }; };",
-     "a type cannot be declared inside another declaration"),
-    ("struct S { enum T «{» A }; };", "a type cannot be declared inside another declaration"),
+    ("struct S { struct T «{» long a; }; };", INSIDE),
+    ("struct S { enum T «{» A }; };", INSIDE),
     ("struct S «:» T { };", "inheritance of structs is not supported"),
     ("struct S { «}»;", "a struct must not be empty"),
     ("enum E { «}»;", "an enum must not be empty"),
@@ -58,7 +59,25 @@ CASES = [
     ("struct S { long a «home»; };", "expected '[', ',' or ';', not 'home'"),
     ("struct S { long a «:» 3; };", "expected '[', ',' or ';', not ':'"),
     ("struct S { long a«>»; };", "expected '[', ',' or ';', not '>'"),
+    ("struct «3» { };", "expected a name, not '3'"),
+    ("struct «3x» { };", "expected a name, not '3x'"),
+    ("struct «__a» { long b; };", f"'__a' is not a legal name: {RULE}"),
+    # What is before the mistake may be long.
+    (f"struct S {{ struct {'T' * 100} «{{»", INSIDE),
+    # Prefixes of wide texts where no name can stand.
+    ('const string S = "a" «L"abc»\n;', "this string is not closed in its line"),
+    ("struct S { long a «L»'x; };", "a character literal must have one character, or one escape, "
+     "between its quotes"),
+    ("struct S { long«<»3> a; };", "expected 'long' or a name, not '<'"),
+    ("struct S { sequence<long, 1>«>»2> a; };", SHIFT),
+    ("struct S { string<3>«>» a; };", SHIFT),
+    ("struct S { long a, «}»;", "a name must follow the comma"),
+    ("struct S { long a[«]»; };", "expected a name, a value, '(' or an operator, not ']'"),
+    ("struct S { unsigned «float» a; };", "expected 'long' or 'short', not 'float'"),
+    ("struct S { fixed<3«>» a; };", "expected ',', not '>'"),
     ("struct«»", "expected a name, but the file ends here"),
+    ("struct« » \n", "expected a name, but the file ends here"),
+    ("struct S { long a; }«\n»", "expected ';', but the file ends here"),
 ]  # fmt: skip
 
 
@@ -162,6 +181,52 @@ def test_names_that_are_no_types_are_marked(name, message, form):
     start, end = first.span.start, first.span.end
     assert (text[start:end], first.message) == (name, message)
     assert start == text.index(form.format(name)) + form.index("{")
+
+
+DIMENSIONS = "arrays of several dimensions are not supported"
+SIZES = [
+    ("«sequence<sequence<long>>» a;", "a sequence of sequences is not supported"),
+    ("«sequence<S, 3>» a;", "a sequence of sequences is not supported"),
+    ("«sequence<A>» a;", "a sequence of arrays is not supported"),
+    ("sequence<long> a[«2»];", "an array of sequences is not supported"),
+    ("S a[«1 + 1»];", "an array of sequences is not supported"),
+    ("A a[«3»];", DIMENSIONS),
+    ("long a[2][«3»];", DIMENSIONS),
+    ("long a[2][3][«4»];", DIMENSIONS),
+    ("long a[«0»];", "the length of an array must be at least 1, not 0"),
+    ("sequence<long, «-1»> a;", "the bound of a sequence must be at least 1, not -1"),
+    ("string<«4294967296»> a;", "the bound of a string must be at most 4294967295"),
+    ("wstring<«0»> a;", "the bound of a string must be at least 1, not 0"),
+    ("sequence<wstring<2>, «4294967295 + 1»> a;",
+     "the bound of a sequence must be at most 4294967295"),
+    ("long a[«1.5»];", "the length of an array must be an integer"),
+    ("string<«'a'»> a;", "the bound of a string must be an integer"),
+    ("sequence<long, «TRUE»> a;", "the bound of a sequence must be an integer"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("marked", "message"), SIZES)
+def test_wrong_sizes_and_nested_types_are_marked(marked, message):
+    head = "module p { typedef long A[2]; typedef sequence<long> S; struct T { "
+    text = f"{head}{marked.replace('«', '').replace('»', '')} }}; }};"
+    (wrong,) = read(text)[1]
+    start, end = wrong.span.start, wrong.span.end
+    found = f"{text[:start]}«{text[start:end]}»{text[end:]}"
+    assert (found, wrong.message) == (f"{head}{marked} }}; }};", message)
+
+
+def test_sizes_are_numbers_of_32_bits():
+    most = 2**32 - 1
+    members = f"string<{most}> a; sequence<long, {most}> b; long c[{most}]; long d[~{most - 5}];"
+    messages, wrong = read(f"module p {{ struct T {{ {members} }}; }};")
+    assert wrong == []
+    types = [member.type for member in messages["T"].members]
+    assert [(type_.bound or type_.size).value for type_ in types] == [most, most, most, 5]
+
+
+def test_a_struct_outside_of_modules_has_no_full_name():
+    (wrong,) = read("struct T { T a; };")[1]
+    assert wrong.message == OF_ROS.format("T")
 
 
 @pytest.mark.parametrize(

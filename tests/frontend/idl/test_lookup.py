@@ -218,6 +218,29 @@ def test_a_file_of_the_same_name_in_two_folders_is_that_beside_the_one_that_incl
     }
     found = types(library(tmp_path, files).message("p/msg/T"))
     assert found == {"a": "int32[2]", "b": "int32[3]"}
+    # A file beside the one that includes them all is another one.
+    files["p/msg/sizes.idl"] = "module q { module msg { const long N = 7; }; };"
+    found = types(library(tmp_path, files).message("p/msg/T"))
+    assert found == {"a": "int32[2]", "b": "int32[3]"}
+
+
+@pytest.mark.parametrize("kind", ["msg", "srv", "action"])
+@pytest.mark.parametrize("path", ["sizes.idl", "more/sizes.idl", "p/{}/sizes.idl"])
+def test_a_path_is_also_looked_for_in_the_folder_of_the_file(tmp_path, kind, path):
+    path = path.format(kind)
+    parts = {"msg": ["T"], "srv": ["T_Request", "T_Response"]}
+    structs = "".join(
+        f"struct {name} {{ long a[N]; }}; "
+        for name in parts.get(kind, ["T_Goal", "T_Result", "T_Feedback"])
+    )
+    files = {
+        f"p/{kind}/T.idl": f'#include "{path}"\nmodule p {{ module {kind} {{ {structs} }}; }};',
+        path if path.startswith("p/") else f"p/{kind}/{path}": (
+            f"module p {{ module {kind} {{ const long N = 5; }}; }};"
+        ),
+    }
+    first = library(tmp_path, files).interface(f"p/{kind}/T").messages[0]
+    assert types(first) == {"a": "int32[5]"}
 
 
 def test_files_of_one_library_do_not_remember_those_of_another(tmp_path, monkeypatch):
