@@ -140,12 +140,15 @@ def test_wrong_combinations_are_refused(capsys, arguments, reason):
 
 OTHERS = {
     "bag": "x",
+    "board": "sim",
     "bus-bytes": "4",
     "executor": "dask://host:1",
     "golden": "x",
     "mutations": "1",
     "oracle": "genmsg",
+    "node": "x",
     "reference": "none",
+    "report": "x.md",
     "results": "x",
     "simulator": "ghdl",
     "systems": "ts1",
@@ -160,6 +163,21 @@ def test_options_of_test_systems_are_refused_beside_libraries(capsys, name):
         main(["verify", "--sut", "rosbags", "p/A", f"--{name}", OTHERS[name]])
     assert left.value.code == 2
     assert "--sut" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "option", ["--share-circuits", "--no-share-circuits", "--no-stalls", "--no-broken"]
+)
+def test_options_without_a_value_are_refused_beside_libraries(capsys, option):
+    with pytest.raises(SystemExit) as left:
+        main(["verify", "--sut", "rosbags", "p/A", option])
+    assert left.value.code == 2
+    assert "go with --sut" in capsys.readouterr().err
+
+
+def test_a_recording_may_be_of_a_distribution(request_of):
+    found = request_of("--bag", "x.mcap", "--distro", "humble")
+    assert found == Request(bags=("x.mcap",), distros=("humble",))
 
 
 def test_a_node_is_written_instead_of_a_run(tmp_path, monkeypatch, capsys):

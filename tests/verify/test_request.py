@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import pytest
 
+import firm_hdl.verify.request as module
 import firm_hdl.verify.run as run
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.verify.request import Workload, resolve
@@ -169,3 +170,62 @@ def test_what_is_not_judged_counts_for_the_run_as_for_each_system(fixed, capsys)
     assert capsys.readouterr().out == f"{lines}\n"
     assert run.run_workload(workload(systems=("ts1", "ts3"), types=("p/A",))) == 1
     assert capsys.readouterr().out == f"{lines}, although named, so the run fails\n"
+
+
+def test_a_run_without_a_judged_test_is_no_success():
+    passed = Judged(what="a", verdict=Passed(1))
+    silent = [Judged(what=name, verdict=NotJudged("no")) for name in "bc"]
+    for is_named in (False, True):
+        for found in ([], silent):
+            assert not run.succeeded(found, is_named=is_named)
+            lines = [f"not judged: {each.what}: no" for each in found]
+            end = "no test was judged, so the run fails"
+            assert run.concluded(found, is_named=is_named) == [*lines, end]
+        assert run.succeeded([passed], is_named=is_named)
+        assert run.concluded([passed], is_named=is_named) == []
+    assert run.succeeded([*silent, passed], is_named=False)
+    assert run.concluded([*silent, passed], is_named=False)[-1] == "2 of 3 tests were not judged"
+
+
+def test_the_file_of_results_names_the_first_of_the_refused_definitions(tmp_path, fixed, capsys):
+    fixed(ts3=Passed(1))
+    problems = {f"error: {name}": Diagnostic(message=name) for name in "bac"}
+    assert run.run_workload(workload(problems, results=str(tmp_path / "r.jsonl"))) == 1
+    (session,) = read_results(tmp_path / "r.jsonl").sessions
+    assert session["definitions that are refused"] == "3: error: a"
+    # All of them are printed, in their order.
+    assert capsys.readouterr().err == "error: b\nerror: a\nerror: c\n"
+
+
+def test_types_of_a_recording_are_of_the_distribution_that_was_named(tmp_path):
+    bag = str(make_recording(tmp_path, "mcap"))
+    for given, distro in (((), "lyrical"), (("humble",), "humble")):
+        found = names_of(resolve(Request(bags=(bag,), distros=given)))
+        assert {each for each, _ in found} == {distro}
+
+
+@pytest.mark.parametrize(
+    ("distros", "asked"),
+    [((), ["lyrical"]), (("noetic", "iron"), ["noetic", "iron"])],
+)
+def test_the_workspace_of_each_distribution_is_searched_for_packages(monkeypatch, distros, asked):
+    calls = []
+
+    def folders(distro, packages):
+        calls.append((distro, sorted(packages)))
+        return []
+
+    monkeypatch.setattr(module, "workspace_folders", folders)
+    types = ("no_msgs/Such", "own_msgs/msg/Other", "no_msgs/srv/More")
+    with pytest.raises(UnknownTypeError):
+        resolve(Request(types=types, distros=distros))
+    assert calls == [(distro, ["no_msgs", "own_msgs"]) for distro in asked]
+
+
+def test_a_board_without_a_node_sends_the_named_types_back():
+    types = ("std_msgs/Bool", "std_msgs/msg/Int8")
+    given = {"board": "sim", "systems": ("board",), "distros": ("lyrical",), "types": types}
+    work = resolve(Request(**given))
+    assert names_of(work) == [("lyrical", "std_msgs/msg/Bool"), ("lyrical", "std_msgs/msg/Int8")]
+    assert len(work.board.loops()) == 2
+    assert resolve(Request(types=types)).board is None

@@ -122,7 +122,7 @@ class _RosbagsCodec(ObjectCodec):
         if kind.kind == "float":
             values = values.astype(f"<f{kind.bytes}").view(f"<u{kind.bytes}")
         elif kind.name == "byte" and kind.signed:
-            # rosbags has arrays of bytes as unsigned. In ROS 1, neither sign is right or wrong.
+            # numpy's type of arrays of bytes is rosbags' business; in ROS 1, bytes have a sign.
             values = values.view(np.int8)
         return list(values.tolist())
 

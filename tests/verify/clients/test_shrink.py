@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from firm_hdl.model import closure
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.clients.shrink import shrunk
 from firm_hdl.verify.references.objects import full_text
@@ -145,3 +146,29 @@ def test_shrinking_ends_at_the_time_limit(make_message):
     assert shrunk(finding, lambda *_: None) is finding
     # Candidates of the same size are refused; otherwise, shrinking would not end.
     assert shrunk(finding, lambda *_: replace(finding)) is finding
+
+
+def test_times_stay_whole_and_values_keep_their_kinds(make_message):
+    """A time has no definition of its own, so no part of one can be taken out."""
+    message = make_message("uint8 a\ntime t\ntime[2] many\nB b", "noetic", B="duration d\nbool f")
+    times = {"secs": 5, "nsecs": 6}
+    value = {"a": 1, "t": times, "many": [times, times], "b": {"d": times, "f": True}}
+    asked = []
+
+    def again(message, what, value):
+        asked.append(message)
+        kept = [each for name, each in all_items(value) if name in ("t", "d")]
+        is_shown = len(kept) > 0 and "f" in dict(all_items(value))
+        return replace(finding, message=message, value=value) if is_shown else None
+
+    finding = Finding(
+        library="", reference="", wire="ros1", what="decode", message=message, value=value,
+        packet=b"", expected=None, got=None,
+    )  # fmt: skip
+    found = shrunk(finding, again)
+    assert repr(found.value) == repr({"d": times, "f": False})
+    whole = message.fields[1].type
+    for each in asked:
+        assert each.package
+        inner = [kind for kind in closure([each]) if kind.name in ("time", "duration")]
+        assert all(len(kind.fields) == len(whole.fields) == 2 for kind in inner)

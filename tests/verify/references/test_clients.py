@@ -266,6 +266,7 @@ def test_whatever_a_parser_raises_is_a_refusal_of_the_definition(
 ):
     def fails(message):
         print("the parser prints")
+        print("the parser prints", file=sys.stderr)
         raise error(7)
 
     codec = {"mcap-ros1": "_McapRos1Codec", "mcap-ros2": "_McapRos2Codec"}[name]

@@ -67,8 +67,9 @@ def test_another_version_source_or_compiler_makes_another_program(folder, monkey
     for old, new in (("1.0.24", "1.0.25"), ("12.2.0", "13.1.0")):
         (folder / "macros").write_text((folder / "macros").read_text().replace(old, new))
         programs.append(module._compiled(None))
-    (folder / "worker.cpp").write_bytes(module._SOURCE.read_bytes() + b"\n")
-    monkeypatch.setattr(module, "_SOURCE", folder / "worker.cpp")
+    # The source has the same name, and other content.
+    (folder / module._SOURCE.name).write_bytes(module._SOURCE.read_bytes() + b"\n")
+    monkeypatch.setattr(module, "_SOURCE", folder / module._SOURCE.name)
     programs.append(module._compiled(None))
     other = executable(folder / "clang++", (folder / "c++").read_text())
     monkeypatch.setenv("CXX", str(other))

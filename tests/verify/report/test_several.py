@@ -9,9 +9,19 @@ import pytest
 from firm_hdl.verify.report import summary as module
 from firm_hdl.verify.report.command import FORMATS
 from firm_hdl.verify.report.outcomes import outcomes_of
-from firm_hdl.verify.report.prose import facts, shown_packages, shown_tests
+from firm_hdl.verify.report.prose import facts, shown_packages, shown_tests, slowest_suite
+from firm_hdl.verify.report.stats import Correlation
 from firm_hdl.verify.report.summary import summarise
-from firm_hdl.verify.report.tables import coverage_table, group_table, oracle_table
+from firm_hdl.verify.report.tables import (
+    coverage_table,
+    every_table,
+    failure_table,
+    group_table,
+    oracle_table,
+    stage_table,
+    trend_table,
+    within_table,
+)
 from firm_hdl.verify.report.verdicts import reason_groups
 from firm_hdl.verify.results.file import Results
 from firm_hdl.verify.results.records import OracleVerdict, PlanCoverage, Seconds
@@ -220,3 +230,62 @@ def test_long_lists_begin_with_what_did_not_pass_and_keep_the_order_otherwise():
     assert types(shown_tests(summary, 5)[0]) == ["D", "F", "B", "C", "E"]
     packages = [group.labels[-1] for group in shown_packages(summary, 5)[0]]
     assert packages == ["b", "c", "d", "f", "a"]
+
+
+def test_a_column_that_is_empty_at_first_is_kept_for_the_others():
+    records = [
+        a_record(a_test(f"p/{name}"), verdict=Failed(("no",)), command=command)
+        for name, command in (("A", ""), ("B", "run B"))
+    ]
+    table = failure_table(summary_of(*records).failed)
+    assert [row[-1] for row in texts(table)] == ["", "run B"]
+
+
+def test_tests_without_processor_time_have_no_row_for_it():
+    records = [a_record(a_test(f"p/T{n}"), cpu_seconds=0.0) for n in range(3)]
+    (curve,) = summary_of(*records).curves
+    names = [row[1] for row in texts(stage_table([curve]))]
+    assert names == ["generation", "simulation", "testing", "all stages"]
+
+
+def test_shares_are_of_all_tests_although_a_curve_has_fewer_points():
+    records = [a_record(a_test(f"p/T{n}"), seconds=Seconds(testing=1.0 + n)) for n in range(500)]
+    (curve,) = summary_of(*records).curves
+    assert len(curve.points) < 500
+    assert texts(within_table([curve]))[0][1] == "500"
+
+
+def test_what_has_no_figure_is_sorted_before_all_that_have_one():
+    """Shares and R² are from 0 to 1."""
+    table = every_table(summary_of(a_record(coverage=None)).outcomes)
+    (row,) = table.rows
+    cell = row[table.headings.index("Plan coverage#")]
+    assert (cell.text, cell.value < 0) == ("-", True)
+    found = Correlation(count=2, pearson=1.0, spearman=1.0, linear=None, power=None)
+    trend = module.Trend(suite="s", metric="m", time="total", correlation=found, points=())
+    table = trend_table([trend])
+    for cell, name in zip(table.rows[0], table.headings, strict=True):
+        assert name != "R²#" or (cell.text, cell.value < 0) == ("-", True)
+
+
+def test_a_type_of_two_distributions_is_two_types_to_processor_time():
+    records = [
+        a_record(a_test("p/msg/A", distro=distro, same=(distro,)), cpu_seconds=took)
+        for distro, took in (("iron", 1.0), ("jazzy", 3.0))
+    ]
+    said = {what: figure for figure, what in facts(summary_of(*records))}
+    assert said["median CPU time per test"] == "3 s" and said["types"] == "1"
+
+
+@pytest.mark.parametrize("slow", ["bench", "ts3"])
+def test_the_suite_that_takes_most_time_is_the_slowest(slow):
+    records = [
+        a_record(
+            a_test(f"p/msg/T{n}", system=system),
+            seconds=Seconds(simulation=(3.0 if system == slow else 1.0) * (n + 1)),
+            metrics={"leaves": n + 1},
+        )
+        for system in ("bench", "ts3")
+        for n in range(6)
+    ]
+    assert slowest_suite(summary_of(*records)) == f"{slow}, python, 8-byte bus"

@@ -109,6 +109,23 @@ def test_a_difference_of_a_mutation_is_printed_with_the_change(capsys):
     assert "DIFFERS p/msg/A0.msg, one\n    no\n" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("count", "asked", "what"),
+    [
+        (1, {}, "1 definition"),
+        (2, {}, "2 definitions"),
+        # The seed is for mutations, and may be 0.
+        (1, {"seed": 5}, "1 definition"),
+        (1, {"mutations": 1}, "1 mutation"),
+        (3, {"mutations": 3, "seed": 5}, "3 mutations"),
+    ],
+)
+def test_what_was_judged_is_counted_by_its_name(capsys, count, asked, what):
+    judged(Run(*[{"one": Passed(1)}] * count, **asked))
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last.startswith(f"{what}, ") and last.endswith(" s, 0 differences")
+
+
 def test_verdicts_are_counted_in_rows_and_details_below(capsys):
     judged(
         Run(

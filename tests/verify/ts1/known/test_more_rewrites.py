@@ -67,6 +67,19 @@ def test_rewriting_idl(key, before, after):
     assert rewritten(key, before, language="idl") == after
 
 
+@pytest.mark.parametrize("included", [False, True])
+def test_a_constant_of_any_type_is_a_value(included):
+    """Its value is not looked up, unless it is an integer."""
+    others = 'const string S = "x"; const float F = 1.5; const boolean B = TRUE; const long N = 3; '
+    text = "const string T = S; const float G = F; const boolean C = B; const octet O = N; "
+    wrong = "const string U = Z; const float H = Z; const octet P = Z;"
+    mended = 'const string U =""; const float H =0.0; const octet P =0;'
+    more = {"included": (others,)} if included else {}
+    head = "" if included else others
+    found = rewritten("idl-values", head + text + wrong, language="idl", **more)
+    assert found == head + text + mended
+
+
 def test_names_of_included_files_are_replaced_only_where_they_are_meant():
     included = ("module q { const long value = 3; typedef short T; typedef long R[2]; };",)
     for text, after in (

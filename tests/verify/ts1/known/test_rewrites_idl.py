@@ -267,6 +267,7 @@ DEFAULTS = [
     ("octet a[2]", '"(1, 2, 3)"', False),
     ("octet a[2]", "1", False),
     ("octet a[2]", '"[1, 2]"', True),
+    ("octet a[2]", '"[1, 2, 3]"', False),
     ("octet a[2]", '"x"', True),
     ("octet a[2]", '"3"', True),
     ("octet a[N]", '"(1, 2)"', True),

@@ -1,0 +1,137 @@
+"""What single libraries do in their own way: numbers of arrays, bounds, and what they print."""
+
+from __future__ import annotations
+
+import logging
+
+import pytest
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from firm_hdl.verify.references import user_oracle as module
+from firm_hdl.verify.references.client import Refusal, UnsupportedError
+from firm_hdl.verify.references.oracle import RosbagsOracle
+from firm_hdl.verify.references.user_oracle import judge_of
+from firm_hdl.verify.references.values import bits_of
+
+
+def data(text):
+    return bytes.fromhex(text)
+
+
+NUMBERS = "float32[] a\nfloat64[2] b\nint16[] c\nbool[2] d\nfloat32 e\nuint64[] f\n"
+NUMBER_VALUE = {
+    "a": [bits_of(1.5, 4), 0x7FA00001],
+    "b": [bits_of(-2.0, 8), 1],
+    "c": [-2, 3],
+    "d": [True, False],
+    "e": bits_of(0.5, 4),
+    "f": [(1 << 64) - 2],
+}
+
+
+@pytest.mark.parametrize("name", ["rosbags", "fastcdr"])
+def test_arrays_of_big_endian_packets_have_the_same_numbers(library_here, make_message, name):
+    codec = library_here(name).open(make_message(NUMBERS), "cdr")
+    packet = data(
+        "00000000 00000002 3fc00000 7fa00001 00000000 c000000000000000 0000000000000001 "
+        "00000002 fffe 0003 01 00 0000 3f000000 00000001 00000000 fffffffffffffffe"
+    )
+    found = codec.decode(packet)
+    assert found == NUMBER_VALUE and repr(found) == repr(NUMBER_VALUE)
+    # Written again, they are little-endian.
+    again = codec.encode(NUMBER_VALUE)
+    assert again[:4] == data("00010000") and codec.decode(again) == NUMBER_VALUE
+
+
+def test_bytes_of_arrays_have_the_sign_of_ros1_there(library_here, make_message):
+    text = "byte[2] a\nbyte[] b\nuint8[] u\nint8[] i\n"
+    codec = library_here("rosbags").open(make_message(text, "noetic"), "ros1")
+    packet = data("c801 01000000 c8 01000000 c8 01000000 c8")
+    value = {"a": [-56, 1], "b": [-56], "u": [200], "i": [-56]}
+    assert codec.decode(packet) == value and codec.encode(value) == packet
+    # In ROS 2, they have none, and rosbags writes them.
+    codec = library_here("rosbags").open(make_message(text), "cdr")
+    packet = data("00010000 c801 0000 01000000 c8 000000 01000000 c8 000000 01000000 c8")
+    assert codec.encode({"a": [200, 1], "b": [200], "u": [200], "i": [-56]}) == packet
+    found = codec.decode(packet)
+    assert (found["u"], found["i"]) == ([200], [-56])
+    assert [each & 0xFF for each in found["a"] + found["b"]] == [200, 1, 200]
+
+
+@pytest.mark.parametrize(
+    ("text", "good", "long"),
+    [
+        ("string<=2 a\n", b"xy", b"xyz"),
+        ("uint8[<=2] a\n", [1, 2], [1, 2, 3]),
+        ("string<=2[] a\n", [b"xy"], [b"xy", b"xyz"]),
+        ("uint8[2] a\n", [1, 2], [1, 2, 3]),
+    ],
+)
+def test_cyclone_dds_writes_nothing_that_exceeds_a_bound(
+    library_here, make_message, text, good, long
+):
+    codec = library_here("cyclonedds").open(make_message(text), "cdr")
+    assert codec.decode(codec.encode({"a": good})) == {"a": good}
+    with pytest.raises(Refusal):
+        codec.encode({"a": long})
+
+
+@pytest.mark.parametrize("kind", ["uint8[<={}] a\n", "string[<={}] a\n", "B[<={}] a\n"])
+def test_the_highest_bound_of_cyclone_dds_has_16_bits(library_here, make_message, kind):
+    library = library_here("cyclonedds")
+    assert library.open(make_message(kind.format(65535), B="int8 x\n"), "cdr")
+    with pytest.raises(UnsupportedError, match=r"^cyclonedds has no bound of 65536 elements$"):
+        library.open(make_message(kind.format(65536), B="int8 x\n"), "cdr")
+    # Texts and arrays may be longer.
+    assert library.open(make_message("string<=65536 a\nuint8[65536] b\n"), "cdr")
+
+
+def test_a_text_that_is_not_utf_8_is_read_without_a_word(library_here, make_message, monkeypatch):
+    logger = logging.getLogger("rosout")
+    monkeypatch.setattr(logger, "handlers", [])
+    codec = library_here("mcap-ros1").open(make_message("string s\n", "noetic"), "ros1")
+    assert codec.decode(data("02000000 c328")) == {"s": "\N{REPLACEMENT CHARACTER}(".encode()}
+    # Without a handler, Python prints warnings itself.
+    assert any(isinstance(each, logging.NullHandler) for each in logger.handlers)
+
+
+def test_fields_whose_names_are_words_of_python_are_found(make_message):
+    message = make_message("uint16 from\nB class\n", B="string import\n")
+    judge = judge_of(message)
+    packet = data("00010000 0102 0000 02000000 6100")
+    value = judge.oracle.read(packet, judge.name, "cdr")
+    assert judge.oracle.transfers(value, judge.name, "cdr", 8) == {
+        ("from",): [0x0201],
+        ("class", "import", "length"): [1],
+        ("class", "import", "items"): [((0x61, 0, 0, 0, 0, 0, 0, 0), True)],
+    }
+
+
+@pytest.mark.parametrize(
+    ("files", "is_read"),
+    [
+        # A list of Header is one of the package's own; rosbags takes it for that of std_msgs.
+        ({"A": "Header[] h\n", "Header": "int8 x\n"}, False),
+        ({"A": "B b\n", "B": "int8 x\r\n"}, False),
+        ({"A": "B b\n", "B": "int8 x\n"}, True),
+    ],
+)
+def test_a_needed_definition_that_rosbags_cannot_read_is_noted(make_message, files, is_read):
+    others = {name: text for name, text in files.items() if name != "A"}
+    judge = judge_of(make_message(files["A"], "noetic", **others))
+    given = "rosbags cannot read the definition, and was given the fields as they were resolved"
+    assert judge.note == ("" if is_read else given)
+
+
+@pytest.mark.parametrize(("inner", "note"), [("int8 x\n", ""), ("uint8 x\n", "another way")])
+def test_a_needed_definition_that_rosbags_reads_otherwise_is_noted(
+    make_message, monkeypatch, inner, note
+):
+    message = make_message("B[2] b\n", "noetic", B="int8 x\n")
+    ours = module.resolved_oracle(message)
+    store = get_typestore(Stores.EMPTY)
+    for name, text in (("B", inner), ("A", "B[2] b\n")):
+        store.register(get_types_from_msg(text, f"p/msg/{name}"))
+    monkeypatch.setattr(module, "_oracle", lambda *given: RosbagsOracle(store, "ros1"))
+    assert note in module._note(message, ours, "p/msg/A")
+    assert bool(module._note(message, ours, "p/msg/A")) == bool(note)
