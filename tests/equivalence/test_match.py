@@ -8,7 +8,7 @@ from firm_hdl.equivalence.match import Match, match_names
 
 RTLIL = r"""
 module \top
-  memory width 4 size 3 \store
+  memory width 4 size 3 \words
   wire width 4 \Q
   cell \part \first
     connect \a \Q
@@ -45,7 +45,7 @@ class Names:
 
 TOP = Names(
     signals={"Q": "Q_2"},
-    memories={"store": "Store_mem"},
+    memories={"words": "Store_mem"},
     # An instance without a label is not in the VHDL.
     instances={"first": "First", "second": "second_2"},
 )
@@ -67,7 +67,7 @@ def test_paths_follow_the_instances_of_both_sides():
         # Names in VHDL are in lower case.
         signals={
             ("Q",): ("q_2",),
-            **{(f"store[{place}]",): (f"store_mem[{place}]",) for place in range(3)},
+            **{(f"words[{place}]",): (f"store_mem[{place}]",) for place in range(3)},
             ("first", "r"): ("first", "r_reg"),
             ("second", "r"): ("second_2", "r_reg"),
             **words,
