@@ -122,6 +122,19 @@ PARTS += [
     for ends in ("number in ends).all() | 1", "number in ends).any() & 0")
 ]
 
+_DATA = "Value.cast(payload.data).eq(beat)"
+# The highest bit and the lowest one of each byte of the header; padding has two of the lanes, too.
+PARTS += [
+    (
+        "serializer-joyfeedback-lyrical-4",
+        "layout",
+        _Pack._send,
+        _DATA,
+        f"{_DATA.removesuffix(')')} ^ {1 << bit})",
+    )
+    for bit in (0, 7, 8, 15, 16, 23, 24, 31)
+]
+
 
 @pytest.mark.parametrize(("name", "claim", "function", "old", "new"), PARTS)
 def test_a_bug_that_one_part_of_a_claim_finds_breaks_the_claim(name, claim, function, old, new):
