@@ -90,7 +90,7 @@ PARTS = [
 
 _JOINED = "Value.cast(self.record.payload).eq(Cat(parts[bit] for bit in sorted(parts)))"
 _LANES = "_values(leaf).eq(vector[self._record.bits_of(places)])"
-# The highest bit of each leaf of a record, and the lowest one; the last lane has no value in the
+# Bits of each leaf of a record, at its ends; the last lane has no value in the
 # second transfer of an array.
 PARTS += [
     (
@@ -100,7 +100,7 @@ PARTS += [
         _JOINED,
         _JOINED.removesuffix(")") + f" ^ {1 << bit})",
     )
-    for bit in (0, 7, 8, 15, 31, 32, 47)
+    for bit in (7, 8, 31, 47)
 ]
 PARTS += [
     (
@@ -123,7 +123,7 @@ PARTS += [
 ]
 
 _DATA = "Value.cast(payload.data).eq(beat)"
-# The highest bit and the lowest one of each byte of the header; padding has two of the lanes, too.
+# A bit of each byte of the header; padding has two of the lanes, too.
 PARTS += [
     (
         "serializer-joyfeedback-lyrical-4",
@@ -132,7 +132,7 @@ PARTS += [
         _DATA,
         f"{_DATA.removesuffix(')')} ^ {1 << bit})",
     )
-    for bit in (0, 7, 8, 15, 16, 23, 24, 31)
+    for bit in (0, 15, 16, 31)
 ]
 
 
