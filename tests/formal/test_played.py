@@ -20,6 +20,7 @@ from firm_hdl.gateware.packer import _PackerLogic as _Pack
 from firm_hdl.gateware.packets.tail_drop import TailDrop
 from firm_hdl.gateware.parse.claims import Claims
 from firm_hdl.gateware.parse.packet_judge import PacketJudge
+from firm_hdl.gateware.record import RecordReader, RecordWriter
 from tests.formal.play import play
 
 STUDIES = {study.name: study for study in all_studies()}
@@ -84,6 +85,54 @@ PARTS = [
     # A status that is wrong, and a packet that is marked as wrong.
     (BOOL, "statuses", _JUDGE, "payload.eq(found)", "payload.eq(Status.ITEMS)"),
     (BOOL, "statuses", _Pack._send, "eq(is_last & read.data.error)", "eq(1)"),
+]
+
+
+_JOINED = "Value.cast(self.record.payload).eq(Cat(parts[bit] for bit in sorted(parts)))"
+_LANES = "_values(leaf).eq(vector[self._record.bits_of(places)])"
+# Bits of each leaf of a record, at its ends; the last lane has no value in the
+# second transfer of an array.
+PARTS += [
+    (
+        "record-reader",
+        "order",
+        RecordReader.elaborate,
+        _JOINED,
+        _JOINED.removesuffix(")") + f" ^ {1 << bit})",
+    )
+    for bit in (7, 8, 31, 47)
+]
+PARTS += [
+    (
+        "record-writer",
+        "order",
+        RecordWriter._offer,
+        _LANES,
+        f"{_LANES.removesuffix(')')} ^ ({1 << bit} if {chosen} else 0))",
+    )
+    for bit, chosen in (
+        (7, "len(_values(leaf)) == 8"),
+        (15, "len(transfers) == 1 and len(_values(leaf)) == 16"),
+        (0, "len(transfers) == 2 and number == 1"),
+        (15, "len(transfers) == 2 and number == 0"),
+    )
+]
+PARTS += [
+    ("record-writer", "order", RecordWriter._offer, "for number in ends).any()", f"for {ends}")
+    for ends in ("number in ends).all() | 1", "number in ends).any() & 0")
+]
+
+_DATA = "Value.cast(payload.data).eq(beat)"
+# A bit of each byte of the header; padding has two of the lanes, too.
+PARTS += [
+    (
+        "serializer-joyfeedback-lyrical-4",
+        "layout",
+        _Pack._send,
+        _DATA,
+        f"{_DATA.removesuffix(')')} ^ {1 << bit})",
+    )
+    for bit in (0, 15, 16, 31)
 ]
 
 

@@ -110,6 +110,23 @@ def test_a_study_lists_all_claims_of_its_scene_and_no_others(monkeypatch, listed
         Fragment.get(scene, None)
 
 
+def test_a_claim_is_found_by_its_name_among_those_of_the_scene(monkeypatch):
+    names = ["less than five", "more"]
+
+    def build(scene):
+        counting(scene)
+        scene.claim("more", Const(1))
+
+    # A study may list them in another order.
+    study = Study("count", "", build, tuple(Claim(name, NO_BUG, "BMC", 1) for name in names[::-1]))
+    proofs = {each.name: run.Proof(study, each) for each in study.claims}
+    monkeypatch.setattr(run, "all_proofs", lambda: proofs)
+    monkeypatch.setattr(run, "find_tools", lambda *, ghdl: None)
+    monkeypatch.setattr(run, "write_aiger", lambda scene, *given: Fragment.get(scene, None))
+    monkeypatch.setattr(run, "decide", lambda aiger, output, tools, **how: output)
+    assert [prove(name) for name in names] == [0, 1]
+
+
 def wrong_at_once(scene):
     """A claim that an input breaks in the first cycle only."""
     scene.claim("low", ~(scene.free(1, "go") & scene.first))

@@ -98,6 +98,29 @@ def test_a_packet_may_end_with_a_length_or_a_step_without_bytes(end, bus_bytes):
         assert alone.run_messages(messages, slow).packets == packets
 
 
+def test_strings_and_bytes_side_by_side_may_be_empty():
+    """On CDR, the length of a string counts its NUL, and that of bytes counts none."""
+    message = make("ros2", {"s": "string", "a": "uint8[]", "t": "string"})
+    rx, tx = Deserializer(message), Serializer(message)
+
+    def part(items, nul=b""):
+        data = (len(items) + len(nul)).to_bytes(4, "little") + items + nul
+        return data + bytes(-len(data) % 4)
+
+    texts, numbers = (b"", b"x", b"abc"), (b"", b"\1", b"\1\2\3")
+    packets = [
+        # The last string has no padding behind it.
+        b"\0\1\0\0" + part(text, b"\0") + part(items) + part(last, b"\0")[: 5 + len(last)]
+        for text in texts
+        for items in numbers
+        for last in texts[:2]
+    ]
+    seen = Harness(rx, tx).run_packets(packets)
+    assert seen.packets == packets
+    assert carried(seen.transfers) == expected(rx.plan, packets)[0]
+    assert set(seen.statuses) | set(seen.sent_statuses) == {Status.OK}
+
+
 @pytest.mark.parametrize("wire", WIRES)
 @few
 @given(data=st.data(), case=typed_values(wide=True), options=options, stalls=stall_plans)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from amaranth.hdl import Const, Module, Signal
+from amaranth.hdl import Const, Module, ResetInserter, Signal
 from amaranth.lib.wiring import Component, In, Out
 from amaranth.sim import Simulator
 
@@ -11,22 +11,26 @@ from firm_hdl.gateware.counter import Counter
 
 
 class _Counting(Component):
-    """A counter with a load of 9, and a default load of a number, which may come late."""
+    """A counter with a load of 9, and a default load of a number, which may come late.
 
-    def __init__(self, *, late: bool):
-        self.late = late
+    `number` is what is loaded, and `less` is in the number that the counter gets beside it.
+    """
+
+    def __init__(self, *, late: bool, less: int = 0, most: int = 255, start: int | None = None):
+        self.late, self.less, self.most, self.start = late, less, most, start
         inputs = {"nine": In(1), "begins": In(1), "number": In(8), "down": In(1)}
         super().__init__({**inputs, "last": Out(1)})
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        counter = Counter(255, "counter")
-        value, double = self.number, None
+        counter = Counter(self.most, "counter", self.start)
+        value, double, less = self.number + self.less, None, Const(self.less, 1)
         if self.late:
-            value, double = Signal(8), self.number == 2
-            m.d.sync += value.eq(self.number)
+            value, less, double = Signal(9), Signal(), self.number == 2
+            # Both are valid one cycle after `begins`, and have any value in others.
+            m.d.sync += [value.eq(self.number + self.less), less.eq(self.begins & self.less)]
         counter.load(self.nine, 9)
-        counter.preload(self.begins, value, self.number == 1, double, Const(0, 1))
+        counter.preload(self.begins, value, self.number == 1, double, less)
         counter.down(self.down)
         counter.add_logic(m)
         m.d.comb += self.last.eq(counter.last)
@@ -85,3 +89,47 @@ def test_a_count_beside_a_load_is_not_subtracted(late: bool, nine: bool) -> None
     for number in (1, 2, 3, 4, 9):
         found = _counts_until_last(_Counting(late=late), number, nine=nine, pause=1, down=True)
         assert found == (8 if nine else number - 1)
+
+
+@pytest.mark.parametrize("pause", [0, 1])
+@pytest.mark.parametrize("late", [False, True])
+def test_one_of_the_number_may_be_subtracted_later(late: bool, pause: int) -> None:
+    for number in (1, 2, 3, 4, 8, 254):
+        counting = _Counting(late=late, less=1)
+        assert _counts_until_last(counting, number, nine=False, pause=pause) == number - 1
+
+
+@pytest.mark.parametrize("late", [False, True])
+@pytest.mark.parametrize("most", [1, 7, 8, 9, 127, 128])
+def test_the_largest_number_fits(late: bool, most: int) -> None:
+    counting = _Counting(late=late, most=most)
+    assert _counts_until_last(counting, most, nine=False) == most - 1
+
+
+@pytest.mark.parametrize("start", [1, 2, 3, 9])
+def test_a_reset_restores_the_number_at_the_start(start: int) -> None:
+    counting = _Counting(late=False, start=start)
+    reset, lasts = Signal(), []
+
+    async def use(ctx) -> None:  # type: ignore[no-untyped-def]
+        for counts in (0, 1, start - 1, start + 3):
+            ctx.set(counting.down, 1)
+            await ctx.tick().repeat(counts) if counts else None
+            # A count beside the reset is not subtracted.
+            ctx.set(reset, 1)
+            await ctx.tick()
+            ctx.set(reset, 0)
+            ctx.set(counting.down, 0)
+            await ctx.tick()
+            found = 0
+            ctx.set(counting.down, 1)
+            while not ctx.get(counting.last) and found < 20:
+                await ctx.tick()
+                found += 1
+            lasts.append(found)
+
+    simulator = Simulator(ResetInserter(reset)(counting))
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(use)
+    simulator.run()
+    assert lasts == [start - 1] * 4

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.plan import build_plan
+from firm_hdl.plan import build_plan, cycles
 from firm_hdl.plan.cycles import (
     cycles_between,
     deserializer_cycles,
@@ -134,6 +134,39 @@ def test_items_start_at_their_alignment_after_the_header_if_there_are_any(count,
     data += (bytes(4) + bytes(8 * count)) if count else b""
     packet = packet_for({"q": "float64[]"}, data, bus_bytes, "ros2")
     assert packet.next_start(0) == start
+
+
+CDR = b"\0\1\0\0"
+TEXT_OF_8 = CDR + b"\x09\0\0\0" + b"abcdefgh\0" + bytes(7 - 4) + bytes(8)
+ITEM = CDR + b"\1\0\0\0" + bytes(4) + bytes(8) + b"\7"
+
+
+@pytest.mark.parametrize(
+    ("fields", "data", "bus_bytes", "dialect", "beats"),
+    [
+        # 16 bytes from lane 7 on, and the rest of the last beat.
+        ({"a": "uint64", "b": "uint64"}, bytes(16), 8, "ros1", [(7 + 16 + 7) // 8]),
+        # On a bus of one byte, there is no rest; a packet without bytes has a beat.
+        ({"a": "uint8"}, b"\7", 1, "ros1", [1]),
+        ({"e": EMPTY}, b"", 1, "ros1", [1]),
+        ({"e": EMPTY}, b"", 8, "ros1", [(7 + 0 + 8) // 8]),
+        # 8 letters, NUL and a number of 8 bytes, with padding of at most 3 bytes: an alignment to 8
+        # is one to 4 within the packet, whose header has 4 bytes.
+        (
+            {"s": "string", "d": "float64"},
+            TEXT_OF_8,
+            8,
+            "ros2",
+            [(7 + 8) // 8, (7 + 17 + 3 + 7) // 8],
+        ),
+        # Items after padding of at most 3 bytes; an empty sequence has none.
+        ({"a": "float64[]", "d": "uint8"}, ITEM, 8, "ros2", [(7 + 8 + 3) // 8, (7 + 9 + 7) // 8]),
+        ({"a": "float64[]", "d": "uint8"}, CDR + bytes(4) + b"\7", 8, "ros2", [1, 1]),
+    ],
+)
+def test_the_most_beats_of_a_serializer_s_step(fields, data, bus_bytes, dialect, beats):
+    packet = packet_for(fields, data, bus_bytes, dialect)
+    assert [step.max_beats for step in cycles._writes(packet)] == beats
 
 
 def test_packets_of_no_bytes_have_a_beat():

@@ -21,9 +21,11 @@ from tests.gateware.packets.gates import (
     OK,
     OVERRUN,
     GateRun,
+    expected_statuses,
     gate_bench,
 )
 from tests.gateware.test_parser import GOOD, HEADER
+from tests.strategies import make
 
 
 def test_a_link_that_cannot_be_held_drops_whole_packets():
@@ -109,6 +111,36 @@ def test_statuses_that_are_not_taken_hold_the_gate_or_drop_packets():
         assert len(seen.others["status"]) == inside + MOST_DROPPED
         assert bench.state["passed"] == inside
         assert bench.state["overrun"] == MOST_DROPPED + more
+
+
+TEXTS = make("ros1", dict.fromkeys("abcd", "string"), "Texts")
+
+
+def texts(rng, number):
+    """Return a packet of four texts, of which the first tells its number, or that has no text.
+
+    Without text, it is a beat of 16 bytes, for which the parser takes five steps.
+    """
+    if rng.random() < 0.6:
+        return bytes(16)
+    packet = b"\2\0\0\0" + number.to_bytes(2, "little") + bytes(12)
+    return packet[: rng.choice([18, 18, 18, 17, 3])]
+
+
+@pytest.mark.parametrize("seed", [0, 2])
+def test_statuses_are_in_the_order_of_packets_however_late_they_are_taken(monkeypatch, seed):
+    monkeypatch.setattr("firm_hdl.gateware.packets.gate.BACKLOG_BEATS", 5)
+    rng = random.Random(seed)
+    packets = [texts(rng, number) for number in range(60)]
+    gate = PacketGate(TEXTS, wire="ros1", bus_bytes=16, memory_bytes=4096, when_full="drop")
+    # Bursts with pauses in which all that was dropped is reported, one packet at a time.
+    came = "".join("1" * rng.randrange(2, 40) + "0" * rng.randrange(99) for _ in range(6))
+    stalls = {"in": Stalls.bits(came), "status": Stalls.bits(["1", "01", "0" * 9 + "1"][seed % 3])}
+    run = GateRun(gate, packets, stalls=stalls, deadline=2000)
+    alone = expected_statuses(TEXTS, packets, 16)
+    assert OVERRUN in run.statuses and OK in run.statuses
+    for status, own in zip(run.statuses, alone, strict=True):
+        assert status in (own, OVERRUN)
 
 
 # Must-fail twins: a gate with a fault, which the checks find.

@@ -290,3 +290,17 @@ def test_padding_after_a_constant_loop_is_that_of_its_last_round(count):
     assert check(plan) == []
     padding, _ = plan.steps[-1].slices
     assert padding == Pad(at=0, bytes=5 if count % 2 else 1)
+
+
+def test_a_run_has_one_transfer_behind_it():
+    """The words of a run are all but the last transfer of its items."""
+    plan = build_plan(lay_out(make("ros1", {"b": "uint8[21]"})))
+    words, tail = plan.steps
+    assert plan.start.enter == (("run", 16),) and tail.bytes == 5
+    # A word less in the run, and a step for it before the tail.
+    (part,) = tail.slices
+    word = replace(part, bytes=8, size=8, end=None)
+    more = replace(tail, bytes=8, slices=(word,), exits=Exits(default=Jump(step=2)))
+    start = replace(plan.start, enter=(("run", 8),))
+    problems = check(replace(plan, start=start, steps=(words, more, tail)))
+    assert problems == ["leaf b.items: 2 transfers and 1 runs"]
