@@ -295,7 +295,14 @@ def test_libraries_get_the_messages_that_converters_are_measured_with(
         samples.append(sample)
         return Timed(deserialize=1.0, serialize=2.0)
 
-    monkeypatch.setattr(run, "LIBRARIES", {"one": note, "other": note})
+    def refuse(sample: Sample) -> Timed:
+        raise NoFigureError("it has no such type")
+
+    def miss(sample: Sample) -> Timed:
+        raise ProgramMissingError("it is not here")
+
+    libraries = {"one": note, "refuses": refuse, "misses": miss, "other": note}
+    monkeypatch.setattr(run, "LIBRARIES", libraries)
     what = replace(result("std_msgs/String").converter, distro="noetic", wire="ros1", bus_bytes=4)
     found = run.compare_software(BenchTask(converter=what, stated=Stated(count=5)), [result()])
     message = load_message("std_msgs/String", distro="noetic")
@@ -307,6 +314,7 @@ def test_libraries_get_the_messages_that_converters_are_measured_with(
     assert len(first.packets) == 5 and sum(map(len, first.packets)) == counted.bytes
     assert found.bytes == counted.bytes / 5 and found.results == (result(),)
     assert list(found.times) == ["one", "other"]
+    assert found.missing == {"refuses": "it has no such type", "misses": "it is not here"}
     run.compare_software(BenchTask(converter=what), [])
     assert len(samples[-1].packets) == 16
 
