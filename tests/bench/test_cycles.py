@@ -27,6 +27,12 @@ def test_values_have_the_stated_lengths_and_repeat() -> None:
     assert {len(value["q"]) for value in drawn} == set(range(3, 9))
     assert {len(value["few"]) for value in drawn} == {3, 4}
     assert drawn == list(islice(values(message, stated), 200))
+    fields = (
+        Field(name="s", type=String(bound=0)),
+        Field(name="q", type=Sequence(element=PRIMITIVES["ros2"]["int8"], bound=0)),
+    )
+    nothing = Message(name="p/msg/Nothing", dialect="ros2", fields=fields)
+    assert list(islice(values(nothing, stated), 9)) == [{"s": "", "q": []}] * 9
     assert drawn != list(islice(values(message, Stated(seed=6)), 200))
 
 

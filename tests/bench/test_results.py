@@ -10,9 +10,9 @@ import pytest
 
 from firm_hdl.bench import BenchError
 from firm_hdl.bench.compare import compare, compared
-from firm_hdl.bench.devices import DEVICES
+from firm_hdl.bench.devices import DEVICES, Area
 from firm_hdl.bench.messages import STATED
-from firm_hdl.bench.results import read_results, results_text
+from firm_hdl.bench.results import Result, read_results, results_text
 from firm_hdl.bench.tables import geometric_mean, head, row, summary
 from tests.bench.results import result
 
@@ -107,6 +107,49 @@ def test_figures_that_vanish_are_worse_and_those_that_appear_are_not() -> None:
     assert all(each.is_worse for each in changes)
     assert str(changes[0]).endswith("MHz 82.5 -> none")
     assert not any(each.is_worse for each in compare([missing], [result()], 0.02))
+
+
+def with_area(**counts: int) -> Result:
+    """Return a result with 100 of each element of an area, or with other counts."""
+    found = result()
+    assert found.measured is not None
+    area = dict.fromkeys(("lut", "ff", "carry", "lutram", "bram"), 100) | counts
+    return replace(found, measured=replace(found.measured, area=Area(**area)))
+
+
+@pytest.mark.parametrize(
+    ("name", "figure"),
+    [("lut", "LUT"), ("ff", "FF"), ("carry", "carry"), ("lutram", "RAM"), ("bram", "BRAM")],
+)
+def test_more_of_any_element_is_worse(name: str, figure: str) -> None:
+    for count, is_worse in ((103, True), (97, False)):
+        (change,) = compare([with_area()], [with_area(**{name: count})], 0.02)
+        assert (change.figure, change.new, change.is_worse) == (figure, count, is_worse)
+        word, share = ("worse ", "+3.0 %") if is_worse else ("better", "-3.0 %")
+        assert str(change).startswith(word)
+        assert str(change).endswith(f"{figure} 100 -> {count} ({share})")
+    # Exactly the threshold is not beyond it.
+    assert list(compare([with_area()], [with_area(**{name: 102})], 0.02)) == []
+    # From nothing, any change is.
+    (change,) = compare([with_area(**{name: 0})], [with_area(**{name: 1})], 9.0)
+    assert str(change).endswith(f"{figure} 0 -> 1") and change.is_worse
+
+
+@pytest.mark.parametrize(
+    ("better", "figures"),
+    [
+        ({"mhz": (99.0,)}, ["MHz", "Gbit/s"]),
+        ({"beats": 100}, ["beats per cycle"]),
+        ({"latency": 1}, ["latency"]),
+    ],
+)
+def test_more_speed_and_less_latency_are_better(
+    better: dict[str, object], figures: list[str]
+) -> None:
+    there = list(compare([result()], [result(**better)], 0.02))
+    back = list(compare([result(**better)], [result()], 0.02))
+    assert [each.figure for each in there] == [each.figure for each in back] == figures
+    assert not any(each.is_worse for each in there) and all(each.is_worse for each in back)
 
 
 def test_comparison_names_different_tools_and_missing_converters() -> None:

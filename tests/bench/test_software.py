@@ -9,8 +9,9 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.bench import BenchError
-from firm_hdl.bench.cycles import stated_messages
+from firm_hdl.bench.cycles import count_cycles, stated_messages
 from firm_hdl.bench.messages import Stated
+from firm_hdl.bench.run import BenchTask
 from firm_hdl.bench.software import fastcdr, python, run
 from firm_hdl.bench.software.cpp import cpp_types
 from firm_hdl.bench.software.fastcdr import fastcdr_versions, time_fastcdr
@@ -22,6 +23,7 @@ from firm_hdl.bench.software.timing import best_ns
 from firm_hdl.cli import main
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import load_message
+from firm_hdl.gateware import Serializer
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.model import (
     PRIMITIVES,
@@ -282,6 +284,39 @@ def test_tables_have_times_and_rates() -> None:
         "* Processor: a machine; one thread\n* x: y 1, z 2\n"
     )
     assert machine()
+
+
+def test_libraries_get_the_messages_that_converters_are_measured_with(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    samples: list[Sample] = []
+
+    def note(sample: Sample) -> Timed:
+        samples.append(sample)
+        return Timed(deserialize=1.0, serialize=2.0)
+
+    def refuse(sample: Sample) -> Timed:
+        raise NoFigureError("it has no such type")
+
+    def miss(sample: Sample) -> Timed:
+        raise ProgramMissingError("it is not here")
+
+    libraries = {"one": note, "refuses": refuse, "misses": miss, "other": note}
+    monkeypatch.setattr(run, "LIBRARIES", libraries)
+    what = replace(result("std_msgs/String").converter, distro="noetic", wire="ros1", bus_bytes=4)
+    found = run.compare_software(BenchTask(converter=what, stated=Stated(count=5)), [result()])
+    message = load_message("std_msgs/String", distro="noetic")
+    converter = Serializer(message, wire="ros1", bus_bytes=4)
+    counted = count_cycles(converter, message, Stated(count=5))
+    first, second = samples
+    assert first == second and (first.message.name, first.wire) == ("std_msgs/String", "ros1")
+    # Without the one before, which only fills the converter.
+    assert len(first.packets) == 5 and sum(map(len, first.packets)) == counted.bytes
+    assert found.bytes == counted.bytes / 5 and found.results == (result(),)
+    assert list(found.times) == ["one", "other"]
+    assert found.missing == {"refuses": "it has no such type", "misses": "it is not here"}
+    run.compare_software(BenchTask(converter=what), [])
+    assert len(samples[-1].packets) == 16
 
 
 def test_the_command_prints_both(

@@ -12,6 +12,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.node import Qos, read_description, read_description_text
 from firm_hdl.node.names import expand
+from tests.frontend.recordings import record
 from tests.node.samples import LIBRARY, PACKAGES, WHEELS, read
 
 
@@ -261,6 +262,30 @@ def test_paths_are_relative_to_the_file(tmp_path):
         "node: a\npaths: p\n" + "publish: {w: {type: robot_msgs/Wheel}}"
     )
     assert read_description(tmp_path / "node.yaml").topics[0].type == "robot_msgs/msg/Wheel"
+
+
+def test_recordings_are_read_from_beside_the_file(tmp_path):
+    record(tmp_path / "run.mcap", "own_msgs/msg/Level", "uint16 litres\n")
+    file = tmp_path / "node.yaml"
+    file.write_text("node: a\nbags: run.mcap\npublish: {x: {type: own_msgs/Level}}\n")
+    (topic,) = read_description(file).topics
+    assert [field.name for field in topic.store("out").message.fields] == ["litres"]
+    # A recording has all of its definitions, and would hide those of folders.
+    mistake = r"node\.yaml:2:1: error: recordings are read without any other definitions\nbags: "
+    with pytest.raises(DefinitionError, match=mistake):
+        read_description(file, paths=[PACKAGES])
+    file.write_text(f"paths: '{PACKAGES}'\n" + file.read_text())
+    with pytest.raises(DefinitionError, match=mistake.replace(":2:1:", ":3:1:")):
+        read_description(file)
+    file.write_text("node: a\npublish: {}\nbags: [run.mcap, far.mcap]\n")
+    with pytest.raises(DefinitionError, match=r"node\.yaml:3:7: error: .*far\.mcap"):
+        read_description(file)
+
+
+def test_the_distribution_is_that_of_the_library():
+    text = "node: n\npublish: {a: {type: std_msgs/msg/Bool}}\ndistro: "
+    assert "3:9: error: the types are those of jazzy" in error_of(text + "humble")
+    assert read_description_text(text + "jazzy", library=LIBRARY).distro == "jazzy"
 
 
 @given(st.data())

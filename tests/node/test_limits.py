@@ -150,3 +150,29 @@ def test_a_caret_stays_below_its_own_value():
     assert place.startswith("<description>:1:8: error: 'node' must be text, not a list")
     assert caret == " " * 7 + "^" * len("[a, b]")
     assert line.startswith("{node: [a, b], link")
+
+
+LINK = "node: n\nlink: {%s}\n" + TOPIC
+
+
+def test_the_port_of_a_host_has_limits():
+    text = LINK % "kind: udp, host: 10.0.0.1, host_port: PORT"
+    for port in (1, 65_535):
+        assert described(text.replace("PORT", str(port))).link.host_port == port
+    for port in (0, 65_536):
+        with pytest.raises(DefinitionError, match=f"'host_port' must be .*, not {port}\n"):
+            described(text.replace("PORT", str(port)))
+
+
+@pytest.mark.parametrize(
+    ("baud", "fits"),
+    [(12_240_000, False), (12_260_000, True), (12_750_000, True), (12_760_000, False)],
+)
+def test_a_baud_is_2_percent_off_at_most_in_both_directions(baud, fits):
+    """8 cycles of 100 MHz are the nearest to each of these."""
+    text = LINK % f"kind: uart, baud: {baud}"
+    if fits:
+        assert described(text).link.baud == baud
+        return
+    with pytest.raises(DefinitionError, match="gives 12500000 baud, which is more than 2 % off"):
+        described(text)

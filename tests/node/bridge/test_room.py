@@ -8,6 +8,7 @@ import time
 import pytest
 
 from firm_hdl.node.boards import BoardError, board_of
+from firm_hdl.node.boards.bytestreams import ByteBoard
 from firm_hdl.node.bridge import bridge
 from tests.node.bridge.fakes import ECHO, HEARD, FakeBoard, FakeGraph, bridge_of, run_until
 
@@ -51,6 +52,19 @@ def test_a_socket_that_is_full_or_empty_is_no_error():
     board._socket = Socket()
     assert board.send([b"x"]) is False and board.receive() == []
     assert not board.counters
+
+
+def test_one_message_always_has_room():
+    """Even on a line so slow that nothing may wait."""
+
+    class Line(ByteBoard):
+        def _open(self):
+            raise NotImplementedError
+
+    board = Line("line", 0)
+    assert board.has_room and not board.waits_to_send
+    board._waiting += b"x"
+    assert not board.has_room and board.waits_to_send
 
 
 def test_a_connection_that_is_reset_takes_no_more():

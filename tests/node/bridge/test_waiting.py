@@ -48,6 +48,12 @@ def test_a_response_is_for_a_request_of_its_own_service():
     assert list(calls.ended()) == [made[2]] and not len(calls)
 
 
+def test_tags_fit_into_their_field():
+    calls = Calls(3)
+    calls._tag = (1 << 32) - 2
+    assert [calls.next_tag() for _ in range(3)] == [(1 << 32) - 1, 0, 1]
+
+
 def test_pauses_double_up_to_the_longest_and_begin_again():
     retry = Retry(0.5, 3.0)
     assert retry.at == 0.0

@@ -1,0 +1,1 @@
+"""Readers, writers and discovery alone: what they do with each message."""
