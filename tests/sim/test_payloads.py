@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import random
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,7 +10,6 @@ from firm_hdl.gateware.signatures import leaf_shape, packet_layout
 from firm_hdl.plan import Leaf
 from firm_hdl.sim.payloads import (
     PacketCollector,
-    all_beats,
     beats_of,
     decoder_of,
     encoder_of,
@@ -81,38 +78,3 @@ def test_packets_come_together_from_their_beats(packets, bus_bytes):
     assert collector.packets == packets
     assert collector.partial == b""
     assert collector.beats == sum(beats_of(len(packet), bus_bytes) for packet in packets)
-
-
-@pytest.mark.parametrize("counts", [False, True])
-@pytest.mark.parametrize("bus_bytes", [1, 2, 4, 64])
-def test_only_what_a_receiver_ignores_is_noise(counts, bus_bytes):
-    packet, layout, noise = bytes(range(1, 2 * bus_bytes + 2)), packet_layout(bus_bytes), []
-    for seed in range(40):
-        given = random.Random(seed)
-        beats = [
-            layout.from_bits(bits) for bits in packet_beats(packet, bus_bytes, given, counts=counts)
-        ]
-        assert [beat.last for beat in beats] == [0, 0, 1]
-        # Two full beats, and one byte in the last.
-        data = b"".join(bytes(beat.data) for beat in beats)
-        assert data[: len(packet)] == packet and beats[-1].count == 1
-        noise.append((data[len(packet) :], beats[0].count, beats[1].count))
-    lanes, first, second = (set(each) for each in zip(*noise, strict=True))
-    assert len(lanes) > 1 or bus_bytes == 1
-    if not counts:
-        assert first == second == {bus_bytes}
-    elif bus_bytes <= 4:
-        assert first == second == {*range(bus_bytes + 1)}
-    else:
-        assert len(first) > 9 and max(first) <= bus_bytes
-
-
-def test_noise_is_the_same_in_each_run_and_differs_between_packets():
-    packets = [b"abcde", b"", b"abcde"]
-    beats = list(all_beats(packets, 4, counts=True))
-    assert beats == list(all_beats(packets, 4, counts=True))
-    assert len(beats) == 5 and beats[1] != beats[4]
-    collector = PacketCollector(4)
-    ends = [collector.take(bits) for bits in all_beats(packets, 4)]
-    assert ends == [False, True, True, False, True]
-    assert collector.packets == packets

@@ -7,9 +7,12 @@ import pytest
 from firm_hdl.node import read_description_text
 from firm_hdl.verify.board import judge
 from firm_hdl.verify.board.description import loop_text
+from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.board.talk import room_for
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.systems.options import Request
 from tests.frontend.workspace import make_files
+from tests.node.bridge.fakes import FakeBoard
 from tests.verify.board.fakes import BOTH, STRING, LoopNode, described, verdicts
 
 ONE = described(STRING)
@@ -168,6 +171,30 @@ def test_a_packet_that_is_missing_does_not_hide_how_it_was_counted():
     assert "board: 1 of 7 packets did not come back" in failures[0]
     name = "/loopback/in/std_msgs/String"
     assert f"board: 'truncated' of {name} counts 1 instead of 0" in failures
+
+
+@pytest.mark.parametrize(
+    ("given", "key"),
+    [
+        ({}, ""),
+        ({"node": "n.yaml"}, "node=n.yaml,"),
+        ({"most_cases": 7}, "cases=7,"),
+        ({"broken": False}, "no-broken,"),
+        ({"references": ("a", "b")}, "references=a+b,"),
+        ({"references": ()}, "references=,"),
+        ({"paths": ("x", "y")}, "path=x,path=y,"),
+        (
+            {"node": "n", "most_cases": 1, "broken": False, "references": ("a",), "paths": ("x",)},
+            "node=n,cases=1,no-broken,references=a,path=x,",
+        ),
+    ],
+)
+def test_a_test_is_known_by_all_that_determines_it(given, key):
+    request = Request(board="b", seed=3, **given)
+    (test,) = Boards(ONE, request, FakeBoard(LoopNode(ONE))).tests
+    assert f"{test.options}," == f"board=b,seed=3,{key}"
+    assert (test.system, test.distro, test.type) == ("board", "lyrical", STRING)
+    assert (test.wire, test.bus_bytes, test.same) == ("cdr", 8, ("lyrical",))
 
 
 class DropsAndFlips(LoopNode):
