@@ -256,3 +256,23 @@ def test_a_damaged_packet_is_cut_to_the_room_of_the_node():
     for seed in range(3):
         assert isinstance(verdicts(node, most_cases=20, seed=seed)[STRING], Passed)
     assert max(sizes) == 16
+
+
+def test_one_case_for_each_kind_of_damage_is_damaged_and_the_seed_decides_how(monkeypatch):
+    original, asked = judge.broken_packets, []
+
+    def broken_packets(plan, sample, rng):
+        asked.append(([case.what for case in sample], rng.getstate()[1][:3]))
+        return original(plan, sample, rng)
+
+    monkeypatch.setattr(judge, "broken_packets", broken_packets)
+    monkeypatch.setattr(judge, "DAMAGES", [None] * 4)
+    both = described(*BOTH)
+    for seed, names in ((1, [STRING]), (1, [STRING]), (2, [STRING]), (1, [BOOL])):
+        verdicts(LoopNode(both), names=names, node="n.yaml", seed=seed, most_cases=13)
+    cases = [len(names) for names, _ in asked]
+    # Every third of 13 cases, and each of five.
+    assert cases == [5, 5, 5, 5]
+    assert [name.split()[1] for name in asked[0][0]] == ["0", "3", "6", "9", "12"]
+    states = [state for _, state in asked]
+    assert states[0] == states[1] and len(set(states)) == 3
