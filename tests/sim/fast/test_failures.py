@@ -190,6 +190,33 @@ def test_a_compiler_that_fails_is_quoted(source, tmp_path, monkeypatch):
     assert list((tmp_path / "cache").iterdir()) == []
 
 
+def test_the_name_of_a_program_has_all_that_it_depends_on(monkeypatch, tmp_path):
+    def key(netlist="n", main="m", script="s", command=("g++", "-O2"), version="1"):
+        source = CxxrtlSource(netlist, main)
+        source.script = script
+        return compilers._key(source, command, version)
+
+    usual = key()
+    others = [
+        key(netlist="o"),
+        key(main="o"),
+        key(script="o"),
+        key(command=("clang++", "-O2")),
+        key(command=("g++", "-O1")),
+        # The same letters, divided in another way.
+        key(command=("g++-", "O2")),
+        key(netlist="nsm", script="", main=""),
+        key(version="2"),
+    ]
+    monkeypatch.setattr(compilers.metadata, "version", lambda package: f"another {package}")
+    others.append(key())
+    server = tmp_path / "server.h"
+    server.write_text("// another")
+    monkeypatch.setattr(compilers, "SERVER", server)
+    others.append(key())
+    assert len({usual, *others}) == 1 + len(others) and key() == others[-1]
+
+
 @pytest.mark.parametrize(("count", "end"), [(12, "12"), (13, "... and 1 more lines")])
 def test_only_lines_that_are_left_out_are_counted(source, tmp_path, monkeypatch, count, end):
     compiler = script(tmp_path, "compiler", f"{COMPILES}; seq {count} >&2; exit 1")
