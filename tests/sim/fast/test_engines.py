@@ -177,7 +177,7 @@ def test_a_live_engine_is_awake_at_first_and_after_each_call(start, engine):
     simulation = start(engine)
     # Silence before it is live does not count.
     simulation.run(400)
-    simulation.go_live(quiet=400, nap_cycles=3, nap_ms=1)
+    simulation.go_live(quiet=400, nap_cycles=3, nap_ms=1000)
     assert look_often(simulation) >= 400
     for wake in (lambda: simulation.set("unused", 1), lambda: simulation.stall("int", [])):
         for _ in range(300):
