@@ -111,6 +111,17 @@ def test_what_the_decoder_knows_of_each_kind_of_field(dialect, kind, leaves, lin
     assert " ".join(said) == f"{leaves} {lines}"
 
 
+@pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 16, 32, 64])
+def test_a_transfer_has_the_items_of_a_bus_word_and_at_least_one(bus_bytes):
+    sizes = {"uint8": 1, "bool": 1, "uint16": 2, "float32": 4, "float64": 8}
+    fields = {f"x{n}": f"{kind}[]" for n, kind in enumerate(sizes)}
+    message = make("ros2", {**fields, "s": "string", "w": "wstring"})
+    found = [leaf.lanes for leaf in table(message, bus_bytes).leaves if leaf.has_last]
+    # Bytes of an item on the wire; those of text are 1 and 4.
+    whole = [bus_bytes / size for size in (*sizes.values(), 1, 4)]
+    assert found == [each if each > 1 else 1 for each in whole]
+
+
 @pytest.mark.parametrize(
     ("most", "claim_bytes"),
     [(100, 256), (4111, 256), (4112, 257), (65_535, 4095), (65_536, 4096), (1 << 20, 4096)],

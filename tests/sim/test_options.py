@@ -57,6 +57,28 @@ def test_a_limit_that_is_given_is_that_of_the_run(jobs):
     assert jobs[0].options.settle == 9
 
 
+@pytest.mark.parametrize(
+    ("stalls", "longest"),
+    [
+        (Stalls(0.5, 2, 7, seed=1), 7),
+        # The longest stall of any stream, also where a pattern begins again.
+        ({"packets_in": Stalls.bits("0110"), "status": Stalls.bits("01")}, 2),
+        ({"status": Stalls.bits("1000"), "message.a": Stalls(0.5, 1, 2)}, 3),
+    ],
+)
+def test_the_limit_grows_with_the_packets_and_with_their_stalls(jobs, stalls, longest):
+    harness = Harness(Deserializer(MESSAGE, bus_bytes=4), None)
+    for given in (None, stalls):
+        for packets in ([], [PACKET], [PACKET] * 3, [PACKET, b""]):
+            harness.run_packets(packets, RunOptions(stalls=given))
+    least, *limits = [job.options.limit for job in jobs]
+    one, three, other, same, *stalled = [limit - least for limit in limits]
+    assert least > 1000 and one >= 10 * len(PACKET) and three == 3 * one
+    # A packet without bytes is one, too.
+    assert one < other < 2 * one
+    assert same == 0 and stalled == [(1 + longest) * each for each in (one, three, other)]
+
+
 def test_all_transfers_that_are_not_taken_are_counted(jobs):
     transfers = {0: [7], 1: [2], 2: [((1, 2, 0, 0, 0, 0, 0, 0), True)]}
     result = Harness(None, Serializer(MESSAGE)).run_messages([transfers, {0: [8, 9]}])

@@ -149,6 +149,56 @@ def test_latency_is_from_the_last_in_to_the_last_out():
     assert RunResult(last_cycle=7, last_status_cycle=5).end_cycle == 7
 
 
+@pytest.mark.parametrize(
+    ("which", "first", "last_in", "last"),
+    [
+        # A converter alone begins or ends with its leaves.
+        ({"encodes": False}, 2, 3, 6),
+        ({"decodes": False}, 5, 6, 9),
+        ({}, 2, 3, 9),
+    ],
+)
+def test_times_are_those_of_the_streams_outside(which, first, last_in, last):
+    run = recorder(**which)
+    takes = run.takes()
+    if which != {"decodes": False}:
+        takes["packets_in"](2, 0)
+        takes["packets_in"](3, 0)
+    takes["message.x"](5, 7)
+    takes["message.y.items"](6, 0)
+    if which != {"encodes": False}:
+        takes["packets_out"](9, beat(b"ab"))
+    found = run.finish()
+    assert (found.first_cycle, found.last_cycle_in, found.last_cycle) == (first, last_in, last)
+
+
+def test_several_packets_are_outstanding_until_the_last():
+    options = {"decodes": True, "encodes": True, "table": transfer_table(PLAN, MESSAGE)}
+    run = Recorder(PLAN, 3, **options)
+    takes = run.takes()
+    for count in (1, 2):
+        takes["status"](count, 0)
+        takes["packets_out"](count, beat(b"ab"))
+        takes["message.x"](count, 0)
+        takes["message.y.items"](count, 0)
+        assert run.outstanding() == (
+            f"status ({count} of 3), packets_out ({count} of 3), sent_status (0 of 3), "
+            "message.x (1), message.y.items (1)"
+        )
+        assert not run.finished()
+    takes["packets_out"](3, beat(b"abcd", last=False))
+    assert "the rest of a packet after 4 bytes, message.x (1)" in run.outstanding()
+    takes["packets_out"](4, beat(b"e"))
+    takes["message.x"](4, 0)
+    takes["message.y.items"](4, 0)
+    takes["status"](4, 0)
+    assert run.outstanding() == "sent_status (0 of 3)"
+    for _ in range(3):
+        assert not run.finished()
+        takes["sent_status"](5, 0)
+    assert run.finished() and run.outstanding() == "nothing"
+
+
 # Noise that a deserializer has to ignore is present.
 
 

@@ -156,7 +156,11 @@ def test_a_program_is_compiled_once(source, tmp_path, monkeypatch):
         assert compilers.program_of(source, cache=tmp_path / "cache", **options).read_text()
         return len(calls.read_text().splitlines())
 
-    assert count() == count() == 1
+    assert count() == 1
+    # A program that is used stays, however old it is.
+    (program,) = (tmp_path / "cache").iterdir()
+    os.utime(program, (0, 0))
+    assert count() == 1 and program.stat().st_mtime > 0
     assert "-fast -O2 -std=c++17" in calls.read_text()
     assert count(options=["-O1"]) == 2
     version.write_text("2")
@@ -184,6 +188,33 @@ def test_a_compiler_that_fails_is_quoted(source, tmp_path, monkeypatch):
     assert lines[1:3] == ["1", "2"]
     assert lines[-1] == "... and 989 more lines"
     assert list((tmp_path / "cache").iterdir()) == []
+
+
+def test_the_name_of_a_program_has_all_that_it_depends_on(monkeypatch, tmp_path):
+    def key(netlist="n", main="m", script="s", command=("g++", "-O2"), version="1"):
+        source = CxxrtlSource(netlist, main)
+        source.script = script
+        return compilers._key(source, command, version)
+
+    usual = key()
+    others = [
+        key(netlist="o"),
+        key(main="o"),
+        key(script="o"),
+        key(command=("clang++", "-O2")),
+        key(command=("g++", "-O1")),
+        # The same letters, divided in another way.
+        key(command=("g++-", "O2")),
+        key(netlist="nsm", script="", main=""),
+        key(version="2"),
+    ]
+    monkeypatch.setattr(compilers.metadata, "version", lambda package: f"another {package}")
+    others.append(key())
+    server = tmp_path / "server.h"
+    server.write_text("// another")
+    monkeypatch.setattr(compilers, "SERVER", server)
+    others.append(key())
+    assert len({usual, *others}) == 1 + len(others) and key() == others[-1]
 
 
 @pytest.mark.parametrize(("count", "end"), [(12, "12"), (13, "... and 1 more lines")])

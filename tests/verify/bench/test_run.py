@@ -8,12 +8,13 @@ from types import SimpleNamespace
 
 import pytest
 
-from firm_hdl.plan import build_plan
+from firm_hdl.export.build import BuildError
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, build_plan
 from firm_hdl.verify.bench import run
 from firm_hdl.verify.bench.run import _check_transfers, _compare
 from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.references.wide_oracle import WideOracle
-from firm_hdl.verify.results.verdict import Failed, NotJudgedError, Passed
+from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Passed
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.wire import lay_out
 from tests.strategies import make
@@ -127,10 +128,19 @@ def test_a_value_is_as_wide_as_its_lanes():
 
 
 def test_only_a_bench_that_says_so_has_passed(monkeypatch, tmp_path):
-    said = []
-    monkeypatch.setattr(run, "run_tool", lambda *given, **more: said[-1])
+    said, asked = [], []
+
+    def run_tool(*given, **more):
+        asked.append((given, more))
+        return said[-1]
+
+    monkeypatch.setattr(run, "run_tool", run_tool)
     said.append("PASS all of them")
     assert run._simulate("bench", tmp_path, "ghdl") == tmp_path / "work_bench"
+    (given, more), work = asked[0], tmp_path / "work_bench"
+    names = ["-gresults=results.txt", "-gtransfers=transfers.txt"]
+    assert given == (["sh", str(tmp_path / run.RUN_SCRIPT), *names], tmp_path)
+    assert more["environment"] == {"GHDL": "ghdl", "WORK": str(work), "BENCH": "bench"}
     for words in ("", "\n", "FAIL packet 0", "it will PASS later", "PASSED by"):
         said.append(words)
         with pytest.raises(run.ToolError, match=words.strip() or "without a word"):
@@ -236,3 +246,44 @@ def test_a_bench_without_packets_that_are_right_has_not_passed(
 ):
     with pytest.raises(error, match=f"^{words}$"):
         cases_of(monkeypatch, oracle, cases, **found)
+
+
+@pytest.mark.parametrize(
+    ("given", "distro"), [({}, "lyrical"), ({"paths": ("p",)}, None), ({"wire": "ros1"}, "lyrical")]
+)
+def test_what_is_built_is_what_was_asked_for(monkeypatch, given, distro):
+    test = a_test("std_msgs/msg/Bool", bus_bytes=4)
+    asked, library = {}, SimpleNamespace(message=lambda name: (name, MESSAGE))
+    message, wire = (test.type, MESSAGE), given.get("wire")
+
+    def noted(name, answer=None):
+        monkeypatch.setattr(run, name, lambda *given: asked.update({name: given}) or answer)
+
+    def build(names, folder, *, library, options, stimuli):
+        asked["build"] = names, library, options.wire, options.bus_bytes, stimuli("any", 1)
+        raise run.ToolError("it stops")
+
+    noted("library_of", library)
+    noted("check_wire")
+    noted("plan_of", "plan")
+    noted("check_size")
+    noted("_cases", PACKETS)
+    monkeypatch.setattr(run, "build", build)
+    record = run.run_bench((Options(**given), "ghdl"), test)
+    assert record.verdict == Failed(("it stops",))
+    assert asked == {
+        "library_of": (test.distro, given.get("paths", ())),
+        "check_wire": (message,),
+        "plan_of": (message, wire, test.bus_bytes, DEFAULT_MAX_MESSAGE_BYTES),
+        "check_size": ("plan",),
+        # What the user defined is judged by its own definition.
+        "_cases": (message, "plan", distro),
+        "build": ([test.type], library, wire, test.bus_bytes, [b"\0\1", b"\2"]),
+    }
+
+    def refuse(plan):
+        raise BuildError("it is too large")
+
+    monkeypatch.setattr(run, "check_size", refuse)
+    record = run.run_bench((Options(**given), "ghdl"), test)
+    assert record.verdict == NotJudged("it is too large")

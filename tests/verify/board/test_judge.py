@@ -7,9 +7,12 @@ import pytest
 from firm_hdl.node import read_description_text
 from firm_hdl.verify.board import judge
 from firm_hdl.verify.board.description import loop_text
+from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.board.talk import room_for
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.systems.options import Request
 from tests.frontend.workspace import make_files
+from tests.node.bridge.fakes import FakeBoard
 from tests.verify.board.fakes import BOTH, STRING, LoopNode, described, verdicts
 
 ONE = described(STRING)
@@ -170,6 +173,30 @@ def test_a_packet_that_is_missing_does_not_hide_how_it_was_counted():
     assert f"board: 'truncated' of {name} counts 1 instead of 0" in failures
 
 
+@pytest.mark.parametrize(
+    ("given", "key"),
+    [
+        ({}, ""),
+        ({"node": "n.yaml"}, "node=n.yaml,"),
+        ({"most_cases": 7}, "cases=7,"),
+        ({"broken": False}, "no-broken,"),
+        ({"references": ("a", "b")}, "references=a+b,"),
+        ({"references": ()}, "references=,"),
+        ({"paths": ("x", "y")}, "path=x,path=y,"),
+        (
+            {"node": "n", "most_cases": 1, "broken": False, "references": ("a",), "paths": ("x",)},
+            "node=n,cases=1,no-broken,references=a,path=x,",
+        ),
+    ],
+)
+def test_a_test_is_known_by_all_that_determines_it(given, key):
+    request = Request(board="b", seed=3, **given)
+    (test,) = Boards(ONE, request, FakeBoard(LoopNode(ONE))).tests
+    assert f"{test.options}," == f"board=b,seed=3,{key}"
+    assert (test.system, test.distro, test.type) == ("board", "lyrical", STRING)
+    assert (test.wire, test.bus_bytes, test.same) == ("cdr", 8, ("lyrical",))
+
+
 class DropsAndFlips(LoopNode):
     """It drops the third packet, and the fifth comes back with another byte."""
 
@@ -229,3 +256,23 @@ def test_a_damaged_packet_is_cut_to_the_room_of_the_node():
     for seed in range(3):
         assert isinstance(verdicts(node, most_cases=20, seed=seed)[STRING], Passed)
     assert max(sizes) == 16
+
+
+def test_one_case_for_each_kind_of_damage_is_damaged_and_the_seed_decides_how(monkeypatch):
+    original, asked = judge.broken_packets, []
+
+    def broken_packets(plan, sample, rng):
+        asked.append(([case.what for case in sample], rng.getstate()[1][:3]))
+        return original(plan, sample, rng)
+
+    monkeypatch.setattr(judge, "broken_packets", broken_packets)
+    monkeypatch.setattr(judge, "DAMAGES", [None] * 4)
+    both = described(*BOTH)
+    for seed, names in ((1, [STRING]), (1, [STRING]), (2, [STRING]), (1, [BOOL])):
+        verdicts(LoopNode(both), names=names, node="n.yaml", seed=seed, most_cases=13)
+    cases = [len(names) for names, _ in asked]
+    # Every third of 13 cases, and each of five.
+    assert cases == [5, 5, 5, 5]
+    assert [name.split()[1] for name in asked[0][0]] == ["0", "3", "6", "9", "12"]
+    states = [state for _, state in asked]
+    assert states[0] == states[1] and len(set(states)) == 3

@@ -134,13 +134,14 @@ def plan_of(name):
 
 def test_bytes_of_texts_lose_their_highest_bit_and_signed_ones_do_not():
     text = plan_of("std_msgs/msg/String")
-    streams = decode(text, b"\0\1\0\0\4\0\0\0\xe9\x41\xff\0").streams
+    # More than a bus word, so that there are two transfers, and the first is not the last.
+    streams = decode(text, b"\0\1\0\0\x0c\0\0\0\xe9\x41\xff" + b"x" * 8 + b"\0").streams
     (leaf,) = (number for number, each in enumerate(text.leaves) if each.kind == "items")
     found = replay._changed(text, streams, replay._in_ascii)
     before = [item for items, _ in streams[leaf] for item in items]
     after = [item for items, _ in found[leaf] for item in items]
     assert before[:3] == [0xE9, 0x41, 0xFF] and after[:3] == [0x69, 0x41, 0x7F]
-    assert [last for _, last in found[leaf]] == [last for _, last in streams[leaf]]
+    assert [last for _, last in found[leaf]] == [False, True]
     assert {n: v for n, v in found.items() if n != leaf} == {
         n: v for n, v in streams.items() if n != leaf
     }

@@ -154,7 +154,7 @@ class Sent:
 
 @pytest.fixture
 def sent(monkeypatch):
-    """A function that returns what is sent for a string, with its result and its packets."""
+    """A function that returns what is sent for a type, with its result and its packets."""
     circuits, golden = [], []
 
     def check(self, cases, bare):
@@ -165,8 +165,8 @@ def sent(monkeypatch):
     monkeypatch.setattr(acceptance, "Circuit", lambda *given: Sent(circuits))
     monkeypatch.setattr(acceptance.Acceptance, "check_golden_model", check)
 
-    def of(**options):
-        result = accept("lyrical", STRING, Options(references=(), **options))
+    def of(name=STRING, **options):
+        result = accept("lyrical", name, Options(references=(), **options))
         assert result.failures == []
         return circuits[-1].runs, result, golden[-1]
 
@@ -229,3 +229,25 @@ def test_large_types_are_stalled_and_damaged_less(monkeypatch, sent, some):
     else:
         assert [where for where, *_ in runs] == ["hardware", "replayed"]
         assert result.note == "neither stalled nor damaged"
+
+
+def test_damage_and_stalls_follow_from_the_seed_and_the_type(monkeypatch, sent):
+    original, asked = acceptance.broken_packets, []
+
+    def broken_packets(plan, sample, rng):
+        asked.append(([case.sent for case in sample], rng.getstate()[1][:3]))
+        return original(plan, sample, rng)
+
+    monkeypatch.setattr(acceptance, "broken_packets", broken_packets)
+    monkeypatch.setattr(acceptance, "DAMAGES", [None] * 3)
+    damaged = []
+    for seed, name in ((1, STRING), (1, STRING), (2, STRING), (1, "std_msgs/msg/UInt8MultiArray")):
+        runs, _, packets = sent(name, seed=seed, most_cases=9)
+        damaged.append(runs[3])
+        # The intact packet is sent behind the damaged one.
+        assert asked[-1][0] == packets[:9:3] == runs[3][1][1::2]
+    assert damaged[0] == damaged[1] != damaged[2]
+    states = [state for _, state in asked]
+    assert states[0] == states[1] and len(set(states)) == 3
+    # What is not stalled in other runs is not stalled here, either.
+    assert sent(stalled=False)[0][1][::2] == ("hardware, broken packets, None", None)
