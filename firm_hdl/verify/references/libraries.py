@@ -122,7 +122,7 @@ class _RosbagsCodec(ObjectCodec):
         if kind.kind == "float":
             values = values.astype(f"<f{kind.bytes}").view(f"<u{kind.bytes}")
         elif kind.name == "byte" and kind.signed:
-            # numpy's type of arrays of bytes is rosbags' business; in ROS 1, bytes have a sign.
+            # Bytes of ROS 1 have a sign, also where rosbags holds them in an unsigned array.
             values = values.view(np.int8)
         return list(values.tolist())
 
