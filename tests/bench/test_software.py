@@ -192,6 +192,13 @@ def test_missing_library_has_no_figure() -> None:
         time_rosbags(Sample(message=PADDED, wire="morse", packets=()))
 
 
+@pytest.mark.parametrize(("distro", "wire"), [("noetic", "cdr"), ("jazzy", "ros1")])
+def test_genpy_needs_both_a_type_and_a_wire_of_ros1(distro: str, wire: Wire) -> None:
+    message = load_message("std_msgs/Bool", distro=distro)
+    with pytest.raises(NoFigureError, match=r"^genpy has types and the wire format of ROS 1 only$"):
+        time_genpy(Sample(message=message, wire=wire, packets=()))
+
+
 @pytest.fixture
 def time_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(python, "best_ns", lambda work, items: best_ns(work, items, 1, 0.02))
