@@ -13,6 +13,7 @@ from firm_hdl.bench.compare import compare, compared
 from firm_hdl.bench.devices import DEVICES, Area
 from firm_hdl.bench.messages import STATED
 from firm_hdl.bench.results import Result, read_results, results_text
+from firm_hdl.bench.software.run import machine
 from firm_hdl.bench.tables import geometric_mean, head, row, summary
 from tests.bench.results import result
 
@@ -186,3 +187,35 @@ def test_the_path_is_that_of_the_run_nearest_to_the_median() -> None:
         ]
         path = replace(measured, placed=tuple(placed)).path
         assert path is not None and path.ns == middle
+
+
+PROCESSORS = (
+    "processor\t: 0\nmodel\t\t: 85\nmodel name\t: A: fast one\ncpu MHz\t\t: 2000\n\n"
+    "processor\t: 1\nmodel\t\t: 86\nmodel name\t: Another\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("cpuinfo", "processor", "name"),
+    [
+        (PROCESSORS, "no", "A: fast one, model 85"),
+        ("model name\t: A\n", "no", "A"),
+        # Other architectures have a file without names, and other systems have none.
+        ("processor\t: 0\nmodel\t\t: 85\n", "Arm Neoverse", "Arm Neoverse"),
+        (None, "Arm Neoverse", "Arm Neoverse"),
+        (None, "", "aarch64"),
+    ],
+)
+def test_the_processor_of_a_table_is_named_as_well_as_the_system_can(
+    cpuinfo: str | None, processor: str, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def read_text(path: Path, encoding: str) -> str:
+        assert str(path) == "/proc/cpuinfo"
+        if cpuinfo is None:
+            raise FileNotFoundError
+        return cpuinfo
+
+    monkeypatch.setattr(Path, "read_text", read_text)
+    monkeypatch.setattr("platform.processor", lambda: processor)
+    monkeypatch.setattr("platform.machine", lambda: "aarch64")
+    assert machine() == name

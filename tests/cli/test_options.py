@@ -218,3 +218,18 @@ def test_the_environment_is_searched_after_paths(workdir, capsys, monkeypatch):
     assert capsys.readouterr().out == "int8 workspace\n"
     assert main(["show", "q/Q", "--path", "dir"]) == 0
     assert capsys.readouterr().out == "int8 path\n"
+
+
+def test_no_arguments_are_not_those_of_the_process(monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["firm-hdl", "--version"])
+    for called, status, streams in (
+        ([], 2, ["", "the following arguments are required: COMMAND"]),
+        ((), 2, ["", "the following arguments are required: COMMAND"]),
+        (None, 0, ["firm-hdl ", ""]),
+    ):
+        with pytest.raises(SystemExit) as ended:
+            main(called)
+        found = capsys.readouterr()
+        assert ended.value.code == status
+        assert all(text in each for each, text in zip(found, streams, strict=True))
+        assert [bool(each) for each in found] == [bool(text) for text in streams]

@@ -263,6 +263,16 @@ def test_a_typedef_that_is_wrong_is_reported_once():
     assert (only.span.line, only.span.column) == (1, 20)
 
 
+@pytest.mark.parametrize("unused", ["Nothing", "q::Nothing", "sequence<Nothing, 2>", "A"])
+def test_an_unused_typedef_may_have_an_unknown_name_as_in_rosidl(unused):
+    before = "typedef Nothing A; " if unused == "A" else ""
+    messages, wrong = read(f"module p {{ {before}typedef {unused} B; struct T {{ long a; }}; }};")
+    assert wrong == [] and [*messages] == ["T"]
+    # Any other mistake counts.
+    (only,) = read("module p { typedef any B; typedef Nothing C; struct T { long a; }; };")[1]
+    assert only.message == "type 'any' is not supported"
+
+
 def test_a_constant_that_is_wrong_is_reported_once():
     text = (
         "module p { const long N = 1 / 0; const long M = N; struct T { long a[N]; long b[M]; }; };"

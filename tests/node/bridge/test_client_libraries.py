@@ -30,7 +30,7 @@ serve:
 """
 
 
-def wait(condition, seconds=20.0):
+def wait(condition, seconds=5.0):
     end = time.monotonic() + seconds
     while not condition() and time.monotonic() < end:
         time.sleep(0.002)
@@ -323,6 +323,19 @@ def test_endpoints_of_rospy_have_the_policies_and_the_sums_of_their_topics(rospy
     assert [each._type for each in parts] == [f"{kind}Request", f"{kind}Response"]
     graph.close()
     assert all(each.is_gone for each in rospy.endpoints)
+
+
+def test_rospy_is_imported_when_its_namespace_is_set(rospy, ros1_echo, monkeypatch):
+    # rospy reads the variable when it is imported, and never again.
+    seen = []
+
+    def import_module(name):
+        seen.append((name, os.environ["ROS_NAMESPACE"]))
+        return sys.modules[name]
+
+    monkeypatch.setattr(ros1, "import_module", import_module)
+    graph_of("ros1", ros1_echo)
+    assert seen == [("rospy", "/robot"), ("rosgraph", "/robot")]
 
 
 def test_messages_pass_rospy_as_bytes(rospy, ros1_echo):
