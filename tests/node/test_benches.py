@@ -14,8 +14,10 @@ from importlib.util import find_spec
 import pytest
 import yaml
 
-from firm_hdl.node.benches import link_script
+from firm_hdl.node import Node
+from firm_hdl.node.benches import bench_files, link_script
 from firm_hdl.node.build import build_node
+from firm_hdl.node.top import node_ports
 from firm_hdl.verify.cases.stimuli import stimuli
 from tests.depth import by_depth
 from tests.node.accelerators import echo_text
@@ -180,6 +182,96 @@ def test_frames_have_all_that_a_host_reads():
     bare = link_script(description, None, has_accelerator=False).text
     assert "/in_1" not in bare and bare.count("\n=") == 8
     assert link_script(read(RELAY, link="uart"), stimuli, has_accelerator=False) is None
+
+
+TEXTS = """\
+node: relay
+distro: jazzy
+bus_bytes: 4
+subscribe:
+  /in_1: {type: std_msgs/msg/String, memory_bytes: 1024, packets: 12}
+  /alone: {type: std_msgs/msg/Char, memory_bytes: 256, packets: 8}
+publish:
+  /out_1: {type: std_msgs/msg/String, memory_bytes: 256}
+"""
+# Behind is a memory of 256 bytes, of which a quarter is used: 64 bytes, in whole beats of 4 bytes.
+# At most a quarter of 12 packets, and at most eight packets in all; 65 bytes have no room.
+GROUPS = ((2, 3, 4), (5,), (57,), (24, 40), (64,))
+SIZES = (2, 65, 3, 4, 5, 57, 24, 40, 64, 9)
+
+
+def exchanged(script):
+    """Return the packets of each wait of a script, by topic: those sent, and those to come."""
+    groups = [({}, {})]
+    for line in script.lines:
+        if line == "=":
+            groups.append(({}, {}))
+        elif line[0] in "<>":
+            frame = bytes.fromhex(line[2:].replace("--", "00"))
+            topic, length = (
+                int.from_bytes(frame[at:end], "little") for at, end in ((2, 4), (4, 8))
+            )
+            assert (frame[0], length) == (0xF1, len(frame) - 16)
+            groups[-1]["><".index(line[0])].setdefault(topic, []).append(frame[16:])
+    return groups
+
+
+def test_packets_are_chosen_that_have_room_on_their_whole_way():
+    description = read(TEXTS)
+    given = [bytes([number]) * size for number, size in enumerate(SIZES)]
+    script = link_script(description, lambda *_: given, has_accelerator=False)
+    groups = [group for group in exchanged(script) if group[0].keys() - {0}]
+    for sizes, (asked, came) in zip(GROUPS, groups, strict=False):
+        good = [packet for packet in given if len(packet) in sizes]
+        assert asked == {1: [part for packet in good for part in (packet, packet[:-1])]}
+        assert came == {3: good}
+    # Nothing comes back of the other topic, so its memory is filled once.
+    alone = [part for packet in (given[0], given[2]) for part in (packet, packet[:-1])]
+    assert groups[len(GROUPS) :] == [({2: alone}, {})]
+    # The counters are those of packets that were sent.
+    counted = dict(re.findall(r"# Register \d+: ('\w+' of /\w+)\.\n> .*\n< (.*)", script.text))
+    values = {name: bytes.fromhex(text)[20:24] for name, text in counted.items()}
+    assert {name: int.from_bytes(value, "little") for name, value in values.items()} == {
+        "'passed' of /in_1": 8,
+        "'truncated' of /in_1": 8,
+        "'passed' of /alone": 2,
+        "'truncated' of /alone": 2,
+    }
+
+
+def test_packets_of_an_unknown_accelerator_are_only_those_that_it_never_sees():
+    description = read(TEXTS)
+    script = link_script(description, lambda *_: [b"abcd"], has_accelerator=True)
+    groups = exchanged(script)
+    assert [packet for asked, _ in groups for packet in asked.get(1, [])] == [b"abc"]
+    assert not any(came.keys() - {0} for _, came in groups)
+    assert script.ignores_topics and script.loops == ()
+    # Other frames may come before each of these: the number and the start of the sender are open.
+    for line in script.lines:
+        if line.startswith("< "):
+            octets = [line[at : at + 2] for at in range(2, len(line), 2)]
+            assert [octets[at] for at in (1, 12, 13)] == ["--"] * 3 and octets[0] == "f1"
+
+
+@pytest.mark.parametrize(
+    ("published", "most"),
+    [
+        ("publish:\n  /out_1: {type: std_msgs/msg/String, memory_bytes: 4096}\n", 16 + 4096),
+        ("", 32),
+    ],
+)
+def test_a_bench_has_room_for_the_frames_of_an_accelerator(published, most):
+    # One that only takes messages sends control messages alone, of 16 bytes.
+    description = read(TEXTS.partition("publish:")[0] + published)
+    script = link_script(description, None, has_accelerator=True)
+    ports = node_ports(Node(description))
+    names = {port.name: port.name for port in ports}
+    files = bench_files(
+        description, "relay", ports, script,
+        module="relay_verilog", vhdl_ports=names, vhdl_files=[], header="",
+    )  # fmt: skip
+    assert f"localparam MOST_BYTES = {most};" in files["relay_tb.v"]
+    assert f"constant MOST_BYTES : positive := {most};" in files["vhdl/relay_tb.vhd"]
 
 
 def test_the_manifest_and_the_core_have_the_benches(relay):

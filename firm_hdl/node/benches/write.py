@@ -129,7 +129,7 @@ def _most_bytes(description: Description, script: LinkScript) -> int:
     if not script.ignores_topics:
         return script.most_bytes
     stores = [store for _, store in description.sent()]
-    return max(script.most_bytes, *(HEADER_BYTES + each.memory_bytes for each in stores))
+    return max([script.most_bytes, *(HEADER_BYTES + each.memory_bytes for each in stores)])
 
 
 def _address(text: str) -> int:
