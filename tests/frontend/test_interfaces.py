@@ -296,6 +296,24 @@ def test_every_separator_that_is_too_many_is_reported(tmp_path, kind, legal):
     assert {each.span.line_text for each in found} == {"---"}
 
 
+@pytest.mark.parametrize(("kind", "legal"), [("srv", 1), ("action", 2)])
+def test_mistakes_behind_a_separator_that_is_too_many_are_reported(tmp_path, kind, legal):
+    with pytest.raises(DefinitionError) as error:
+        load(tmp_path, f"{kind}/A", "---\n" * (legal + 1) + "int8 B\n---\nint8 D\n")
+    found = [(each.span.line, "'" in each.message[:3]) for each in error.value.diagnostics]
+    lines = [legal + 1, legal + 2, legal + 3, legal + 4]
+    assert sorted(found) == list(zip(lines, [False, True, False, True], strict=True))
+
+
+def test_an_idl_that_cannot_be_read_is_not_said_to_lack_its_structs(tmp_path):
+    make_files(
+        tmp_path, {"p/srv/A.idl": "module p { module srv { struct A_Request { any a; }; }; };"}
+    )
+    with pytest.raises(DefinitionError) as error:
+        Library("lyrical", [tmp_path]).interface("p/srv/A")
+    assert [each.message for each in error.value.diagnostics] == ["type 'any' is not supported"]
+
+
 @pytest.mark.parametrize("kind", ["msg", "srv", "action"])
 def test_ros1_has_no_definitions_in_idl(tmp_path, kind):
     structs = {"msg": ["A"], "srv": ["A_Request", "A_Response"],
