@@ -174,6 +174,21 @@ def test_all_messages_are_changed_and_nothing_else(universe_of):
     assert str(field.type.fields[0].type) == "int16"
 
 
+def test_a_changed_definition_keeps_the_name_of_its_file(universe_of, tmp_path):
+    """Needs are found by the names of the files in which errors are."""
+    universe = universe_of("lyrical", {"p/msg/A.msg": "q/B b\n", "q/msg/B.msg": "int8 x\n"})
+    changed = universe.changed(lambda case: replace(case, text=case.text.replace("x", "1x")))
+    file = str(tmp_path / "src" / "q" / "msg" / "B.msg")
+    with pytest.raises(DefinitionError) as error:
+        changed.interface(changed.select(["p/A"])[0])
+    assert error.value.diagnostics[0].span.source.name == file
+    assert changed.by_source[file].text == "int8 1x\n"
+    # A text that stands for a file has the file's own name, without a folder.
+    (case,) = universe.select(["q/B"])
+    with pytest.raises(DefinitionError, match=r"^B\.msg:1:6: error: "):
+        universe.interface(replace(case, text="int8 1x\n", before=case.text))
+
+
 def idl(name, kind="msg", body="", package="p"):
     struct = f"struct {name} {{ long a; }};"
     return f"{body}module {package} {{ module {kind} {{ {struct} }}; }};\n"
