@@ -271,6 +271,16 @@ def test_a_needed_type_that_no_reader_takes_is_refused_by_name(rosidl, tmp_path)
     make_files(tmp_path, {"q/msg/D.msg": "r/E", "q/msg/F.idl": "r/msg/E"})
     for name in "DF":
         assert refusal(reader, asked(text=f"q/{name}")) == "r/msg/E is not there"
+    # All types that it needs are looked up, not only the first one.
+    files = {
+        "q/msg/G.msg": "r/H\nr/H\nr/E",
+        "q/msg/J.idl": "r/msg/H r/msg/E",
+        "r/msg/H.msg": "int8",
+    }
+    make_files(tmp_path, files)
+    for text in ("q/G", "q/J", "r/H\nq/G", "r/H\nr/E"):
+        assert refusal(reader, asked(text=text)) == "r/msg/E is not there"
+    assert reader.adapter(asked(text="r/H\nint8\nr/H"))
 
 
 def test_a_type_must_not_contain_itself_even_after_a_change(rosidl):
