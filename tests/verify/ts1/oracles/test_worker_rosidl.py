@@ -292,6 +292,20 @@ def test_a_type_must_not_contain_itself_even_after_a_change(rosidl):
     assert reader.adapter(asked(kind="srv", text="p/A"))
 
 
+def test_a_changed_type_says_nothing_of_its_file_nor_the_file_of_the_change(rosidl):
+    files = {"p/msg/A.msg": "int8", "q/msg/B.msg": "p/A", "p/msg/C.msg": "q/B\np/A"}
+    for asks in ("change file", "file change file change"):
+        reader = rosidl(files)
+        for each in asks.split():
+            if each == "file":
+                assert reader.adapter(asked("C"))
+            else:
+                assert refusal(reader, asked(text="q/B")) == "p/msg/A contains itself"
+    # What is found in files is looked up once.
+    reader.text = None
+    reader._check_needs(asked("C"), ["q/msg/B"])
+
+
 def test_line_ends_of_files_and_of_changed_texts_are_the_same(rosidl):
     reader = rosidl({"p/msg/A.msg": "int8\r\nint16\rint32\n"})
     assert reader.text(asked()) == "int8\nint16\nint32\n"
