@@ -190,6 +190,7 @@ def test_a_difference_is_described_completely(make_message, monkeypatch):
         ("uint8 a", {"b": 1}, "{'b': 1}"),
         ("uint8 a", None, "None"),
         ("uint8 a", [], "[]"),
+        ("float32 a", {"a": "x"}, "{'a': 'x'}"),
     ],
 )
 def test_answers_are_shown_whatever_they_are(make_message, monkeypatch, text, answer, said):
