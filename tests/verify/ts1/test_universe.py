@@ -272,6 +272,31 @@ def test_definitions_are_written_as_they_are_wherever_they_are_from(tmp_path):
         assert (folder / case.package / case.kind / case.file).read_text() == case.text
 
 
+def test_definitions_are_linked_to_from_another_folder_and_embedded_ones_written(
+    tmp_path, monkeypatch
+):
+    """The oracles' processes may have another working folder than this one."""
+    make_files(tmp_path, {"one/p/msg/A.msg": "int8 x\n", "two/p/msg/B.msg": "int8 1y\n"})
+    make_files(tmp_path, {"one/q/srv/S.srv": "int8 s\r\n---\r\n"})
+    monkeypatch.chdir(tmp_path)
+    universe = Universe("noetic", ["one", "two"], "all")
+    write_definitions(universe)
+    folder = tmp_path / "all"
+    # Links to single files, a link to a folder, and a package that is embedded in firm-hdl.
+    assert (folder / "p" / "msg" / "A.msg").is_symlink() and (folder / "q" / "srv").is_symlink()
+    texts = {
+        "p/msg/A": "int8 x\n",
+        "p/msg/B": "int8 1y\n",
+        "q/srv/S": "int8 s\r\n---\r\n",
+        "geometry_msgs/msg/Point": universe.select(["geometry_msgs/Point"])[0].text,
+    }
+    for name, text in texts.items():
+        kind = name.split("/")[1]
+        assert (folder / f"{name}.{kind}").read_bytes() == text.encode()
+    assert not (folder / "geometry_msgs" / "msg").is_symlink()
+    assert "float64 x" in texts["geometry_msgs/msg/Point"]
+
+
 def test_all_that_a_type_needs_is_found_at_each_level(tmp_path):
     files = {
         "p/msg/A.msg": "B b\nC c\nB[] again\nint8 x\n",
