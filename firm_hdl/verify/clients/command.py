@@ -157,8 +157,8 @@ def _answer(finding: Finding, answer: Any) -> str:
         return answer.hex() or "no bytes"
     try:
         return shown(finding.message, answer) or "a message without fields"
-    # A library may give values that do not fit the type.
-    except (TypeError, ValueError, KeyError, IndexError):
+    # A library may give values that do not fit the type, such as a text in place of a float.
+    except Exception:
         return repr(answer)
 
 

@@ -86,6 +86,26 @@ def test_libraries_that_could_not_be_asked_follow_the_differences():
     ]
 
 
+def test_the_smallest_case_is_found_by_the_questions_of_its_own_wire(monkeypatch):
+    asked = []
+
+    def comparison_of(result, wire):
+        return SimpleNamespace(again=(result.library, result.type, wire))
+
+    monkeypatch.setattr(command, "comparison_of", comparison_of)
+    monkeypatch.setattr(command, "shrunk", lambda finding, again: asked.append(again) or finding)
+    task, result = trial("A", "encode", "decode", library="yours")
+    result.findings[1].wire = "ros1"
+    # The command has the name that the user gave; the result has that of the type.
+    result.type = "p/A"
+    lines = printed_differences((task, result))
+    assert asked == [("yours", "p/A", "cdr"), ("yours", "p/A", "ros1")]
+    assert lines == [
+        "DIFFERS yours, encode: p/A (lyrical)", "    small encode", "    again: yours A lyrical",
+        "DIFFERS yours, decode: p/A (lyrical)", "    small decode", "    again: yours A lyrical",
+    ]  # fmt: skip
+
+
 def summary(*trials):
     versions = {"mine": "1.0", "yours": "2"}
     return list(command._summary(trials, OPTIONS, versions))
@@ -122,6 +142,14 @@ def test_known_differences_and_reasons_are_counted():
     assert summary(*reasons[:22])[3:] == [
         f"not judged, mine: reason {n}: {7 - n}" for n in range(4)
     ]
+    # Those of each library are its own, in the order in which the libraries were named.
+    both = [judged(NotJudged(why), name, k=2) for why, name in (("one", "yours"), ("two", "mine"))]
+    assert summary(*both)[3:] == [
+        "known, mine: k: 2",
+        "not judged, mine: two: 1",
+        "known, yours: k: 2",
+        "not judged, yours: one: 1",
+    ]
 
 
 def test_a_difference_is_described_completely(make_message, monkeypatch):
@@ -148,6 +176,43 @@ def test_a_difference_is_described_completely(make_message, monkeypatch):
     written = Finding(what="encode", packet=b"\1", expected=b"\7", got=[1], **given)
     assert not any("packet" in line for line in command.described(written))
     assert command.described(written)[-1] == "    mine: [1]"
+    # The packet of an unusual value is not that which differs, either.
+    odd = Finding(what="encode bound", packet=b"\1", expected=b"", got=b"\1", **given)
+    assert not any("packet" in line for line in command.described(odd))
+
+
+@pytest.mark.parametrize(
+    ("text", "answer", "said"),
+    [
+        ("", {}, "a message without fields"),
+        ("uint8[2] a", {"a": [1, 2]}, "a: [1, 2]"),
+        # None of these is a value of its type.
+        ("uint8 a", {"b": 1}, "{'b': 1}"),
+        ("uint8 a", None, "None"),
+        ("uint8 a", [], "[]"),
+        ("float32 a", {"a": "x"}, "{'a': 'x'}"),
+    ],
+)
+def test_answers_are_shown_whatever_they_are(make_message, monkeypatch, text, answer, said):
+    monkeypatch.undo()
+    finding = SimpleNamespace(message=make_message(text))
+    assert command._answer(finding, answer) == said
+
+
+def test_of_a_long_difference_the_start_is_described(make_message, monkeypatch):
+    monkeypatch.undo()
+    finding = Finding(
+        library="mine", reference="yours", wire="cdr", what="decode",
+        message=make_message("uint8[] a"), value={"a": [7] * 400}, packet=b"\1" * 201,
+        expected=b"\2" * 200, got=b"\3" * 201,
+    )  # fmt: skip
+    value, *others = command.described(finding)[1:]
+    assert value.startswith("    value: a: [7, 7, ") and value.endswith(" characters)")
+    assert others == [
+        f"    packet: {'01' * 200}... (402 characters)",
+        f"    yours: {'02' * 200}",
+        f"    mine: {'03' * 200}... (402 characters)",
+    ]
 
 
 def test_long_answers_are_cut():
@@ -219,3 +284,39 @@ def test_references_of_all_wires_are_looked_for(monkeypatch, capsys, distros, wi
     assert lines[-1].startswith(f"{len(tasks)} types, ") and lines[-1].endswith(" 0 differ")
     with pytest.raises(ClientMissingError, match=r"^no genpy$"):
         command.run_sut(tasks, Request(libraries=("cyclonedds", "genpy")))
+    # A library that judges others is looked for once, even if it is judged itself.
+    asked.clear()
+    command.run_sut(tasks[:1], Request(libraries=("fastcdr", "rosbags"), wire="cdr"))
+    assert asked == ["fastcdr", "rosbags", "fastcdr-2.2", "fastcdr-2.3"]
+
+
+def test_each_library_has_a_verdict_on_each_type(monkeypatch, capsys):
+    def judge_types(tasks, options, installed):
+        for task in tasks:
+            yield (
+                task,
+                [
+                    LibraryResult(library="genpy", reference="x", type=task.name, unknown=2),
+                    LibraryResult(
+                        library="rosbags", reference="x", type=task.name, comparisons=3, answers=1
+                    ),
+                ],
+            )
+
+    monkeypatch.setattr(command, "find_clients", lambda names: (dict.fromkeys(names, "1"), {}))
+    monkeypatch.setattr(command, "judge_types", judge_types)
+    monkeypatch.setattr(command, "close_clients", lambda: None)
+    tasks = [
+        SimpleNamespace(distro="foxy", name="A", same=("foxy", "iron")),
+        SimpleNamespace(distro="noetic", name="B", same=("noetic",)),
+    ]
+    found = command.run_sut(tasks, Request(libraries=("genpy", "rosbags")))
+    failed = Failed(("2 differences",))
+    assert [(each.what, each.verdict) for each in found] == [
+        ("A (foxy, iron), genpy", failed),
+        ("A (foxy, iron), rosbags", Passed(3)),
+        ("B (noetic), genpy", failed),
+        ("B (noetic), rosbags", Passed(3)),
+    ]
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last.startswith("2 types, ") and last.endswith(" s, 2 differ")

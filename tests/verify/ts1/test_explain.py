@@ -8,6 +8,7 @@ import pytest
 
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.ts1 import explain
+from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.judge import compare, read
 from firm_hdl.verify.ts1.known.rule import KnownRule, mend_members
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Oracle, Refused
@@ -162,6 +163,22 @@ def test_a_mistake_that_the_oracle_accepts_is_removed_for_both(judged):
     excuse = rule("excuse", unavoidable=lambda case: True)
     (failure,) = judged(BAD, [MISTAKE, excuse], wrong).verdict.failures
     assert failure.startswith("structure/p/A/fields/z/type: firm-hdl 'int8'; oracle 'int16'")
+
+
+def test_a_refused_text_is_read_again_if_it_changed_even_to_none(judged, monkeypatch):
+    read_again = []
+
+    def reading(universe, case):
+        read_again.append(case.text)
+        return read(universe, case)
+
+    monkeypatch.setattr(judging, "read", reading)
+    # Only the oracle's text changes, so our reading of it stays.
+    assert isinstance(judged(BAD, [PLAIN], {BAD: ACCEPTED, BAD_EVEN: ACCEPTED}).verdict, Failed)
+    assert read_again == []
+    answers = {BAD: ACCEPTED, "": Accepted(fields())}
+    found = judged(BAD, [rule("all", BAD, is_mistake=True)], answers)
+    assert found.verdict == KnownDifference(("all",), 1) and set(read_again) == {""}
 
 
 @pytest.mark.parametrize("rules", [(MISTAKE,), (MISTAKE, PLAIN), (PLAIN, MISTAKE)])

@@ -61,6 +61,22 @@ def test_a_mutation_is_decided_by_its_number(court):
     assert all(case.text != case.before for case in texts)
 
 
+def test_later_versions_make_the_mutations_that_a_report_names(court):
+    """If a text of this table changes, the numbers in earlier reports mean other mutations."""
+    files = {"p/msg/A.msg": "int8 a 5\n", "p/msg/B.msg": "bool[2] b\n"}
+    cases = court("lyrical", files).universe.select([])
+    assert [mutation(cases, number).text for number in range(12)] == [
+        *("int8 ]a 5\n", "B{ool[2] b\n", "int8 a 5=[1]\n", "int8  a5\r", "iint8 a 5\n"),
+        *("bOol[2] b\n", "int5 a 5\n", "int8 a \x0b5\n", "bool[2]] b\n", "int 8 5\n"),
+        *("bOol[2] b\n", "bool[2] b\nbool[2] b\n"),
+    ]
+    assert [rules._tokens(random.Random(number), "a b c d") for number in range(7)] == [
+        *("a b c", "a a b c d", "b c d", "a b b c d", "a b d", "c a b d", "a b c d d"),
+    ]
+    found = [rules._lines(random.Random(number), "a\nb\nc\nd") for number in (4, 5, 7, 8)]
+    assert found == ["b\na\nc\nd", "a\nb\nc d", "a\nb\nc\nc\nd", "a\nc\nd\nb"]
+
+
 def test_changes_are_listed_by_line(court):
     cases = court("lyrical", {"p/msg/A.msg": "int8 a\n"}).universe.select([])
     changed = mutation(cases, 1)

@@ -174,6 +174,21 @@ def test_all_messages_are_changed_and_nothing_else(universe_of):
     assert str(field.type.fields[0].type) == "int16"
 
 
+def test_a_changed_definition_keeps_the_name_of_its_file(universe_of, tmp_path):
+    """Needs are found by the names of the files in which errors are."""
+    universe = universe_of("lyrical", {"p/msg/A.msg": "q/B b\n", "q/msg/B.msg": "int8 x\n"})
+    changed = universe.changed(lambda case: replace(case, text=case.text.replace("x", "1x")))
+    file = str(tmp_path / "src" / "q" / "msg" / "B.msg")
+    with pytest.raises(DefinitionError) as error:
+        changed.interface(changed.select(["p/A"])[0])
+    assert error.value.diagnostics[0].span.source.name == file
+    assert changed.by_source[file].text == "int8 1x\n"
+    # A text that stands for a file has the file's own name, without a folder.
+    (case,) = universe.select(["q/B"])
+    with pytest.raises(DefinitionError, match=r"^B\.msg:1:6: error: "):
+        universe.interface(replace(case, text="int8 1x\n", before=case.text))
+
+
 def idl(name, kind="msg", body="", package="p"):
     struct = f"struct {name} {{ long a; }};"
     return f"{body}module {package} {{ module {kind} {{ {struct} }}; }};\n"
@@ -255,6 +270,31 @@ def test_definitions_are_written_as_they_are_wherever_they_are_from(tmp_path):
     assert (folder / "q" / "srv" / "S.srv").read_text() == "int8 s\n---\n"
     for case in universe.select([]):
         assert (folder / case.package / case.kind / case.file).read_text() == case.text
+
+
+def test_definitions_are_linked_to_from_another_folder_and_embedded_ones_written(
+    tmp_path, monkeypatch
+):
+    """The oracles' processes may have another working folder than this one."""
+    make_files(tmp_path, {"one/p/msg/A.msg": "int8 x\n", "two/p/msg/B.msg": "int8 1y\n"})
+    make_files(tmp_path, {"one/q/srv/S.srv": "int8 s\r\n---\r\n"})
+    monkeypatch.chdir(tmp_path)
+    universe = Universe("noetic", ["one", "two"], "all")
+    write_definitions(universe)
+    folder = tmp_path / "all"
+    # Links to single files, a link to a folder, and a package that is embedded in firm-hdl.
+    assert (folder / "p" / "msg" / "A.msg").is_symlink() and (folder / "q" / "srv").is_symlink()
+    texts = {
+        "p/msg/A": "int8 x\n",
+        "p/msg/B": "int8 1y\n",
+        "q/srv/S": "int8 s\r\n---\r\n",
+        "geometry_msgs/msg/Point": universe.select(["geometry_msgs/Point"])[0].text,
+    }
+    for name, text in texts.items():
+        kind = name.split("/")[1]
+        assert (folder / f"{name}.{kind}").read_bytes() == text.encode()
+    assert not (folder / "geometry_msgs" / "msg").is_symlink()
+    assert "float64 x" in texts["geometry_msgs/msg/Point"]
 
 
 def test_all_that_a_type_needs_is_found_at_each_level(tmp_path):

@@ -44,7 +44,7 @@ class _Rosidl:
         self.parse_idl = functools.lru_cache(maxsize=64)(rosidl_parser.parser.parse_idl_string)
         self.folder = folder
         self.hashes = None
-        self.known = {}  # Message types by name: None, or why the type cannot be used.
+        self.known = {}  # Message types in files: None, or why the type cannot be used.
         self.convert = functools.lru_cache(maxsize=512)(self._convert)
 
     def adapter(self, request):
@@ -125,21 +125,23 @@ class _Rosidl:
         """Refuse a definition if a type that it needs is missing or refused, as a build would."""
         own = f"{request['package']}/msg/{request['name']}"
         path = {own} if request["kind"] == "msg" else set()
+        # With a changed text, types that need this one have another state than with its file.
+        known = {} if path and request["text"] is not None else self.known
         for need in needs:
-            why = self._state(need, path)
+            why = self._state(need, path, known)
             if why is not None:
                 raise _RefusedError(why)
 
-    def _state(self, name, path):
+    def _state(self, name, path, known):
         if name in path:
             return f"{name} contains itself"
-        if name not in self.known:
+        if name not in known:
             path.add(name)
-            self.known[name] = self._find_state(name, path)
+            known[name] = self._find_state(name, path, known)
             path.discard(name)
-        return self.known[name]
+        return known[name]
 
-    def _find_state(self, name, path):
+    def _find_state(self, name, path, known):
         package, _, base = name.split("/")
         for end in (".msg", ".idl"):
             request = {"package": package, "kind": "msg", "file": base + end, "text": None}
@@ -157,7 +159,7 @@ class _Rosidl:
             except Exception as error:
                 return f"{name}: {type(error).__name__}: {error}"
             for need in needs:
-                why = self._state(need, path)
+                why = self._state(need, path, known)
                 if why is not None:
                     return why
             return None

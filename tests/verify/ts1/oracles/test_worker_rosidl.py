@@ -271,6 +271,16 @@ def test_a_needed_type_that_no_reader_takes_is_refused_by_name(rosidl, tmp_path)
     make_files(tmp_path, {"q/msg/D.msg": "r/E", "q/msg/F.idl": "r/msg/E"})
     for name in "DF":
         assert refusal(reader, asked(text=f"q/{name}")) == "r/msg/E is not there"
+    # All types that it needs are looked up, not only the first one.
+    files = {
+        "q/msg/G.msg": "r/H\nr/H\nr/E",
+        "q/msg/J.idl": "r/msg/H r/msg/E",
+        "r/msg/H.msg": "int8",
+    }
+    make_files(tmp_path, files)
+    for text in ("q/G", "q/J", "r/H\nq/G", "r/H\nr/E"):
+        assert refusal(reader, asked(text=text)) == "r/msg/E is not there"
+    assert reader.adapter(asked(text="r/H\nint8\nr/H"))
 
 
 def test_a_type_must_not_contain_itself_even_after_a_change(rosidl):
@@ -280,6 +290,20 @@ def test_a_type_must_not_contain_itself_even_after_a_change(rosidl):
         assert refusal(reader, asked(text=text)) == "p/msg/A contains itself"
     # A service may need the message of its name.
     assert reader.adapter(asked(kind="srv", text="p/A"))
+
+
+def test_a_changed_type_says_nothing_of_its_file_nor_the_file_of_the_change(rosidl):
+    files = {"p/msg/A.msg": "int8", "q/msg/B.msg": "p/A", "p/msg/C.msg": "q/B\np/A"}
+    for asks in ("change file", "file change file change"):
+        reader = rosidl(files)
+        for each in asks.split():
+            if each == "file":
+                assert reader.adapter(asked("C"))
+            else:
+                assert refusal(reader, asked(text="q/B")) == "p/msg/A contains itself"
+    # What is found in files is looked up once.
+    reader.text = None
+    reader._check_needs(asked("C"), ["q/msg/B"])
 
 
 def test_line_ends_of_files_and_of_changed_texts_are_the_same(rosidl):

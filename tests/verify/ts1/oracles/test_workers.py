@@ -6,6 +6,7 @@ Facts that an oracle leaves out are not compared. So these tests count them.
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -181,6 +182,21 @@ def test_line_ends_of_a_changed_text_are_those_of_a_file(court):
         changed = replace(case, text=case.text.replace("\n", end), before=case.text)
         (answer,) = here.oracle("rosidl_adapter").judge([changed])
         assert answer == expected
+
+
+def test_genmsg_reads_a_changed_text_as_a_file_that_is_none_of_the_folder(court):
+    here = court("noetic", ROS1)
+    (case,) = here.universe.select(["p/A"])
+    files = sorted(Path(here.universe.folder).rglob("*"))
+    texts = ["string S=\xe9\nint8[0] a\nint8[] b\n", "string S=\udcff\n", case.text]
+    changed = [replace(case, text=text, before=case.text) for text in texts]
+    wide, not_utf_8, same = here.oracle("genmsg").judge(changed)
+    assert fields_of(wide) == {"p/A": ["int8[0] a", "int8[] b"]}
+    (constant,) = wide.facts["structure"]["p/A"]["constants"]
+    assert constant == {"name": "S", "type": "string", "value": "\xe9", "text": "\xe9"}
+    assert isinstance(not_utf_8, Refused) and "can't decode byte 0xff" in not_utf_8.message
+    assert same == here.answer("genmsg", "p/A")
+    assert sorted(Path(here.universe.folder).rglob("*")) == files
 
 
 def test_a_changed_definition_is_not_what_others_need(court):
