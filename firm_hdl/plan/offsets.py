@@ -185,7 +185,7 @@ class _Walk:
             leaf = self.plan.items_leaf(step.run)
         else:
             first = step.slices[0] if step.slices else None
-            if not isinstance(first, Part) or first.first:
+            if not isinstance(first, Part):
                 self.report(f"step {index}: alignment that no value follows")
                 return
             leaf = self.plan.leaves[first.leaf]

@@ -68,7 +68,8 @@ def test_the_same_circuit_leaves_its_next_states_to_be_proved() -> None:
     }  # fmt: skip
     # Both gates read the same nets.
     one, other = result.cells
-    assert dict(one.inputs) == dict(other.inputs) and one.outputs != other.outputs
+    assert dict(one.inputs) == dict(other.inputs) == {"A": (3,), "B": (4,)}
+    assert one.outputs != other.outputs
 
 
 RESET = {"reset": 3, "reset_level": True, "reset_value": "0"}
@@ -221,11 +222,50 @@ def test_registers_without_a_partner_may_hold_anything(signals: dict) -> None:
     assert {*claim.amaranth, *claim.vhdl} == free and len(free) == 4
 
 
+def test_a_register_of_two_names_is_one_register() -> None:
+    both = {("inner", "r"): ("inner_1", "r"), ("inner", "again"): ("inner_1", "again")}
+    nets = AMARANTH.outputs["o"]
+    ours = replace(AMARANTH, signals=dict.fromkeys(both, nets))
+    theirs = replace(vhdl(), signals=dict.fromkeys(both.values(), nets))
+    result = miter(theirs, ours, signals=both)
+    assert (result.differences, result.unmatched, result.registers) == ((), (), 2)
+    assert open_claims(result) == ["next state of inner.r", "next state of inner.again"]
+    free = [bit for bits in result.inputs.values() for bit in bits]
+    assert len(free) == len({*free}) == 5
+
+
+@pytest.mark.parametrize("short", ["amaranth", "vhdl"])
+def test_a_register_of_another_width_is_no_partner(short: str) -> None:
+    q0, _ = AMARANTH.outputs["o"]
+    ours, theirs = AMARANTH, vhdl()
+    if short == "amaranth":
+        ours = replace(ours, signals={("inner", "r"): (q0,)})
+    else:
+        theirs = replace(theirs, signals={("inner_1", "r"): (q0,)})
+    side = {"amaranth": "Amaranth", "vhdl": "VHDL"}[short]
+    result = miter(theirs, ours)
+    assert result.differences == () and result.registers == 0
+    # The other bit of the narrow one has no name.
+    assert {*result.unmatched} == {
+        "register inner.r of the Amaranth alone",
+        "register inner_1.r of the VHDL alone",
+        f"registers without a name of the {side} alone",
+    }
+    assert open_claims(result) == ["output o"]
+
+
 def test_undriven_nets_are_free() -> None:
     loose = Cell(kind="$and", parameters=NAND, inputs={"A": (77,), "B": (4,)}, outputs={"Y": (7,)})
     result = miter(vhdl(cells=[loose]))
     assert len(result.inputs["anything"]) == 1 and result.differences == ()
     assert open_claims(result) == ["next state of inner.r"]
+    # Nets that only an output has, on either side.
+    bits = (AMARANTH.outputs["o"][0], 88)
+    for sides in ((vhdl(outputs={"o": bits}), AMARANTH), (vhdl(), circuit(2, outputs={"o": bits}))):
+        result = miter(*sides)
+        (claim,) = [each for each in result.claims if each.what == "output o"]
+        (free,) = result.inputs["anything"]
+        assert [claim.amaranth[1], claim.vhdl[1]].count(free) == 1
 
 
 def test_two_drivers_are_refused() -> None:

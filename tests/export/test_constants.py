@@ -62,6 +62,21 @@ def test_bits_of_a_float_have_a_name_that_no_other_constant_has(tmp_path: Path) 
     assert len(set(given)) == len(given) == 10 and "taken_bits" not in given
 
 
+NOT_FINITE = {"p/T": "float32 A=inf\nfloat64 B=-inf\nfloat32 C=nan\nfloat64 D=nan\nint8 x\n"}
+
+
+def test_a_float_that_is_no_number_of_vhdl_has_only_its_bits(tmp_path: Path) -> None:
+    message = library(tmp_path, NOT_FINITE, "ros1").message("p/T")
+    text = "".join(declarations(named_constants(message, ()), []))
+    assert re.findall(r'constant (\w+) *: (\w+)[^"]*x"(\w+)"', text) == [
+        ("A_BITS", "std_logic_vector", "7f800000"),
+        ("B_BITS", "std_logic_vector", "fff0000000000000"),
+        ("C_BITS", "std_logic_vector", "7fc00000"),
+        ("D_BITS", "std_logic_vector", "7ff8000000000000"),
+    ]
+    assert text.count("constant ") == 4
+
+
 PIECE = re.compile(r'"((?:[^"]|"")*)"|character\'val\((\d+)\)')
 HARD = [
     "",

@@ -7,10 +7,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from firm_hdl.export.primitives import PRIMITIVE_BITS
+from firm_hdl.export.primitives import PRIMITIVE_BITS, primitive_name
 from firm_hdl.export.systemverilog import types as systemverilog
 from firm_hdl.export.vhdl import types as vhdl
 from firm_hdl.gateware.signatures import Status
+from firm_hdl.plan import build_plan
+from firm_hdl.wire import lay_out
+from tests.strategies import make
 
 STATUSES = {f"STATUS_{status.name}": status.value for status in Status}
 
@@ -79,3 +82,25 @@ def test_other_declarations_in_systemverilog_are_seen(old, new, what):
     text = systemverilog.types_package()
     assert old in text
     assert list(wrong_in_systemverilog(text.replace(old, new, 1))) == [what]
+
+
+# `byte` and `char` are integers of 8 bits; in ROS 1, `byte` is a signed one.
+@pytest.mark.parametrize(
+    ("dialect", "type_", "expected"),
+    [
+        ("ros1", "byte", "int8"),
+        ("ros2", "byte", "uint8"),
+        ("ros1", "char", "uint8"),
+        ("ros2", "char", "uint8"),
+        ("ros2", "bool", "bool"),
+        ("ros2", "int16", "int16"),
+        ("ros2", "uint16", "uint16"),
+        ("ros2", "int64", "int64"),
+        ("ros2", "float32", "float32"),
+        ("ros2", "float64", "float64"),
+    ],
+)
+def test_a_leaf_has_the_primitive_of_its_size_and_sign(dialect, type_, expected):
+    for field in (type_, f"{type_}[3]"):
+        (leaf,) = build_plan(lay_out(make(dialect, {"a": field}))).leaves
+        assert primitive_name(leaf) == expected

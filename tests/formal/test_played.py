@@ -17,6 +17,7 @@ from firm_hdl.formal.bugs import Bug, seeded
 from firm_hdl.gateware.collect.collector import _CollectorLogic as _Collect
 from firm_hdl.gateware.mover import _MoverLogic as _Move
 from firm_hdl.gateware.packer import _PackerLogic as _Pack
+from firm_hdl.gateware.packets.gate import _Verdicts
 from firm_hdl.gateware.packets.tail_drop import TailDrop
 from firm_hdl.gateware.parse.claims import Claims
 from firm_hdl.gateware.parse.packet_judge import PacketJudge
@@ -146,6 +147,15 @@ def test_a_status_without_a_message_breaks_a_claim():
     with seeded([Bug(_JUDGE, "m.If(state.complete & state.ends)", "m.If(1)")]):
         # Nothing comes, and nothing is taken.
         assert run(BOOL, leaf0_valid=0, status_ready=0)["statuses"]
+
+
+@pytest.mark.parametrize("name", ["gate-bool", "gate-drop"])
+def test_a_status_before_any_packet_breaks_a_claim(name):
+    # None is taken. So there is one too many, and never two.
+    given = [{}] * 8
+    assert not any(play(STUDIES[name].build, given)[0].values())
+    with seeded([Bug(_Verdicts.give_statuses, "is_due.eq(leaves)", "is_due.eq(1)")]):
+        assert play(STUDIES[name].build, given)[0]["one status"]
 
 
 @pytest.mark.parametrize("name", [name for name in STUDIES if name.startswith("deserializer-")])

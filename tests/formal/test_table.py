@@ -46,8 +46,22 @@ def test_no_block_is_forgotten():
     assert len(rows) == len(all_proofs()), "python -m firm_hdl.formal --write docs/formal.md"
 
 
-def test_page_without_a_place_is_refused(tmp_path):
+BEGIN = "<!-- proofs: written by `python -m firm_hdl.formal --write docs/formal.md` -->"
+END = "<!-- end of proofs -->"
+
+
+def test_only_the_table_of_a_page_is_replaced(tmp_path):
     page = tmp_path / "page.md"
-    page.write_text("nothing")
+    page.write_text(f"# Head\n{BEGIN}\nold\n{END}\nTail {END}\n")
+    for _ in range(2):
+        replace_table(page, "| new |\n")
+        assert page.read_text() == f"# Head\n{BEGIN}\n\n| new |\n\n{END}\nTail {END}\n"
+
+
+@pytest.mark.parametrize("text", ["nothing", f"{BEGIN}\nrest", f"{END}\nrest", f"{END}{BEGIN}"])
+def test_page_without_a_place_is_refused(tmp_path, text):
+    page = tmp_path / "page.md"
+    page.write_text(text)
     with pytest.raises(ValueError, match="has no lines"):
         replace_table(page, "")
+    assert page.read_text() == text

@@ -11,25 +11,37 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.sim import Simulator
 
-from firm_hdl.gateware.flow import Flow, exceeds
+from firm_hdl.gateware.flow import Flow, exceeds, last_word
 from firm_hdl.plan import RunStep, build_plan, decode
 from firm_hdl.wire import lay_out
 from tests.gateware.traffic import random_packets
 from tests.strategies import make
 
 TEXT = make("ros1", {"s": "string"}, "Text")
+NUL_TEXT = make("ros2", {"s": "string"}, "Text")
 ROW = make("ros1", {"texts": (TEXT, "[]"), "m": "float64[4]"}, "Row")
 POINT = make("ros1", {"x": "uint32", "y": "uint32"}, "Point")
 MESSAGES = {
     "fixed": make("ros1", {"a": "uint64", "b": "uint64", "c": "uint64"}),
     "constant counts": make("ros1", {"a": "uint8[37]", "p": (POINT, "[3]"), "b": "float64[5]"}),
+    "a long run first": make("ros1", {"a": "uint8[300]", "b": "float64[3]", "c": "uint8[64]"}),
     "begins with a count": make("ros1", {"p": (ROW, "[2]"), "z": "uint8"}),
     "nested": make("ros1", {"rows": (ROW, "[]"), "s": "string", "t": (TEXT, "[]")}),
+    # Lengths of strings count a NUL, others do not.
+    "with NUL": make(
+        "ros2", {"s": "string", "b": "uint8[]", "t": (NUL_TEXT, "[]"), "w": "uint16[]"}
+    ),
 }
 
 
 class Walk(wiring.Component):
     """A flow that moves whenever `moves` is high.
+
+    Parameters
+    ----------
+    plan : Plan
+    most : int
+        The largest length that is counted.
 
     Members
     -------
@@ -45,8 +57,8 @@ class Walk(wiring.Component):
         The trait of the step: it is the body of a run.
     """
 
-    def __init__(self, plan):
-        self.plan = plan
+    def __init__(self, plan, most):
+        self.plan, self.most = plan, most
         inputs = dict.fromkeys(("moves", "begins", "single", "skips"), In(1)) | {"count": In(16)}
         outputs = {"step": Out(len(plan.steps)), "trait": Out(1)}
         super().__init__(inputs | outputs)
@@ -57,7 +69,7 @@ class Walk(wiring.Component):
         flow = Flow(
             m,
             self.plan,
-            lambda begin: (1 << 16) - 1,
+            lambda begin: self.most,
             {"is_run": 1},
             lambda index: {"is_run": runs[index]} if index is not None else {},
             has_end=False,
@@ -75,7 +87,7 @@ class Walk(wiring.Component):
             done=done,
             count=self.count,
             single=self.single,
-            nul=False,
+            nul=True,
         )
         following = Mux(done, flow.exit_state, flow.body_state)
         with m.If(self.moves):
@@ -85,7 +97,10 @@ class Walk(wiring.Component):
 
 def walk(plan, packets, tamper=lambda length: length):
     """Compare the steps of a flow with those of the interpreter; `tamper` changes lengths."""
-    dut, rng, steps = Walk(plan), random.Random(1), 0
+    found = [decode(plan, packet).streams for packet in packets]
+    lengths = [length for each in found for leaf in plan.begins for length in each.get(leaf, [])]
+    # With a NUL.
+    dut, rng, steps = Walk(plan, max(lengths, default=0) + 1), random.Random(1), 0
 
     async def testbench(ctx):
         nonlocal steps
@@ -103,7 +118,8 @@ def walk(plan, packets, tamper=lambda length: length):
                     lanes = 1 if is_loop else plan.leaves[plan.runs[step.begin.run].items].lanes
                     # The last word of a run is not in its body.
                     turns = length if is_loop else max(0, -(-length // lanes) - 1)
-                    ctx.set(dut.count, length)
+                    nul = not is_loop and plan.runs[step.begin.run].terminated
+                    ctx.set(dut.count, length + nul)
                     ctx.set(dut.skips, turns == 0)
                     ctx.set(dut.single, turns == 1)
                 for moves in [0] * rng.choice((0, 0, 0, 2)) + [1]:
@@ -151,5 +167,21 @@ def test_exceeds_is_a_comparison(limit):
             assert ctx.get(dut.above) == (value > limit)
 
     simulator = Simulator(dut)
+    simulator.add_testbench(testbench)
+    simulator.run()
+
+
+@pytest.mark.parametrize("lanes", [1, 2, 8])
+def test_the_last_word_has_what_whole_words_leave(lanes):
+    items, left = Signal(8), Signal(8)
+    m = Module()
+    m.d.comb += left.eq(last_word(items, lanes))
+
+    async def testbench(ctx):
+        for count in range(1, 40):
+            ctx.set(items, count)
+            assert ctx.get(left) == count - (count - 1) // lanes * lanes
+
+    simulator = Simulator(m)
     simulator.add_testbench(testbench)
     simulator.run()

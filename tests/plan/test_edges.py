@@ -9,6 +9,7 @@ import pytest
 from firm_hdl import load_message
 from firm_hdl.plan import Edge, build_plan, decode
 from firm_hdl.plan.edges import edges
+from firm_hdl.plan.offsets import paddings
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
@@ -143,3 +144,10 @@ def test_paddings_count_on_bounds_of_runs(tmp_path, bound):
     built = build_plan(lay_out(load_message("demo/msg/Outer", paths=[tmp_path])), bus_bytes=1)
     found = {edge.way for edge in edges(built) if edge.way.startswith("padding")}
     assert found == {f"padding {-count % 4}" for count in range(bound + 1)}
+
+
+def test_paddings_count_from_the_end_of_the_header():
+    # A length, up to 4 bytes of text with its NUL, and up to 4 bytes of padding.
+    built = build_plan(lay_out(make("ros2", {"s": "string<=3", "d": "float64"})), bus_bytes=1)
+    (found,) = paddings(built).values()
+    assert found == {0, 1, 2, 3, 4}

@@ -48,6 +48,23 @@ def test_a_condition_and_its_inverse(
     assert [cells.boolean(cell, inverted=each).text for each in (False, True)] == [plain, inverted]
 
 
+@pytest.mark.parametrize("bit", ["0", "1"])
+@pytest.mark.parametrize(("kind", "equal"), [("$eq", "1"), ("$ne", "0")])
+def test_a_bit_is_compared_with_a_constant_on_either_side(kind: str, equal: str, bit: str) -> None:
+    """The result is the bit itself where the constant and the operator agree."""
+    for operands in ((A, (Bits(bit),)), ((Bits(bit),), A)):
+        ports = {**dict(zip("AB", operands, strict=True)), "Y": (Slice("$y", 0, 1),)}
+        cell = Cell(kind=kind, name="c", parameters={}, ports=ports, attributes={}, line=1)
+        assert VALUES.cells.logic(cell).text == ("a" if bit == equal else "not a")
+
+
+@pytest.mark.parametrize(("kind", "text"), [("$eq", "not (a xor b)"), ("$ne", "a xor b")])
+def test_two_bits_are_compared_without_a_conversion(kind: str, text: str) -> None:
+    ports = {"A": A, "B": B, "Y": (Slice("$y", 0, 1),)}
+    cell = Cell(kind=kind, name="c", parameters={}, ports=ports, attributes={}, line=1)
+    assert VALUES.cells.logic(cell).text == text
+
+
 def test_a_part_of_a_pad_is_driven_only_while_enabled() -> None:
     m, pad = Module(), IOPort(3, name="pad")
     a, b, one, two = (Signal(n, name=name) for n, name in ((1, "a"), (2, "b"), (1, "e"), (1, "f")))

@@ -74,6 +74,18 @@ def test_a_forked_process_starts_its_own():
         assert own not in others and process() == own
 
 
+def test_only_its_owner_uses_and_ends_it(monkeypatch):
+    own, ended = process(), []
+    last = runtime._started[-1]
+    monkeypatch.setattr(runtime, "hang_up", ended.append)
+    monkeypatch.setattr(last, "owner", os.getpid() + 1)
+    assert not last.is_usable
+    last.close()
+    assert ended == []
+    monkeypatch.undo()
+    assert last.is_usable and process() == own
+
+
 def test_a_process_that_died_is_an_error_and_the_next_run_starts_another():
     dead = process()
     os.kill(dead, signal.SIGSTOP)
