@@ -160,14 +160,39 @@ def test_a_right_deserializer_passes(play):
 
 
 def test_a_packet_is_complete_with_its_last_transfer_and_the_first_ones_come_first(play):
-    early = ["offer 0 0 7", "offer 1 0 6", f"offer 2 0 {words(b'abcd')}", "cycle", "take 2"]
+    budget = 64 + 3 * (3 + 4) + 11
+    early = [
+        "state",
+        "offer 0 0 7",
+        "offer 1 0 6",
+        f"offer 2 0 {words(b'abcd')}",
+        "cycle",
+        "take 2",
+    ]
     early += [f"offer 2 1 {words(b'ef')}", "offer 3 0 0", "cycle", "take 3", "state"]
     # The second packet waits for the leaves of the first one, too.
     late = ["take 0", "take 1", "state", "take 2", "state"]
     assert play("deserializer", [sent(5), sent(6), *early, *late], MESSAGE) == [
-        f"busy progress 1 oldest 5 budget {64 + 21 + 11 + 2 * 11} transfers 2",
-        f"busy progress 1 oldest 5 budget {64 + 21 + 11 + 2 * 11} transfers 4",
-        f"busy progress 2 oldest 6 budget {64 + 21 + 11 + 11} transfers 5",
+        f"busy progress 0 oldest 5 budget {budget + 11} transfers 0",
+        f"busy progress 1 oldest 5 budget {budget + 2 * 11} transfers 2",
+        f"busy progress 1 oldest 5 budget {budget + 2 * 11} transfers 4",
+        f"busy progress 2 oldest 6 budget {budget + 11} transfers 5",
+    ]
+
+
+def test_a_leaf_may_be_ahead_by_a_packet(play):
+    """The number of the second packet is taken before the length of the first."""
+    lines = [sent(5), sent(6), *RIGHT[:3], "offer 1 0 6", *RIGHT[6:], "offer 0 0 7", "cycle"]
+    lines += ["take 0", "state", "take 1", "state"]
+    first, second = play("deserializer", lines, MESSAGE)
+    assert first.startswith("busy progress 1 oldest 5 ") and first.endswith(" transfers 5")
+    assert second.startswith("busy progress 2 oldest 6 ") and second.endswith(" transfers 6")
+
+
+def test_what_was_cut_has_the_time_to_be_written_as_a_whole(play):
+    budget = 64 + 3 * (2 + 4) + 7 + 11
+    assert play("deserializer", [sent(0, PACKET[:7]), "state"], MESSAGE) == [
+        f"busy progress 0 oldest 0 budget {budget} transfers 0"
     ]
 
 
@@ -207,9 +232,13 @@ def test_what_becomes_valid_in_the_same_cycle_has_no_order(play):
 
 
 def test_a_reset_loses_what_is_inside_and_begins_anew(play):
-    lines = [sent(5), sent(6), *RIGHT, sent(7), *RIGHT[:3], "reset", "reset", "state"]
-    lines += [sent(7), *RIGHT, "state"]
-    assert play("deserializer", lines, MESSAGE) == [
+    lines = [sent(5), *RIGHT, sent(6), sent(7), *RIGHT[:3], "reset", "reset", "state"]
+    lines += [sent(7), *RIGHT[:-1], "state", RIGHT[-1], "state"]
+    # A packet that has its status is not lost.
+    lines += [sent(8), "offer 3 0 0", "take 3", "reset"]
+    first, again, empty, almost, done, judged = play("deserializer", lines, MESSAGE)
+    assert almost.startswith("busy progress 2 oldest 7 ") and judged == "lost 0"
+    assert [first, again, empty, done] == [
         "lost 2",
         "lost 0",
         "done progress 2 oldest 7 budget 128 transfers 6",
@@ -292,6 +321,15 @@ def test_each_lane_of_a_wide_bus_has_a_bit(play, size):
         line = f"offer 0 1 {data} {wrong & 0xFFFF_FFFF} {wrong >> 32}"
         (said,) = play("loop", [sent(0, packet), line], MESSAGE, 64)
         assert said.startswith("a wrong beat 0 on packets_out|0|")
+
+
+@pytest.mark.parametrize("bus_bytes", [1, 2])
+def test_a_narrow_bus_has_its_lanes_in_one_word(play, bus_bytes):
+    message = make("ros1", {"a": "uint8"})
+    assert play("loop", [sent(0, b"\7"), "offer 0 1 7 1"], message, bus_bytes) == []
+    for wrong in ("0 1 8 1", "0 1 7 0", "0 0 7 1"):
+        (said,) = play("loop", [sent(0, b"\7"), f"offer {wrong}"], message, bus_bytes)
+        assert said.startswith("a wrong beat 0 on packets_out|0|07 flags 1|")
 
 
 def test_a_message_without_bytes_comes_back_as_one_empty_beat(play):

@@ -179,6 +179,13 @@ def test_lengths_reach_their_limit_and_do_not_exceed_it(written, kind, most, alw
     assert (values.count(most) > 450) is (most <= 6)
 
 
+def test_most_packets_are_short_and_some_are_long(written):
+    """A packet that has its bytes gets at most one item more for each further field."""
+    message = make("ros2", {f"x{number}": "uint64[]" for number in range(8)})
+    sizes = sorted(len(each.good) for each in written(message, most=5000)[0])
+    assert sizes[len(sizes) // 2] < 230 and sizes[-1] > 1000
+
+
 def is_prefix(one, two):
     return two[: len(one)] == one
 
@@ -228,7 +235,7 @@ def check_erase(good, bad, each):
 
 
 def check_rubbish(good, bad, each):
-    assert len(bad) < 80 and is_prefix(bad[:2], b"\0\1")
+    assert len(bad) < 80 and (len(bad) < 2 or bad[:2] == b"\0\1")
 
 
 CHECKS = {
@@ -304,11 +311,33 @@ def test_a_length_gets_each_number_that_is_next_to_something(written):
         cut += len(each.damaged) < len(each.good)
         assert each.damaged[:4] == each.good[:4]
     assert found == {*range(11), 0x8000_0000, 0xFFFF_FFFF} and cut > 10
+    # A bound may be above the limit, and the limit of a text counts the NUL.
+    for kind, near in (("uint8[<=5000]", {292, 293, 5000, 5001}), ("string", {292, 293})):
+        some = damaged(written, "length", {"v": kind})
+        assert near <= {int.from_bytes(each.damaged[4:8], "little") for each in some}
     limited = damaged(written, "length", {"v": "uint8[]"})
     found = {int.from_bytes(each.damaged[4:8], "little") for each in limited}
     assert {0, 1, 292, 293, 0x8000_0000, 0xFFFF_FFFF} <= found
     near = {int.from_bytes(e.damaged[4:8], "little") - e.lengths[0][1] for e in limited}
     assert {-1, 1} <= near
+
+
+def test_several_lengths_of_a_packet_are_damaged_at_once(written):
+    some = damaged(written, "length", {"a": "string", "b": "string", "c": "string"})
+    counts = set()
+    for each in some:
+        places = {at for at, _ in each.lengths if each.good[at : at + 4] != each.damaged[at:][:4]}
+        # What was cut is no other number.
+        counts.add(len({at for at in places if at + 4 <= len(each.damaged)}))
+    assert {1, 2, 3} <= counts
+
+
+def test_lists_inside_lists_are_short_and_those_behind_them_are_not(written):
+    inner = make("ros2", {"x": "uint8[]"}, "Inner")
+    message = make("ros2", {"all": (inner, "[]"), "last": "uint8[]"})
+    packets = [each for each in written(message)[0] if len(each.lengths) > 2]
+    assert max(value for each in packets for _, value in each.lengths[1:-1]) == 5
+    assert max(each.lengths[-1][1] for each in packets) > 5
 
 
 def test_cuts_with_consecutive_numbers_are_those_of_one_packet_after_the_other(written):
