@@ -314,7 +314,8 @@ def test_a_length_gets_each_number_that_is_next_to_something(written):
     # A bound may be above the limit, and the limit of a text counts the NUL.
     for kind, near in (("uint8[<=5000]", {292, 293, 5000, 5001}), ("string", {292, 293})):
         some = damaged(written, "length", {"v": kind})
-        assert near <= {int.from_bytes(each.damaged[4:8], "little") for each in some}
+        numbers = [int.from_bytes(each.damaged[4:8], "little") for each in some]
+        assert all(numbers.count(each) > 20 for each in near)
     limited = damaged(written, "length", {"v": "uint8[]"})
     found = {int.from_bytes(each.damaged[4:8], "little") for each in limited}
     assert {0, 1, 292, 293, 0x8000_0000, 0xFFFF_FFFF} <= found
