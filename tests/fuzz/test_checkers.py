@@ -337,3 +337,48 @@ def test_a_message_without_bytes_comes_back_as_one_empty_beat(play):
     assert play("loop", [sent(0, b""), "offer 0 1 99 0", "take 0"], nothing) == []
     (said,) = play("loop", [sent(0, b""), "offer 0 1 99 1"], nothing)
     assert said.startswith("a wrong beat 0 on packets_out|0|(empty) flags 1|0x")
+
+
+def gate(*, data=PACKET, size=11, counts=(4, 4, 3), status=0):
+    """Return what a gate does with `PACKET`: it comes, has a status, and leaves."""
+    lines = ["beat 0", "beat 0", "beat 1", f"offer 1 0 {status}", f"take 1 0 {status}"]
+    for number, count in enumerate(counts):
+        beat = f"0 {int(number == 2)} {words(data[4 * number :][:4])} {count} {size}"
+        lines += [f"offer {beat}", f"take {beat}"]
+    return lines
+
+
+def test_a_right_gate_passes_and_counts_since_its_reset(play):
+    lines = [sent(5), *gate(), "counters 1", "end", "reset", "counters 0", "end"]
+    lines += [sent(6), *gate(), sent(7), "state", *gate(), "state", "counters 2", "end"]
+    busy, *done = play("gate", lines, MESSAGE)[1:]
+    assert busy.startswith("busy progress 2 oldest 7 ")
+    assert len(done) == 1 and done[0].startswith("done progress 3 oldest 7 ")
+
+
+WHOLE = PACKET.hex()
+
+
+@pytest.mark.parametrize(
+    ("lines", "broken"),
+    [
+        (gate(data=PACKET[:-1] + b"?"), f"a wrong packet on packets_out|5|{WHOLE}|07060000"),
+        (gate(size=12), f"a wrong packet on packets_out|5|{WHOLE}|{WHOLE}, size 12"),
+        (gate(counts=(4, 4, 2)), f"a wrong packet on packets_out|5|{WHOLE}|{WHOLE[:-2]}, size 11"),
+        (gate(counts=(4, 3, 3)), "a wrong size or count on packets_out|5|size 11, full beats|"),
+        ([*gate()[:-1], "take 0 1 0 3 10"], "a wrong size or count on packets_out|5|size 11, full"),
+        (gate(status=1), "a wrong value on status|5|OK|TRUNCATED"),
+        # It has room for the packet, so it is not full, and none waits.
+        (gate(status=8), "a wrong value on status|5|OK|FULL"),
+        (gate(status=10), "a wrong value on status|5|OK|OVERRUN"),
+        ([*gate(), "offer 1 0 0"], "an extra transfer on status|5|nothing|OK"),
+        ([*gate(), "offer 0 0 0 4 4"], "a packet leaves before it has come|5|nothing|a beat"),
+        (["beat 0", "beat 0", "offer 0 0 0 4 11"], "a packet leaves before it has come|5|nothing|"),
+        ([*gate(), "counters 2", "end"], "a wrong counter of OK|5|1|2"),
+        ([*gate(), "counters 1 0 0 0 0 0 0 0 1", "end"], "a wrong counter of OVERRUN|5|0|1"),
+    ],
+)
+@pytest.mark.parametrize("drops", [False, True])
+def test_what_a_gate_may_not_do(play, drops, lines, broken):
+    (said,) = play("gate", [sent(5), *lines], MESSAGE, drops=drops)
+    assert said.startswith(broken)
