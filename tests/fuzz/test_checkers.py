@@ -382,3 +382,17 @@ WHOLE = PACKET.hex()
 def test_what_a_gate_may_not_do(play, drops, lines, broken):
     (said,) = play("gate", [sent(5), *lines], MESSAGE, drops=drops)
     assert said.startswith(broken)
+
+
+@pytest.mark.parametrize(
+    ("status", "memory_bytes", "drops", "is_right"),
+    [
+        # A packet of 11 bytes in 3 beats is large, or finds no room for a beat beside its own.
+        *[(9, 10, False, True), (9, 11, False, False), (0, 10, False, False), (0, 11, False, True)],
+        *[(8, 16, True, True), (8, 20, True, False), (8, 16, False, False)],
+    ],
+)
+def test_a_gate_has_a_reason_to_refuse(play, status, memory_bytes, drops, is_right):
+    lines = [sent(5), *gate(status=status)[:5]]
+    said = play("gate", lines, MESSAGE, drops=drops, memory_bytes=memory_bytes)
+    assert (said == []) is is_right
