@@ -11,10 +11,7 @@ from pathlib import Path
 
 import pytest
 
-import firm_hdl.fuzz
 from firm_hdl.fuzz.table import table_of
-from firm_hdl.jobs import ProgramMissingError
-from firm_hdl.jobs.programs import find_compiler
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.sim.payloads import encoder_of
@@ -22,10 +19,8 @@ from firm_hdl.sim.values import to_transfers
 from firm_hdl.verify.cases.damage import broken_packets
 from firm_hdl.verify.cases.make import Case
 from firm_hdl.wire import lay_out
+from tests.fuzz.programs import compiled
 from tests.strategies import make
-from tests.tools import need
-
-HARNESS = Path(firm_hdl.fuzz.__file__).parent / "harness"
 
 # Reads packets as lines of hex; writes what the judge says of each.
 MAIN = r"""
@@ -61,16 +56,7 @@ int main(int, char** argv) {
 @pytest.fixture(scope="module")
 def program(tmp_path_factory) -> Path:
     """The judge as a program, compiled once."""
-    try:
-        compiler = find_compiler("A test")
-    except ProgramMissingError as error:
-        need(str(error), None)
-    folder = tmp_path_factory.mktemp("judge")
-    (folder / "main.cpp").write_text(MAIN)
-    sources = [str(folder / "main.cpp"), *(str(HARNESS / f"{n}.cpp") for n in ("judge", "table"))]
-    options = ["-O0", "-std=gnu++17", f"-I{HARNESS}", "-o", str(folder / "judge")]
-    subprocess.run([*compiler, *options, *sources], check=True, timeout=300)
-    return folder / "judge"
+    return compiled(tmp_path_factory.mktemp("judge"), MAIN, "judge", "table")
 
 
 class Both:

@@ -51,7 +51,7 @@ public:
     uint64_t progress() const override { return tally.judged + written_; }
 
     uint64_t oldest() const override {
-        return packets_.empty() ? 0 : packets_.front()->number;
+        return packets_.empty() ? last_sent_ : packets_.front()->number;
     }
 
 protected:
@@ -64,6 +64,7 @@ protected:
 
     void begin(const SentPtr& packet) {
         if (packets_.empty()) first_ = packet->number;
+        last_sent_ = packet->number;
         packets_.push_back(packet);
         open_.push_back(0);
     }
@@ -75,8 +76,7 @@ protected:
 
     const Entry& next(int output, const std::string& name, const uint32_t* payload, int words) {
         if (queues_[output].empty())
-            throw Broken("an extra transfer on " + name, packets_.empty() ? first_ : oldest(),
-                         "nothing", hex(payload, words));
+            throw Broken("an extra transfer on " + name, oldest(), "nothing", hex(payload, words));
         return queues_[output].front();
     }
 
@@ -86,6 +86,7 @@ protected:
     // Transfers of each of these packets that have not come.
     std::deque<uint64_t> open_;
     uint64_t first_ = 0;
+    uint64_t last_sent_ = 0;
     uint64_t written_ = 0;
 };
 

@@ -61,7 +61,7 @@ public:
     virtual uint64_t budget() const = 0;
     // Grows with each status.
     virtual uint64_t progress() const { return tally.judged; }
-    // The packet whose status is next, for messages.
+    // The packet whose status is next, for messages; if nothing is inside, the last one.
     virtual uint64_t oldest() const = 0;
     // Checked when all is done.
     virtual void at_end() {}

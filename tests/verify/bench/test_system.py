@@ -183,6 +183,48 @@ def test_each_distribution_and_each_bus_has_a_bench(monkeypatch):
     ]
 
 
+def test_each_bus_is_run_by_itself_with_the_options_of_the_user(monkeypatch, capsys):
+    asked = []
+
+    def run_tests(work, context, tests, command, lines_of, **options):
+        asked.append((context, [test.bus_bytes for test in tests], options))
+        for test in tests:
+            verdict = Passed(3) if test.distro == "humble" else Failed(("no", "not at all"))
+            seconds = Seconds(simulation=1.6)
+            record = Record(test=test, verdict=verdict, packets=3, seconds=seconds)
+            yield [(test, record, lines_of(record))]
+
+    monkeypatch.setattr(system, "find_ghdl", lambda: "own-ghdl")
+    monkeypatch.setattr(system, "run_tests", run_tests)
+    task = TypeUnderTest(distro="jazzy", name="p/A", same=("humble", "jazzy"))
+    request = Request(widths=(2, 8), jobs=5)
+    benches = Benches([task], request)
+    assert not benches.options
+    found = benches.run(Recorder())
+    assert asked == [((request, "own-ghdl"), [n, n], {"jobs": 5}) for n in (2, 8)]
+    assert [(each.what, each.verdict.name) for each in found] == [
+        (f"p/A ({distro}), bench, {width}-byte bus", name)
+        for width in (2, 8)
+        for distro, name in (("humble", "passed"), ("jazzy", "failed"))
+    ]
+    lines = capsys.readouterr().out.splitlines()
+    titles = [line[:10] for line in lines if "types" in line]
+    assert titles == ["2-byte bus", "8-byte bus"]
+    rows = [line.split() for line in lines if line.startswith(("humble", "jazzy"))]
+    one = [
+        ["humble", "1", "1", "0", "0", "3", "0", "2"],
+        ["jazzy", "1", "0", "1", "0", "3", "0", "2"],
+    ]
+    assert rows == one * 2
+
+
+def test_a_long_failure_is_shortened_and_the_first_one_is_printed():
+    test = Test(system="bench", distro="jazzy", type="p/A")
+    texts = ("x" * 1999 + "yz", "another")
+    (text,) = _lines_of(Record(test=test, verdict=Failed(texts), command="the command"))
+    assert text == f"FAIL p/A (jazzy)\n    {'x' * 1999}y\n    again: the command"
+
+
 def test_results_are_kept_and_not_repeated(ghdl, tmp_path, monkeypatch, capsys):
     file = tmp_path / "r.jsonl"
     names = ["std_msgs/msg/Bool", "std_msgs/msg/Empty"]

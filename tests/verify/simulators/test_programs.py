@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
+import firm_hdl.verify.simulators.ghdl as ghdl
 import firm_hdl.verify.simulators.icarus as icarus
 import firm_hdl.verify.simulators.verilated as verilated
 from firm_hdl.jobs.processes import ToolError
@@ -56,6 +57,52 @@ def test_icarus_reads_the_language_that_was_asked_for(monkeypatch, tmp_path):
     assert asked[1][-1] == "replay.vvp" and len(asked) == 2
     # Undefined bits are capital letters in every simulator.
     assert rows == ["0 X1Z", "1 0"]
+
+
+def test_ghdl_gets_every_file_in_order_and_every_row(monkeypatch, tmp_path):
+    monkeypatch.setattr(ghdl, "find_ghdl", lambda: "own-ghdl")
+    asked, described, results = [], {}, ["0 X1", "", "1 0"]
+
+    def convert(top, *, name):
+        # The outermost entity is the last one.
+        entities = {
+            part: SimpleNamespace(ports={"a": f"{part} of {top}"}) for part in ("in", "out")
+        }
+        texts = {f"{name}_{part}.vhd": f"{part} of {top}" for part in ("in", "out")}
+        return SimpleNamespace(files=texts, entities=entities)
+
+    def written(name, trace, **more):
+        described.update({name: more})
+        return "the bench"
+
+    def run(command, folder):
+        asked.append(command)
+        assert folder == tmp_path and (tmp_path / "stimuli.txt").read_text() == "1 0 1\n0\n"
+        (folder / "results.txt").write_text("".join(f"{row}\n" for row in results))
+
+    monkeypatch.setattr(ghdl, "convert", convert)
+    monkeypatch.setattr(ghdl, "written", written)
+    monkeypatch.setattr(ghdl, "run_tool", run)
+    devices = [SimpleNamespace(name="d"), SimpleNamespace(name="s")]
+    trace = SimpleNamespace(devices=devices, stimuli=["1 0 1", "0"])
+    assert ghdl.Ghdl().replay(trace, lambda: ["one", "two"], tmp_path) == results
+    files = ["d_in.vhd", "d_out.vhd", "s_in.vhd", "s_out.vhd", "replay.vhd"]
+    assert asked[0] == ["own-ghdl", "-a", "--std=08", *files]
+    assert asked[1][:4] == ["own-ghdl", "--elab-run", "--std=08", "replay"] and len(asked) == 2
+    texts = ["in of one", "out of one", "in of two", "out of two", "the bench"]
+    assert [(tmp_path / name).read_text() for name in files] == texts
+    assert described == {"replay.vhd": {"ports": [{"a": "out of one"}, {"a": "out of two"}]}}
+    with pytest.raises(ValueError, match="zip"):
+        ghdl.Ghdl().replay(trace, lambda: ["one"], tmp_path)
+
+
+def test_a_ghdl_that_writes_nothing_has_failed(monkeypatch, tmp_path):
+    monkeypatch.setattr(ghdl, "find_ghdl", lambda: "own-ghdl")
+    monkeypatch.setattr(ghdl, "written", lambda *_, **__: "")
+    monkeypatch.setattr(ghdl, "run_tool", lambda *_: "")
+    trace = SimpleNamespace(devices=[], stimuli=[])
+    with pytest.raises(ToolError, match=r"GHDL .*results\.txt"):
+        ghdl.Ghdl().replay(trace, list, tmp_path)
 
 
 MAKEFILE = """# Verilated -*- Makefile -*-

@@ -1,0 +1,156 @@
+"""What becomes of a type that was sent through a board: its record, and what is printed."""
+
+from __future__ import annotations
+
+import pytest
+
+from firm_hdl.errors import DefinitionError, Diagnostic, UserError
+from firm_hdl.verify.board import system
+from firm_hdl.verify.board.system import SILENT_SECONDS_OF_SIMULATION, Boards
+from firm_hdl.verify.board.talk import SILENT_SECONDS, Talk
+from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Passed
+from firm_hdl.verify.systems.options import Request
+from firm_hdl.verify.systems.system import Recorder
+from tests.node.bridge.fakes import FakeBoard
+from tests.verify.board.fakes import BOTH, STRING, LoopNode, described
+
+ONE = described(STRING)
+
+
+class Kept(Recorder):
+    """Keeps the records that a file would have."""
+
+    def __init__(self):
+        super().__init__()
+        self.records = []
+
+    def add(self, *records):
+        self.records += records
+
+
+def records_of(monkeypatch, judge_loop, description=ONE, **given):
+    """Return the records of a run in which something else judges each type."""
+    monkeypatch.setattr(system, "judge_loop", judge_loop)
+    request = Request(**{"board": "fake", "references": (), **given})
+    recorder = Kept()
+    with Boards(description, request, FakeBoard(LoopNode(description))) as boards:
+        boards.run(recorder)
+    return recorder.records
+
+
+def judges_well(talk, description, loop, options, result):
+    result.cases, result.packets, result.judged = 3, 9, 4
+    result.metrics, result.shape = {"leaves": 2.0}, "a shape"
+    result.note, result.written_by = "a remark", ("genpy",)
+    result.watch.enter("simulation")
+
+
+def test_a_record_has_all_that_was_found(monkeypatch, capsys):
+    (record,) = records_of(monkeypatch, judges_well)
+    assert (record.verdict, record.note, record.shape) == (Passed(4), "a remark", "a shape")
+    assert (record.cases, record.packets, record.metrics) == (3, 9, {"leaves": 2.0})
+    assert record.written_by == ("rosbags", "genpy")
+    assert record.seconds.generation > 0 and record.seconds.simulation > 0
+    assert record.seconds.testing == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert f"note: {STRING} (lyrical): a remark" in printed
+    assert "board fake: 1 of 1 types passed, 9 packets sent" in printed
+
+
+@pytest.mark.parametrize(
+    ("error", "verdict"),
+    [
+        (NotJudgedError("nobody can"), NotJudged("nobody can")),
+        # A reason is never blank.
+        (NotJudgedError(), NotJudged("NotJudgedError")),
+        (KeyError("x"), Failed(("KeyError: 'x'",))),
+    ],
+)
+def test_what_goes_wrong_with_one_type_does_not_end_the_run(monkeypatch, capsys, error, verdict):
+    def judge_loop(talk, description, loop, options, result):
+        if loop[0].type == STRING:
+            judges_well(talk, description, loop, options, result)
+            return
+        raise error
+
+    records = records_of(monkeypatch, judge_loop, described(*BOTH))
+    assert [each.verdict for each in records] == [verdict, Passed(4)]
+    # Nothing was written before the error.
+    assert records[0].written_by == () and records[0].cases == 0
+    printed = capsys.readouterr().out
+    assert ("again: firm-hdl verify" in printed) is isinstance(verdict, Failed)
+    for name, packets in ((verdict.name, 0), ("passed", 9)):
+        assert f"board fake: 1 of 2 types {name}, {packets} packets sent\n" in printed
+
+
+@pytest.mark.parametrize(
+    "error", [UserError("the node"), DefinitionError([Diagnostic(message="the node")])]
+)
+def test_what_is_wrong_with_the_node_ends_the_run(monkeypatch, error):
+    def judge_loop(*given):
+        raise error
+
+    with pytest.raises(type(error), match="the node"):
+        records_of(monkeypatch, judge_loop)
+
+
+SEED = "--seed 0 --reference none"
+
+
+@pytest.mark.parametrize(
+    ("given", "command"),
+    [
+        ({}, f"--distro lyrical --bus-bytes 8 {SEED}"),
+        ({"types": BOTH}, f"--distro lyrical --bus-bytes 8 {SEED} {' '.join(BOTH)}"),
+        ({"paths": ("x", "y")}, f"--distro lyrical --path x --path y --bus-bytes 8 {SEED}"),
+        # The file has the distribution and the bus.
+        ({"node": "n.yaml"}, f"--node n.yaml {SEED}"),
+        (
+            {"engine": "cxxrtl", "silent_seconds": 1.5},
+            f"--engine cxxrtl --silent-seconds 1.5 --distro lyrical --bus-bytes 8 {SEED}",
+        ),
+        (
+            {"seed": 7, "broken": False, "most_cases": 2, "references": ("rosbags",)},
+            "--distro lyrical --bus-bytes 8 --seed 7 --no-broken --cases 2 --reference rosbags",
+        ),
+    ],
+)
+def test_the_command_repeats_the_tests(monkeypatch, given, command):
+    monkeypatch.setattr(system, "find_references", lambda wanted, wires: [])
+    (record,) = records_of(monkeypatch, judges_well, **given)
+    assert record.command == f"firm-hdl verify --board fake {command}"
+
+
+@pytest.mark.parametrize(
+    ("board", "given", "seconds"),
+    [
+        ("sim", None, SILENT_SECONDS_OF_SIMULATION),
+        ("udp://a", None, SILENT_SECONDS),
+        ("sim", 0.5, 0.5),
+        ("udp://a", 0.5, 0.5),
+    ],
+)
+def test_a_simulation_may_be_silent_for_longer(monkeypatch, capsys, board, given, seconds):
+    asked = []
+
+    def talk(board, description, silent):
+        asked.append(silent)
+        return Talk(board, description, silent)
+
+    monkeypatch.setattr(system, "Talk", talk)
+    assert records_of(monkeypatch, judges_well, board=board, silent_seconds=given)
+    assert asked == [seconds] and SILENT_SECONDS < SILENT_SECONDS_OF_SIMULATION
+    assert ("to compile a new node" in capsys.readouterr().out) is (board == "sim")
+
+
+def test_references_are_those_that_the_user_named_for_the_wire_format(monkeypatch, capsys):
+    asked = []
+
+    def find_references(wanted, wires):
+        asked.append((wanted, list(wires)))
+        return ["references: all of them"]
+
+    monkeypatch.setattr(system, "find_references", find_references)
+    records_of(monkeypatch, judges_well, references=("genpy",))
+    assert asked == [(("genpy",), ["cdr"])]
+    assert capsys.readouterr().out.startswith("references: all of them\n")
