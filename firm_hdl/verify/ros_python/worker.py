@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import time
+import weakref
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -42,6 +43,7 @@ class Worker:
     ) -> None:
         self._command = [python, str(_SCRIPT), family, folder, str(modules)]
         self._process: subprocess.Popen[str] | None = None
+        self._end: weakref.finalize[[subprocess.Popen[str], float], Worker] | None = None
         self.missing: str | None = None
         self.versions: dict[str, str] = {}
         self._start()
@@ -69,10 +71,9 @@ class Worker:
 
     def close(self) -> None:
         """End the process. The next request starts another one."""
-        if self._process is None:
-            return
-        process, self._process = self._process, None
-        hang_up(process, 10)
+        self._process, end, self._end = None, self._end, None
+        if end is not None:
+            end()
 
     def _start(self) -> None:
         try:
@@ -87,6 +88,8 @@ class Worker:
         except OSError as error:
             self.missing = f"{self._command[0]} cannot be run: {error.strerror}"
             return
+        # Also ends the process of a worker that nobody closes, at the latest when Python ends.
+        self._end = weakref.finalize(self, hang_up, self._process, 10)
         hello = self._exchange(None) or {"missing": "its Python does not start"}
         self.missing = hello.get("missing")
         self.versions = hello.get("versions", {})

@@ -76,6 +76,14 @@ def mine(folder, monkeypatch):
         yield found
 
 
+def test_the_process_of_a_worker_that_nobody_closes_ends_with_it(folder):
+    found = Worker("fake", "here", modules=folder, python=sys.executable)
+    process = found._process
+    assert process.poll() is None
+    del found
+    assert process.poll() is not None
+
+
 def test_versions_of_the_modules_are_known(mine):
     assert mine.versions == {
         "pytest": metadata.version("pytest"),
