@@ -69,7 +69,8 @@ def test_tables_have_the_figures() -> None:
     bare = replace(result(), measured=None, cycles=None)
     assert converter_table([bare]).splitlines()[2].count("|") == 13
     assert area_table([bare]).count("\n") == 2
-    assert path_list([result(), bare]) == (
+    not_placed = result(mhz=())
+    assert path_list([result(), not_placed, bare]) == (
         "* `p/msg/A` cdr deserializer: `12.5 ns, 8.0 of them routing, 9 cells: step 0.5 > & fill, "
         "offset 12.0 > run 12.5`\n"
     )

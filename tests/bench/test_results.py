@@ -32,6 +32,15 @@ def test_results_come_back_from_a_file(tmp_path: Path) -> None:
     assert first["circuit"]["tools"] == {"Yosys": "0.70", "nextpnr-ecp5": "0.11.1"}
 
 
+def test_the_reason_of_a_circuit_without_a_clock_rate_comes_back(tmp_path: Path) -> None:
+    placed = result(mhz=())
+    assert placed.measured is not None
+    found = replace(placed, measured=replace(placed.measured, problem="no room"))
+    file = tmp_path / "a.json"
+    file.write_text(results_text([found]))
+    assert read_results(file) == [found]
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
