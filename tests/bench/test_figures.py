@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import gc
 import json
+import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from amaranth.back import rtlil
 
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.bench import BenchError, command, cycles
@@ -236,9 +238,25 @@ def test_parts_are_those_that_their_names_say() -> None:
         assert isinstance(fifo, PacketFifo) and isinstance(gate, PacketGate)
         for each in (fifo, gate):
             assert each.when_full == policy
+            assert (each.shape.memory_bytes, each.shape.packets) == (1 << 16, 64)
+    parsers = [PARTS[PLACES[f"`Parser` of `{name}` "]].make() for name in ("Twist", "PointCloud2")]
+    assert [(each.plan.message, each.plan.bus_bytes) for each in parsers] == [
+        ("geometry_msgs/msg/Twist", 8),
+        ("sensor_msgs/msg/PointCloud2", 8),
+    ]
+    arbiter = PARTS[PLACES["`PacketArbiter` 8 inputs"]].make()
+    router = PARTS[PLACES["`PacketRouter` 8 topics"]].make()
+    assert (len(arbiter.packets_in), len(router.packets_out)) == (8, 8)
     # They warn when they are collected.
-    del narrow, wide, width, fifo, gate, each
+    del narrow, wide, width, fifo, gate, each, parsers, arbiter, router
     gc.collect()
+
+
+def test_both_sides_of_the_crossing_have_one_clock() -> None:
+    crossing = PARTS[PLACES["`PacketCrossing` 16 beats, both sides at one clock"]].make()
+    text = rtlil.convert(crossing, name="top", emit_src=False).partition("\nend\n")[0]
+    inputs = set(re.findall(r"wire width 1 input \d+ +\\(\w*(?:clk|rst))$", text, re.MULTILINE))
+    assert inputs == {"clk", "rst"}
 
 
 def test_a_part_with_a_problem_keeps_its_area(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -94,6 +94,28 @@ def test_the_summary_has_means_and_extremes() -> None:
     assert geometric_mean([0.5, 2.0]) == pytest.approx(1)
 
 
+def test_two_converters_have_a_mean_and_one_has_none() -> None:
+    two = [result(beats=50), result("p/msg/B", beats=100, mhz=(70.0,))]
+    mean, lowest = summary(two, None).splitlines()[1:]
+    assert mean == (
+        "beats per cycle: 0.707 (geometric mean of 2), 1 below 0.85, lowest 0.500 "
+        "(p/msg/A (lyrical, cdr, 8 bytes) deserializer)"
+    )
+    assert lowest == "lowest clock rate: 70.0 MHz (p/msg/B (lyrical, cdr, 8 bytes) deserializer)"
+    # The other one of the two has no clock rate, no cycles, or neither of them.
+    for other in (result("p/msg/B", mhz=()), replace(result("p/msg/B"), measured=None)):
+        assert "clock rate" not in summary([result(), other], None)
+    bare = replace(result("p/msg/B"), cycles=None)
+    assert "beats per cycle" not in summary([result(), bare], STATED)
+    assert summary([result(), bare], STATED).splitlines()[1].startswith("simulated with 16")
+    assert "simulated" not in summary([bare], STATED)
+    # Exactly 0.85 is not below.
+    limit = [result(beats=85), result("p/msg/B", beats=84)]
+    assert ", 1 below 0.85, lowest 0.840" in summary(limit, None)
+    wrong = [result(), result("p/msg/B", problem="x"), result("p/msg/C", problem="y")]
+    assert summary(wrong, None).endswith("\n2 of 3 converters are without some figures")
+
+
 def test_changes_beyond_the_threshold_are_reported() -> None:
     new = result(lut=90, ff=51, mhz=(60.0,), latency=3)
     found = {
