@@ -242,6 +242,9 @@ def test_make_takes_the_ghdl_that_is_named(folders, tmp_path):
     for line, top in zip(benches[1::2], (f"{VECTOR}_tb", f"{VECTOR}_record_tb"), strict=True):
         assert line.startswith(f"--elab-run --std=08 {top} ")
         assert line.endswith(" -gseed=5 -gstalls=6")
+    # Benches share a folder, so that even `make -j` runs one after the other.
+    database = run([make, "--print-data-base", "--question"], folder)[1].splitlines()
+    assert ".NOTPARALLEL:" in database
 
 
 def test_make_runs_all_benches(ghdl, folders, tmp_path):
