@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.bench import BenchError
+from firm_hdl.bench import __main__ as bench
 from firm_hdl.bench.compare import compare, compared
 from firm_hdl.bench.devices import DEVICES, Area
 from firm_hdl.bench.messages import STATED
@@ -206,6 +207,25 @@ def test_comparison_names_different_tools_and_missing_converters() -> None:
         text, is_fine = compared([first], [each], 0.02)
         assert text.startswith("0 converters compared, 1 are new, 1 are not") and not is_fine
     assert compared(old, [result(lut=50)], 0.02)[1]
+
+
+def test_figures_of_converters_that_were_not_measured_again_stay(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "kept.json"
+    old = [result(), result("p/msg/B")]
+    assert bench._keep(file, old) == old
+    assert capsys.readouterr().out == ""
+    new = [result(lut=200), result("p/msg/C")]
+    assert bench._keep(file, new) == [old[1], *new]
+    assert capsys.readouterr().out.endswith(
+        "\n1 converters compared, 1 are new, 0 are not measured now; "
+        "1 figures changed by more than 2 %\n"
+    )
+    assert read_results(file) == [new[0], old[1], new[1]]
+    # Without results, the file is only read.
+    assert bench._keep(file, []) == [new[0], old[1], new[1]]
+    assert capsys.readouterr().out == ""
 
 
 def test_the_path_is_that_of_the_run_nearest_to_the_median() -> None:
