@@ -151,6 +151,8 @@ def test_everything_comes_from_the_manifest(folders):
     for folder in folders:
         made = packaging(manifest_of(folder))
         assert made == {name: (folder / name).read_text() for name in made}
+        bench = manifest_of(folder)["vhdl"]["bench"]
+        assert bench["entity"] == bench["entities"][0] == f"{folder.parent.name.lower()}_tb"
         listed = manifest_of(folder)["files"]
         assert {f"vhdl/{name}" for name in made} <= set(listed)
 

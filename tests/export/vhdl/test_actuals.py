@@ -164,3 +164,22 @@ def test_sequences_have_a_length_and_arrays_have_none() -> None:
     assert found["string_array_stream"] == [("item", "string_stream")]
     # Two texts; a sequence and an array of each primitive and of each text.
     assert len(found) == 2 + 2 * (len(PRIMITIVE_BYTES) + 2)
+
+
+def test_idle_structs_offer_nothing_and_ready_ones_take_all() -> None:
+    text = sv_bus_package(4)
+    for name in ("STRING_STREAM", "UINT8_SEQUENCE_STREAM", "WSTRING_ARRAY_STREAM"):
+        assert f"localparam {name.lower()}_t {name}_IDLE = '0;" in text
+        assert f"localparam {name.lower()}_ready_t {name}_ALL_READY = '1;" in text
+
+
+def test_only_messages_of_fixed_size_have_a_record_of_values(tmp_path: Path) -> None:
+    texts = {
+        "p/T": "Fixed a\nFixed[2] b\nText c\n",
+        "p/Fixed": "bool x\nint8[3] y",
+        "p/Text": "string x",
+    }
+    message = library(tmp_path, texts).message("p/T")
+    plan = build_plan(lay_out(message), bus_bytes=4)
+    found = values_of(tree_of(message, plan), plan)
+    assert {name: each.bits for name, each in found.items()} == {"p/msg/Fixed": 25}
