@@ -185,3 +185,31 @@ def test_a_memory_without_bits_has_no_text() -> None:
 """
     text = convert(HEAD + ADD + memory + "connect \\o $1 [3:0]\nend\n").files["top.vhd"]
     assert "array" not in text and "unsigned(a) + unsigned(s)" in text
+
+
+ASYNCHRONOUS = r"""
+  wire width 1 $5
+  cell $and $6
+    parameter \A_SIGNED 0
+    parameter \B_SIGNED 0
+    connect \A \a [0]
+    connect \B \s [0]
+    connect \Y $5
+  end
+  cell $adff $4
+    parameter \CLK_POLARITY 1
+    parameter \ARST_POLARITY 1
+    parameter \ARST_VALUE 4'0101
+    connect \D \a [3:0]
+    connect \CLK \clk [0]
+    connect \ARST $5
+    connect \Q \q
+  end
+"""
+
+
+def test_an_operator_that_only_resets_is_a_signal() -> None:
+    body = body_of(ASYNCHRONOUS, r"connect \o \q [3:0]", r"connect \p \s [3:0]")
+    (name,) = re.findall(r"process \(clk, (\w+)\)", body)
+    assert f"  {name} <= a(0) and s(0);" in body
+    assert f"if {name} = '1' then" in body

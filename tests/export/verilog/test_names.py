@@ -93,3 +93,12 @@ def test_every_signal_of_a_converter_has_a_name(direction: str, name: str) -> No
 def test_choices_have_names_that_no_signal_begins_with(other: str, prefix: str) -> None:
     text = f"wire {other};\nwire \\$procmux$4_Y ;\nfunction \\$procmux$4 ;\n"
     assert _named_choices(text) == (f"wire {other};\nwire {prefix}_4_Y ;\nfunction {prefix}_4 ;\n")
+
+
+def test_ports_that_are_parts_have_names_that_differ_in_more_than_their_case() -> None:
+    design = "".join(
+        f"  wire width 4 \\port${n}$0\nconnect \\{name} {{ \\port${n}$0 [3:0] 4'0000 }}\n"
+        for n, name in enumerate("sSt")
+    )
+    named = re.findall(r"connect \\(\w) \{ \\(\w+) ", named_ports(design))
+    assert named == [("s", "s_4"), ("S", "S_4_2"), ("t", "t_4")]
