@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from firm_hdl.rtlil.ir import Cell, Spec, cut
+from firm_hdl.rtlil.ir import Cell, cut
 from firm_hdl.vhdl.expr import Values
 from firm_hdl.vhdl.uses import int_parameter
 
@@ -76,11 +76,8 @@ def _field(cell: Cell, values: Values, match: re.Match[str], low: int) -> str:
     if kind is None:
         return f"to_characters({values.unsigned(cut(spec, 0, 8), 8).text})"
     if kind == "c":
-        # In RTLIL, the first character of this format is in the lowest bits.
-        reverse: Spec = ()
-        for byte in range(0, width, 8):
-            reverse = cut(spec, byte, 8) + reverse
-        return f"to_characters({values.unsigned(reverse).text})"
+        # Of RTLIL, as of `to_characters`, the first character is in the highest bits.
+        return f"to_characters({values.unsigned(spec).text})"
     text = values.unsigned(spec).text
     if kind == "d":
         return f"to_decimal({f'signed({text})' if sign == 's' else text})"

@@ -80,3 +80,38 @@ def test_figures_with_a_problem_and_damaged_files_are_measured_again(
     (file,) = tmp_path.iterdir()
     file.write_text(file.read_text()[:-9])
     assert once().mapping == "again"
+
+
+@pytest.mark.parametrize("text", ["{}", "[]", "null", '{"device": "abacus"}', ""])
+def test_a_file_that_has_no_figures_is_replaced(
+    text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    good = result().measured
+    assert good is not None
+    found = [good, replace(good, mapping="again")]
+    monkeypatch.setattr(cache, "measure", lambda *_, **__: found.pop(0))
+    monkeypatch.setattr(cache, "versions", lambda device: {})
+    folder = tmp_path / "new" / "folder"
+
+    def once() -> str:
+        found_now = cache.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=folder)
+        return found_now.mapping
+
+    assert once() == good.mapping
+    (file,) = folder.iterdir()
+    file.write_text(text)
+    assert [once(), once()] == ["again", "again"]
+
+
+def test_other_preparations_of_yosys_have_figures_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    good = result().measured
+    assert good is not None
+    found = [good, replace(good, mapping="again")]
+    monkeypatch.setattr(cache, "measure", lambda *_, **__: found.pop(0))
+    monkeypatch.setattr(cache, "versions", lambda device: {})
+    for preparations, mapping in ((("", "proc; "), good.mapping), (("",), "again")):
+        monkeypatch.setattr(cache, "PREPARATIONS", preparations)
+        measured = cache.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=tmp_path)
+        assert measured.mapping == mapping

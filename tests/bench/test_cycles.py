@@ -36,6 +36,15 @@ def test_values_have_the_stated_lengths_and_repeat() -> None:
     assert drawn != list(islice(values(message, Stated(seed=6)), 200))
 
 
+def test_each_type_and_each_seed_have_values_of_their_own() -> None:
+    fields = (Field(name="n", type=PRIMITIVES["ros2"]["uint64"]),)
+    messages = [Message(name=f"p/msg/{name}", dialect="ros2", fields=fields) for name in "AB"]
+    drawn = [
+        next(values(message, Stated(seed=seed)))["n"] for message in messages for seed in (0, 1)
+    ]
+    assert len(set(drawn)) == 4
+
+
 def test_values_are_of_all_kinds() -> None:
     primitives = PRIMITIVES["ros2"]
     inner = Message(

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import gc
 import json
+import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from amaranth.back import rtlil
 
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.bench import BenchError, command, cycles
@@ -84,9 +86,58 @@ def test_cells_of_all_kinds_are_added_up() -> None:
         lutram=4, bram=3
     )
     # With any edge, enable, and set or reset, synchronous or not.
-    kinds = {f"SB_DFF{n}{e}{r}" for n in ("", "N") for e in ("", "E") for r in ("", "R", "SS")}
-    assert DEVICES["ice40"].area(dict.fromkeys(kinds, 1)) == Area(ff=12)
+    resets = ("", "R", "S", "SR", "SS")
+    kinds = {f"SB_DFF{n}{e}{r}" for n in ("", "N") for e in ("", "E") for r in resets}
+    assert DEVICES["ice40"].area(dict.fromkeys(kinds, 1)) == Area(ff=20)
     assert "SB_DFFNESS" in kinds
+    kinds = {
+        f"DFF{n}{r}{e}" for n in ("", "N") for r in ("", "S", "R", "P", "C") for e in ("", "E")
+    }
+    assert DEVICES["gowin"].area(dict.fromkeys(kinds, 1)) == Area(ff=20)
+    kinds = {f"FD{r}E{n}" for r in "RSCP" for n in ("", "_1")}
+    assert DEVICES["xc7"].area(dict.fromkeys(kinds, 1)) == Area(ff=8)
+
+
+@pytest.mark.parametrize(
+    ("name", "first", "last"), [("gowin", 1, 4), ("xc7", 1, 6), ("ecp5", 4, 4)]
+)
+def test_tables_of_all_sizes_that_a_device_has_count(name: str, first: int, last: int) -> None:
+    assert DEVICES[name].area({f"LUT{n}": 10**n for n in range(1, 8)}) == Area(
+        lut=sum(10**n for n in range(first, last + 1))
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "carry", "lutram", "bram"),
+    [
+        ("ecp5", "CCU2C", "TRELLIS_DPR16X4", "DP16KD"),
+        ("gowin", "ALU", "RAM16SDP4", "SDPX9B"),
+        ("xc7", "CARRY4", "RAM32M", "RAMB36E1"),
+        ("ice40", "SB_CARRY", None, "SB_RAM40_4KNRNW"),
+    ],
+)
+def test_carry_chains_and_memories_are_those_of_the_device(
+    name: str, carry: str, lutram: str | None, bram: str
+) -> None:
+    counts = {carry: 3, bram: 5} | ({lutram: 4} if lutram else {})
+    assert DEVICES[name].area(counts) == Area(carry=3, lutram=4 if lutram else 0, bram=5)
+
+
+@pytest.mark.parametrize(
+    ("name", "title", "options"),
+    [
+        ("ecp5", "LFE5U-45F-8", ["--45k", "--speed 8", "--out-of-context", "--router router1"]),
+        ("ice40", "HX8K", ["--hx8k", "--pcf-allow-unconstrained"]),
+        ("gowin", "GW2A-LV18PG256C8/I7", ["--device GW2A-LV18PG256C8/I7", "family=GW2A-18"]),
+    ],
+)
+def test_the_part_that_is_placed_is_the_one_in_the_title(
+    name: str, title: str, options: list[str]
+) -> None:
+    device = DEVICES[name]
+    assert device.title.endswith(title) and device.placer is not None
+    words = f" {' '.join(device.placer.options)} "
+    assert [option for option in options if f" {option} " not in words] == []
 
 
 def test_the_table_of_parity_is_the_xor_of_four_bits() -> None:
@@ -187,9 +238,25 @@ def test_parts_are_those_that_their_names_say() -> None:
         assert isinstance(fifo, PacketFifo) and isinstance(gate, PacketGate)
         for each in (fifo, gate):
             assert each.when_full == policy
+            assert (each.shape.memory_bytes, each.shape.packets) == (1 << 16, 64)
+    parsers = [PARTS[PLACES[f"`Parser` of `{name}` "]].make() for name in ("Twist", "PointCloud2")]
+    assert [(each.plan.message, each.plan.bus_bytes) for each in parsers] == [
+        ("geometry_msgs/msg/Twist", 8),
+        ("sensor_msgs/msg/PointCloud2", 8),
+    ]
+    arbiter = PARTS[PLACES["`PacketArbiter` 8 inputs"]].make()
+    router = PARTS[PLACES["`PacketRouter` 8 topics"]].make()
+    assert (len(arbiter.packets_in), len(router.packets_out)) == (8, 8)
     # They warn when they are collected.
-    del narrow, wide, width, fifo, gate, each
+    del narrow, wide, width, fifo, gate, each, parsers, arbiter, router
     gc.collect()
+
+
+def test_both_sides_of_the_crossing_have_one_clock() -> None:
+    crossing = PARTS[PLACES["`PacketCrossing` 16 beats, both sides at one clock"]].make()
+    text = rtlil.convert(crossing, name="top", emit_src=False).partition("\nend\n")[0]
+    inputs = set(re.findall(r"wire width 1 input \d+ +\\(\w*(?:clk|rst))$", text, re.MULTILINE))
+    assert inputs == {"clk", "rst"}
 
 
 def test_a_part_with_a_problem_keeps_its_area(monkeypatch: pytest.MonkeyPatch) -> None:

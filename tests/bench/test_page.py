@@ -30,6 +30,7 @@ from firm_hdl.bench.run import BenchTask
 from firm_hdl.bench.software import Compared
 from firm_hdl.bench.software.sample import Timed
 from firm_hdl.bench.standard import ALL_TYPES, MEASURED, Group, covering_group, group_tasks
+from firm_hdl.jobs import ProgramMissingError
 from tests.bench.results import result
 
 ROOT = Path(__file__).parents[2]
@@ -69,7 +70,8 @@ def test_tables_have_the_figures() -> None:
     bare = replace(result(), measured=None, cycles=None)
     assert converter_table([bare]).splitlines()[2].count("|") == 13
     assert area_table([bare]).count("\n") == 2
-    assert path_list([result(), bare]) == (
+    not_placed = result(mhz=())
+    assert path_list([result(), not_placed, bare]) == (
         "* `p/msg/A` cdr deserializer: `12.5 ns, 8.0 of them routing, 9 cells: step 0.5 > & fill, "
         "offset 12.0 > run 12.5`\n"
     )
@@ -186,6 +188,7 @@ def page_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
     def run(tasks: Sequence[BenchTask], jobs: int | None) -> Iterator[Result]:
         assert jobs == 3
+        assert {task.cache for task in tasks} == {"build/bench" if tasks[0].device else None}
         for task in reversed(tasks):
             found = result(mhz=tuple(80.0 + seed for seed in task.seeds))
             yield replace(
@@ -193,7 +196,7 @@ def page_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
             )
 
     def run_parts(*, cache: str | None, jobs: int | None) -> Iterator[PartResult]:
-        assert jobs == 3
+        assert (cache, jobs) == ("build/bench", 3)
         yield from (PartResult(part=part, measured=result().measured) for part in reversed(PARTS))
 
     monkeypatch.setattr(bench, "run_tasks", run)
@@ -320,14 +323,23 @@ def test_a_figure_that_is_missing_in_any_group_is_a_failure(
     assert (page_folder / "page.md").read_text() == before
 
 
-def test_a_missing_tool_is_an_error(
-    page_folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("group", ["devices", "parts", "software"])
+@pytest.mark.parametrize("kind", [BenchError, ProgramMissingError])
+def test_a_missing_tool_is_an_error_before_anything_is_measured(
+    group: str,
+    kind: type[Exception],
+    page_folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    def missing(device: object) -> dict[str, str]:
-        raise BenchError("nothing is installed")
+    def missing(*_: object) -> dict[str, str]:
+        raise kind("nothing is installed")
 
-    monkeypatch.setattr(bench, "versions", missing)
-    assert run_bench(page_folder, "--group", "devices") == 1
+    for name in ("versions", "library_versions"):
+        monkeypatch.setattr(bench, name, missing)
+    for name in ("run_tasks", "run_parts"):
+        monkeypatch.setattr(bench, name, lambda *_, **__: pytest.fail("too early"))
+    assert run_bench(page_folder, "--group", group) == 1
     assert capsys.readouterr().err == "error: nothing is installed\n"
 
 

@@ -30,6 +30,7 @@ def test_table_and_file_have_the_figures() -> None:
         "| `PacketWidth` | 8 to 1 bytes | 100 | 50 | 0 | 0 | 82.5 (80, 90, 82) |"
     ]
     first, second = json.loads(parts_text([measured, missing]))["parts"]
+    assert (first["part"], first["parameters"]) == ("`PacketWidth`", "8 to 1 bytes")
     assert (first["circuit"]["mhz"], first["problem"]) == (82.5, "")
     assert (second["circuit"], second["problem"]) == (None, "too large")
 

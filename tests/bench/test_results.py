@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.bench import BenchError
+from firm_hdl.bench import __main__ as bench
 from firm_hdl.bench.compare import compare, compared
 from firm_hdl.bench.devices import DEVICES, Area
 from firm_hdl.bench.messages import STATED
@@ -30,6 +31,15 @@ def test_results_come_back_from_a_file(tmp_path: Path) -> None:
     assert first["gbit_per_s"] == 3.96
     assert first["circuit"]["mhz"] == 82.5
     assert first["circuit"]["tools"] == {"Yosys": "0.70", "nextpnr-ecp5": "0.11.1"}
+
+
+def test_the_reason_of_a_circuit_without_a_clock_rate_comes_back(tmp_path: Path) -> None:
+    placed = result(mhz=())
+    assert placed.measured is not None
+    found = replace(placed, measured=replace(placed.measured, problem="no room"))
+    file = tmp_path / "a.json"
+    file.write_text(results_text([found]))
+    assert read_results(file) == [found]
 
 
 @pytest.mark.parametrize(
@@ -83,6 +93,28 @@ def test_the_summary_has_means_and_extremes() -> None:
         "1 of 1 converters are without some figures"
     )
     assert geometric_mean([0.5, 2.0]) == pytest.approx(1)
+
+
+def test_two_converters_have_a_mean_and_one_has_none() -> None:
+    two = [result(beats=50), result("p/msg/B", beats=100, mhz=(70.0,))]
+    mean, lowest = summary(two, None).splitlines()[1:]
+    assert mean == (
+        "beats per cycle: 0.707 (geometric mean of 2), 1 below 0.85, lowest 0.500 "
+        "(p/msg/A (lyrical, cdr, 8 bytes) deserializer)"
+    )
+    assert lowest == "lowest clock rate: 70.0 MHz (p/msg/B (lyrical, cdr, 8 bytes) deserializer)"
+    # The other one of the two has no clock rate, no cycles, or neither of them.
+    for other in (result("p/msg/B", mhz=()), replace(result("p/msg/B"), measured=None)):
+        assert "clock rate" not in summary([result(), other], None)
+    bare = replace(result("p/msg/B"), cycles=None)
+    assert "beats per cycle" not in summary([result(), bare], STATED)
+    assert summary([result(), bare], STATED).splitlines()[1].startswith("simulated with 16")
+    assert "simulated" not in summary([bare], STATED)
+    # Exactly 0.85 is not below.
+    limit = [result(beats=85), result("p/msg/B", beats=84)]
+    assert ", 1 below 0.85, lowest 0.840" in summary(limit, None)
+    wrong = [result(), result("p/msg/B", problem="x"), result("p/msg/C", problem="y")]
+    assert summary(wrong, None).endswith("\n2 of 3 converters are without some figures")
 
 
 def test_changes_beyond_the_threshold_are_reported() -> None:
@@ -175,6 +207,25 @@ def test_comparison_names_different_tools_and_missing_converters() -> None:
         text, is_fine = compared([first], [each], 0.02)
         assert text.startswith("0 converters compared, 1 are new, 1 are not") and not is_fine
     assert compared(old, [result(lut=50)], 0.02)[1]
+
+
+def test_figures_of_converters_that_were_not_measured_again_stay(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "kept.json"
+    old = [result(), result("p/msg/B")]
+    assert bench._keep(file, old) == old
+    assert capsys.readouterr().out == ""
+    new = [result(lut=200), result("p/msg/C")]
+    assert bench._keep(file, new) == [old[1], *new]
+    assert capsys.readouterr().out.endswith(
+        "\n1 converters compared, 1 are new, 0 are not measured now; "
+        "1 figures changed by more than 2 %\n"
+    )
+    assert read_results(file) == [new[0], old[1], new[1]]
+    # Without results, the file is only read.
+    assert bench._keep(file, []) == [new[0], old[1], new[1]]
+    assert capsys.readouterr().out == ""
 
 
 def test_the_path_is_that_of_the_run_nearest_to_the_median() -> None:

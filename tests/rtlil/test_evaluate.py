@@ -174,6 +174,16 @@ def test_shifts(kind, signed):
             assert check(cell, want, a)
 
 
+@pytest.mark.parametrize("by", [0, 15, 16, 17, 39, 40, 65_537])
+def test_far_shifts_of_constants(by):
+    number, distance = (Bits("101"),), (Bits(f"{by:017b}"),)
+    (left,) = evaluate(a_cell("$shl", 40, False, A=number, B=distance))
+    assert left == Bits(f"{5 << by:b}"[-40:].rjust(40, "0"))
+    far = (Bits("1" + "0" * 59),)
+    (right,) = evaluate(a_cell("$shr", 60, False, A=far, B=distance))
+    assert right == Bits("1".rjust(by + 1, "0").ljust(60, "0")[:60])
+
+
 def test_multiplexers():
     for width in WIDTHS:
         for a, b in product(forms(A, width), forms(B, width)):

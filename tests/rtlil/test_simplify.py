@@ -169,6 +169,12 @@ def body_of(*statements: Statement) -> tuple[Statement, ...]:
     return item.body
 
 
+@pytest.mark.parametrize("body", [(), (Assign(target=(), value=()),)])
+def test_a_process_that_drives_nothing_stays(body: tuple[Statement, ...]) -> None:
+    module = module_of(process(*body))
+    assert simplified(module) == module
+
+
 def test_cases_without_effect_are_removed() -> None:
     default = Assign(target=(Y,), value=(Slice("t", 0, 2), Slice("s", 0, 2)))
     other = Assign(target=(Y,), value=(Bits("1010"),))

@@ -119,6 +119,20 @@ def test_gives_a_header_and_unsigned_ports() -> None:
     assert "limit  : in  unsigned(3 downto 0);" in text
 
 
+def test_each_entity_has_the_header_and_only_ports_outside_are_unsigned_by_option() -> None:
+    top = Module()
+    top.submodules.inner = inner = Counter()
+    a = Signal(4, name="a")
+    top.d.comb += inner.limit.eq(a)
+    for option, kind in ((False, "std_logic_vector"), (True, "unsigned")):
+        files = convert(top, ports=[a], unsigned_ports=option, header="Mine.").files
+        assert list(files) == ["firm_hdl_pkg.vhd", "top_inner.vhd", "top.vhd"]
+        heads = [text.startswith("-- Mine.\n-- Module ") for text in files.values()]
+        assert heads == [False, True, True]
+        assert re.search(rf"\ba +: in +{kind}\(3 downto 0\)", files["top.vhd"])
+        assert re.search(r" : in +unsigned\(3 downto 0\)", files["top_inner.vhd"])
+
+
 class AssignedInElse(wiring.Component):
     """A register that is assigned in an `else` branch only."""
 

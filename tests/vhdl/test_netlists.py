@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from firm_hdl.vhdl.convert import convert
@@ -55,6 +57,28 @@ def test_each_name_of_an_operator_is_driven(targets: str) -> None:
     body = body_of(ADD, *(rf"connect \{name} $1 [3:0]" for name in targets))
     assert f"  {first} <= std_logic_vector(unsigned(a) + unsigned(s));" in body
     assert f"  {second} <= std_logic_vector(unsigned({first}));" in body
+
+
+def test_an_operator_for_a_part_of_a_port_is_written_to_that_part() -> None:
+    body = body_of(
+        ADD,
+        r"connect \o [1:0] $1 [1:0]",
+        r"connect \o [3:2] \a [1:0]",
+        r"connect { \p [3:1] \p [0] } { \s [2:0] $1 [3] }",
+    )
+    parts = re.findall(r"^  ([op]\S*|o\(.*?\)|p\(.*?\)) <= (.*);$", body, re.MULTILINE)
+    found = dict(parts)
+    assert set(found) == {"o(1 downto 0)", "o(3 downto 2)", "p(3 downto 1)", "p(0)"}
+    assert found["o(3 downto 2)"] == "std_logic_vector(unsigned(a(1 downto 0)))"
+    assert found["p(3 downto 1)"] == "std_logic_vector(unsigned(s(2 downto 0)))"
+    assert "o <=" not in body and "p <=" not in body
+
+
+def test_a_part_of_a_folded_operator_is_no_whole_port() -> None:
+    body = body_of(ADD, r"connect \o [1:0] $1 [1:0]", r"connect \p [3:2] \a [1:0]")
+    assert "o <=" not in body
+    (value,) = re.findall(r"^  o\(1 downto 0\) <= (.*);$", body, re.MULTILINE)
+    assert value == "std_logic_vector(unsigned(a(1 downto 0)) + unsigned(s(1 downto 0)))"
 
 
 def test_a_next_state_that_is_read_is_a_signal() -> None:
@@ -161,3 +185,31 @@ def test_a_memory_without_bits_has_no_text() -> None:
 """
     text = convert(HEAD + ADD + memory + "connect \\o $1 [3:0]\nend\n").files["top.vhd"]
     assert "array" not in text and "unsigned(a) + unsigned(s)" in text
+
+
+ASYNCHRONOUS = r"""
+  wire width 1 $5
+  cell $and $6
+    parameter \A_SIGNED 0
+    parameter \B_SIGNED 0
+    connect \A \a [0]
+    connect \B \s [0]
+    connect \Y $5
+  end
+  cell $adff $4
+    parameter \CLK_POLARITY 1
+    parameter \ARST_POLARITY 1
+    parameter \ARST_VALUE 4'0101
+    connect \D \a [3:0]
+    connect \CLK \clk [0]
+    connect \ARST $5
+    connect \Q \q
+  end
+"""
+
+
+def test_an_operator_that_only_resets_is_a_signal() -> None:
+    body = body_of(ASYNCHRONOUS, r"connect \o \q [3:0]", r"connect \p \s [3:0]")
+    (name,) = re.findall(r"process \(clk, (\w+)\)", body)
+    assert f"  {name} <= a(0) and s(0);" in body
+    assert f"if {name} = '1' then" in body

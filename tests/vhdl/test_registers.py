@@ -5,11 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import pytest
 from amaranth.hdl import ClockDomain, Module, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.rtlil.ir import Bits, Wire
 from firm_hdl.vhdl.convert import convert
+from firm_hdl.vhdl.declare import initial_value
 
 
 class FilledComponent(wiring.Component):
@@ -222,3 +225,26 @@ def test_an_asynchronous_reset_may_be_an_expression() -> None:
     assert "fast_rst <= one and other;" in text
     (lines,) = processes(text)
     assert lines[0] == "(ck, fast_rst)" and lines[2] == "if fast_rst = '1' then"
+
+
+def wire_with(**attributes: Bits) -> Wire:
+    return Wire(name="q", width=2, signed=False, direction=None, attributes=attributes)
+
+
+@pytest.mark.parametrize(
+    ("wire", "width", "value"),
+    [
+        (wire_with(init=Bits("1")), 1, "'1'"),
+        (wire_with(init=Bits("0")), 1, "'0'"),
+        # As in Amaranth's simulator, a register without an initial value starts at 0.
+        (wire_with(init=Bits("x")), 1, "'0'"),
+        (wire_with(), 1, "'0'"),
+        (None, 1, "'0'"),
+        (wire_with(init=Bits("10")), 2, '"10"'),
+        (wire_with(init=Bits("01")), 2, '"01"'),
+        (wire_with(init=Bits("00")), 2, "(others => '0')"),
+        (wire_with(), 2, "(others => '0')"),
+    ],
+)
+def test_a_register_starts_at_its_initial_value(wire: Wire | None, width: int, value: str) -> None:
+    assert initial_value(wire, width) == value

@@ -111,7 +111,7 @@ def test_asserts_and_prints_in_simulation(tmp_path: Path) -> None:
     value = Signal(8, name="value", init=250)
     module.d.sync += value.eq(value + 1)
     with module.If(value == 254):
-        module.d.sync += Print(Format("value {} {:x} {:s} {{}}", value, value, Const(0x4142, 16)))
+        module.d.sync += Print(Format("value {} {:x} {:s} {{}}", value, value, Const(0x4241, 16)))
     module.d.sync += Assert(value != 255, "too far")
     module.d.comb += Cover(value == 3)
     vhdl = convert(module, name="dut", ports=[value])

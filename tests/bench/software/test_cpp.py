@@ -6,7 +6,7 @@ import pytest
 
 from firm_hdl.bench.software.cpp import cpp_types
 from firm_hdl.model import PRIMITIVES, Array, Field, FieldType, Message, Sequence, String
-from tests.bench.test_software import PADDED
+from tests.bench.software.test_software import PADDED
 
 UINT8 = PRIMITIVES["ros2"]["uint8"]
 WIDE = String(wide=True)

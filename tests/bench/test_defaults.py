@@ -1,0 +1,148 @@
+"""What `firm-hdl bench` measures and prints if nothing is said, and which types it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from firm_hdl.bench import command, run
+from firm_hdl.bench.messages import STATED
+from firm_hdl.bench.results import Result
+from firm_hdl.bench.run import BenchTask
+from firm_hdl.cli import main
+from firm_hdl.errors import UserError
+from firm_hdl.frontend import load_message
+from tests.bench.results import result
+
+BOOL = "std_msgs/msg/Bool"
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """What the command asks for; it gets the entry `results`."""
+    seen: dict[str, Any] = {"results": [result()]}
+
+    def run_tasks(tasks: Sequence[BenchTask], jobs: int | None) -> list[Result]:
+        seen.update(tasks=tasks, jobs=jobs)
+        return list(seen["results"])
+
+    monkeypatch.setattr(command, "versions", lambda device, *, with_placer: {})
+    monkeypatch.setattr(command, "run_tasks", run_tasks)
+    return seen
+
+
+def test_both_converters_are_measured_with_three_seeds(asked: dict[str, Any]) -> None:
+    assert main(["bench", BOOL, "--jobs", "3"]) == 0
+    converter = asked["tasks"][0].converter
+    assert [task.converter for task in asked["tasks"]] == [
+        replace(converter, direction="deserializer"),
+        replace(converter, direction="serializer"),
+    ]
+    assert (converter.type, converter.distro, converter.wire, converter.bus_bytes) == (
+        BOOL,
+        "lyrical",
+        "cdr",
+        8,
+    )
+    for task in asked["tasks"]:
+        assert task == BenchTask(
+            converter=task.converter, device="ecp5", seeds=(1, 2, 3), mapping="", stated=STATED
+        )
+    assert asked["jobs"] == 3
+    # One task needs no other process.
+    assert main(["bench", BOOL, "--direction", "serializer", "--jobs", "3"]) == 0
+    assert asked["jobs"] == 1
+
+
+def test_seed_zero_is_a_seed(asked: dict[str, Any]) -> None:
+    words = ["--seeds", "0,2147483647", "--message-seed", "0", "--messages", "1"]
+    assert main(["bench", BOOL, *words]) == 0
+    task = asked["tasks"][0]
+    assert task.seeds == (0, 2147483647)
+    assert (task.stated.seed, task.stated.count) == (0, 1)
+
+
+@pytest.mark.parametrize("words", [["--seeds", "2147483648"], ["--message-seed", "-1"]])
+def test_numbers_out_of_range_are_refused(words: list[str], asked: dict[str, Any]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["bench", BOOL, *words])
+    assert ended.value.code == 2 and "tasks" not in asked
+
+
+@pytest.mark.parametrize(("lut", "status"), [(102, 0), (103, 1)])
+def test_two_percent_more_are_not_worse(
+    lut: int, status: int, asked: dict[str, Any], tmp_path: Path
+) -> None:
+    file = tmp_path / "old.json"
+    assert main(["bench", BOOL, "--json", str(file)]) == 0
+    asked["results"] = [result(lut=lut)]
+    assert main(["bench", BOOL, "--compare", str(file)]) == status
+
+
+def test_all_types_of_a_library_are_listed_without_paths(
+    asked: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = [BOOL, "std_msgs/msg/Char"]
+    library = SimpleNamespace(distro="kilted", names=lambda: names)
+    given: list[object] = []
+
+    def open_library(*origins: object, **options: object) -> object:
+        given.append((origins, options))
+        return library
+
+    monkeypatch.setattr(command, "open_library", open_library)
+    monkeypatch.setattr(command, "load_all", lambda of, types: [load_message(n) for n in types])
+    for words, origins, depends in (
+        (["--path", "a", "--depends", "c"], (["a"], []), ["c"]),
+        (["--bag", "b"], ([], ["b"]), []),
+    ):
+        assert main(["bench", "--all", "--distro", "kilted", *words]) == 0
+        assert given.pop() == (("kilted", *origins), {"depends": depends})
+        assert [task.converter.type for task in asked["tasks"]] == [n for n in names for _ in "rw"]
+        for task in asked["tasks"]:
+            assert (task.paths, task.bags) == ((*origins[0], *depends), tuple(origins[1]))
+            assert task.converter.distro == "kilted"
+    assert "12.5 ns" not in capsys.readouterr().out
+    assert main(["bench", names[1]]) == 0
+    assert [task.converter.type for task in asked["tasks"]] == [names[1]] * 2
+    assert "    12.5 ns, 8.0 of them routing" in capsys.readouterr().out
+
+
+def test_a_task_takes_its_type_from_its_own_folders(monkeypatch: pytest.MonkeyPatch) -> None:
+    def open_library(*origins: object) -> object:
+        raise UserError(f"only {origins}")
+
+    monkeypatch.setattr(run, "open_library", open_library)
+    task = BenchTask(converter=result().converter, paths=("a",), bags=("b",))
+    assert run.run_task(task).problem == "only ('lyrical', ('a',), ('b',))"
+
+
+def test_libraries_without_a_figure_are_told_with_the_reason_after_each_type(
+    asked: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    seen: list[tuple[str, list[str]]] = []
+
+    def compare(task: BenchTask, results: Sequence[Result]) -> object:
+        seen.append((task.converter.type, [each.converter.direction for each in results]))
+        return SimpleNamespace(missing={"genpy": "it is not here"})
+
+    both = [result(BOOL, direction=way) for way in ("serializer", "deserializer")]
+    converter = replace(both[0].converter, max_message_bytes=1 << 24)
+    asked["results"] = [
+        replace(each, converter=replace(converter, direction=each.converter.direction))
+        for each in both
+    ]
+    monkeypatch.setattr(command, "compare_software", compare)
+    monkeypatch.setattr(command, "software_rows", lambda *found: "row")
+    assert main(["bench", BOOL, "--software", "--messages", "3"]) == 0
+    assert seen == [(BOOL, ["deserializer", "serializer"])]
+    assert all(task.device is None for task in asked["tasks"])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].endswith("; converters simulated, at 156.25 MHz")
+    assert lines[1:4] == ["row", "row", "    genpy: it is not here"]
+    assert lines[4].startswith("3 messages, strings of 4 to 10 characters")
