@@ -61,6 +61,9 @@ def test_only_the_kinds_that_may_be_meant_are_named():
     assert similar(origins, "p", "Stop") == everything
     assert similar(origins, "p", "Stop", kinds=("msg",)) == ["q/msg/Stop", "p/msg/Stops"]
     assert similar([["p/srv/Stops"]], "p", "Stop", kinds=("msg",)) == []
+    # Others do not crowd them out.
+    nearer = [f"p/srv/Stop{letter}" for letter in "abcd"]
+    assert similar([[*nearer, "p/msg/Stopper"]], "p", "Stop", kinds=("msg",)) == ["p/msg/Stopper"]
 
 
 @pytest.mark.parametrize(
