@@ -30,6 +30,15 @@ def test_cycles_are_freed_when_the_block_ends_and_not_before():
     assert all(ring() is None for ring in made)
 
 
+def test_a_few_cycles_are_freed_when_the_block_ends():
+    # Python itself would search only after hundreds of new objects.
+    gc.collect()
+    with search_put_off():
+        made = rings(1)
+        assert made[0]() is not None
+    assert made[0]() is None
+
+
 def test_without_a_block_cycles_are_freed_while_they_are_made():
     assert any(ring() is None for ring in rings(100_000))
 

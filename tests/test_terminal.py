@@ -88,6 +88,13 @@ def test_streams_are_restored_afterwards(capsys):
     )
 
 
+def test_streams_are_restored_after_an_error():
+    before = sys.stdout, sys.stderr
+    with pytest.raises(KeyError), printable_streams():
+        raise KeyError
+    assert (sys.stdout, sys.stderr) == before
+
+
 def test_caret_stands_below_the_marked_text():
     source = Source(name="a\x1bb.msg", text="\x1b\tint9 b\x07 c")
     span = Span(source=source, start=2, end=9)

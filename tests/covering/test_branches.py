@@ -5,6 +5,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import pytest
+
 import firm_hdl.covering.branches
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.covering.branches import branches, traced
@@ -30,6 +32,36 @@ def test_each_way_is_a_branch_of_its_own():
     assert yes & no
 
 
+def count(most):
+    found = 0
+    while found < most:
+        found += 1
+    return found
+
+
+@pytest.mark.parametrize(
+    ("function", "argument", "steps"),
+    [
+        (choose, True, [(0, 1), (1, 2)]),
+        (choose, False, [(0, 1), (1, 3)]),
+        (count, 0, [(0, 1), (1, 2), (2, 4)]),
+        (count, 2, [(0, 1), (1, 2), (2, 3), (3, 2), (2, 4)]),
+    ],
+)
+def test_a_branch_is_named_by_file_function_and_both_of_its_lines(function, argument, steps):
+    first = function.__code__.co_firstlineno
+    found = traced(lambda: function(argument), [HERE])
+    head = f"test_branches.py {function.__name__}:"
+    assert {name for name in found if name.startswith(head)} == {
+        f"{head}{first + start}->{first + end}" for start, end in steps
+    }
+
+
+def test_branches_of_all_folders_are_found():
+    for folders in ([HERE, HERE.parent / "verify"], [HERE.parent / "verify", HERE]):
+        assert traced(lambda: choose(True), folders) == traced(lambda: choose(True), [HERE])
+
+
 def test_other_folders_are_not_traced():
     # "cover" is no folder around this one, although the names begin alike.
     for other in ("verify", "cover"):
@@ -48,6 +80,13 @@ def test_earlier_trace_function_is_restored():
     finally:
         sys.settrace(before)
     assert after is tracer
+
+
+def test_work_that_fails_ends_the_tracing():
+    before = sys.gettrace()
+    with pytest.raises(ZeroDivisionError):
+        traced(lambda: 1 // 0, [HERE])
+    assert sys.gettrace() is before
 
 
 def test_types_differ_by_what_the_generator_does_for_them():

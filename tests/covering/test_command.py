@@ -6,6 +6,8 @@ import pytest
 
 from firm_hdl.cli import main
 from firm_hdl.covering.command import _share, read_chosen
+from tests.frontend.recordings import make_recording
+from tests.frontend.workspace import make_files
 
 NAMES = ["geometry_msgs/msg/Point", "geometry_msgs/msg/Vector3", "std_msgs/msg/Bool"]
 
@@ -67,15 +69,26 @@ def test_a_missing_feature_is_shown_by_the_simplest_type_that_has_it(tmp_path, c
     [
         ("# nothing\n", "error: '{path}' names no types"),
         ("x/msg/Y\n", "error: '{path}' names types that are not among the given ones: x/msg/Y"),
+        (
+            f"{NAMES[1]}\nx/msg/Z\nx/msg/Y\n",
+            "error: '{path}' names types that are not among the given ones: x/msg/Z, x/msg/Y",
+        ),
+        ("\xff", "error: '{path}' is not UTF-8 text"),
         (None, "error: '{path}': No such file or directory"),
     ],
 )
 def test_a_wrong_file_is_explained(tmp_path, capsys, text, message):
     path = tmp_path / "chosen.txt"
     if text is not None:
-        path.write_text(text)
+        path.write_text(text, encoding="latin-1")
     assert main(["cover", *NAMES, "--check", str(path)]) == 1
     assert capsys.readouterr().err == message.format(path=path) + "\n"
+
+
+def test_blanks_and_comments_in_a_file_are_ignored(tmp_path):
+    path = tmp_path / "chosen.txt"
+    path.write_bytes(b"# of /a/b\r\n\r\n  a/msg/B \r\nc/msg/D\t\n   \n#e/msg/F\n")
+    assert read_chosen(path) == ["a/msg/B", "c/msg/D"]
 
 
 def test_out_and_check_exclude_each_other(capsys):
@@ -138,8 +151,41 @@ def test_a_limit_that_a_type_exceeds_is_an_error(capsys):
     assert "28 bytes" in capsys.readouterr().err
 
 
+def test_types_on_which_others_depend_are_found_and_not_chosen_from(tmp_path, capsys):
+    make_files(tmp_path, {"src/p/msg/A.msg": "q/B b\n", "more/q/msg/B.msg": "int16 c\nint8 d\n"})
+    words = ["--path", str(tmp_path / "src"), "--depends", str(tmp_path / "more")]
+    assert main(["cover", *words]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith("p/msg/A: ") and "definition: field int16" in out
+    assert err.startswith("1 of 1 types ")
+
+
+def test_types_of_a_recording_are_chosen_from(tmp_path, capsys):
+    bag = str(make_recording(tmp_path, "bag"))
+    assert main(["cover", "--bag", bag]) == 0
+    out, err = capsys.readouterr()
+    assert "my_msgs/Wheel: " in out and " of 4 types " in err
+
+
+@pytest.mark.parametrize(
+    ("folder", "where"), [("src", "any of the folders has;"), (None, "any of lyrical has;")]
+)
+def test_the_file_tells_where_its_types_are_from(tmp_path, folder, where):
+    make_files(tmp_path, {"src/p/msg/A.msg": "int16 a\n"})
+    path = tmp_path / "chosen.txt"
+    words = ["--path", str(tmp_path / folder)] if folder else ["std_msgs/msg/Bool"]
+    assert main(["cover", *words, "--out", str(path)]) == 0
+    assert where in path.read_text().splitlines()[0]
+
+
 def test_a_share_is_rounded_down_so_that_only_all_is_100_percent():
     few = frozenset(f"plan: {number}" for number in range(299))
     types = {"a": few, "b": frozenset({"plan: 299"})}
     assert " have 99 % of the 300 features (plan 299 of 300)" in _share(types, ["a"])
     assert " have 100 % of the 300 features (plan 300 of 300)" in _share(types, ["a", "b"])
+
+
+def test_a_family_of_which_no_type_has_a_feature_is_counted_too():
+    types = {"a": frozenset({"plan: 1"}), "b": frozenset({"plan: 2", "layout: 1"})}
+    told = _share(types, ["a"])
+    assert told == "1 of 2 types have 33 % of the 3 features (layout 0 of 1, plan 1 of 2)"

@@ -43,11 +43,11 @@ def test_rosmsg_show():
 
 
 def test_rosmsg_show_keeps_the_text_of_constants_and_names_types_in_full(tmp_path):
-    files = {"p/T": 'U[] a\nHeader h\nint8 X= +07 # c\nstring S = "#"\ntime[2] t', "p/U": "V v",
-             "p/V": ""}  # fmt: skip
+    text = 'U[] a\nHeader h\nint8 X= +07 # c\nstring S = "#"\ntime[2] t\nint8[007] z'
+    files = {"p/T": text, "p/U": "V v", "p/V": ""}
     assert show(library(tmp_path, files, "ros1"), "p/T") == (
         'int8 X=+07\nstring S="#"\np/U[] a\n  p/V v\nstd_msgs/Header h\n  uint32 seq\n'
-        "  time stamp\n  string frame_id\ntime[2] t\n"
+        "  time stamp\n  string frame_id\ntime[2] t\nint8[007] z\n"
     )
 
 

@@ -121,6 +121,15 @@ def test_hash_refuses_types_without_one(run):
     )
 
 
+@pytest.mark.parametrize("command", ["md5", "hash", "proto"])
+def test_every_error_of_a_type_is_reported(run, tmp_path, command):
+    make_files(tmp_path, {"p/msg/Three.msg": "int33 a\nint8 b\nint34 c\nAlso d\n"})
+    status, out, err = run(command, "p/Three")
+    assert (status, out) == (1, "")
+    places = [line.partition(": ")[0] for line in err.splitlines() if ": error: " in line]
+    assert places == [f"./p/msg/Three.msg:{line}:1" for line in (1, 3, 4)]
+
+
 @pytest.mark.parametrize("command", ["md5", "hash"])
 def test_all_errors_are_reported_at_once(run, command):
     status, out, err = run(command, "p/Bad", "p/A", "p/Worse", "p/Nothing")

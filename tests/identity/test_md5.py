@@ -100,6 +100,14 @@ def test_values_of_constants_count_as_they_are_written(tmp_path):
     assert md5sum(message) == hashlib.md5(want.encode()).hexdigest()
 
 
+def test_lengths_of_arrays_count_as_they_are_written(tmp_path):
+    texts = {"p/A": "int8[003] a\nint8[3] b\ntime[02] c\nB[09] d\nint8[]  e\n", "p/B": "int8 x"}
+    message = library(tmp_path, texts, "ros1").message("p/A")
+    inner = hashlib.md5(b"int8 x").hexdigest()
+    want = f"int8[003] a\nint8[3] b\ntime[02] c\n{inner} d\nint8[] e"
+    assert md5sum(message) == hashlib.md5(want.encode()).hexdigest()
+
+
 def test_types_of_ros2_have_none():
     with pytest.raises(ValueError, match=r"^Only types of ROS 1 have md5 sums, and std_msgs/msg/"):
         md5sum(Library("humble").message("std_msgs/msg/Bool"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import tempfile
 
 import pytest
@@ -101,3 +102,14 @@ def test_rosbags_is_unchanged_outside_of_firm_hdl(tmp_path, monkeypatch):
         (tmp_path / form).mkdir()
         with Reader(BOMBS[form](tmp_path / form, MIB)) as reader:
             assert len(sizes(reader)) == 1
+
+
+def test_a_counted_file_is_closed_at_the_end_of_its_block():
+    file = io.BytesIO(b"12345")
+    with expansion._CountedFile(file, expansion.Budget(0)) as counted:
+        assert counted.read(2) == b"12" and not file.closed
+    assert file.closed
+    file = io.BytesIO()
+    with pytest.raises(KeyError), expansion._CountedFile(file, expansion.Budget(0)):
+        raise KeyError
+    assert file.closed

@@ -103,6 +103,12 @@ def test_complement_of_other_types_is_that_of_a_signed_integer(kind, value):
     assert members(f"@default(value=~1) {kind} a;")["a"].default.value == value
 
 
+def test_complement_of_a_boolean_has_no_bits_of_its_own():
+    assert members("@default(value=~(-2)) boolean a;")["a"].default.value is True
+    assert members("@default(value=~(-1)) boolean a;")["a"].default.value is False
+    assert refusal("@default(value=~0) boolean a;") == ("~0", "expected TRUE or FALSE")
+
+
 def test_the_words_of_a_value_are_in_one_line():
     messages, wrong = read(
         """module p { module T_Constants { const double A = 1 /
