@@ -10,6 +10,7 @@ import tempfile
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -278,3 +279,30 @@ def test_temporary_files_of_workers_go_with_their_pool(tmp_path, monkeypatch):
     assert Path(folder).parent.parent == tmp_path
     assert Path(folder).parent.name.startswith("firm-hdl-")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_processor_time_has_the_system_time_of_children_as_well(monkeypatch):
+    times = SimpleNamespace(ru_utime=2.0, ru_stime=0.5)
+    asked = []
+    monkeypatch.setattr(processes.resource, "getrusage", lambda who: asked.append(who) or times)
+    monkeypatch.setattr(processes.time, "thread_time", lambda: 4.0)
+    assert cpu_seconds() == 6.5
+    assert asked == [processes.resource.RUSAGE_CHILDREN]
+
+
+def test_tasks_that_wait_do_not_begin_when_a_pool_is_interrupted(monkeypatch):
+    said = []
+
+    class Pool(processes.ProcessPoolExecutor):
+        def shutdown(self, **how):
+            said.append(how)
+            super().shutdown(**how)
+
+    monkeypatch.setattr(processes, "ProcessPoolExecutor", Pool)
+    with pytest.raises(KeyboardInterrupt), processes.worker_pool(1):
+        raise KeyboardInterrupt
+    assert said[0] == {"wait": False, "cancel_futures": True}
+    said.clear()
+    with processes.worker_pool(1):
+        pass
+    assert said == [{"wait": True}]

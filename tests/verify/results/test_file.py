@@ -288,3 +288,21 @@ def test_an_invalid_line_is_reported_with_the_reason(tmp_path, line, reason):
     with pytest.raises(ResultsError) as error:
         read_results(path)
     assert str(error.value) == f"'{path}', line {number}: {reason}"
+
+
+def test_what_is_written_is_on_the_disk_when_the_call_returns(tmp_path, monkeypatch):
+    """The name of a new file as well; that of an old one is there already."""
+    path, synced = tmp_path / "r", []
+    sync = os.fsync
+
+    def noted(number):
+        synced.append(Path(os.readlink(f"/proc/self/fd/{number}")).name)
+        sync(number)
+
+    monkeypatch.setattr(os, "fsync", noted)
+    with ResultsWriter(path, options=OPTIONS, planned=(HEADER, BOOL)) as writer:
+        assert synced == ["r", tmp_path.name]
+        writer.add(a_record(), a_record(BOOL))
+        assert synced[2:] == ["r"] and len(path.read_text().splitlines()) == 3
+    with ResultsWriter(path, options=OPTIONS, planned=(HEADER, BOOL)):
+        assert len(synced) == 3

@@ -159,6 +159,7 @@ def test_type_with_the_circuit_of_one_that_is_not_judged_is_not_judged(
         (a_record(shape="aa"), Passed),
         (a_record(shape="aa", verdict=KNOWN), Passed),
         (a_record(shape="bb"), Failed),
+        (a_record(shape=""), Failed),
         (a_record(shape="aa", verdict=FAILED), Failed),
         (a_record(shape="aa", verdict=SILENT), NotJudged),
         (None, NotJudged),

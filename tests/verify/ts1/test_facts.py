@@ -121,6 +121,14 @@ def test_facts_that_the_oracle_does_not_give_are_not_made(tmp_path):
         assert (found.differences, found.cases, len(shown)) == ((), 1, count)
 
 
+def test_each_of_many_members_is_compared():
+    members = [{"name": f"a{number}", "type": "int8"} for number in range(40)]
+    for number in (0, 9, 39):
+        other = [*members]
+        other[number] = {"name": f"a{number}", "type": "uint8"}
+        assert [each.path for each in differences(members, other, "s")] == [f"s/a{number}/type"]
+
+
 def test_single_facts_are_counted():
     assert [count_facts(each) for each in (1, "a", None, [1, 2], {}, [])] == [1, 1, 1, 1, 0, 1]
     fields = [{"name": "a", "type": "b"}, {"name": "c", "type": "d", "default": [1, 2]}]

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.covering.choose import features
+from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.results.verdict import Failed, Passed
@@ -139,3 +140,24 @@ def test_kinds_of_changes_are_listed_by_the_number_of_their_types(folder):
         ["sensor_msgs/msg/Imu", "std_msgs/msg/String"],
     )
     assert {len(types) for types in list(kinds.values())[1:]} == {1}
+
+
+def test_kinds_of_as_many_types_are_in_the_order_of_their_names(folder):
+    (path,) = (folder / "lyrical").glob("*Imu*")
+    text = re.sub(r"limit: 1677\d+", "limit: 9", path.read_text())
+    path.write_text(text.replace("align: 8", "align: 4"))
+    kinds = list(summarise(check_golden(read_golden(folder))))
+    assert len(kinds) > 1 and kinds == sorted(kinds)
+
+
+def test_a_type_that_cannot_be_built_today_is_a_problem_of_its_plan_alone(folder, monkeypatch):
+    def narrow(message, *more):
+        if message.name == "std_msgs/msg/String":
+            raise BuildError("no such bus")
+        return plan_of(message, *more)
+
+    monkeypatch.setattr("firm_hdl.verify.ts2.golden.plan_of", narrow)
+    *others, string = check_golden(read_golden(folder))
+    assert [assert_passed(each) for each in others] == [1, 1]
+    assert (string.text, string.changes, string.problems) == ("", (), ("no such bus",))
+    assert string.verdict == Failed(("no such bus",))

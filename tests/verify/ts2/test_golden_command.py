@@ -114,3 +114,13 @@ def test_one_plan_that_cannot_be_accepted_does_not_keep_the_others(folder, capsy
     output = capsys.readouterr()
     assert output.err == f"not accepted: {first}\n" and f"accepted {second}\n" in output.out
     assert main(["golden", "check", str(folder), TYPES[1]]) == 0
+
+
+def test_a_kind_of_one_type_is_counted_as_one(folder, capsys):
+    imu, string = sorted((folder / "lyrical").iterdir())
+    imu.write_text(imu.read_text().replace("align: 8", "align: 4", 1))
+    string.write_text(re.sub(r"limit: 1677\d+", "limit: 9", string.read_text()))
+    assert main(["golden", "check", str(folder)]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-1] == "2 golden plans, 2 differ"
+    assert "   1 type: steps[*].starts.limit" in lines[:-1]

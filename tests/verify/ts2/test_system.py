@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -156,4 +157,46 @@ def test_golden_plans_of_own_types_are_compared_with_their_folder(tmp_path, caps
     # The library of a folder is read once in a process.
     ts2.library_of.__globals__["_opened"].cache_clear()
     assert main(call) == 1
-    assert "golden plans: 1 compared, 1 differ\n" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "golden plans: 1 compared, 1 differ\n" in out
+    (path,) = (tmp_path / "golden").glob("*/*.yaml")
+    assert f"FAIL {path}\n    leaves.x: int8 -> int16\n" in out
+
+
+def test_two_golden_plans_of_one_type_have_results_of_their_own(tmp_path, capsys):
+    """They differ by their largest message; one of them is not that of today."""
+    folder, path = tmp_path / "golden", str(tmp_path / "r.jsonl")
+    small, name = ["--max-message-bytes", "999"], "std_msgs/msg/String"
+    assert main(["golden", "add", str(folder), name, *small]) == 0
+    (first,) = folder.glob("*/*.yaml")
+    second = first.rename(first.with_name("small.yaml"))
+    assert main(["golden", "add", str(folder), name]) == 0
+    second.write_text(re.sub(r"limit: \d+", "limit: 9", second.read_text()))
+    call = ["verify", "--systems", "ts2", "--distro", "lyrical", "--golden", str(folder)]
+    call += ["--jobs", "1", "--results", path, name]
+    for _ in range(2):
+        capsys.readouterr()
+        assert main(call) == 1
+        assert "golden plans: 2 compared, 1 differ\n" in capsys.readouterr().out
+    records = read_results(path).records.values()
+    found = {each.test.options: each.verdict.name for each in records if each.test.options}
+    assert found == {f"golden={first}": "passed", f"golden={second}": "failed"}
+
+
+def test_the_time_of_the_checks_is_not_that_of_the_plan(monkeypatch):
+    watch, entered = Stopwatch(), []
+    monkeypatch.setattr(watch, "enter", entered.append)
+    test = Test(system="ts2", distro="lyrical", type="std_msgs/msg/Int8", bus_bytes=8)
+    seen = {}
+
+    def noting(name, work):
+        def noted(*given):
+            seen[name] = list(entered)
+            return work(*given)
+
+        return noted
+
+    monkeypatch.setattr(ts2, "plan_of", noting("plan", plan_of))
+    monkeypatch.setattr(ts2, "check", noting("check", ts2.check))
+    ts2.check_plan(load_message(test.type), test, None, watch)
+    assert seen == {"plan": [], "check": ["testing"]}

@@ -1,0 +1,146 @@
+"""What rosbags, as an oracle, tells of messages, and of which it cannot tell anything."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import count
+
+import pytest
+from rosbags.typesys import TypesysError
+
+from firm_hdl.verify.ts1.oracles.oracle import Accepted, NotJudged, Refused
+from firm_hdl.verify.ts1.oracles.rosbags_oracle import Rosbags
+from firm_hdl.verify.ts1.universe import Universe
+from tests.frontend.workspace import make_files
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Return a function that makes the definitions of a distribution and of some files."""
+    numbers = count()
+
+    def make(distro, files):
+        return Universe(distro, [str(make_files(tmp_path / str(next(numbers)), files))])
+
+    return make
+
+
+def answers(folder, distro, files, *types):
+    """Return the answers of one oracle about types, in order."""
+    universe = folder(distro, files)
+    return list(Rosbags(universe).judge(universe.select(types)))
+
+
+def types_of(answer, name):
+    return [each["type"] for each in answer.facts["structure"][name]["fields"]]
+
+
+def test_types_have_the_names_bounds_and_counts_of_ros2(folder):
+    text = "int8[] a\nint8[3] b\nint8[<=4] c\nstring<=5 d\nstring<=5[<=6] e\nB[] f\nB[2] g\nB h\n"
+    text += "builtin_interfaces/Time i\n"
+    (answer,) = answers(folder, "lyrical", {"p/msg/A.msg": text, "p/msg/B.msg": "bool x\n"}, "p/A")
+    assert types_of(answer, "p/msg/A") == [
+        *("int8[]", "int8[3]", "int8[<=4]", "string<=5", "string<=5[<=6]"),
+        *("p/msg/B[]", "p/msg/B[2]", "p/msg/B", "builtin_interfaces/msg/Time"),
+    ]
+
+
+def test_types_have_the_names_of_ros1_and_no_hash(folder):
+    files = {"p/msg/A.msg": "time a\nduration[] b\nB[2] c\nint8 K=3\n", "p/msg/B.msg": "bool x\n"}
+    (answer,) = answers(folder, "noetic", files, "p/A")
+    assert types_of(answer, "p/A") == ["time", "duration[]", "p/B[2]"]
+    assert answer.facts["structure"]["p/A"]["constants"] == [
+        {"name": "K", "type": "int8", "value": 3}
+    ]
+    assert list(answer.facts) == ["structure"]
+
+
+def test_constants_do_not_keep_a_message_from_having_a_hash(folder):
+    plain, named = "int8 x\n", "string S='\\'\nfloat32 F=inf\nint8 x\n"
+    files = {"p/msg/A.msg": plain, "q/msg/A.msg": named, "r/msg/A.msg": "p/A a\nq/A b\n"}
+    one, other, whole = answers(folder, "lyrical", files, "p/A", "q/A", "r/A")
+    for answer, name in ((one, "p/msg/A"), (other, "q/msg/A"), (whole, "r/msg/A")):
+        assert list(answer.facts["hash"]) == [name]
+        assert answer.facts["hash"][name].startswith("RIHS01_")
+
+
+def test_equal_texts_of_two_messages_have_two_answers(folder):
+    files = {"p/msg/A.msg": "int8 x\n", "p/msg/B.msg": "int8 x\n"}
+    one, other = answers(folder, "lyrical", files, "p/A", "p/B")
+    assert list(one.facts["structure"]) == ["p/msg/A"]
+    assert list(other.facts["structure"]) == ["p/msg/B"]
+
+
+def test_a_changed_text_and_a_change_of_what_it_needs_have_answers_of_their_own(folder):
+    files = {"p/msg/A.msg": "B b\n", "p/msg/B.msg": "int8 x\n"}
+    universe = folder("lyrical", files)
+    oracle, (case,) = Rosbags(universe), universe.select(["p/A"])
+    (before,) = oracle.judge([case])
+
+    def inner(case):
+        return replace(case, text="int16 x\n") if case.name == "B" else case
+
+    def outer(case):
+        return replace(case, text="B c\n") if case.name == "A" else case
+
+    changed = oracle.judge_changed(case, inner)
+    assert changed.facts["structure"] == before.facts["structure"]
+    assert changed.facts["hash"] != before.facts["hash"]
+    (member,) = oracle.judge_changed(case, outer).facts["structure"]["p/msg/A"]["fields"]
+    assert member == {"name": "c", "type": "p/msg/B"}
+    # The same question has the same answer, without reading the texts again.
+    assert oracle.judge_changed(case, outer) is oracle.judge_changed(case, outer)
+    (after,) = oracle.judge([case])
+    assert after == before
+
+
+@pytest.mark.parametrize("language", ["msg", "idl"])
+def test_a_message_that_needs_one_in_idl_is_not_judged(folder, language):
+    idl = "module p { module msg { struct B { long x; }; }; };"
+    texts = {"msg": "int32 x\n", "idl": idl}
+    files = {"p/msg/A.msg": "int8 x\nC c\n", "p/msg/C.msg": "B b\n"}
+    (answer,) = answers(folder, "lyrical", {**files, f"p/msg/B.{language}": texts[language]}, "p/A")
+    if language == "idl":
+        assert answer == NotJudged("it needs p/msg/B, which is written in IDL")
+    else:
+        assert isinstance(answer, Accepted)
+
+
+def test_in_ros1_alone_a_time_of_ros2_is_one_that_rosbags_confuses(folder):
+    files = {"p/msg/A.msg": "int8 x\n builtin_interfaces/Duration d\n"}
+    (answer,) = answers(folder, "noetic", files, "p/A")
+    assert answer == NotJudged("rosbags takes builtin_interfaces/Time for time of ROS 1")
+    (answer,) = answers(folder, "lyrical", {"p/msg/A.msg": "builtin_interfaces/Time t\n"}, "p/A")
+    assert isinstance(answer, Accepted)
+
+
+@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+def test_a_circle_is_refused_and_what_is_needed_twice_is_none(folder, distro):
+    files = {
+        "p/msg/A.msg": "B b\nC c\n",
+        "p/msg/B.msg": "D[] d\n",
+        "p/msg/C.msg": "D d\nB[2] b\n",
+        "p/msg/D.msg": "int8 x\n",
+    }
+    (answer,) = answers(folder, distro, files, "p/A")
+    assert isinstance(answer, Accepted)
+    files["p/msg/D.msg"] = "int8 x\nC[] c\n"
+    found = answers(folder, distro, files, "p/A", "p/D")
+    assert found == [Refused(f"p/msg/{name} contains itself") for name in "AD"]
+
+
+@pytest.mark.parametrize(
+    ("error", "answer"),
+    [
+        (RecursionError("deep"), NotJudged("it is nested too deeply for rosbags")),
+        (TypesysError("no \n  such type"), Refused("no such type")),
+        (AssertionError("no  such"), Refused("AssertionError no such")),
+        (ValueError("x" * 400), Refused(f"ValueError {'x' * 300}")),
+    ],
+)
+def test_whatever_rosbags_raises_is_an_answer(folder, monkeypatch, error, answer):
+    def fails(self, case, change):
+        raise error
+
+    monkeypatch.setattr(Rosbags, "_judge", fails)
+    assert answers(folder, "lyrical", {"p/msg/A.msg": "int8 x\n"}, "p/A") == [answer]
