@@ -19,7 +19,7 @@ from firm_hdl.verify.report.tables import (
 )
 from firm_hdl.verify.results.file import Results
 from firm_hdl.verify.results.records import PlanCoverage, Seconds
-from firm_hdl.verify.results.verdict import Failed, NotJudged
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged
 from tests.verify.report.samples import a_record, a_test
 
 
@@ -186,6 +186,9 @@ def test_a_session_on_the_same_machine_is_as_the_one_before():
 def test_the_headline_names_all_verdicts():
     assert headline(summary_of()) == "? no tests"
     assert headline(summary_of(a_record())) == "✓ 1 of 1 tests passed"
+    known = a_record(a_test("p/msg/K"), verdict=KnownDifference(("key",), 1))
+    said = headline(summary_of(a_record(), known))
+    assert said == "✓ 1 of 2 tests passed, 1 with a known difference"
     both = summary_of(
         a_record(),
         a_record(a_test("p/msg/B"), verdict=NotJudged("x")),
