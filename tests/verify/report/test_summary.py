@@ -102,6 +102,12 @@ def test_a_stage_has_the_tests_that_it_took_time_of():
     assert curve.cpu_seconds.count == 3 and curve.cpu_seconds.least == 9.0
 
 
+def test_a_test_that_failed_took_its_time_like_any_other():
+    failed = a_record(a_test("p/F"), verdict=Failed(("no",)), seconds=Seconds(testing=9.0))
+    (curve,) = summarise({"r": run_of(failed, a_record(a_test("p/A")))}).curves
+    assert curve.seconds.count == 2 and curve.seconds.most == 9.0
+
+
 def test_trends_are_of_tests_with_a_circuit_and_a_figure():
     first = a_test("p/T0")
     records = [
