@@ -88,6 +88,13 @@ PADDED = {"x": "uint8", "d": "float64"}
             "v.length 32 1 v.item.x 8 1 v.item.d 64 1",
             "loop 0 9 0 0 10 scalar 1 1 0 scalar 2 8 0 end",
         ),
+        # Only the first item of an array has padding before it: 3 bytes here, in each element.
+        (
+            "ros2",
+            ({"x": "uint8", "d": "uint32[2]"}, "[]"),
+            "v.length 32 1 v.item.x 8 1 v.item.d.items 32 1",
+            "loop 0 12 0 0 8 scalar 1 1 0 run -1 2 4 0 0 2 0 0 end",
+        ),
         # What has no bytes has no padding before it, either.
         (
             "ros2",

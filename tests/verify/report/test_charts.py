@@ -59,6 +59,8 @@ def test_the_curve_of_a_suite_climbs_from_its_fastest_test_to_all():
     (path,) = of_kind(text, "path", "curve c1")
     expected = f"M{x(0.1)} {y(0)}" + "".join(f"H{x(v)}V{y(n / 5)}" for n, v in enumerate(TIMES, 1))
     assert path[1]["d"] == expected
+    (slow,) = of_kind(text, "path", "curve c2")
+    assert slow[1]["d"].startswith(f"M{x(100.0)} {y(0)}H{x(100.0)}V")
     median, most = of_kind(text, "circle", "mark c1")
     box = box_of(TIMES)
     assert at(median) == (x(box.median), y(0.5)) and at(most) == (x(box.p95), y(0.95))
@@ -113,6 +115,12 @@ def test_each_stage_has_its_row_and_its_name():
     assert {each[1]["text-anchor"] for each in rows} == {"end"}
     root = ET.fromstring(text)
     assert root.get("viewBox") == f"0 0 760 {12 + 2 * 64 + 44}"
+
+
+def test_a_stage_that_only_one_test_had_is_drawn_too():
+    text = stages(a_curve(stages={"testing": box_of([0.5])}, stage_values={"testing": (0.5,)}))
+    assert [each[2] for each in of_kind(text, "text", "row")] == ["testing"]
+    assert [each[2] for each in of_kind(text, "circle", "strip c1")] == [seconds(0.5)]
 
 
 def test_of_many_values_some_are_drawn(monkeypatch):

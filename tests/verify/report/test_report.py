@@ -247,6 +247,7 @@ def test_nothing_rounds_up_to_all():
     coverage = PlanCoverage(taken=99_999, possible=100_000)
     run = run_of(a_record(coverage=coverage))
     assert "99.99%" in rendered("md", run) and "100.00%" not in rendered("md", run)
+    assert "100.00%" in rendered("md", run_of(a_record()))
 
 
 def definition(name, *verdicts, **more):

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+import json
+import math
+
+import pytest
+
 from firm_hdl.verify.report import html, markdown
+from firm_hdl.verify.report.as_json import to_json
 from firm_hdl.verify.report.command import write_report
 from firm_hdl.verify.report.outcomes import NotRun, outcomes_of
 from firm_hdl.verify.report.stats import Correlation, Fit
@@ -32,6 +38,21 @@ def test_a_record_counts_also_if_its_test_is_not_planned():
     record = a_record(verdict=Failed(("no",)))
     (outcome,) = outcomes_of([Results(records={record.test.key: record})])
     assert outcome.test == record.test and outcome.verdict == Failed(("no",))
+
+
+def test_a_circuit_of_another_type_is_named_by_that_type_or_by_its_test_if_it_did_not_run():
+    one = a_record(a_test("p/A"))
+    twins = [a_record(a_test(f"p/{name}"), same_as=one.test.key) for name in "BC"]
+    ran = outcomes_of([run_of(one, *twins)])
+    assert [each.circuit_of for each in ran] == ["", "p/A", "p/A"]
+    assert [each.verdict.name for each in ran] == ["passed"] * 3
+    alone = outcomes_of([run_of(*twins)])
+    assert [each.circuit_of for each in alone] == [one.test.key] * 2
+    reason = f"has the circuit of {one.test.key}, which was not run"
+    assert [each.verdict for each in alone] == [NotRun(reason)] * 2
+    table = every_table(ran)
+    at = table.headings.index("Circuit of")
+    assert [row[at].text for row in table.rows] == ["", "p/A", "p/A"]
 
 
 def test_reasons_are_grouped_without_names_and_numbers():
@@ -79,6 +100,12 @@ def test_a_stage_has_the_tests_that_it_took_time_of():
     assert curve.stage_values == {"generation": (1.0, 2.0, 3.0, 4.0), "testing": (2.0, 2.0)}
     assert curve.seconds.count == 4 and curve.seconds.most == 4.0
     assert curve.cpu_seconds.count == 3 and curve.cpu_seconds.least == 9.0
+
+
+def test_a_test_that_failed_took_its_time_like_any_other():
+    failed = a_record(a_test("p/F"), verdict=Failed(("no",)), seconds=Seconds(testing=9.0))
+    (curve,) = summarise({"r": run_of(failed, a_record(a_test("p/A")))}).curves
+    assert curve.seconds.count == 2 and curve.seconds.most == 9.0
 
 
 def test_trends_are_of_tests_with_a_circuit_and_a_figure():
@@ -178,3 +205,18 @@ def test_a_bar_is_in_pages_only_and_a_number_may_have_a_colour():
     assert "Share" in table.headings and "Share" not in written and "Result" in written
     assert 'class="n failed"' in html._cell(TableCell("1", 1.0, verdict="failed"))
     assert 'class="n"' in html._cell(TableCell("1", 1.0))
+    # Numbers are sorted by more digits than they are shown with.
+    assert 'data-v="1234.56789"' in html._cell(TableCell("1,235", 1234.56789))
+    # A text is kept on one line if it is short, or if it is a verdict, whose colour it then has.
+    assert html._cell(TableCell("x" * 39)) == f'<td class="t">{"x" * 39}</td>'
+    assert html._cell(TableCell("x" * 40)) == f"<td>{'x' * 40}</td>"
+    assert 'class="t not-judged"' in html._cell(TableCell("x" * 40, verdict="not judged"))
+
+
+def test_a_record_in_json_names_its_test_once_and_no_figure_is_not_a_number():
+    found = json.loads(to_json(summarise({"r": run_of(a_record())})))
+    (outcome,) = found["outcomes"]
+    assert outcome["test"]["type"] == a_test().type and "test" not in outcome["record"]
+    assert outcome["record"]["packets"] == 40
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        to_json(summarise({"r": run_of(a_record(metrics={"leaves": math.nan}))}))

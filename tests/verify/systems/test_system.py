@@ -134,6 +134,42 @@ def test_records_are_kept_in_a_file_and_are_not_made_again(tmp_path, capsys):
     assert made[2:] == [["A", "B", "C"]]
 
 
+def test_the_progress_counts_the_tests_of_earlier_sessions_and_those_of_each_share(
+    tmp_path, monkeypatch
+):
+    shown = []
+
+    class Bar:
+        def __init__(self, *, total, initial, unit, desc, disable):
+            # Without a terminal, there is no bar.
+            shown.append((total, initial, unit, desc, disable))
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *error):
+            shown.append("closed")
+
+        def update(self, count):
+            shown.append(count)
+
+    monkeypatch.setattr(system, "tqdm", Bar)
+
+    def run(left):
+        for share in (left[:2], left[2:]):
+            yield [(key, a_record(TESTS[key]), []) for key in share]
+
+    with ResultsWriter(tmp_path / "r", options={}, planned=list(TESTS.values())) as writer:
+        writer.add(a_record(TESTS["B"]))
+    with ResultsWriter(tmp_path / "r", options={}, planned=list(TESTS.values())) as writer:
+        kept(TESTS, Recorder(writer), run, label="4-byte bus", unit="thing")
+    kept(TESTS, Recorder(), run, label="4-byte bus")
+    assert shown == [
+        *((3, 1, "thing", "4-byte bus", None), 2, 0, "closed"),
+        *((3, 0, "type", "4-byte bus", None), 2, 1, "closed"),
+    ]
+
+
 def run_with(results, monkeypatch, **options):
     """Run the tests `A` to `C` in shares of two, with given results of shares."""
     asked = []
