@@ -123,7 +123,6 @@ class Tracker(_Follower):
         *,
         decides: Value | int = 1,
         keeps: Value | int = 1,
-        count: Value | None = None,
     ) -> None:
         """Say what enters.
 
@@ -135,17 +134,14 @@ class Tracker(_Follower):
             With this beat it is decided what becomes of it and of those that are undecided.
         keeps : Value
             They will leave; else they will not.
-        count : Value or None
-            Valid lanes of the beat, if not `beat.count`.
         """
         m = self.scene.m
         lane = self.scene.free(range(len(beat.data) + 1), f"{self.name}_lane")
-        count = beat.count if count is None else count
         units = Signal.like(self.inside, name=f"{self.name}_units")
-        m.d.comb += units.eq(count + beat.last)
+        m.d.comb += units.eq(beat.count + beat.last)
         with m.If(self._enter(transfers, units, lane, decides=decides, keeps=keeps)):
             m.d.sync += [
-                self.is_end.eq(lane == count),
+                self.is_end.eq(lane == beat.count),
                 self._byte.eq(Value.cast(beat.data).word_select(lane, 8)),
             ]
 

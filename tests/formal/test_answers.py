@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from firm_hdl.equivalence.tools import Tools
-from firm_hdl.formal import command
+from firm_hdl.formal import command, solve
 from firm_hdl.formal.solve import Answer, decide
 from firm_hdl.jobs import ToolError, TooSlowError
 
@@ -64,8 +65,21 @@ def test_a_solver_that_takes_too_long_or_says_nothing_proves_nothing(tmp_path):
         decide(tmp_path / "scene.aig", 2, Said(), **given)
 
 
-@pytest.mark.parametrize(("method", "solve"), [("PDR", "pdr,-T,70;"), ("BMC", "bmc3,-F,12,-T,70;")])
-def test_the_solver_gets_its_claim_depth_and_time_and_yosys_more_time(tmp_path, method, solve):
+@pytest.mark.parametrize("said", ["snl_UNSAT 7 0", "snl_SAT 3 0 0 4", "snl_UNK 7 0", None])
+def test_every_answer_has_its_seconds(tmp_path, monkeypatch, said):
+    class Slow(Said):
+        def run_yosys(self, *arguments: object) -> str:
+            raise TooSlowError("slow")
+
+    clock = iter([100.0, 102.5])
+    monkeypatch.setattr(solve, "time", SimpleNamespace(monotonic=lambda: next(clock)))
+    tools = Slow() if said is None else Said(said, "go@0=1")
+    answer = decide(tmp_path / "scene.aig", 2, tools, method="PDR", depth=0, timeout=1.0)
+    assert answer.seconds == 2.5
+
+
+@pytest.mark.parametrize(("method", "call"), [("PDR", "pdr,-T,70;"), ("BMC", "bmc3,-F,12,-T,70;")])
+def test_the_solver_gets_its_claim_depth_and_time_and_yosys_more_time(tmp_path, method, call):
     asked = []
 
     class Asked(Said):
@@ -76,7 +90,7 @@ def test_the_solver_gets_its_claim_depth_and_time_and_yosys_more_time(tmp_path, 
     tools = Asked("snl_UNK -1 0")
     decide(tmp_path / "scene.aig", 2, tools, method=method, depth=12, timeout=70.5)
     [(script, limit)] = asked
-    assert f"read_aiger,scene.aig;cone,-O,2;scleanup;{solve}" in script
+    assert f"read_aiger,scene.aig;cone,-O,2;scleanup;{call}" in script
     assert limit > 71
 
 

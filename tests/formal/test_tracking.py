@@ -98,6 +98,15 @@ def test_another_unit_in_the_place_of_the_chosen_one_is_out_of_order(gone, unit)
     assert broken["order"] == [len(CAME) + len(gone) - 1]
 
 
+@pytest.mark.parametrize(("first", "lane"), [(("a", 0), 1), (("a", 1), 2), (("", 1), 1)])
+def test_a_lane_behind_the_units_of_a_beat_chooses_none(first, lane):
+    # So the mark of the next beat still chooses.
+    steps = [comes(*first, mark=lane), comes("c", 1, mark=0), goes(*first), goes("c", 1)]
+    broken, values = play(follow, steps, "hits")
+    assert broken == {"order": [], "nothing extra": []}
+    assert values == [(0,), (0,), (0,), (1,)]
+
+
 def test_a_unit_more_than_came_is_extra():
     gone = [*CAME, ("e", 0)]
     broken = play(follow, [*came((0, 0)), *(goes(*each) for each in gone)])[0]

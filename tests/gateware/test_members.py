@@ -42,6 +42,8 @@ def test_names_that_would_share_a_port_are_kept_apart():
     assert members("a.b", "a__b") == ["a.b", "a__b_"]
     assert members("a__b", "a.b", "a.b_") == ["a__b__", "a.b", "a.b_"]
     assert members("clk", "clk_") == ["clk_", "clk__"]
+    # Of names that may clash, the first one in wire order has as few underscores as possible.
+    assert members("clk_", "clk") == ["clk_", "clk__"]
     assert members("x", "x__valid") == ["x", "x__valid_"]
 
 

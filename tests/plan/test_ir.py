@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.plan import Jump, build_plan
+from firm_hdl.plan import Jump, Leaf, build_plan
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
@@ -49,3 +49,12 @@ def test_jumps_are_listed_from_the_start_and_in_the_order_in_which_they_are_trie
     again = (Jump(step=0), Jump(enter=((1, 2),), step=0), Jump(step=1))
     assert plan.steps[0].exits.jumps == again
     assert list(plan.jumps()) == [start, *again, Jump(step=None)]
+
+
+def test_a_leaf_of_a_wrong_plan_has_the_size_of_its_type_whatever_its_sign():
+    for signed in (False, True):
+        sizes = [
+            Leaf(path=("x",), kind="scalar", type=name, signed=signed).item_bytes
+            for name in ("bool", "int16", "uint32", "float64")
+        ]
+        assert sizes == [1, 2, 4, 8]

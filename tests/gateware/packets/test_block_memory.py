@@ -8,7 +8,7 @@ import re
 
 import pytest
 from amaranth.back import rtlil
-from amaranth.hdl import Module
+from amaranth.hdl import ClockDomain, Module
 from amaranth.sim import Simulator
 
 from firm_hdl.gateware.memories import BlockMemory
@@ -80,3 +80,30 @@ def test_each_word_is_read_as_it_was_written(bits, depth):
     simulator.run()
     assert len(log) == 4 * len(places)
     assert [read for read, _ in log] == [written for _, written in log]
+
+
+def test_a_reset_does_not_touch_what_was_read():
+    """A block RAM has no reset; with one, the register of the last read would be no part of it."""
+    m = Module()
+    m.domains.sync = domain = ClockDomain()
+    memory = BlockMemory(m, 20, 2048)
+    log = []
+
+    async def bench(ctx):
+        ctx.set(memory.write_word, 0xABCDE)
+        ctx.set(memory.writes, 1)
+        await ctx.tick()
+        ctx.set(memory.writes, 0)
+        ctx.set(memory.reads, 1)
+        await ctx.tick()
+        ctx.set(memory.reads, 0)
+        for reset in (0, 1):
+            ctx.set(domain.rst, reset)
+            await ctx.tick()
+            log.append(ctx.get(memory.word))
+
+    simulator = Simulator(m)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(bench)
+    simulator.run()
+    assert log == [0xABCDE] * 2
