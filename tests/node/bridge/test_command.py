@@ -73,16 +73,20 @@ def test_a_board_that_never_answers_ends_with_an_error(file, capsys):
 
 
 class SlowBoard(SimulatedBoard):
-    """A simulation that takes a minute to compile."""
+    """A simulation that takes a minute to compile; a signal comes meanwhile."""
+
+    def __init__(self, number):
+        super().__init__(ECHO)
+        self.number = number
 
     def open(self):
+        os.kill(os.getpid(), self.number)
         time.sleep(60)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_the_start_of_a_board(file, capsys, monkeypatch, number):
-    monkeypatch.setattr(command, "board_of", lambda name, *_, **__: SlowBoard(ECHO))
-    threading.Timer(0.3, lambda: os.kill(os.getpid(), number)).start()
+    monkeypatch.setattr(command, "board_of", lambda name, *_, **__: SlowBoard(number))
     before = time.monotonic()
     assert main(["node", "run", file, "--graph", "none"]) == 0
     # Nothing else would end it within a minute.
@@ -148,8 +152,15 @@ def test_another_board_ends_the_command(file, board, capsys):
     assert "error: the board's fingerprint is 0000000000000001" in capsys.readouterr().err
 
 
-def test_signals_end_it(file, board, capsys):
-    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGTERM)).start()
+def test_signals_end_it(file, board, capsys, monkeypatch):
+    report = Status.report
+
+    def said(self, line):
+        report(self, line)
+        if line.endswith("joined"):
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    monkeypatch.setattr(Status, "report", said)
     before = signal.getsignal(signal.SIGTERM)
     options = ["--board", f"udp://127.0.0.1:{board.port}", "--graph", "rtps", "--interface", "lo"]
     assert main(["node", "run", file, *options, "--domain", "161", "--quiet"]) == 0
