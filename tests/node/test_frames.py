@@ -177,6 +177,42 @@ def test_a_message_beyond_the_limit_is_counted():
     assert (out, counters.large, counters.stray) == ([], 1, 3)
 
 
+def test_a_message_as_large_as_the_limit_passes():
+    message = NodeMessage(topic=1, packet=bytes(100))
+    out, counters = received(frames_of([message], 48)[0], max_bytes=100)
+    assert (out, counters.large) == ([message], 0)
+
+
+@pytest.mark.parametrize(
+    ("back", "passes"), [(1, False), (63, False), (64, False), (65, True), (1000, True)]
+)
+def test_as_many_as_64_numbers_back_are_late(back, passes):
+    """A sender whose number is further back has started again, and its first message was lost."""
+    old = frames_of([NodeMessage(topic=1, packet=b"a")], sequence=30)[0]
+    new = frames_of([NodeMessage(topic=1, packet=b"b")] * 2, sequence=31 - back - 1)[1]
+    out, counters = received([*old, *new])
+    assert [each.packet for each in out] == [b"a", b"b"][: 1 + passes]
+    assert counters.late == (not passes)
+
+
+def test_the_oldest_message_is_cut_if_too_many_are_under_way():
+    messages = [NodeMessage(topic=1, packet=bytes([n] * 20)) for n in range(5)]
+    frames = frames_of(messages, 32)
+    out, counters = received(
+        [*(first for first, _ in frames), *(last for _, last in frames[2:])], max_open=3
+    )
+    assert (out, counters.cut) == (messages[2:], 2)
+
+
+def test_a_fragment_behind_the_last_one_is_no_part_of_a_message():
+    """It came in the place of fragment 0, and has as many bytes."""
+    first, last = frames_of([NodeMessage(topic=1, packet=bytes(20))], 32)[0]
+    behind = first[:14] + b"\5\0" + first[16:]
+    for frames in ([behind, last], [last, behind]):
+        out, counters = received(frames)
+        assert (out, counters.passed) == ([], 0)
+
+
 def test_what_is_late_and_what_is_cut_counts_by_messages():
     sender = MessageSender(32)
     first, second, third = (

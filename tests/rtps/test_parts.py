@@ -124,8 +124,12 @@ def test_tables_of_policies():
         ({"deadline": 1.0}, {"deadline": 2.0}, None),
         ({"liveliness": 0}, {"liveliness": 2}, "LIVELINESS"),
         ({"lease": 2.0}, {"lease": 1.0}, "LIVELINESS"),
+        ({"lease": 1.0, "liveliness": 2}, {"lease": 2.0, "liveliness": 1}, None),
         ({"exclusive": True}, {}, "OWNERSHIP"),
+        ({}, {"exclusive": True}, "OWNERSHIP"),
         ({"partitions": ("a",)}, {}, "PARTITION"),
+        ({}, {"partitions": ("a",)}, "PARTITION"),
+        ({"partitions": ("",)}, {}, None),
         ({"partitions": ("a", "b")}, {"partitions": ("b",)}, None),
         ({"representations": (2,)}, {}, "DATA_REPRESENTATION"),
         ({"representations": (0,)}, {"representations": (2, 0)}, None),
@@ -136,6 +140,9 @@ def test_tables_of_policies():
     for offered, asked, problem in pairs:
         expected = () if problem is None else (problem,)
         assert Qos(**asked).refused(Qos(**offered)) == expected, (offered, asked)
+    asked = Qos(deadline=1.0, exclusive=True, partitions=("a",))
+    problems = asked.refused(Qos(reliability=best))
+    assert problems == ("RELIABILITY", "DEADLINE", "OWNERSHIP", "PARTITION")
 
 
 @settings(deadline=None, suppress_health_check=SLOW)

@@ -71,8 +71,12 @@ def test_type_hashes():
     assert names.type_hash_of(b"a=b;" + data) == "RIHS01_00ff"
     assert names.type_hash_of(b"nottypehash=1;") is None
     assert names.user_data(None) == b""
-    with pytest.raises(ValueError, match=r"^'0f' is no type hash of ROS 2$"):
-        names.user_data("0f")
+
+
+@pytest.mark.parametrize("text", ["", "0f", "RIHS01_", "RIHS01_00ff;a=b", "RIHS01_00FF", "RIHS_0f"])
+def test_what_is_no_type_hash_is_announced_nowhere(text):
+    with pytest.raises(ValueError, match=rf"^'{text}' is no type hash of ROS 2$"):
+        names.user_data(text)
 
 
 @pytest.mark.parametrize("gid_bytes", [16, 24])

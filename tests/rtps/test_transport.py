@@ -80,6 +80,15 @@ def test_datagrams_reach_the_ports_that_are_announced(transport):
         assert each.recv(99) == datagram
 
 
+def test_the_largest_datagram_is_received_whole(transport):
+    datagram = bytes(range(251)) * 240
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        sender.sendto(datagram, transport.user)
+    _, user = transport._unicast
+    user.settimeout(10)
+    assert list(transport.receive(user, limit=1)) == [datagram]
+
+
 def test_topics_of_peers_are_those_of_writers_and_readers(monkeypatch):
     def endpoint(topic, kind, type_hash=None):
         name = names.type_name(f"p/msg/{kind}")

@@ -15,10 +15,10 @@ import pytest
 
 from firm_hdl.cli import main
 from firm_hdl.node.boards.simulated import SimulatedBoard
-from firm_hdl.node.bridge import Bridge, bridge, command
+from firm_hdl.node.bridge import Bridge, bridge, command, status
 from firm_hdl.node.bridge.status import Status
 from tests.node.accelerators import echo_text
-from tests.node.bridge.fakes import ECHO, FakeNode
+from tests.node.bridge.fakes import ECHO, FakeBoard, FakeGraph, FakeNode
 from tests.node.bridge.test_boards import UdpNode
 from tests.node.samples import PACKAGES
 
@@ -73,16 +73,20 @@ def test_a_board_that_never_answers_ends_with_an_error(file, capsys):
 
 
 class SlowBoard(SimulatedBoard):
-    """A simulation that takes a minute to compile."""
+    """A simulation that takes a minute to compile; a signal comes meanwhile."""
+
+    def __init__(self, number):
+        super().__init__(ECHO)
+        self.number = number
 
     def open(self):
+        os.kill(os.getpid(), self.number)
         time.sleep(60)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_the_start_of_a_board(file, capsys, monkeypatch, number):
-    monkeypatch.setattr(command, "board_of", lambda name, *_, **__: SlowBoard(ECHO))
-    threading.Timer(0.3, lambda: os.kill(os.getpid(), number)).start()
+    monkeypatch.setattr(command, "board_of", lambda name, *_, **__: SlowBoard(number))
     before = time.monotonic()
     assert main(["node", "run", file, "--graph", "none"]) == 0
     # Nothing else would end it within a minute.
@@ -148,8 +152,15 @@ def test_another_board_ends_the_command(file, board, capsys):
     assert "error: the board's fingerprint is 0000000000000001" in capsys.readouterr().err
 
 
-def test_signals_end_it(file, board, capsys):
-    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGTERM)).start()
+def test_signals_end_it(file, board, capsys, monkeypatch):
+    report = Status.report
+
+    def said(self, line):
+        report(self, line)
+        if line.endswith("joined"):
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    monkeypatch.setattr(Status, "report", said)
     before = signal.getsignal(signal.SIGTERM)
     options = ["--board", f"udp://127.0.0.1:{board.port}", "--graph", "rtps", "--interface", "lo"]
     assert main(["node", "run", file, *options, "--domain", "161", "--quiet"]) == 0
@@ -191,3 +202,68 @@ def test_ctrl_c_ends_it_while_there_is_no_board(file):
         process.communicate()
     assert process.returncode == 0 and "Traceback" not in said
     assert ["/heard", "subscribe", "0", "0"] in [line.split() for line in said.splitlines()]
+
+
+@pytest.fixture
+def started(monkeypatch):
+    """Let bridges end at once; return what board and graph were made of, and how it ran."""
+    found = {}
+
+    def board_of(name, description, **options):
+        found["board"] = (name, description, options)
+        return FakeBoard()
+
+    def graph_of(name, description, **options):
+        found["graph"] = (name, description, options)
+        return FakeGraph()
+
+    def run(self, *, seconds, each_second):
+        found["seconds"] = seconds
+        self.on_message(ECHO.topics[0], b"\0", None)
+        each_second()
+        self.stop()
+        self.close()
+
+    monkeypatch.setattr(command, "board_of", board_of)
+    monkeypatch.setattr(command, "graph_of", graph_of)
+    monkeypatch.setattr(Bridge, "run", run)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("options", "board", "graph", "seconds"),
+    [
+        ({}, {"engine": "auto"}, {"domain": None, "interface": None}, None),
+        ({"engine": "cxxrtl"}, {"engine": "cxxrtl"}, {"domain": None, "interface": None}, None),
+        ({"domain": 0}, {"engine": "auto"}, {"domain": 0, "interface": None}, None),
+        ({"interface": "lo"}, {"engine": "auto"}, {"domain": None, "interface": "lo"}, None),
+        ({"seconds": 7.5}, {"engine": "auto"}, {"domain": None, "interface": None}, 7.5),
+    ],
+)
+def test_each_option_gets_where_it_belongs(started, options, board, graph, seconds):
+    command.run_bridge(ECHO, "udp://a:1", graph="rtps", **options)
+    assert started["board"] == ("udp://a:1", ECHO, board)
+    assert started["graph"] == ("rtps", ECHO, graph)
+    assert started["seconds"] == seconds
+
+
+def test_the_graph_is_chosen_elsewhere_unless_it_is_named(started):
+    command.run_bridge(ECHO, "udp://a:1")
+    assert started["graph"][0] is None
+
+
+def test_a_quiet_one_prints_no_figures(started, capsys, monkeypatch):
+    """Neither the line of each second nor the account at the end; what happens, it says."""
+    monkeypatch.setattr(status, "_LOG_SECONDS", 0.0)
+    command.run_bridge(ECHO, "udp://a:1")
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0].startswith("echo, no board, to board 0/s")
+    assert "dropped: 1 of /heard: bridge ended" in lines
+    command.run_bridge(ECHO, "sim", engine="amaranth", quiet=True)
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("board sim: starts; Amaranth's simulator")
+
+
+def test_only_a_simulation_says_what_it_starts(started, capsys):
+    command.run_bridge(ECHO, "udp://a:1", quiet=True)
+    assert capsys.readouterr().err == ""

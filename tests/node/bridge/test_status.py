@@ -159,6 +159,7 @@ def test_the_account_names_all_losses_with_their_places():
 
 
 NEVER = "the board has never answered"
+ONCE = "the board was started again or lost 1 times"
 LOST = "the board was started again or lost 2 times"
 UNREAD = "not all counters on the board could be read at the end"
 
@@ -171,6 +172,7 @@ UNREAD = "not all counters on the board could be read at the end"
         (False, False, 2, False, [NEVER]),
         (True, True, 0, True, []),
         (True, True, 0, False, [UNREAD]),
+        (True, True, 1, True, [ONCE]),
         (True, False, 2, True, [LOST]),
         (True, False, 2, False, [LOST, UNREAD]),
     ],

@@ -20,6 +20,18 @@ def test_what_is_taken_makes_room():
     assert queue.take() is None and queue.oldest() is None
 
 
+def test_the_oldest_is_the_one_that_is_taken_next():
+    queue = MessageQueue(10)
+    for at in (1.0, 2.0, 3.0):
+        queue.put(waiting(b"x", at))
+    found = []
+    while (oldest := queue.oldest()) is not None:
+        taken = queue.take()
+        assert taken is not None
+        found.append((oldest, taken.at))
+    assert found == [(1.0, 1.0), (2.0, 2.0), (3.0, 3.0)]
+
+
 def test_only_what_came_before_a_time_is_taken():
     queue = MessageQueue(10)
     queue.put(waiting(b"x", 1.0))

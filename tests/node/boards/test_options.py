@@ -1,0 +1,155 @@
+"""What the ways to boards ask of the system: ports, buffers, and the settings of a line."""
+
+from __future__ import annotations
+
+import os
+import pty
+import socket
+import termios
+from types import SimpleNamespace
+
+import pytest
+
+from firm_hdl.node.boards import BoardError, board_of, udp
+from tests.node.bridge.fakes import ECHO
+
+
+@pytest.fixture
+def line():
+    """Return the name of a serial line, and the file of its other end."""
+    host, board = pty.openpty()
+    yield os.ttyname(board), host
+    os.close(host)
+    os.close(board)
+
+
+def option(board, level, name):
+    with socket.socket(fileno=os.dup(board.fileno())) as own:
+        return own.getsockopt(level, name)
+
+
+def test_a_message_over_tcp_waits_for_no_other_and_little_is_held():
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        board = board_of(f"tcp://127.0.0.1:{server.getsockname()[1]}", ECHO)
+        board.open()
+        assert option(board, socket.IPPROTO_TCP, socket.TCP_NODELAY)
+        # Linux doubles it, and would begin with 2.5 MB on the loopback interface.
+        assert option(board, socket.SOL_SOCKET, socket.SO_SNDBUF) <= 2 << 16
+        assert not os.get_blocking(board.fileno())
+        board.close()
+
+
+def test_a_burst_of_datagrams_has_room_both_ways(monkeypatch):
+    asked = []
+
+    class Socket(socket.socket):
+        def setsockopt(self, *option):
+            asked.append(option)
+
+    monkeypatch.setattr(udp, "socket", SimpleNamespace(**{**vars(socket), "socket": Socket}))
+    board = board_of("udp://127.0.0.1:9", ECHO)
+    board.open()
+    board.close()
+    assert asked == [
+        (socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20),
+        (socket.SOL_SOCKET, socket.SO_SNDBUF, 4 << 20),
+    ]
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("", 0))
+        return probe.getsockname()[1]
+
+
+@pytest.mark.parametrize(
+    ("own_address", "is_same_port"), [("192.0.2.9", True), ("127.0.0.1", False)]
+)
+def test_the_port_is_that_of_the_board_unless_it_is_on_this_host(
+    monkeypatch, own_address, is_same_port
+):
+    """Cores such as LiteEth have one port for both directions."""
+    port = free_port()
+
+    class Socket(socket.socket):
+        def getsockname(self):
+            return (own_address, 5)
+
+    monkeypatch.setattr(udp, "socket", SimpleNamespace(**{**vars(socket), "socket": Socket}))
+    board = board_of(f"udp://127.0.0.1:{port}", ECHO)
+    board.open()
+    with socket.socket(fileno=os.dup(board.fileno())) as own:
+        assert (own.getsockname()[1] == port) is is_same_port
+    board.close()
+
+
+def test_a_port_that_is_used_is_no_error(monkeypatch):
+    class Socket(socket.socket):
+        def getsockname(self):
+            return ("192.0.2.9", 5)
+
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("", 0))
+        port = other.getsockname()[1]
+        monkeypatch.setattr(udp, "socket", SimpleNamespace(**{**vars(socket), "socket": Socket}))
+        board = board_of(f"udp://127.0.0.1:{port}", ECHO)
+        board.open()
+        assert board.send([b"x"])
+        assert other.recv(9) == b"x"
+        board.close()
+
+
+def test_datagrams_of_the_largest_size_are_received_whole():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as node:
+        node.bind(("127.0.0.1", 0))
+        board = board_of(f"udp://127.0.0.1:{node.getsockname()[1]}", ECHO)
+        board.open()
+        assert board.send([b"x"])
+        _, host = node.recvfrom(9)
+        datagram = bytes(range(251)) * 240
+        node.sendto(datagram, host)
+        assert board.receive() == [datagram]
+        board.close()
+
+
+@pytest.mark.parametrize(("baud", "speed"), [(9600, termios.B9600), (115_200, termios.B115200)])
+def test_each_byte_passes_a_serial_line_as_it_is(line, baud, speed):
+    board = board_of(f"serial://{line[0]}?baud={baud}", ECHO)
+    board.open()
+    found_in, out, control, local, *speeds, characters = termios.tcgetattr(board.fileno())
+    assert (found_in, out, local) == (0, 0, 0)
+    # 8 data bits, read whatever the modem says; no parity, 1 stop bit, no flow control.
+    kept = termios.CS8 | termios.CREAD | termios.CLOCAL
+    assert control & (kept | termios.PARENB | termios.CSTOPB | termios.CRTSCTS) == kept
+    assert speeds == [speed, speed]
+    assert (characters[termios.VMIN], characters[termios.VTIME]) == (1, 0)
+    assert board.bytes_per_second == baud / 10
+    board.close()
+
+
+def test_bytes_of_before_are_not_read(line):
+    name, host = line
+    os.write(host, b"abc\0")
+    board = board_of(f"serial://{name}?baud=9600", ECHO)
+    board.open()
+    assert board.receive() == [] and not board.counters.total()
+    # What comes now is: a frame that is damaged.
+    os.write(host, b"abc\0")
+    assert board.receive() == [] and board.counters["damaged"] == 1
+    board.close()
+
+
+def test_a_file_that_is_no_line_stays_closed(tmp_path, monkeypatch):
+    path, opened = tmp_path / "file", []
+    path.write_bytes(b"")
+    system_open = os.open
+
+    def noted(*arguments):
+        opened.append(system_open(*arguments))
+        return opened[-1]
+
+    monkeypatch.setattr(os, "open", noted)
+    with pytest.raises(BoardError, match=r"^'.*/file' is no serial device$"):
+        board_of(f"serial://{path}", ECHO).open()
+    with pytest.raises(OSError, match="Bad file descriptor"):
+        os.fstat(opened[0])
