@@ -8,6 +8,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from tests.depth import LIVE, THOROUGH, not_sampled
 from tests.tools import need
@@ -15,6 +16,10 @@ from tests.vhdl.ghdl import GHDL
 
 # A circuit has hundreds of thousands of objects, most of which live as long as their test.
 gc.set_threshold(100_000, 20, 20)
+
+# A test must not fail because the machine is busy.
+settings.register_profile("unhurried", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("unhurried")
 
 # Tests must not depend on the packages of an active ROS workspace.
 for _name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):

@@ -16,7 +16,7 @@ from firm_hdl.equivalence.rtlil_side import read_rtlil
 from firm_hdl.equivalence.solve import solve
 from firm_hdl.vhdl.convert import Vhdl, convert
 from tests.depth import by_depth
-from tests.memory_designs import DESIGNS, Store, random_stores, rtlil_of
+from tests.rtlil.memory_designs import DESIGNS, Store, random_stores, rtlil_of
 
 FULL = {"mem": Store(depth=5, init=[1, 2, 3], granularity=4, reads=("comb", "transparent"))}
 TWO = {"mem": Store(depth=4, writes=2)}

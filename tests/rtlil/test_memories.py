@@ -7,7 +7,7 @@ import pytest
 from firm_hdl.rtlil.ir import Bits, Cell, Memory, Slice, cut
 from firm_hdl.rtlil.read import parse
 from firm_hdl.rtlil.simplify import simplified
-from tests.memory_designs import DESIGNS, Store, rtlil_of
+from tests.rtlil.memory_designs import DESIGNS, Store, rtlil_of
 
 LANES = {"mem": Store(shape=4, depth=3, init=[1, 2], granularity=2, reads=("comb", "transparent"))}
 

@@ -216,6 +216,22 @@ def test_deadline_of_a_message_allows_for_the_longest_stall_of_any_leaf(leaf):
     assert got == [dict.fromkeys("rgba", 1.0)]
 
 
+def test_missing_leaves_are_told_in_the_order_of_the_message_with_their_numbers():
+    message = make("ros2", {"v": "uint8[]", "n": "uint8"})
+    dut = Wires(message)
+    i, o = MessagePort(dut.i, message), MessagePort(dut.o, message)
+
+    async def source(ctx):
+        # Nine items take two transfers, and none of them comes.
+        await i.send_transfers(ctx, {0: [9]})
+
+    async def sink(ctx):
+        await o.receive(ctx, deadline=3)
+
+    with pytest.raises(DeadlineError, match=r": message\.v\.items \(2\), message\.n \(1\)$"):
+        run_testbenches(dut, source, sink)
+
+
 def test_leaves_that_are_offered_and_not_awaited_do_not_put_off_the_deadline():
     dut = Wires(COLOUR)
     i, o = MessagePort(dut.i, COLOUR), MessagePort(dut.o, COLOUR)

@@ -13,7 +13,7 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import Component, In, Out
 
 from firm_hdl.vhdl.convert import Vhdl, convert
-from tests.memory_designs import DESIGNS, Store, Stores, rtlil_of, simulated
+from tests.rtlil.memory_designs import DESIGNS, Store, Stores, rtlil_of, simulated
 from tests.vhdl.ghdl import GHDL, analyse, difference, run, simulate, synthesize
 
 STEPS = 200

@@ -14,7 +14,7 @@ from firm_hdl.equivalence import find_tools
 from firm_hdl.export.verilog import to_verilog
 from firm_hdl.export.verilog.memories import settled_memories, short_initials
 from firm_hdl.jobs import ProgramMissingError
-from tests.memory_designs import DESIGNS, WHOLE, Store, Stores, rtlil_of, simulated
+from tests.rtlil.memory_designs import DESIGNS, WHOLE, Store, Stores, rtlil_of, simulated
 from tests.tools import need
 
 STEPS = 200

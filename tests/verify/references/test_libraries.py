@@ -161,3 +161,24 @@ def test_a_needed_definition_that_rosbags_reads_otherwise_is_noted(
     monkeypatch.setattr(module, "_oracle", lambda *given: RosbagsOracle(store, "ros1"))
     assert note in module._note(message, ours, "p/msg/A")
     assert bool(module._note(message, ours, "p/msg/A")) == bool(note)
+
+
+@pytest.mark.parametrize(
+    ("name", "wire", "packet"),
+    [
+        ("rosbags", "ros1", "01"),
+        ("mcap-ros1", "ros1", "01"),
+        # ROS 2 gives a message without fields one of a byte.
+        ("rosbags", "cdr", "00010000 00 01"),
+        ("cyclonedds", "cdr", "00010000 00 01"),
+        ("mcap-ros2", "cdr", "00010000 00 01"),
+    ],
+)
+def test_a_message_without_fields_has_a_byte_in_ros2_alone(
+    library_here, make_message, name, wire, packet
+):
+    distro = "noetic" if wire == "ros1" else "lyrical"
+    message = make_message("B b\nuint8 c\n", distro, B="")
+    codec = library_here(name).open(message, wire)
+    assert codec.encode({"b": {}, "c": 1}) == data(packet)
+    assert codec.decode(data(packet)) == {"b": {}, "c": 1}

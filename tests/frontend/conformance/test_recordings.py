@@ -14,9 +14,8 @@ from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library, RecordingOrigin, open_library
 from firm_hdl.identity import type_hash
-
-from .recordings import FORMATS, make_old_db3, make_recording, record
-from .workspace import make_files
+from tests.frontend.recordings import FORMATS, make_old_db3, make_recording, record
+from tests.frontend.workspace import make_files
 
 SEPARATOR = "=" * 80
 
