@@ -224,7 +224,6 @@ def test_lines_of_a_plot_reach_from_the_slowest_seed_to_the_fastest() -> None:
 PLACES = {f"{part.name} {part.parameters}": number for number, part in enumerate(PARTS)}
 
 
-@pytest.mark.filterwarnings("ignore::amaranth.hdl.UnusedElaboratable")
 def test_parts_are_those_that_their_names_say() -> None:
     narrow = PARTS[PLACES["`PacketWidth` 8 to 1 bytes"]].make()
     wide = PARTS[PLACES["`PacketWidth` 1 to 8 bytes"]].make()

@@ -279,7 +279,6 @@ def test_interrupt_is_no_traceback(workdir, capsys, monkeypatch):
 
 
 @pytest.mark.parametrize("calls", [0, 1, 2, 3])
-@pytest.mark.filterwarnings("ignore::amaranth.hdl.UnusedElaboratable")
 def test_build_that_is_interrupted_leaves_whole_folders(workdir, capsys, monkeypatch, calls):
     # Each type takes two calls, one for each direction; the interrupt comes in one of them.
     module = importlib.import_module("firm_hdl.export.verilog.backend")

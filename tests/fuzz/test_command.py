@@ -339,7 +339,6 @@ def test_gates_have_little_memory_and_their_own_policy(monkeypatch):
         assert each.module == f"fuzz_{module}" and f"fuzz_{module}.v" in each.files
 
 
-@pytest.mark.filterwarnings("ignore::amaranth.hdl.UnusedElaboratable")
 def test_a_table_of_other_leaves_or_widths_is_refused(monkeypatch):
     monkeypatch.setattr("firm_hdl.fuzz.circuits.to_verilog", lambda *given, **options: "")
     message = message_of(STRING)

@@ -71,9 +71,6 @@ def status(wire, number):
     }
 
 
-pytestmark = pytest.mark.filterwarnings("ignore::amaranth.hdl.UnusedElaboratable")
-
-
 # Items of 8 bits; bits of the inputs, in whole words.
 @pytest.mark.parametrize(("bus_bytes", "data", "keep"), [(2, 32, 32), (8, 64, 32), (64, 512, 64)])
 def test_each_leaf_of_a_deserializer_is_an_output(made, bus_bytes, data, keep):

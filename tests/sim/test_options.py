@@ -120,7 +120,6 @@ def collected():
 
 @pytest.mark.usefixtures("collected")
 @pytest.mark.parametrize("function", [loopback, decode, encode])
-@pytest.mark.filterwarnings("ignore::amaranth.hdl.UnusedElaboratable")
 def test_functions_have_all_options(function, monkeypatch):
     seen = []
 
@@ -159,7 +158,6 @@ def test_functions_have_all_options(function, monkeypatch):
         ({"message": Stalls.bits("11"), "status": Stalls.bits("01")}, False),
     ],
 )
-@pytest.mark.filterwarnings("ignore::amaranth.hdl.UnusedElaboratable")
 def test_a_loop_has_gates_if_any_leaf_is_stalled(stalls, gated, monkeypatch):
     seen = []
 
