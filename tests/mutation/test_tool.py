@@ -9,14 +9,11 @@ from pathlib import Path
 import pytest
 
 from tools.mutation.__main__ import main
-from tools.mutation.explained import Explanation, explain, read_explanations
 from tools.mutation.map.store import moved
 from tools.mutation.mutants import identify
-from tools.mutation.report import markdown
-from tools.mutation.results import Record, append, read
+from tools.mutation.results import read
 from tools.mutation.rules.python_rules import changes
 from tools.mutation.targets import TARGETS, all_mutants, files, sample
-from tools.mutation.workshop import Run
 
 ROOT = Path(__file__).parents[2]
 MODULE = """
@@ -365,29 +362,3 @@ def test_every_rule_finds_something_in_the_program():
     assert found >= {"swapped branches", "overridden assignment", "dropped clause", "wrong limit"}
     assert found >= {"swapped operand", "sticky flag", "missing reset", "wrong neighbour"}
     assert found >= {"dropped check", "dropped assignment", "ignored item", "default used"}
-
-
-def test_an_explanation_is_of_one_change_wherever_it_is(tmp_path):
-    out = tmp_path / "out.jsonl"
-    (mutant, *_) = identify("firm_hdl/wire/toy.py", "wire", MODULE, changes(MODULE))
-    runs = {"rest": Run(status="passed", by="", cpu_seconds=1.0)}
-    record = Record.of(mutant, runs, tests=1, complete=True, tree="a")
-    append(out, record)
-    assert list(read(out).values()) == [record]
-    given = {name: getattr(record, name) for name in ("path", "scope", "rule", "old", "new")}
-    known = [Explanation(**given, kind="cost", why="It is as good.")]
-    assert explain(record, known) is known[0]
-    assert "Survivors with" in markdown([record], known, "a")
-    other = [Explanation(**{**given, "new": "return 1"}, kind="cost", why="It is as good.")]
-    assert explain(record, other) is None
-    assert "Survivors without" in markdown([record], other, "a")
-    assert "1 of these were found before files changed" in markdown([record], other, "b")
-
-
-def test_explanations_are_of_existing_mutants():
-    explanations = read_explanations()
-    mutants = all_mutants(ROOT, only={each.path for each in explanations})
-    there = {(m.path, m.change.scope, m.change.rule, m.place.old, m.place.new) for m in mutants}
-    for each in explanations:
-        assert (each.path, each.scope, each.rule, each.old, each.new) in there, each
-        assert each.why

@@ -21,6 +21,7 @@ COLUMNS = (
     "survived",
     "open",
     "score",
+    "without explained",
 )
 
 
@@ -29,7 +30,7 @@ def markdown(records: Iterable[Record], explanations: Sequence[Explanation], tre
 
     The score is the share of judged mutants that tests of behaviour killed. Open mutants, which the
     tests that were run did not notice, count as not killed. So do mutants that only a snapshot
-    noticed.
+    noticed. The last column is the score without the survivors that have an explanation.
     """
     given = sorted(
         records, key=lambda each: (list(TARGETS).index(each.target), each.path, each.line)
@@ -79,9 +80,13 @@ def _row(name: str, records: list[Record], explanations: Sequence[Explanation]) 
     rest = [each for each in alive if each not in explained]
     by = [sum(system in each.killers for each in killed) for system in (*SYSTEMS, REST)]
     survived = sum(each.status == "survived" for each in rest)
-    score = f"{100 * len(killed) / len(records):.1f} %" if records else "-"
     counts = [len(records), len(killed), *by, len(snapshot), len(explained), survived]
-    return [name, *map(str, counts), str(len(rest) - survived), score]
+    scores = [_share(len(killed), len(records) - without) for without in (0, len(explained))]
+    return [name, *map(str, counts), str(len(rest) - survived), *scores]
+
+
+def _share(part: int, whole: int) -> str:
+    return f"{100 * part / whole:.1f} %" if whole else "-"
 
 
 def _line(cells: Iterable[str]) -> str:
