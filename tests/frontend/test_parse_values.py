@@ -180,6 +180,7 @@ def test_ros2_default_cannot_contain_equals():
     ("line", "values"),
     [
         ("int32[] x []", ()),
+        ("int32[] x []  # c", ()),
         ("int32[] x [1]", (1,)),
         ("int32[3] x [1,0x10, 010]", (1, 16, 10)),
         ("int32[] x [ 1 , 2 ]  # c", (1, 2)),
@@ -190,6 +191,9 @@ def test_ros2_default_cannot_contain_equals():
         ("""string[] x ["a,b", 'c"]']""", ("a,b", 'c"]')),
         (r"""string[] x ["H\"el'lo", 'Wo\'r"ld']""", ("H\"el'lo", "Wo'r\"ld")),
         ('string[] x ["a",]', ("a",)),
+        ('string[] x [ "a" ,]  # c', ("a",)),
+        ("string[] x []# c", ()),
+        ('string[] x ["a",]b]', ("a", "]b")),
         ("""string[] x ["a" 'b',"c""d" e]""", ("a", "b", "c", "d", "e")),
         ("""string[] x [a "b", 'c' ]""", ('a "b"', "c")),
         ('string[] x [""]', ("",)),
