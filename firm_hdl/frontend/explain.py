@@ -80,7 +80,7 @@ def explain(error: UnexpectedInput, line: str, dialect: Dialect) -> tuple[int, i
         Start and end of the words that are wrong, as offsets in the line, and the message.
     """
     start, expected = _place(error, line)
-    if dialect == "ros2" and start == 0 and line[:1].isspace():
+    if dialect == "ros2" and line[:1].isspace():
         start = len(line) - len(line.lstrip())
         return start, len(line.rstrip()), "a definition must start in the first column"
     for rule in (

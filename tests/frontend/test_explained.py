@@ -50,6 +50,10 @@ ROS1 = [
         "p/Foo[] a «[]»  # c",
         "expected the end of the line, not '[]'; a field of ROS 1 has no default",
     ),
+    (
+        "int32 a «b»  # = c",
+        "expected '=' or the end of the line, not 'b'; a field of ROS 1 has no default",
+    ),
     ("int32 a «b=1»", "expected '=' or the end of the line, not 'b=1'"),
     ("int32 A=«»", "expected an integer, but the definition ends here"),
     ("int32 A=1 «2»", "expected the end of the line, not '2'"),
