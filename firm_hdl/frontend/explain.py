@@ -177,13 +177,13 @@ def _wrong_type(line: str, start: int, expected: frozenset[str], dialect: Dialec
         return len(word), f"annotation '{clip(word)}' is not supported"
     if word.startswith("\ufeff"):
         return 1, "a byte order mark is not allowed"
-    close = similar_builtin(word, dialect)
-    if close:
-        return len(word), f"{message}; did you mean '{close[0]}'?"
     package, slash, _ = word.partition("/")
     if slash:
         rule = NAME_RULES["NAME" if dialect == "ros1" else "FIELD_NAME"]
         return len(word), f"'{clip(package)}' is not a legal package name: {rule}"
+    close = similar_builtin(word, dialect)
+    if close:
+        return len(word), f"{message}; did you mean '{close[0]}'?"
     if dialect == "ros2":
         message += f", and not a legal message name: {NAME_RULES['MESSAGE_NAME']}"
     return len(word), message

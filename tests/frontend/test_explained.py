@@ -93,6 +93,7 @@ ROS2 = [
     ("int32[] «A» = [1]", NO_CONSTANT),
     ("int32 «a[3]»", f"'a[3]' is not a legal field name: {BRACKETS}"),
     ("int32 «A[3]»=1", f"'A[3]' is not a legal constant name: {BRACKETS}"),
+    ("int32 «a[3» ]", f"'a[3' is not a legal field name: {BRACKETS}"),
     ("int32 a 1 «2»", "expected the end of the line, not '2'"),
     ("int32 a «x y»  # c", "'x y' is not an integer"),
     ("int32 a «0o8»", "'0o8' is not an integer"),
@@ -128,6 +129,7 @@ ROS2 = [
     ("«P/Foo» a", f"'P' {PACKAGE}"),
     # A builtin type is no likely package.
     ("«Bool/Foo» a", f"'Bool' {PACKAGE}"),
+    ("«Uint16/A» a", f"'Uint16' {PACKAGE}"),
     ("«Strings/Foo»[3] a", f"'Strings' {PACKAGE}"),
     ("p/«foo» a", f"'foo' {TYPE_FORM}"),
     ("p/«msg/Foo» a", f"'msg/Foo' {TYPE_FORM}"),
