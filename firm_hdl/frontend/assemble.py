@@ -71,7 +71,7 @@ def _service(unit: Unit, base: str, messages: dict[str, Message]) -> Service:
         dialect=dialect,
         request=request,
         response=response,
-        event=messages.get(base + EVENT) if dialect == "ros2" else None,
+        event=messages.get(base + EVENT),
         comment=request.comment if is_whole else "",
         text=unit.source.text if is_whole else "",
     )

@@ -111,7 +111,7 @@ def embedded_source(distro: str, package: str, name: str) -> Source | None:
         return None
     constants, fields = definition
     dialect = DISTROS[distro].dialect
-    lines = [f"{type_} {constant}={_value(value)}" for constant, type_, value in constants]
+    lines = [f"{type_} {constant}={value}" for constant, type_, value in constants]
     lines += [
         f"{_field_type(description, package, dialect)} {field}"
         f"{_default(distro, package, name, field)}"
@@ -131,10 +131,6 @@ def _default(distro: str, package: str, name: str, field: str) -> str:
         since
     )
     return f" {value}" if value and has_default else ""
-
-
-def _value(value: str | int | float | bool) -> str:
-    return str(value) if isinstance(value, str) else repr(value)
 
 
 def _field_type(description: Any, package: str, dialect: Dialect) -> str:

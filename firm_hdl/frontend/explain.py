@@ -80,7 +80,7 @@ def explain(error: UnexpectedInput, line: str, dialect: Dialect) -> tuple[int, i
         Start and end of the words that are wrong, as offsets in the line, and the message.
     """
     start, expected = _place(error, line)
-    if dialect == "ros2" and start == 0 and line[:1].isspace():
+    if dialect == "ros2" and line[:1].isspace():
         start = len(line) - len(line.lstrip())
         return start, len(line.rstrip()), "a definition must start in the first column"
     for rule in (
@@ -177,13 +177,13 @@ def _wrong_type(line: str, start: int, expected: frozenset[str], dialect: Dialec
         return len(word), f"annotation '{clip(word)}' is not supported"
     if word.startswith("\ufeff"):
         return 1, "a byte order mark is not allowed"
-    close = similar_builtin(word, dialect)
-    if close:
-        return len(word), f"{message}; did you mean '{close[0]}'?"
     package, slash, _ = word.partition("/")
     if slash:
         rule = NAME_RULES["NAME" if dialect == "ros1" else "FIELD_NAME"]
         return len(word), f"'{clip(package)}' is not a legal package name: {rule}"
+    close = similar_builtin(word, dialect)
+    if close:
+        return len(word), f"{message}; did you mean '{close[0]}'?"
     if dialect == "ros2":
         message += f", and not a legal message name: {NAME_RULES['MESSAGE_NAME']}"
     return len(word), message

@@ -113,7 +113,7 @@ class Library:
                 return message
         for candidate in candidates:
             unit = self._resolver.unit(candidate)
-            if unit is not None and candidate.kind != "msg":
+            if unit is not None:
                 what = "a service" if candidate.kind == "srv" else "an action"
                 text = f"'{candidate}' is {what}, not a message"
                 parts = [str(candidate)[: -len(candidate.name)] + part for part in unit.messages]
@@ -137,7 +137,7 @@ class Library:
         candidates = self._parse(name)
         for candidate in self._by_origin(candidates):
             unit = self._resolver.unit(candidate)
-            if unit is not None and candidate.kind != "msg" and not unit.is_message:
+            if unit is not None and not unit.is_message:
                 return self._assembled(candidate, unit)
             message = self._resolver.resolve(candidate)
             if message is not None:

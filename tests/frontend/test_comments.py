@@ -46,6 +46,13 @@ def test_an_indented_comment_ends_the_head():
     assert comments("# head\n  # lost\n# of a\nint32 a\n") == ("head", {"a": "of a"})
 
 
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+@pytest.mark.parametrize("type_", ["int8", "bool[]", "float32[2]", "string", "q/Foo", "q/Foo[]"])
+def test_comment_may_begin_right_after_a_name(type_, dialect):
+    text = f"\n{type_} a# of a\n{type_} b#\n{type_} c ## of c\n"
+    assert comments(text, dialect) == ("", {"a": "of a", "b": "", "c": "of c"})
+
+
 def test_comment_survives_empty_lines():
     assert comments("\n# above\n\n\nint32 a\n")[1] == {"a": "above"}
 

@@ -12,6 +12,31 @@ from firm_hdl.frontend.syntax import ListSyntax
 
 from .reading import constant, field, parse, refused
 
+# What may follow a value that is complete. Quotes and brackets in a comment mean nothing.
+AFTER = ["", "  ", "#", "# c", " \t# 'c' \"d\" [1] = e]"]
+
+
+@pytest.mark.parametrize("after", AFTER)
+@pytest.mark.parametrize(
+    ("type_", "text", "value"),
+    [
+        ("int32", "5", 5),
+        ("uint8", "0x1F", 31),
+        ("float64", "1.5", 1.5),
+        ("float32", "-inf", -math.inf),
+        ("bool", "1", True),
+        ("bool", "False", False),
+    ],
+)
+def test_values_end_where_a_comment_starts(type_, text, value, after):
+    if not text.startswith("0x"):
+        assert constant(f"{type_} X={text}{after}", "ros1").value.value == value
+    found = constant(f"{type_} X = {text}{after}").value
+    assert (found.value, found.text) == (value, text)
+    assert field(f"{type_} x {text}{after}").default.value == value
+    (item,) = field(f"{type_}[] x [{text}]{after}").default.items
+    assert (item.value, item.text) == (value, text)
+
 
 @pytest.mark.parametrize(
     ("text", "value"), [("0", 0), ("-5", -5), ("+5", 5), ("010", 10), ("1_000", 1000), ("1_9", 19)]
@@ -135,15 +160,18 @@ def test_ros1_comment_before_the_equals_sign_makes_no_constant():
     ],
 )
 def test_ros2_texts(written, value):
-    assert constant(f"string X={written}").value.value == value
-    assert constant(f"wstring X = {written}").value.value == value
-    assert field(f"string x {written}").default.value == value
+    for after in AFTER if "#" not in written else AFTER[:1]:
+        assert constant(f"string X={written}{after}").value.value == value
+        assert constant(f"wstring X = {written}{after}").value.value == value
+        assert field(f"string x {written}{after}").default.value == value
 
 
 def test_ros2_text_constant_may_be_empty_and_contain_equals():
     assert constant("string X=").value.value == ""
     assert constant("string X = a=b").value.value == "a=b"
     assert constant('string X="=" # c').value.value == "="
+    assert constant("string X = 'a=b' # c").value.value == "a=b"
+    assert constant("string X==").value.value == "="
 
 
 def test_ros1_text_constants_are_not_indented_with_spaces():
@@ -182,7 +210,7 @@ def test_ros2_default_cannot_contain_equals():
         ("int32[] x []", ()),
         ("int32[] x [1]", (1,)),
         ("int32[3] x [1,0x10, 010]", (1, 16, 10)),
-        ("int32[] x [ 1 , 2 ]  # c", (1, 2)),
+        ("int32[] x [ 1 , 2 ]", (1, 2)),
         ("float32[] x [1, .5,inf]", (1.0, 0.5, float("inf"))),
         ("bool[] x [true,0,False]", (True, False, False)),
         ("string[] x []", ()),
@@ -190,6 +218,8 @@ def test_ros2_default_cannot_contain_equals():
         ("""string[] x ["a,b", 'c"]']""", ("a,b", 'c"]')),
         (r"""string[] x ["H\"el'lo", 'Wo\'r"ld']""", ("H\"el'lo", "Wo'r\"ld")),
         ('string[] x ["a",]', ("a",)),
+        ('string[] x [ "a" ,]', ("a",)),
+        ('string[] x ["a",]b]', ("a", "]b")),
         ("""string[] x ["a" 'b',"c""d" e]""", ("a", "b", "c", "d", "e")),
         ("""string[] x [a "b", 'c' ]""", ('a "b"', "c")),
         ('string[] x [""]', ("",)),
@@ -199,9 +229,10 @@ def test_ros2_default_cannot_contain_equals():
     ],
 )
 def test_ros2_defaults_of_arrays(line, values):
-    default = field(line).default
-    assert isinstance(default, ListSyntax)
-    assert tuple(item.value for item in default.items) == values
+    for after in AFTER:
+        default = field(line + after).default
+        assert isinstance(default, ListSyntax)
+        assert tuple(item.value for item in default.items) == values
 
 
 @pytest.mark.parametrize(
@@ -225,6 +256,12 @@ def test_ros2_defaults_of_arrays(line, values):
         r"""string[] x ['b', 'a\']""",
         "Foo x 1",
         "Foo[] x []",
+        # It would be a constant.
+        "string x 'a=b'",
+        "string[] x [a=b]",
+        "string[] x [a, =]",
+        "string[] x ['a=b']",
+        'string[] x ["a=b"]',
     ],
 )
 def test_ros2_refuses_defaults(line):

@@ -289,3 +289,18 @@ def test_the_first_twenty_unknown_types_get_suggestions(tmp_path):
         load(tmp_path, text, Gadget="int8 x")
     found = [each.message.partition("; ")[2] for each in error.value.diagnostics]
     assert found == ["did you mean 'Gadget'?"] * 20 + [""] * 6
+
+
+def test_a_type_that_a_derived_message_needs_is_missing_in_its_line(tmp_path):
+    make_files(tmp_path, {"p/action/A.action": "int8 a\n---\n---\n"})
+    with pytest.raises(DefinitionError) as error:
+        Library("humble", [tmp_path], origins=()).interface("p/A")
+    found = [str(each).splitlines() for each in error.value.diagnostics]
+    uuid = ["unique_identifier_msgs/UUID goal_id", "^" * len("unique_identifier_msgs/UUID")]
+    stamp = ["builtin_interfaces/Time stamp", "^" * len("builtin_interfaces/Time")]
+    lines = {"SendGoal_Request": (1, uuid), "SendGoal_Response": (2, stamp),
+             "GetResult_Request": (1, uuid), "FeedbackMessage": (1, uuid)}  # fmt: skip
+    for (part, (line, shown)), (message, *words) in zip(lines.items(), found, strict=True):
+        place = f"<made from p/action/A>/A_{part}.msg:{line}:1: error: package '"
+        assert message.startswith(place + shown[0].partition("/")[0])
+        assert words == shown

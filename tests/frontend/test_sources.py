@@ -51,6 +51,9 @@ def test_only_definitions_in_the_folder_of_their_kind_count(tmp_path):
     files += ["srv/A.msg", "msg/.idl", "action/A.srv", "srv/A.action"]
     make_files(tmp_path, {f"pkg/{file}": "" for file in files})
     assert found(tmp_path) == []
+    # A file may have the name of a kind, and hides nothing.
+    make_files(tmp_path, {"tool/msg": "", "tool/srv": "", "tool/inner/msg/B.msg": ""})
+    assert found(tmp_path) == [("inner", "B")]
 
 
 @pytest.mark.parametrize(
@@ -76,6 +79,8 @@ def test_ignored_folders_are_left_out(tmp_path, marker):
     assert found(tmp_path) == [("other", "A")]
     make_files(tmp_path, {f"other/{marker}": ""})
     assert found(tmp_path) == []
+    # The same holds for the folder that is searched.
+    assert found(tmp_path / "a") == found(tmp_path / "other") == []
 
 
 def test_hidden_folders_are_left_out(tmp_path):
@@ -307,6 +312,8 @@ def test_a_byte_that_is_no_text_is_at_its_character(tmp_path):
         sources(tmp_path).find("p", "msg", "A")
     (problem,) = error.value.diagnostics
     assert str(problem).startswith(f"{tmp_path}/p/msg/A.msg:2:7: error: byte 0xff is not UTF-8")
+    # The byte has a place in the line that is shown, and is all that is marked.
+    assert str(problem).splitlines()[1:] == ["int8 \u00e9\ufffd b", "      ^"]
 
 
 def test_a_sequence_of_bytes_that_is_cut_off_is_shown_by_its_first(tmp_path):

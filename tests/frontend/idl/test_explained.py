@@ -30,6 +30,9 @@ CASES = [
     ("«/**/»", "an empty comment is not allowed: ROS 2 reads its end as its content"),
     ("module m { «/*» }", "this comment is not closed"),
     ('const string S = «"abc»\n;', "this string is not closed in its line"),
+    # A quote in a later line does not close it.
+    ('const string S = «"abc»\nd";', "this string is not closed in its line"),
+    ('const wstring S = L«"abc»\nd";', "this string is not closed in its line"),
     # The parser has read `L` as a name so far.
     ('const wstring S = L«"abc»\n;', "this string is not closed in its line"),
     ("module m {\n«\ufeff»", "a byte order mark is not allowed"),

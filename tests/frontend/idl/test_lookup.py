@@ -311,6 +311,14 @@ def test_a_scope_before_a_typedef_has_to_be_its_own():
     for scope in ("b", "a::a", "p"):
         (wrong,) = read(text.replace("a::V x", f"{scope}::V x"))[1]
         assert wrong.message.startswith(f"'{scope}::V' is not a type"), scope
+    # From the outermost scope, the whole scope is needed.
+    assert sizes_of(text.replace("a::V x", "::a::V x")) == {"T.x": 2}
+    (wrong,) = read(text.replace("a::V x", "::V x"))[1]
+    assert wrong.message.startswith("'::V' is not a type")
+    inner = "module p { module msg { typedef long V[2]; struct T { msg::V x; }; }; };"
+    assert sizes_of(inner) == {"T.x": 2}
+    (wrong,) = read(inner.replace("msg::V x", "::msg::V x"))[1]
+    assert wrong.message.startswith("'::msg::V' is not a type")
     # A name in the scope of structs is taken for a struct.
     messages, wrong = read(text.replace("a::V x", "p::msg::V x"))
     type_ = messages["T"].members[0].type

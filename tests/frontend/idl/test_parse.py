@@ -114,6 +114,14 @@ def test_blanks_before_the_path_of_an_include_mean_nothing(text):
     assert isinstance(include, Include) and (include.path, words(include)) == ("a/b.idl", text)
 
 
+@pytest.mark.parametrize("blank", [" ", "\t", "\f", "\r", "\n"])
+def test_every_blank_separates_words(blank):
+    (struct,) = parse("struct T { unsigned long a ; } ;".replace(" ", blank))
+    assert struct.members[0].type.name == "uint32"
+    (include,) = parse(f"#include{blank}<a/b.idl>{blank}")
+    assert include.path == "a/b.idl"
+
+
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_comment_ends_with_its_line(end):
     (struct,) = parse(f"struct T {{ // long a; /*{end} long b; // {end} /* // */ long c; }};")
