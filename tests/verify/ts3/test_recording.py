@@ -52,6 +52,7 @@ def test_bytes_are_those_that_were_recorded(tmp_path: Path, form: str) -> None:
 def test_messages_are_spread_evenly_over_the_recording(tmp_path: Path) -> None:
     topics = topics_of(str(counted(tmp_path / "run", {"/a": [5] * 101})))
     assert [n for _, n in chosen(select(topics, most=5, longest=9))] == [0, 25, 50, 75, 100]
+    assert [n for _, n in chosen(select(topics, most=2, longest=9))] == [0, 100]
     assert [n for _, n in chosen(select(topics, most=1, longest=9))] == [0]
     assert len(chosen(select(topics, most=500, longest=9))) == 101
 
