@@ -193,7 +193,7 @@ class Explainer:
             for name in _needed_names(self._ours):
                 parts = name.split("/")
                 need = self._universe.message_case(parts[0], parts[-1])
-                if need is not None and need.spelled_name != self._case.spelled_name:
+                if need is not None:
                     yield need
 
     def _known_of(self, case: DefinitionCase) -> tuple[str, ...]:

@@ -91,6 +91,9 @@ def test_changed_bytes_are_anywhere_after_the_header(wire, first):
     filled = places(packet, damaged("fill", plan, packet))
     assert set.union(*filled) == {*range(first, len(packet))}
     assert max(max(each) - min(each) for each in filled if each) == 2 * BUS_BYTES + 1
+    # Only a byte that is drawn as it was leaves a packet as it was.
+    each = [damage._change(plan, packet, random.Random(seed)) for seed in range(SEEDS)]
+    assert each.count(packet) < 5
     cut = damaged("change_and_cut", plan, packet)
     assert {len(each) for each in cut} == {*range(len(packet))}
     assert any(each != packet[: len(each)] for each in cut)

@@ -125,6 +125,12 @@ def test_cases_follow_from_the_seed():
         return [c.packet for c in make_cases(oracle, "std_msgs/msg/Header", wire="cdr", seed=seed)]
 
     assert packets(1) == packets(1) != packets(2)
+    # Types with the same fields have different values.
+    point, vector = (
+        [c.packet for c in make_cases(oracle, f"geometry_msgs/msg/{name}", wire="cdr")]
+        for name in ("Point", "Vector3")
+    )
+    assert len(point) == len(vector) and point[3:] != vector[3:]
 
 
 def test_extremes_are_among_the_cases():
@@ -142,3 +148,17 @@ def test_extremes_are_among_the_cases():
 
 def test_most_limits_the_cases(deep):
     assert len(list(make_cases(deep, "test_msgs/msg/Deep", wire="cdr", most=3))) == 3
+
+
+def test_transfers_are_what_rosbags_reads_in_its_own_packet(monkeypatch):
+    """Not what was given to its writer, which may write something else."""
+    read, asked = RosbagsOracle.read, []
+
+    def another(self, packet, name, wire):
+        asked.append(packet)
+        return read(self, packet[:-1] + b"\x2a", name, wire)
+
+    monkeypatch.setattr(RosbagsOracle, "read", another)
+    cases = list(make_cases(distro_oracle("humble"), "std_msgs/msg/UInt8", wire="cdr"))
+    assert asked == [case.packet for case in cases]
+    assert [case.transfers for case in cases] == [{("data",): [42]}] * len(cases)

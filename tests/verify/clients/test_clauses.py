@@ -246,6 +246,8 @@ def test_a_change_removes_the_difference_of_its_entry(key, how, kind, value, wan
     [
         (0x7F800000, 4, False), (0xFF800000, 4, False), (0x7F800001, 4, True),
         (0x7FC00000, 4, True), (0xFFFFFFFF, 4, True), (0x7F7FFFFF, 4, False), (0, 4, False),
+        # 1.5 and -1.5: of the exponent, only the highest bit is 0.
+        (0x3FC00000, 4, False), (0xBFC00000, 4, False), (0x3FF8000000000000, 8, False),
         (0x7FF0000000000000, 8, False), (0x7FF0000000000001, 8, True),
         (0xFFF8000000000000, 8, True), (0x7FEFFFFFFFFFFFFF, 8, False),
     ],

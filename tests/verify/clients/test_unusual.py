@@ -122,3 +122,13 @@ def test_zero_has_the_fields_of_the_type(make_message, fields, value):
 
 def test_wrong_lengths_are_within_the_allocation_limit():
     assert unusual.TOO_LONG > unusual.MOST_PACKET_BYTES and unusual.TOO_LONG < 1 << 20
+
+
+def test_a_text_without_a_nul_is_the_first_one_that_has_bytes(make_message):
+    """An empty text without a NUL is the other case. Texts behind the changed one are whole."""
+    message = make_message("string e\nstring s\nstring z")
+    value = {"e": b"", "s": b"xyz", "z": b"q"}
+    packet = unusual_packet(message, "cdr", value, "no-nul")
+    want = "00010000 01000000 00 000000 02000000 6162 0000 02000000 7100"
+    assert packet == bytes.fromhex(want)
+    assert unusual_packet(message, "cdr", {"e": b"", "s": b"", "z": b""}, "no-nul") is None

@@ -71,6 +71,8 @@ def test_packets_and_transfers_are_those_of_wide_text(message):
     assert found["list", "item", "v", "items"] == [((9, 0), True)]
     assert found["one", "v", "items"] == [((2, 3), False), ((4, 0), True)]
     assert found["one", "x"] == [7] and found["s", "length"] == [1]
+    # What follows the last wide text is there, too.
+    assert found["s", "items"] == [((0x78, *[0] * 7), True)]
     assert not any("units_of_wide_text" in path for path in found)
     plain = from_objects(message, value)
     assert (plain["w"], plain["two"]) == ([0x61, 1], [[3], [5, 6]])

@@ -189,6 +189,8 @@ def test_figures_of_a_trend_are_in_their_columns():
         *("3·x^4.00", "0.12", "1 + 2·x", "0.75"),
     ]
     assert [cell.value for cell in row[3:6]] == [9, 0.5, -0.25]
+    # Columns are sorted by these.
+    assert [row[7].value, row[9].value] == [0.125, 0.75]
 
 
 def test_the_form_of_a_report_is_that_of_its_name_in_any_case(tmp_path):

@@ -273,7 +273,11 @@ class FailingSimulator:
 
 def test_simulator_that_fails_is_a_failure(monkeypatch):
     monkeypatch.setattr(circuit, "simulator", lambda name: FailingSimulator())
-    assert accepted("lyrical", "std_msgs/msg/Bool").failures == ["broken: out of order"]
+    result = accepted("lyrical", "std_msgs/msg/Bool")
+    found = result.comparison
+    assert result.failures == ["broken: out of order"] and found is not None
+    # It showed nothing that could be counted.
+    assert (found.cycles, found.packets, found.transfers, found.statuses) == (0, 0, 0, 0)
 
 
 def test_the_cycles_of_a_hanging_circuit_are_compared(ghdl, monkeypatch):

@@ -224,3 +224,69 @@ def test_rules_of_other_oracles_are_left_alone(judged):
         key="foreign", oracles=frozenset({"other"}), text="", rewrite=lambda case: 1 / 0
     )
     assert judged(TEXT, [foreign], {TEXT: X}).verdict == Passed(2)
+
+
+def of_b(*members):
+    """Facts about the message that the other one needs."""
+    return Accepted({"structure": {"p/B": fields(*members)["structure"]["p/A"]}})
+
+
+NEEDS, NEEDED, NEEDED_EVEN = "B b\n", "int8 x # odd\n", "int8 x # even\n"
+
+
+@pytest.fixture
+def judged_with(court, monkeypatch):
+    """Return a function that judges a definition by answers; it needs `p/B`, in another file."""
+
+    def judge(text, rules, answers, distro="noetic", file="p/msg/B.msg", kind=Reader):
+        monkeypatch.setattr(explain, "KNOWN", tuple(rules))
+        universe = court(distro, {"p/msg/A.msg": NEEDS, file: text}).universe
+        (case,) = universe.select(["p/A"])
+        oracle, ours = kind(answers), read(universe, case)
+        return compare(oracle, case, ours, answers[NEEDS], universe).verdict
+
+    return judge
+
+
+class ChangesAll(Reader):
+    """It changes the definitions that a definition needs as well."""
+
+    changes_needs = True
+
+
+class ReadsMessages(Reader):
+    """It reads no IDL; asked about any, it raises an error."""
+
+    languages: ClassVar = {"ros2": frozenset({"msg"})}
+
+
+def test_what_needs_a_definition_with_a_known_difference_is_not_judged(judged_with):
+    rules = [rule("plain", "odd", "even")]
+    refused = "verdict: firm-hdl accepts; oracle refuses: no B"
+    answers = {NEEDS: Refused("no B"), NEEDED: of_b("int16 x"), NEEDED_EVEN: of_b("int8 x")}
+    needs = NotJudged("it needs p/B, a known difference: plain")
+    assert judged_with(NEEDED, rules, answers) == needs
+    # The difference is not known, there is none, or the oracle does not judge what is needed.
+    for changes in ({NEEDED_EVEN: of_b("int16 x")}, {NEEDED: of_b("int8 x")},
+                    {NEEDED: NotJudged("it slept")}):  # fmt: skip
+        assert judged_with(NEEDED, rules, answers | changes) == Failed((refused,))
+    assert judged_with(NEEDED, [], answers) == Failed((refused,))
+    # What it needs was changed already, and that was no help.
+    assert judged_with(NEEDED, rules, answers, kind=ChangesAll) == Failed((refused,))
+
+
+def test_our_refusal_of_a_needed_definition_may_be_a_known_difference(judged_with):
+    wrong, right = "int8 x-y # odd\n", "int8 x # odd\n"
+    rules = [rule("mistake", "x-y", "x", is_mistake=True)]
+    answers = {NEEDS: Accepted(fields("p/B b")), wrong: of_b("int8 x"), right: of_b("int8 x")}
+    needs = NotJudged("it needs p/B, a known difference: mistake")
+    assert judged_with(wrong, rules, answers) == needs
+    assert isinstance(judged_with(wrong, [], answers), Failed)
+    assert isinstance(judged_with(wrong, rules, answers | {right: of_b("int8 y")}), Failed)
+
+
+def test_an_oracle_is_not_asked_for_a_needed_definition_that_it_cannot_read(judged_with):
+    idl = "module p { module msg { struct B { long x; }; }; };"
+    answers = {NEEDS: Refused("no B")}
+    found = judged_with(idl, [], answers, "lyrical", "p/msg/B.idl", ReadsMessages)
+    assert found == Failed(("verdict: firm-hdl accepts; oracle refuses: no B",))

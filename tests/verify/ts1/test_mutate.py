@@ -9,6 +9,7 @@ import pytest
 
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.ts1 import mutate as rules
+from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.mutate import mutation
 from firm_hdl.verify.ts1.run import Ts1Run
 from tests.frontend.workspace import make_files
@@ -194,3 +195,32 @@ def test_words_are_dropped_repeated_and_moved():
         *("a a b\nc", "a b b\nc", "a b\nc c"),
         *("a b\nc", "b a\nc"),
     }
+
+
+def case_of(name, text):
+    return DefinitionCase(
+        dialect="ros1", package="p", kind="msg", name=name, language="msg", text=text
+    )
+
+
+def test_if_all_texts_are_long_any_of_them_is_changed(monkeypatch):
+    monkeypatch.setattr(rules, "_MOST_CHARACTERS", 4)
+    cases = [case_of(name, f"int8 {name}\n") for name in "abc"]
+    assert {mutation(cases, number).name for number in range(40)} == {*"abc"}
+
+
+def test_rules_are_applied_until_a_text_is_another_one_and_to_an_empty_text_once(monkeypatch):
+    asked = []
+
+    def mutate(text, generator):
+        asked.append(text)
+        assert len(asked) < 9
+        return text if len(asked) < 3 else f"{text}x"
+
+    monkeypatch.setattr(rules, "mutate", mutate)
+    found = mutation([case_of("A", "int8 a\n")], 1)
+    assert (found.text, found.before, len(asked)) == ("int8 a\nx", "int8 a\n", 3)
+    # No rule may have a place in an empty text.
+    asked.clear()
+    found = mutation([case_of("A", "")], 1)
+    assert (found.text, found.before, len(asked)) == ("", "", 1)

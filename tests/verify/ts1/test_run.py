@@ -298,3 +298,28 @@ def test_mutations_have_results_that_a_run_goes_on_with_and_a_report_shows(
     (Path(source) / "q" / "msg" / "B.msg").write_text("int8 y\n")
     assert main([*words, "p/A", "q/B"]) == 1
     assert "; mutated was" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"package": "q"},
+        {"kind": "action"},
+        {"name": "T"},
+        # The same text in another language, with another end, or with one more line.
+        {"language": "idl"},
+        {"text": "--- "},
+        {"text": "\n---"},
+        {"text": "-\udcff-"},
+    ],
+)
+def test_mutations_are_bound_to_the_name_the_language_and_the_text_of_each_definition(change):
+    def digest(*cases):
+        run = Ts1Run.__new__(Ts1Run)
+        run.cases = cases
+        return run.digest
+
+    other = replace(CASE, **change)
+    assert digest(CASE, other) == digest(CASE, replace(other))
+    found = [digest(CASE), digest(other), digest(CASE, other), digest(other, CASE)]
+    assert len({*found}) == 4

@@ -52,6 +52,7 @@ def test_bytes_are_those_that_were_recorded(tmp_path: Path, form: str) -> None:
 def test_messages_are_spread_evenly_over_the_recording(tmp_path: Path) -> None:
     topics = topics_of(str(counted(tmp_path / "run", {"/a": [5] * 101})))
     assert [n for _, n in chosen(select(topics, most=5, longest=9))] == [0, 25, 50, 75, 100]
+    assert [n for _, n in chosen(select(topics, most=2, longest=9))] == [0, 100]
     assert [n for _, n in chosen(select(topics, most=1, longest=9))] == [0]
     assert len(chosen(select(topics, most=500, longest=9))) == 101
 
@@ -82,6 +83,9 @@ def test_all_together_have_so_many_bytes_at_most(tmp_path: Path) -> None:
     sizes = topics_of(str(counted(tmp_path / "other", {"/a": [300, 200, 400]})))
     one = select(sizes, most=3, longest=EVERYTHING, most_bytes=100)
     assert chosen(one) == [("/a", 1)] and one.sparse
+    # The only message is all of them, however long it is.
+    alone = topics_of(str(counted(tmp_path / "alone", {"/a": [300]})))
+    assert not select(alone, most=3, longest=EVERYTHING, most_bytes=100).sparse
 
 
 def test_topics_of_the_same_name_in_several_recordings_are_apart(tmp_path: Path) -> None:
@@ -177,6 +181,14 @@ def test_what_is_wrong_with_other_types_is_kept(
     assert list(problems) == [str(each) for each in problems.values()]
     with pytest.raises(DefinitionError, match="it is bad"):
         collect_recorded(None, ["p/msg/Bad"], ["b"], wire=None, problems={})
+    # A type that is too large is an error if it is named. Otherwise it is not judged.
+    large = Diagnostic(message="it is large")
+    monkeypatch.setattr(recording, "too_large", lambda message: [large])
+    if names:
+        with pytest.raises(DefinitionError, match="it is large"):
+            collect_recorded(None, names, ["b"], wire=None, problems={})
+    else:
+        assert collect_recorded(None, names, ["b"], wire=None, problems={}) == [task]
 
 
 def test_recordings_without_messages_have_none(tmp_path: Path) -> None:

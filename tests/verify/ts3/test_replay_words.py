@@ -6,19 +6,22 @@ import dataclasses
 import struct
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from firm_hdl import load_message
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.interpret import decode
+from firm_hdl.verify.cases.damage import stalls_for
 from firm_hdl.verify.cases.effort import MAX_MESSAGE_BYTES
 from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.references.oracle import distro_oracle
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.ts3 import replay
+from firm_hdl.verify.ts3 import acceptance, replay
 from firm_hdl.verify.ts3.recording import Selection
 from firm_hdl.wire import lay_out
+from tests.verify.robot import write
 
 
 def case(what, given=b"", status="OK"):
@@ -301,3 +304,64 @@ def test_how_many_messages_are_asked_for(monkeypatch, options, most, most_bytes)
     given = Options(longest=99, **options)
     replay._select(load_message("std_msgs/msg/String"), ["topics"], given)
     assert asked == [(["topics"], {"most": most, "longest": 99, "most_bytes": most_bytes})]
+
+
+def test_bools_are_plain_wherever_they_are():
+    """NumPy keeps the byte that was read, which is not always 0 or 1."""
+    kind = dataclasses.make_dataclass("Kind", ["flags", "one", "many", "number"], frozen=True)
+
+    def made(one=None, many=()):
+        flags = np.frombuffer(b"\7\0\1\x80", dtype=np.bool_)
+        number = np.frombuffer(b"\7\0", dtype=np.uint8)
+        return kind(flags=flags, one=one, many=list(many), number=number)
+
+    parts = [made(), made(), made()]
+    value = made(parts[0], parts[1:])
+    replay._make_bools_plain(value)
+    for each in (value, *parts):
+        assert (each.flags.tobytes(), each.number.tobytes()) == (b"\1\0\1\1", b"\7\0")
+
+
+UINT8 = "std_msgs/msg/UInt8"
+
+
+@pytest.mark.parametrize(
+    ("given", "is_large", "runs"),
+    [
+        ({}, False, [[0, 1, 2, 3, 4, 5], [0, 1, 2, 3, 4, 5]]),
+        # Of a large type, one message in four is stalled.
+        ({}, True, [[0, 1, 2, 3, 4, 5], [0, 4]]),
+        ({"stalled": False}, False, [[0, 1, 2, 3, 4, 5]]),
+    ],
+)
+def test_messages_are_sent_without_stalls_and_with_those_of_the_seed(
+    monkeypatch, tmp_path, given, is_large, runs
+):
+    sent = []
+
+    class Sent:
+        """In place of a circuit: nothing comes back."""
+
+        def __init__(self, *given):
+            pass
+
+        def send(self, where, packets, stalls):
+            sent.append(([packet[-1] for packet in packets], stalls))
+
+        def crosscheck(self):
+            sent.append("replayed")
+
+    def judge_of(message, *more, **options):
+        return dataclasses.replace(original(message, *more, **options), note="a remark")
+
+    original = acceptance.judge_of
+    monkeypatch.setattr(acceptance, "judge_of", judge_of)
+    monkeypatch.setattr(acceptance, "Circuit", Sent)
+    monkeypatch.setattr(replay, "is_large", lambda plan, cases: is_large)
+    messages = [("/a", UINT8, number, b"\0\1\0\0" + bytes([number])) for number in range(6)]
+    bags = (str(write(tmp_path / "run", "mcap", messages)),)
+    result = replay.replay("lyrical", UINT8, Options(bags=bags, seed=5, **given))
+    stalls = [None, stalls_for(f"5/{UINT8}")]
+    assert sent == [*zip(runs, stalls, strict=False), "replayed"]
+    assert result.failures == []
+    assert result.note == "6 of 6 messages of 1 topic replayed; a remark"

@@ -7,10 +7,12 @@ from types import SimpleNamespace
 import pytest
 
 from firm_hdl.jobs.executors import ExecutorError
+from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.verify.results.records import Seconds
-from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.simulators.crosscheck import Comparison
 from firm_hdl.verify.systems.options import Options, Request
+from firm_hdl.verify.systems.system import Recorder
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3 import system
 from firm_hdl.verify.ts3.result import Result, command_of
@@ -204,3 +206,56 @@ def test_libraries_confirm_cases_and_no_recordings(monkeypatch, capsys):
         assert capsys.readouterr().out == "('genpy',) for ros1\n"
     with system.Ts3([task], Request(bags=("x",))):
         assert capsys.readouterr().out == ""
+
+
+def test_a_simulator_that_is_not_there_ends_the_run_before_it_begins(monkeypatch):
+    def missing(name):
+        assert name == "ghdl"
+        raise ProgramMissingError("no GHDL")
+
+    monkeypatch.setattr(system, "simulator", missing)
+    with (
+        pytest.raises(ProgramMissingError, match="no GHDL"),
+        system.Ts3([], Request(simulator="ghdl")),
+    ):
+        pass
+
+
+ONE, TWIN = (TypeUnderTest(distro="lyrical", name=f"p/{n}", same=("lyrical",)) for n in "AB")
+
+
+@pytest.mark.parametrize(
+    ("given", "twins", "notes"),
+    [
+        ({}, ["p/B"], ["note: p/A (lyrical): odd", "note: 1 more types: odd"]),
+        # The note of a replay says how many messages there were, of each type.
+        ({"bags": ("x",)}, [], ["note: p/A (lyrical): odd", "note: p/B (lyrical): odd"]),
+    ],
+)
+def test_a_twin_is_not_simulated_and_notes_are_printed(monkeypatch, capsys, given, twins, notes):
+    asked = []
+
+    def run_tasks(left, options, jobs, *, executor, golden_only):
+        alike = [task.name for task in left if task in golden_only]
+        asked.append(([task.name for task in left], options.bus_bytes, jobs, executor, alike))
+        for task in left:
+            cycles = 0 if task.name in alike else 50
+            more = {"judged": 3, "packets": 7, "simulated_cycles": cycles, "shape": "s"}
+            yield task, result(task.name, 1, note="odd", **more)
+
+    monkeypatch.setattr(system, "same_circuits", lambda tasks, options: {TWIN: ONE})
+    monkeypatch.setattr(system, "run_tasks", run_tasks)
+    request = Request(widths=(4,), jobs=2, executor="dask://host:1", **given)
+    found = system.Ts3([ONE, TWIN], request).run(Recorder())
+    assert asked == [(["p/A", "p/B"], 4, 2, "dask://host:1", twins)]
+    assert [each.verdict for each in found] == [Passed(3)] * 2
+    printed = capsys.readouterr().out.splitlines()
+    assert [line for line in printed if line.startswith("note: ")] == notes
+    # Only what was simulated counts for the figures of the simulation.
+    count = 2 - len(twins)
+    (figures,) = (line for line in printed if "different types" in line)
+    assert figures.startswith(
+        f"{count} different types, {7 * count} packets, {50 * count} cycles; "
+    )
+    shared = [line for line in printed if "have the circuit of another" in line]
+    assert len(shared) == len(twins) and printed[-1].endswith(" s, 0 failures")
