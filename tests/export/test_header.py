@@ -1,0 +1,29 @@
+"""The comment at the head of files: what made them, from which definition, with which options."""
+
+from __future__ import annotations
+
+from firm_hdl.export.backend import Converters
+from firm_hdl.plan import build_plan
+from firm_hdl.wire import lay_out
+from tests.strategies import make
+
+MESSAGE = make("ros1", {"x": "int8"})
+
+
+def test_a_header_has_the_options_of_the_plan_and_the_hash_of_the_definition():
+    # The wire format and the limit are those of the plan, whether or not they were asked for.
+    plan = build_plan(lay_out(MESSAGE, "cdr"), bus_bytes=4, max_message_bytes=999)
+    inputs = {
+        "generator": {"firm-hdl": "7.8", "amaranth": "0.5"},
+        "distro": "noetic",
+        "definition_sha256": "d" * 64,
+        "plan_sha256": "p" * 64,
+    }
+    made = Converters(message=MESSAGE, plan=plan, name="m", inputs=inputs)
+    assert made.header("m_rx", "the deserializer").splitlines() == [
+        f"m_rx: the deserializer of {MESSAGE.name}, made by firm-hdl 7.8.",
+        "noetic, wire cdr, bus of 4 bytes, messages of at most 999 bytes",
+        f"definition (SHA-256): {'d' * 64}",
+        "What each port means: manifest.json.",
+    ]
+    assert Converters(message=MESSAGE, plan=plan, name="m").header("m", "a part") == ""
