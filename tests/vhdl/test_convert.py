@@ -167,6 +167,28 @@ def test_a_switch_on_a_comparison_is_a_conditional_assignment() -> None:
     assert "signal" not in text
 
 
+@pytest.mark.parametrize(
+    ("otherwise", "choice"),
+    [
+        ("a", "o <= a when s = '1' else b when t = '1' else a;"),
+        ("b", "o <= a when s = '1' else b;"),
+        ("c", "o <= a when s = '1' else b when t = '1' else c;"),
+    ],
+)
+def test_only_the_last_choices_may_be_left_out(otherwise: str, choice: str) -> None:
+    m = Module()
+    values = {name: Signal(4, name=name) for name in "abc"}
+    s, t, o = Signal(name="s"), Signal(name="t"), Signal(4, name="o")
+    with m.If(s):
+        m.d.comb += o.eq(values["a"])
+    with m.Elif(t):
+        m.d.comb += o.eq(values["b"])
+    with m.Else():
+        m.d.comb += o.eq(values[otherwise])
+    text = convert(m, ports=[*values.values(), s, t, o], unsigned_ports=True)
+    assert choice in " ".join(text.files["top.vhd"].split())
+
+
 def test_the_first_of_two_equal_choices_counts() -> None:
     m = Module()
     a, o = Signal(2, name="a"), Signal(4, name="o")

@@ -157,6 +157,64 @@ def test_a_read_port_is_transparent_for_the_ports_in_its_mask_only() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("write_at", "forwards"),
+    [("2'01", "q <="), ("2'10", ""), ("\\a [1:0]", 'if unsigned\'("01") = unsigned(a')],
+)
+def test_ports_with_constant_addresses_meet_always_or_never(write_at: str, forwards: str) -> None:
+    ports = rf"""
+  memory width 4 size 4 \m
+  cell $memwr_v2 $w
+    parameter \MEMID "\\m"
+    parameter \PORTID 0
+    parameter \CLK_POLARITY 1'1
+    connect \ADDR {write_at}
+    connect \DATA \a [3:0]
+    connect \EN 4'1111
+    connect \CLK \clk [0]
+  end
+  cell $memrd_v2 $r
+    parameter \MEMID "\\m"
+    parameter \TRANSPARENCY_MASK 1'1
+    parameter \CLK_ENABLE 1
+    parameter \CLK_POLARITY 1'1
+    connect \ADDR 2'01
+    connect \DATA \q
+    connect \EN 1'1
+    connect \CLK \clk [0]
+  end
+"""
+    body = body_of(ports, r"connect \o \q [3:0]")
+    _, read, after = body.partition("q <= m(1);\n")
+    assert read and after.partition("end if;")[0].strip().startswith(forwards)
+    assert ("q <= unsigned(a);" in after) == bool(forwards)
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        ((0, 0, 0), "(others => (others => '0'))"),
+        ((5, 6, 7), '( 0 => "0101", 1 => "0110", 2 => "0111" )'),
+        # A comma separates the last word from what stands for the words that are 0.
+        ((0, 6, 7), '( 1 => "0110", 2 => "0111", others => (others => \'0\') )'),
+        ((5, 0, 0), "( 0 => \"0101\", others => (others => '0') )"),
+    ],
+)
+def test_words_that_are_0_share_a_choice(words: tuple[int, ...], text: str) -> None:
+    bits = "".join(f"{word:04b}" for word in reversed(words))
+    memory = rf"""
+  memory width 4 size 3 \m
+  cell $meminit_v2 $i
+    parameter \MEMID "\\m"
+    connect \ADDR {{ }}
+    connect \DATA 12'{bits}
+    connect \EN 4'1111
+  end
+"""
+    vhdl = convert(HEAD + ADD + memory + "connect \\o $1 [3:0]\nend\n").files["top.vhd"]
+    assert f"signal m : m_array := {text};" in " ".join(vhdl.split())
+
+
 @pytest.mark.parametrize("enable", ["0", "1"])
 def test_a_read_port_that_is_never_enabled_keeps_its_value(enable: str) -> None:
     read = rf"""
@@ -188,6 +246,9 @@ def test_all_bits_of_a_distance_count_for_a_cut_result(kind: str) -> None:
   end
 """
     assert "to_integer(unsigned(s))" in body_of(shift, r"connect \o { 2'00 $7 }")
+    # A distance that is a result of an operator keeps its bits, too.
+    summed = body_of(ADD, shift.replace(r"\B \s [3:0]", r"\B $1"), r"connect \o { 2'00 $7 }")
+    assert "to_integer(unsigned(a) + unsigned(s))" in summed
 
 
 def test_a_memory_without_bits_has_no_text() -> None:
