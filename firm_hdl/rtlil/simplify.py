@@ -196,7 +196,7 @@ def _stands_still(cell: Cell, ports: Mapping[str, Spec]) -> bool:
     """Return whether a cell has a clock, and the clock is constant."""
     if cell.kind == "$memrd_v2" and (cell.parameters.get("CLK_ENABLE") != 1 or not ports["DATA"]):
         return False
-    clock = ports.get("TRG" if cell.kind in ("$check", "$print") else "CLK")
+    clock = ports.get("TRG" if cell.kind in ("$check", "$print") else "CLK", ())
     return bool(clock) and constant(clock) is not None
 
 
