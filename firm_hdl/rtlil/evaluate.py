@@ -157,16 +157,18 @@ def _product(
 
 
 def _compared(kind: str, a: int | None, b: int | None, left: Spec, right: Spec) -> Spec | None:
-    """Evaluate comparisons of unsigned numbers whose result is the same for all values."""
-    if b is not None and (bits := spec_width(left)) < b.bit_length():
-        less = kind in ("$lt", "$le", "$ne")
-        return _bits(less, 1) if bits else None
+    """Evaluate comparisons of unsigned numbers whose result is the same for all values.
+
+    At most one of them is a constant, so each has bits.
+    """
+    if b is not None and spec_width(left) < b.bit_length():
+        return _bits(kind in ("$lt", "$le", "$ne"), 1)
     if a is not None and spec_width(right) < a.bit_length():
         return _bits(kind in ("$gt", "$ge", "$ne"), 1)
     if (kind, b) == ("$lt", 0) or (kind, a) == ("$gt", 0):
         return _bits(0, 1)
     if (kind, b) == ("$ge", 0) or (kind, a) == ("$le", 0):
         return _bits(1, 1)
-    if left == right and left:
+    if left == right:
         return _bits(int(kind in ("$eq", "$le", "$ge")), 1)
     return None

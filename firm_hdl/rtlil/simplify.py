@@ -2,8 +2,8 @@
 
 Amaranth does not evaluate operators on constants. Generated circuits have many such operators: for
 example, a comparison with a constant 0, or a condition that no input of the module can meet.
-Registers with a constant value are replaced, too; memories and instances stay. A constant signal
-keeps its name.
+Registers with a constant value are replaced, too, and so is all that waits for an edge of a
+constant clock. Other parts of memories, and instances, stay. A constant signal keeps its name.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from firm_hdl.rtlil.ir import (
 
 __all__ = ["simplified"]
 
+_CLOCKED = ("$memrd_v2", "$memwr_v2", "$check", "$print")
 _OUTPUTS = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA", "$tribuf": "Y"}
 
 
@@ -93,6 +94,11 @@ class _Simplifier:
         if cell.kind in ("$dff", "$adff") and (value := self._constant_register(cell, ports)):
             self._learn(ports["Q"], value)
             return None
+        if cell.kind in _CLOCKED and _stands_still(cell, ports):
+            if cell.kind == "$memrd_v2":
+                # Its register starts at 0.
+                self._learn(ports["DATA"], (Bits("0" * spec_width(ports["DATA"])),))
+            return None
         return replace(cell, ports=ports) if ports != cell.ports else cell
 
     def _constant_register(self, cell: Cell, ports: Mapping[str, Spec]) -> Spec:
@@ -104,7 +110,8 @@ class _Simplifier:
         init = self._module.wires[chunk.wire].attributes.get("init")
         if not isinstance(init, Bits) or cell.parameters.get("ARST_VALUE", init) != init:
             return ()
-        return (init,) if ports["D"] in (ports["Q"], (init,)) else ()
+        keeps = _stands_still(cell, ports) or ports["D"] in (ports["Q"], (init,))
+        return (init,) if keeps else ()
 
     def _learn(self, target: Spec, value: Spec) -> None:
         (chunk,) = target
@@ -183,6 +190,14 @@ class _Simplifier:
         if not cases[0].patterns:
             return cases[0].body
         return (Switch(selector=kept, cases=tuple(cases)),)
+
+
+def _stands_still(cell: Cell, ports: Mapping[str, Spec]) -> bool:
+    """Return whether a cell has a clock, and the clock is constant."""
+    if cell.kind == "$memrd_v2" and (cell.parameters.get("CLK_ENABLE") != 1 or not ports["DATA"]):
+        return False
+    clock = ports.get("TRG" if cell.kind in ("$check", "$print") else "CLK", ())
+    return bool(clock) and constant(clock) is not None
 
 
 def _without_empty(cases: list[Case]) -> list[Case]:

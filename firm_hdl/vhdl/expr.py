@@ -209,7 +209,6 @@ class Values:
             not isinstance(chunk, Slice)
             or chunk.wire != top.wire
             or chunk.low + chunk.width - 1 != top.low
-            or chunk.width == 1
             or top.width != 1
         ):
             return 0, atom("")

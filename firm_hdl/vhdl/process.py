@@ -223,7 +223,7 @@ class Statements:
 
     def _inverted(self, switch: Switch, body: tuple[Statement, ...]) -> list[Arm] | None:
         """Write an empty `if` with an `else` as an `if` with the inverted condition."""
-        if spec_width(switch.selector) != 1 or len(switch.cases[0].patterns) != 1:
+        if spec_width(switch.selector) != 1:
             return None
         opposite = "1" if switch.cases[0].patterns[0] == "0" else "0"
         return [Arm(self._test(switch.selector, opposite), body)]

@@ -123,11 +123,7 @@ class Registers:
             return ()
         inner = body[0]
         init = self._graph.module.wires[wire].attributes.get("init")
-        if (
-            not isinstance(inner, Assign)
-            or not isinstance(init, Bits)
-            or spec_width(inner.target) != init.width
-        ):
+        if not isinstance(inner, Assign) or not isinstance(init, Bits):
             return ()
         return statement.selector if bits_of(inner.value) == init.text else ()
 

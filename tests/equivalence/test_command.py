@@ -17,6 +17,7 @@ from firm_hdl.equivalence.converters import Attempt, ProofTask
 from firm_hdl.equivalence.covering import covering_tasks, write_definitions
 from firm_hdl.errors import UserError
 from firm_hdl.export.top import DIRECTIONS, Direction, Top
+from firm_hdl.frontend import Library
 from firm_hdl.jobs import ToolError, programs
 from firm_hdl.jobs.programs import find_ghdl
 from tests.frontend.recordings import make_recording
@@ -82,6 +83,70 @@ def test_status_says_whether_all_are_equal(
     assert f"{'2 equal' if status == 0 else '1 equal, 1 ' + attempt.result}" in out
     if attempt is UNEQUAL:
         assert "input i = 0x5" in out
+
+
+def test_a_line_names_the_converter_and_what_is_wrong(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = replace(TASK, direction="deserializer", wire="ros1", bus_bytes=4)
+    results = [(TASK, EQUAL), (other, UNEQUAL), (other, Attempt(proof=None, problem="no\nGHDL"))]
+    monkeypatch.setattr(command, "find_tools", lambda: Tools(ghdl=(), yosys=()))
+    monkeypatch.setattr(command, "run_tasks", lambda tasks, jobs: iter(results))
+    assert command.run_proofs([TASK] * 3, 1, bar=False) == 1
+    assert capsys.readouterr().out.splitlines() == [
+        "equal        1.0 s  a/msg/B serializer (lyrical, 8 bytes)",
+        "unequal      2.0 s  a/msg/B deserializer (lyrical, ros1, 4 bytes)",
+        "    output o is 0x1 in the RTLIL and 0x0 in the VHDL",
+        "    for",
+        "    input i = 0x5",
+        "failed              a/msg/B deserializer (lyrical, ros1, 4 bytes)",
+        "    no",
+        "    GHDL",
+    ]
+
+
+def test_one_converter_needs_no_other_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int | None] = []
+    monkeypatch.setattr(command, "find_tools", lambda: Tools(ghdl=(), yosys=()))
+    monkeypatch.setattr(
+        command, "run_tasks", lambda tasks, jobs: asked.append(jobs) or iter(((TASK, EQUAL),))
+    )
+    for tasks, jobs in (([TASK], 3), ([TASK] * 2, 3), ([TASK] * 2, None)):
+        command.run_proofs(tasks, jobs, bar=False)
+    assert asked == [1, 3, None]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--max-message-bytes", "3"], "Maximum message size must be from 5 bytes"),
+        (["std_msgs/msg/Boo"], "type 'Boo' is not defined"),
+    ],
+)
+def test_nothing_is_proved_if_a_type_or_an_option_is_wrong(
+    options: list[str],
+    message: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    asked: list[object] = []
+    monkeypatch.setattr(command, "run_proofs", lambda *given, **options: asked.append(given) or 0)
+    assert main(["prove", "std_msgs/msg/Empty", "std_msgs/msg/String", *options]) == 1
+    assert message in capsys.readouterr().err and asked == []
+
+
+def test_all_types_are_those_of_the_library(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[list[ProofTask], bool]] = []
+    monkeypatch.setattr(
+        command, "run_proofs", lambda tasks, jobs, bar: asked.append((tasks, bar)) or 0
+    )
+    library = Library("noetic")
+    assert main(["prove", "--all", "--distro", "noetic"]) == 0
+    [(tasks, bar)] = asked
+    assert bar and len(library.names()) > 100
+    assert [(task.name, task.direction) for task in tasks] == [
+        (name, direction) for name in library.names() for direction in DIRECTIONS
+    ]
 
 
 @pytest.mark.parametrize("results", [[], [(TASK, EQUAL)]])

@@ -195,6 +195,10 @@ def test_a_register_may_be_the_constant_that_it_keeps() -> None:
     with_reset = replace(AMARANTH, flops={**AMARANTH.flops, q1: replace(
         AMARANTH.flops[q1], reset=3, reset_value="0")})  # fmt: skip
     assert miter(other, with_reset).differences == ("inner.r has another asynchronous reset",)
+    # A reset to that constant, or no initial value at all, changes nothing.
+    for changes in ({"reset": 3, "reset_value": "1"}, {"init": "x"}):
+        kept = {**AMARANTH.flops, q1: replace(AMARANTH.flops[q1], **changes)}
+        assert miter(other, replace(AMARANTH, flops=kept)).differences == ()
 
 
 def test_a_wire_in_place_of_a_register_differs() -> None:

@@ -297,6 +297,22 @@ def test_a_difference_names_the_claims_that_fail_and_the_inputs(tmp_path: Path) 
     assert verdict.difference.inputs == {"input i": 0b110}
 
 
+def test_each_solver_has_its_time(tmp_path: Path) -> None:
+    asked: list[tuple[str, float | None]] = []
+
+    class Asked(Solvers):
+        def run_yosys(self, folder: Path, script: str, timeout: float | None = None) -> None:
+            asked.append((script, timeout))
+            super().run_yosys(folder, script, timeout)
+
+    solve(some_miter(), Asked([3], SUCCESS), tmp_path, 70.5)
+    (abc, limit), (sat, longer) = asked
+    assert limit == 70.5 and "check -assert; abc " in abc
+    # Yosys itself ends the search, and needs time for the circuit besides.
+    assert "sat -timeout 70 -prove differs 0 " in sat
+    assert longer is not None and longer > 2 * 70
+
+
 @pytest.mark.parametrize("bits", [[], ["0"] * (CLAIMS - 1), ["0"] * (CLAIMS + 1)])
 def test_an_answer_about_other_claims_is_none(bits: list[str], tmp_path: Path) -> None:
     class Other(Solvers):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import subprocess
@@ -155,6 +156,35 @@ def test_each_field_has_its_comment_above_it_in_every_record(tmp_path):
     assert IN_VHDL.format(name="t_t", **streams) in text and "\n-- # About T.\n" in text
     values = {"x": "std_logic_vector(31 downto 0)", "y": "unsigned(7 downto 0)"}
     assert IN_VHDL.format(name="t_value_t", **values, z="uint8_items_t(0 to 1)") in text
+
+
+def head_of(path: Path) -> str:
+    """Return the beginning of a file, with each comment in one line; lines may end at a hyphen."""
+    return re.sub(r"\n(?:--|//) ?", " ", path.read_text())[:1000].replace("firm- hdl", "firm-hdl")
+
+
+def test_files_of_one_type_say_what_made_them_and_shared_files_do_not(folder):
+    manifest = json.loads((folder / "manifest.json").read_text())
+    inputs, vhdl = manifest["inputs"], manifest["vhdl"]
+    assert inputs["definition_sha256"] != inputs["plan_sha256"]
+    facts = [
+        f" of my_msgs/msg/Orders, made by firm-hdl {inputs['generator']['firm-hdl']}.",
+        "lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes",
+        f"definition (SHA-256): {inputs['definition_sha256']}",
+    ]
+    shared = {*vhdl["common_files"], *vhdl["bench"]["common_files"]}
+    shared |= {each["file"] for each in vhdl["shared_packages"]}
+    for name in [*vhdl["files"], *vhdl["bench"]["files"]]:
+        head = head_of(folder / "vhdl" / name)
+        assert [fact in head for fact in facts] == [name not in shared] * 3, name
+    others = [*folder.glob("*.v"), *folder.glob("*.veo")]
+    others += folder.glob("systemverilog/*serializer_sv.sv")
+    assert len(others) == 6
+    for path in others:
+        # Each says which converter it is.
+        way = "deserializer" if "_deserializer_" in path.name else "serializer"
+        assert head_of(path).startswith(f"// {path.stem}: the {way} of "), path
+        assert all(fact in head_of(path) for fact in facts), path
 
 
 WORDS = "synthesis|pragma|synopsys|rtl_synthesis|psl|verilator|vhdl_comp_off|coverage|protect"

@@ -8,12 +8,15 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.export.constants import _float_bits, named_constants
+from firm_hdl.export.systemverilog.package import constants_of as sv_constants
 from firm_hdl.export.systemverilog.package import message_package
 from firm_hdl.export.tree import tree_of
 from firm_hdl.export.vhdl.constants import declarations
+from firm_hdl.export.vhdl.package import constants_of as vhdl_constants
+from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
-from tests.frontend.workspace import library
+from tests.frontend.workspace import library, make_files
 
 
 @pytest.mark.parametrize(
@@ -92,6 +95,46 @@ def test_a_constant_hides_no_word_of_vhdl_and_no_taken_name(tmp_path: Path) -> N
         "MUX_CONSTANT",
         "Mine_CONSTANT",
         "Free",
+    ]
+
+
+PACKAGES = ("P_T_ROS1_4_PKG", "FIRM_HDL_BUS_4_PKG", "FIRM_HDL_TYPES_PKG")
+OF_SYSTEMVERILOG = ("P_T_ROS1_4_SV_PKG", "FIRM_HDL_BUS_4_SV_PKG", "FIRM_HDL_SV_PKG")
+
+
+def test_a_constant_hides_no_package_that_its_own_uses(tmp_path: Path) -> None:
+    names = (*PACKAGES, *OF_SYSTEMVERILOG, "FIRM_HDL_BUS_8_PKG", "T_ARRAY_IDLE", "T_VALUE_BITS")
+    text = "".join(f"int8 {name}=1\n" for name in names)
+    message = library(tmp_path, {"p/T": f"{text}int8 x\n"}, "ros1").message("p/T")
+    plan = build_plan(lay_out(message), bus_bytes=4)
+    # Of another bus, and of the other language, are other packages.
+    hidden = {*PACKAGES, "T_ARRAY_IDLE", "T_VALUE_BITS"}
+    for found, words in (
+        (vhdl_constants(tree_of(message, plan).package, plan), hidden),
+        (sv_constants(tree_of(message, plan).package, plan), {*hidden, *OF_SYSTEMVERILOG}),
+    ):
+        assert {each.constant.name for each in found if each.name.endswith("_CONSTANT")} == words
+        assert {each.name for each in found} == {
+            f"{name}_CONSTANT" if name in words else name for name in names
+        }
+
+
+LONG = """\
+module p { module msg {
+  module T_Constants { const long double L = 0.5; const double D = -0.25; };
+  struct T { long x; };
+}; };
+"""
+
+
+def test_the_bits_of_a_long_double_are_nowhere_defined(tmp_path: Path) -> None:
+    make_files(tmp_path, {"p/msg/T.idl": LONG})
+    message = Library("lyrical", [tmp_path]).message("p/msg/T")
+    text = "".join(declarations(named_constants(message, ()), []))
+    assert re.findall(r"constant (\w+) *: [^:]*:= ([^;]*);", text) == [
+        ("L", "0.5"),
+        ("D", "-0.25"),
+        ("D_BITS", 'x"bfd0000000000000"'),
     ]
 
 

@@ -10,6 +10,7 @@ from importlib.metadata import version
 import pytest
 
 import firm_hdl
+from firm_hdl.estimates import estimates_of
 from firm_hdl.export.manifest import FORMAT, inputs_of, make_manifest, to_json
 from firm_hdl.export.top import DIRECTIONS, leaf_names, ports_of
 from firm_hdl.export.verilog.backend import section
@@ -90,6 +91,8 @@ def test_leaves_and_ports_are_those_of_the_plan(tmp_path, bus_bytes):
         # The module of one direction is in a file of its own.
         assert converter["module"].startswith(f"f_{direction}")
         assert converter["verilog"] == f"{converter['module']}.v"
+        assert converter["template"] == f"{converter['module']}.veo"
+        assert (converter["clock"], converter["reset"]) == ("aclk", "aresetn")
         ports = converter["ports"]
         assert [p["name"] for p in ports] == [p.name for p in ports_of(plan, direction)]
         # The port is an AXI stream, or its name begins with the name of the leaf.
@@ -236,6 +239,17 @@ def test_shortest_and_hardest_packets_are_those_of_the_plan():
     # Many short strings: more bytes, and more cycles per byte.
     assert hardest["bytes"] > shortest["bytes"]
     assert hardest["cycles"] * shortest["bytes"] > shortest["cycles"] * hardest["bytes"]
+
+
+def test_estimates_are_those_of_the_plan_in_each_direction():
+    plan, made = manifest_of(Library().message("geometry_msgs/msg/Twist"), bus_bytes=4)
+    found = estimates_of(plan)
+    assert found["deserializer"].lut != found["serializer"].lut
+    assert set(made["estimates"]) == set(DIRECTIONS)
+    for direction, estimate in made["estimates"].items():
+        # This type was measured itself.
+        assert (estimate["type"], estimate["is_same"]) == ("geometry_msgs/msg/Twist", True)
+        assert (estimate["lut"], estimate["ff"]) == (found[direction].lut, found[direction].ff)
 
 
 def test_a_manifest_is_printed_in_its_order_for_people():

@@ -160,6 +160,36 @@ def test_what_is_undefined_may_be_anything(monkeypatch, claim):
     assert prove(claim).result == "broken"
 
 
+def kept_by_a_reset(is_configured):
+    """Claims that a register without a reset, and a word of a memory, are 0 in the first cycle."""
+
+    def build(scene):
+        scene.is_configured = is_configured
+        register, memory = Signal(reset_less=True), Memory(shape=1, depth=2, init=[0, 0])
+        scene.m.submodules.memory = memory
+        read, write = memory.read_port(domain="comb"), memory.write_port()
+        scene.m.d.comb += [read.addr.eq(0), write.addr.eq(1), write.en.eq(1)]
+        scene.m.d.sync += register.eq(scene.free(1, "go"))
+        scene.claim("register", ~scene.first | ~register)
+        scene.claim("word", ~scene.first | ~read.data)
+
+    return build
+
+
+@pytest.mark.parametrize(
+    ("claim", "is_configured", "result"),
+    [("register", False, "broken"), ("register", True, "proved"), ("word", False, "broken")],
+)
+def test_a_reset_changes_no_memory_and_no_register_without_a_reset(
+    monkeypatch, claim, is_configured, result
+):
+    claims = tuple(Claim(name, NO_BUG, "BMC", 2) for name in ("register", "word"))
+    study = Study("kept", "", kept_by_a_reset(is_configured), claims)
+    proofs = {each.name: run.Proof(study, each) for each in claims}
+    monkeypatch.setattr(run, "all_proofs", lambda: proofs)
+    assert prove(claim).result == result
+
+
 def test_bug_goes_away_again():
     code = StreamSlice.elaborate.__code__
     with seeded([Bug(StreamSlice.elaborate, "ready.eq(1)", "ready.eq(0)")]):

@@ -232,6 +232,14 @@ def test_an_empty_arm_before_one_that_matches_the_same_stays() -> None:
     )
     (_, found) = body_of(default, plain)
     assert found == Switch(selector=(S,), cases=(Case(patterns=("010",), body=(other,)),))
+    # An arm whose patterns an earlier arm has is never taken, and is no default.
+    third = Assign(target=(Y,), value=(Bits("0110"),))
+    cases = tuple(
+        Case(patterns=(pattern,), body=(statement,))
+        for pattern, statement in (("001", other), ("001", third), ("010", third))
+    )
+    (_, found) = body_of(default, Switch(selector=(S,), cases=cases))
+    assert found == Switch(selector=(S,), cases=(cases[0], cases[2]))
 
 
 def test_neighbouring_parts_are_assigned_at_once() -> None:
@@ -249,6 +257,8 @@ def test_neighbouring_parts_are_assigned_at_once() -> None:
     low, high = part(0, 2, (Bits("01"),)), part(2, 2, (Bits("11"),))
     assert inside(low, high) == (Assign(target=(Y,), value=(Bits("1101"),)),)
     assert inside(high, low) == (high, low)
+    # The second part gets the value of the first, which says nothing about its own.
+    assert inside(low, part(2, 2, (Bits("01"),))) == (Assign(target=(Y,), value=(Bits("0101"),)),)
     apart = part(3, 1, (Bits("1"),))
     assert inside(low, apart) == (low, apart)
 

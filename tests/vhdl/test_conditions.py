@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 from amaranth.hdl import IOBufferInstance, IOPort, Module, Signal
 
 from firm_hdl.rtlil.ir import Bits, Cell, Slice, Spec
 from firm_hdl.vhdl.convert import convert
 from firm_hdl.vhdl.expr import Declared, Values
+from tests.vhdl.ghdl import analyse
 
 WIDTHS = {"a": 1, "b": 1, "w": 4, "v": 4, "$y": 1}
 VALUES = Values({name: Declared(name=name, width=n) for name, n in WIDTHS.items()}, {}, WIDTHS)
@@ -73,3 +77,39 @@ def test_a_part_of_a_pad_is_driven_only_while_enabled() -> None:
     text = convert(m, name="t", ports=[a, b, one, two, pad]).files["t.vhd"]
     assert "  pad(0) <= a when e = '1' else 'Z';" in text
     assert "when f = '1' else \"ZZ\";" in text and "  pad(2 downto 1) <= " in text
+
+
+@pytest.mark.parametrize(
+    ("otherwise", "choice"),
+    [
+        ("a", "o <= a when s = '1' else b when t = '1' else a;"),
+        ("b", "o <= a when s = '1' else b;"),
+        ("c", "o <= a when s = '1' else b when t = '1' else c;"),
+    ],
+)
+def test_only_the_last_choices_may_be_left_out(otherwise: str, choice: str) -> None:
+    m = Module()
+    values = {name: Signal(4, name=name) for name in "abc"}
+    s, t, o = Signal(name="s"), Signal(name="t"), Signal(4, name="o")
+    with m.If(s):
+        m.d.comb += o.eq(values["a"])
+    with m.Elif(t):
+        m.d.comb += o.eq(values["b"])
+    with m.Else():
+        m.d.comb += o.eq(values[otherwise])
+    text = convert(m, ports=[*values.values(), s, t, o], unsigned_ports=True)
+    assert choice in " ".join(text.files["top.vhd"].split())
+
+
+@pytest.mark.usefixtures("ghdl")
+@pytest.mark.parametrize("unsigned_ports", [False, True])
+def test_a_pad_is_a_vector_in_all_entities(unsigned_ports: bool, tmp_path: Path) -> None:
+    top, inner, pad = Module(), Module(), IOPort(3, name="pad")
+    a, b, e = Signal(3, name="a"), Signal(3, name="b"), Signal(name="e")
+    inner.submodules.buffer = IOBufferInstance(pad, o=a, oe=e, i=b)
+    top.submodules.inner = inner
+    vhdl = convert(top, ports=[a, b, e, pad], unsigned_ports=unsigned_ports)
+    for text in (vhdl.files["top.vhd"], vhdl.files["top_inner.vhd"]):
+        assert re.search(r"\bpad +: inout std_logic_vector\(2 downto 0\)", text)
+    assert re.search(r"\bpad +=> pad\b", vhdl.files["top.vhd"])
+    analyse(vhdl, tmp_path)

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from amaranth.hdl import Cat, Module, Mux, Signal, unsigned
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, unsigned
 from amaranth.lib import enum, wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
@@ -260,6 +260,28 @@ def test_copies_of_a_bit_and_of_a_word() -> None:
     text = " ".join(convert(m, name="copies", ports=[a, b, o]).files["copies.vhd"].split())
     assert "(b(0) & unsigned(b(3 downto 2)) & b(0) & repeat_bit(b(1), 3) & unsigned(a) &" in text
     assert "unsigned(a) & unsigned(a))" in text
+
+
+def test_only_copies_of_the_top_bit_and_zeros_extend_a_word() -> None:
+    m = Module()
+    a, b = Signal(4, name="a"), Signal(4, name="b")
+    values = {
+        "own": Cat(a, a[3].replicate(2)),
+        "other": Cat(a, b[3].replicate(2)),
+        "lower": Cat(a, a[2].replicate(2)),
+        "zeros": Cat(a, Const(0, 2)),
+        "ones": Cat(a, Const(0b10, 2)),
+    }
+    outputs = [Signal(6, name=name) for name in values]
+    m.d.comb += [output.eq(value) for output, value in zip(outputs, values.values(), strict=True)]
+    text = convert(m, ports=[a, b, *outputs], unsigned_ports=True).files["top.vhd"]
+    assert dict(re.findall(r"^  (\w+) <= (.*);$", text, re.MULTILINE)) == {
+        "own": "sign_extend(a, 6)",
+        "other": "repeat_bit(b(3), 2) & a",
+        "lower": "repeat_bit(a(2), 2) & a",
+        "zeros": "resize(a, 6)",
+        "ones": '"10" & a',
+    }
 
 
 def test_assigns_to_several_wires_at_once() -> None:

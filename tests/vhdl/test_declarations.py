@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from amaranth.hdl import Const, Instance, Module, Signal, unsigned
+from amaranth.hdl import ClockDomain, Const, Instance, Module, Signal, unsigned
 from amaranth.lib import enum
 from amaranth.lib.memory import Memory
 
@@ -135,8 +135,11 @@ def test_an_output_that_the_design_itself_drives_is_an_input_of_a_component(
     m, a = Module(), Signal(4, name="a")
     m.submodules.memory = memory = Memory(shape=4, depth=4, init=[1])
     m.submodules.inner = inner = Module()
-    driven = [Signal(4, name=f"o{number}") for number in range(6)]
-    register, operator, choice, wire, foreign, below = driven
+    driven = [Signal(4, name=f"o{number}") for number in range(7)]
+    register, operator, choice, wire, foreign, below, cleared = driven
+    m.domains.fast = fast = ClockDomain(async_reset=True)
+    m.d.comb += [fast.clk.eq(a[0]), fast.rst.eq(a[1])]
+    m.d.fast += cleared.eq(a)
     inner.d.sync += below.eq(a)
     m.d.sync += register.eq(a)
     m.d.comb += [operator.eq(a + 1), wire.eq(a)]
@@ -151,9 +154,24 @@ def test_an_output_that_the_design_itself_drives_is_an_input_of_a_component(
     for number, value in enumerate([*driven, read.data]):
         m.submodules[f"u{number}"] = Instance(f"sink{number}", i_D=value)
     vhdl = convert(m, name="t", ports=[a, *driven, read.data])
-    assert vhdl.files["t.vhd"].count("D : in std_logic_vector(3 downto 0)") == 7
+    assert vhdl.files["t.vhd"].count("D : in std_logic_vector(3 downto 0)") == 8
     assert vhdl.files["t.vhd"].count("Q : out std_logic_vector(3 downto 0)") == 1
     analyse(vhdl, tmp_path)
+
+
+@pytest.mark.parametrize("unsigned_ports", [False, True])
+def test_an_output_is_converted_if_an_instance_has_another_type(unsigned_ports: bool) -> None:
+    top, inner, a = Module(), Module(), Signal(4, name="a")
+    foreign, below, bit = Signal(4, name="f"), Signal(4, name="b"), Signal(name="c")
+    top.submodules.u = Instance("unit", i_a=a, o_q=foreign, o_p=bit)
+    inner.d.comb += below.eq(a + 1)
+    top.submodules.inner = inner
+    files = convert(top, ports=[a, foreign, below, bit], unsigned_ports=unsigned_ports).files
+    text = files["top.vhd"].partition("\nbegin\n")[2]
+    # Ports of submodules are unsigned, and those of components vectors; a bit has one type.
+    assert ("f <= unsigned(f_i);" in text) == unsigned_ports == ("f_i : std" in files["top.vhd"])
+    assert ("b <= std_logic_vector(b_i);" in text) == (not unsigned_ports)
+    assert text.count("<=") == 1 and "q => f" in text and "p => c" in text
 
 
 def test_choices_of_computed_values_have_their_names() -> None:

@@ -53,6 +53,9 @@ def architecture(statement: Any, domain: str = "comb", edge: str = "pos") -> str
         (Format("{:>+12d}", A), "to_decimal(unsigned(a))"),
         (Format("{:#06x}", A), "to_hstring(unsigned(a))"),
         (Format("{:c}", S), "to_characters(unsigned(s))"),
+        # A character has eight bits.
+        (Format("{:c}", A), "to_characters(unsigned(a(7 downto 0)))"),
+        (Format("{:c}", A[:3]), "to_characters(resize(unsigned(a(2 downto 0)), 8))"),
         # The first character of a string is in the lowest bits, as in Amaranth's simulator.
         (Format("{:s}", Const(0x43_42_41, 24)), 'to_characters(unsigned\'(x"414243"))'),
         (

@@ -6,8 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from amaranth.hdl import ClockDomain, Module, Signal
+from amaranth.hdl import ClockDomain, Module, Print, Signal
 from amaranth.lib import wiring
+from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.rtlil.ir import Bits, Wire
@@ -147,10 +148,11 @@ def test_a_clear_to_a_value_other_than_the_initial_one_is_no_reset() -> None:
 
     def with_output(**more: object) -> str:
         def bare(d: FilledComponent, m: Module) -> None:
-            m.domains.sync = ClockDomain(reset_less=True)
+            m.domains.sync = sync = ClockDomain(reset_less=True)
+            m.d.comb += sync.clk.eq(d.ck)
             fill(d, m)
 
-        return vhdl_of(bare, a=In(4), clear=In(1), **more)
+        return vhdl_of(bare, ck=In(1), a=In(4), clear=In(1), **more)
 
     assert "no reset" in with_output(q=Out(4))
     assert "synchronous reset clear = '1'" in with_output(q=Out(4, init=1))
@@ -159,11 +161,12 @@ def test_a_clear_to_a_value_other_than_the_initial_one_is_no_reset() -> None:
 def test_a_partial_or_dependent_clear_is_no_reset() -> None:
     def text(fill: Callable[[FilledComponent, Module], object], **more: object) -> str:
         def bare(d: FilledComponent, m: Module) -> None:
-            m.domains.sync = ClockDomain(reset_less=True)
+            m.domains.sync = sync = ClockDomain(reset_less=True)
+            m.d.comb += sync.clk.eq(d.ck)
             m.d.sync += d.q.eq(d.a)
             fill(d, m)
 
-        return vhdl_of(bare, a=In(4), clear=In(2), q=Out(4), **more)
+        return vhdl_of(bare, ck=In(1), a=In(4), clear=In(2), q=Out(4), **more)
 
     def part(d: FilledComponent, m: Module) -> None:
         with m.If(d.clear[0]):
@@ -225,6 +228,35 @@ def test_an_asynchronous_reset_may_be_an_expression() -> None:
     assert "fast_rst <= one and other;" in text
     (lines,) = processes(text)
     assert lines[0] == "(ck, fast_rst)" and lines[2] == "if fast_rst = '1' then"
+
+
+@pytest.mark.parametrize("level", [None, 0, 1])
+def test_nothing_happens_without_an_edge_of_the_clock(level: int | None) -> None:
+    """VHDL has no process that waits for a constant."""
+
+    def fill(d: FilledComponent, m: Module) -> None:
+        m.domains.idle = idle = ClockDomain(async_reset=True)
+        # What nothing drives is 0.
+        m.d.comb += [idle.rst.eq(d.clear), *([] if level is None else [idle.clk.eq(level)])]
+        m.submodules.memory = memory = Memory(shape=4, depth=4, init=[3])
+        write, read = memory.write_port(domain="idle"), memory.read_port(domain="idle")
+        at_once = memory.read_port(domain="comb")
+        m.d.comb += [write.data.eq(d.a), write.en.eq(1), read.en.eq(1), d.p.eq(read.data)]
+        m.d.comb += [at_once.addr.eq(d.a), d.r.eq(at_once.data)]
+        m.d.idle += [d.q.eq(d.a), Print("an edge")]
+        m.d.sync += d.s.eq(d.a)
+
+    outputs = {"q": Out(4, init=5), "p": Out(4), "r": Out(4), "s": Out(4)}
+    text = vhdl_of(fill, clear=In(1), a=In(4), **outputs)
+    assert [lines[0] for lines in processes(text)] == ["(clk)"]
+    assert "process ('" not in text and "report" not in text
+    for line in (
+        'q <= "0101";',
+        "p <= (others => '0');",
+        "r <= std_logic_vector(memory(to_integer(unsigned(a(1 downto 0)))));",
+        "s <= std_logic_vector(s_q);",
+    ):
+        assert f"\n  {line}\n" in text, line
 
 
 def wire_with(**attributes: Bits) -> Wire:

@@ -135,6 +135,12 @@ def test_the_widest_part_has_65535_input_bits():
         part_ports(make_part("router", side_bits=65536 - rest, **given))
 
 
+def test_a_part_that_is_current_is_written_if_it_is_asked_for(tmp_path):
+    part = make_part("width", in_bytes=1, out_bytes=2)
+    written = [build_part(part, tmp_path, force=force) for force in (False, False, True)]
+    assert [each.was_current for each in written] == [False, True, False]
+
+
 def test_the_command_writes_a_part_once(tmp_path, capsys):
     words = ["part", "crossing", "--bus-bytes", "1", "--out", str(tmp_path)]
     assert main(words) == 0 and main(words) == 0

@@ -121,6 +121,9 @@ def test_a_gate_has_a_status_on_a_stream_of_whole_bytes():
     beats = [beat(0x100, 15, 0), beat(0x1234, 3, 1), beat(0x100, 15, 1)]
     given = {"message": message, "bus_bytes": 4, "memory_bytes": 64}
     assert through("gate", beats, **given) == [(0x100, 15, 0), (0x1234, 3, 1)]
+    # Beside each beat is the size of its packet.
+    sizes = {"when": "m_axis_tvalid", "extra": ("packet_bytes",)}
+    assert through("gate", beats, **sizes, **given) == [(6,), (6,)]
     statuses = {"when": "m_axis_status_tvalid", "extra": ("m_axis_status_tdata",)}
     assert through("gate", beats, **statuses, **given) == [(0,), (1,)]
     # A status that is not taken stays.
@@ -168,6 +171,52 @@ def test_a_crossing_has_two_clocks():
     assert [seen[0] for seen in through("crossing", beats, bus_bytes=2, beats=4)] == [*range(5)]
     names = [port.name for port in part_ports(make_part("crossing", bus_bytes=2))]
     assert names[:4] == ["s_axis_aclk", "s_axis_aresetn", "m_axis_aclk", "m_axis_aresetn"]
+
+
+@pytest.mark.parametrize(("reset", "leave"), [(None, 4), ("m_axis", 4), ("s_axis", 0)])
+def test_each_side_of_a_crossing_has_its_own_clock_and_reset(reset, leave):
+    top = PartTop(make_part("crossing", bus_bytes=1, beats=4))
+    came, gone = [], []
+
+    async def bench(ctx):
+        async def edges(count, *sides):
+            for _ in range(count):
+                if ctx.get(top.s_axis_tready) and "s_axis" in sides and ctx.get(top.s_axis_tvalid):
+                    came.append(len(came))
+                if ctx.get(top.m_axis_tvalid) and "m_axis" in sides and ctx.get(top.m_axis_tready):
+                    gone.append(ctx.get(top.m_axis_tdata))
+                for level in (1, 0):
+                    for side in sides:
+                        ctx.set(getattr(top, f"{side}_aclk"), level)
+                    await ctx.delay(1e-7)
+                ctx.set(top.s_axis_tdata, len(came))
+                await ctx.delay(1e-9)
+
+        await edges(5, "s_axis", "m_axis")
+        for side in ("s_axis", "m_axis"):
+            ctx.set(getattr(top, f"{side}_aresetn"), 1)
+        await edges(5, "s_axis", "m_axis")
+        # Four beats have room while the reading clock stands still.
+        ctx.set(top.s_axis_tvalid, 1)
+        await edges(9, "s_axis")
+        assert came == [0, 1, 2, 3] and not ctx.get(top.m_axis_tvalid)
+        ctx.set(top.s_axis_tvalid, 0)
+        if reset:
+            # That of the writing side empties the FIFO; that of the reading side discards nothing.
+            ctx.set(getattr(top, f"{reset}_aresetn"), 0)
+            await edges(5, "s_axis", "m_axis")
+            ctx.set(getattr(top, f"{reset}_aresetn"), 1)
+            await edges(5, "s_axis", "m_axis")
+        # They leave while the writing clock stands still, whose side does not see the room.
+        is_ready = ctx.get(top.s_axis_tready)
+        ctx.set(top.m_axis_tready, 1)
+        await edges(9, "m_axis")
+        assert ctx.get(top.s_axis_tready) == is_ready
+
+    simulator = Simulator(top)
+    simulator.add_testbench(bench)
+    simulator.run()
+    assert gone == came[:leave]
 
 
 def leaves_after_reset(cycles, phase):
