@@ -223,6 +223,8 @@ def test_deadline_is_the_most_cycles_without_a_transfer():
         silent.go()
     assert str(caught.value) == expected_message
     assert silent.bench.cycles == 8
+    with pytest.raises(DeadlineError, match=r"^No transfer in 1001 cycles"):
+        Run([[1]], expected=2).go()
 
 
 def test_the_longest_stall_of_any_stream_is_added_to_the_deadline():

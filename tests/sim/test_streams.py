@@ -162,6 +162,17 @@ def test_a_stream_has_the_stalls_of_its_name():
     assert patterns["other"] != patterns["packets_in"]
 
 
+@pytest.mark.parametrize("call", [receive, receive_packets, receive_statuses])
+def test_silence_of_1000_cycles_is_no_missed_deadline(call):
+    dut = Relay(packet_layout(1))
+
+    async def sink(ctx):
+        await call(ctx, dut.o, 1)
+
+    with pytest.raises(DeadlineError, match=r"^No transfer on stream '.*' in 1001 cycles"):
+        run_testbenches(dut, sink)
+
+
 def test_the_deadline_of_packets_names_the_stream():
     dut = Relay(packet_layout(4))
 
