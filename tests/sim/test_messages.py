@@ -216,6 +216,17 @@ def test_deadline_of_a_message_allows_for_the_longest_stall_of_any_leaf(leaf):
     assert got == [dict.fromkeys("rgba", 1.0)]
 
 
+def test_silence_of_1000_cycles_is_no_missed_deadline_of_a_message():
+    dut = Wires(COLOUR)
+    o = MessagePort(dut.o, COLOUR)
+
+    async def sink(ctx):
+        await o.receive(ctx)
+
+    with pytest.raises(DeadlineError, match=r"^No transfer of a message in 1001 cycles"):
+        run_testbenches(dut, sink)
+
+
 def test_missing_leaves_are_told_in_the_order_of_the_message_with_their_numbers():
     message = make("ros2", {"v": "uint8[]", "n": "uint8"})
     dut = Wires(message)

@@ -147,6 +147,14 @@ def test_functions_have_all_options(function, monkeypatch):
     assert sent == ([{0: [7], 1: [2], 2: [((1, 2), True)]}] if function is encode else [PACKET])
     # What it unpacks to: never the statuses of the second converter.
     assert tuple(result) == (({0: []} if function is decode else ["p"]), ["s"])
+    # Without options, they are those of a converter and of a run.
+    seen.clear()
+    function(MESSAGE, [])
+    usual = {"wire": "cdr", "bus_bytes": 8, "max_message_bytes": 1 << 24}
+    for each in seen[0][:2]:
+        if each is not None:
+            assert {name: getattr(each.plan, name) for name in usual} == usual
+    assert seen[0][3] is False and seen[1] == ([], RunOptions())
 
 
 @pytest.mark.usefixtures("collected")

@@ -77,6 +77,21 @@ def test_packets_arrive_whole(bus_bytes, packets, i_stall, o_stall):
     assert got == packets
 
 
+def test_lanes_of_packets_that_are_not_valid_carry_noise():
+    dut, got = Relay(packet_layout(4)), []
+
+    async def source(ctx):
+        await send_packets(ctx, dut.i, [b"x"] * 40)
+
+    async def sink(ctx):
+        got.extend(await receive(ctx, dut.o, 40))
+
+    run_testbenches(dut, source, sink)
+    first, *others = zip(*(bytes(each.data) for each in got), strict=True)
+    assert set(first) == {0x78}
+    assert all(len(set(lane)) > 20 for lane in others)
+
+
 def test_deadline_of_packets_reports_the_partial_packet():
     dut = Relay(packet_layout(4), "block")
 
@@ -145,6 +160,17 @@ def test_a_stream_has_the_stalls_of_its_name():
     assert sum(patterns["other"]) == sum(patterns["packets_in"]) == 10
     assert patterns["other"].index(1) == offered.index(True)
     assert patterns["other"] != patterns["packets_in"]
+
+
+@pytest.mark.parametrize("call", [receive, receive_packets, receive_statuses])
+def test_silence_of_1000_cycles_is_no_missed_deadline(call):
+    dut = Relay(packet_layout(1))
+
+    async def sink(ctx):
+        await call(ctx, dut.o, 1)
+
+    with pytest.raises(DeadlineError, match=r"^No transfer on stream '.*' in 1001 cycles"):
+        run_testbenches(dut, sink)
 
 
 def test_the_deadline_of_packets_names_the_stream():

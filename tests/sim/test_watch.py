@@ -89,6 +89,23 @@ def test_reset_takes_back_what_was_offered_and_begins_a_new_packet():
     assert seen == [1, 0]
 
 
+def test_a_watcher_begins_anew_with_each_simulation():
+    dut = Relay(packet_layout(4))
+    watcher, seen = watch({"o": dut.o}), []
+    # The first simulation ends inside a packet; in the second one, an empty packet comes.
+    for given in (beat(4, 0), beat(0, 1)):
+
+        async def source(ctx, given=given):
+            await send(ctx, dut.i, [given])
+
+        async def sink(ctx):
+            seen.extend(await receive(ctx, dut.o, 1))
+            await ctx.tick()
+
+        run_testbenches(dut, source, sink, background=[watcher])
+    assert [each.last for each in seen] == [0, 1]
+
+
 def test_rules_follow_each_stream_on_its_own():
     rules = StreamRules(["a", "b"])
     payloads = [5, 6]

@@ -274,12 +274,12 @@ def test_an_empty_packet_and_counts_that_are_not_kept():
     assert [len(packet) for packet in seen.packets["out"]] == [17]
 
 
-def test_reset_discards_all_and_the_next_beat_begins_a_packet():
+def test_reset_discards_all_and_the_next_beat_begins_a_packet(monkeypatch):
+    monkeypatch.setattr("firm_hdl.sim.bench.RESET_CYCLES", 1)
     packets = [of_beats(size, 8, size) for size in (3, 5, 2)]
     for when_full in ("wait", "drop"):
-        fifo = PacketFifo(8, 8 * 8, 2, when_full=when_full)
+        fifo, source = PacketFifo(8, 8 * 8, 2, when_full=when_full), list(beats(packets, 8))
         bench = bench_of(fifo, keeps_state=True)
-        source = list(beats(packets, 8))
         stuck = {"out": Stalls.bits("0" * 1000 + "1")}
         for count in range(1, 11):
             # A cut packet, and then one that is too large.

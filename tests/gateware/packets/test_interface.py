@@ -6,12 +6,17 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl import (
+    Deserializer,
     GateStatus,
     PacketArbiter,
     PacketCrossing,
     PacketFifo,
     PacketGate,
     PacketRouter,
+    Parser,
+    RecordReader,
+    RecordWriter,
+    Serializer,
     Status,
     load_message,
 )
@@ -38,6 +43,14 @@ def test_a_gate_by_default():
     assert (gate.bus_bytes, gate.when_full) == (8, "wait")
     assert (gate.shape.memory_bytes, gate.shape.packets) == (65_536, 64)
     assert (gate.plan.wire, gate.plan.max_message_bytes) == ("cdr", 1 << 24)
+
+
+def test_converters_by_default():
+    message = load_message("std_msgs/msg/Bool")
+    for kind in (Deserializer, Serializer, Parser):
+        plan = kind(message).plan
+        assert (plan.wire, plan.bus_bytes, plan.max_message_bytes) == ("cdr", 8, 1 << 24)
+    assert RecordReader(message).plan.bus_bytes == RecordWriter(message).plan.bus_bytes == 8
 
 
 def test_a_crossing_by_default():

@@ -17,6 +17,7 @@ from tests.gateware.packets.gates import (
     BOMB_HEAD,
     DIAGNOSTICS,
     FULL,
+    LARGE,
     NO_BOMB,
     OK,
     OVERRUN,
@@ -141,6 +142,23 @@ def test_statuses_are_in_the_order_of_packets_however_late_they_are_taken(monkey
     assert OVERRUN in run.statuses and OK in run.statuses
     for status, own in zip(run.statuses, alone, strict=True):
         assert status in (own, OVERRUN)
+
+
+def test_what_the_memory_did_with_a_packet_is_not_told_of_those_dropped_after_it(monkeypatch):
+    monkeypatch.setattr("firm_hdl.gateware.packets.gate.BACKLOG_BEATS", 5)
+    rng = random.Random(1)
+    # A text of 40 letters, larger than the memory; and no text.
+    long, short = b"\x28\0\0\0" + bytes(52), bytes(16)
+    packets = rng.choices([long, short], [1, 3], k=32)
+    gate = PacketGate(
+        TEXTS, wire="ros1", bus_bytes=16, memory_bytes=32, packets=1, when_full="drop"
+    )
+    came = "".join("1" * rng.randrange(9, 30) + "0" * rng.randrange(60) for _ in range(6))
+    stalls = {"in": Stalls.bits(came), "out": Stalls.bits("0" * 30 + "1")}
+    run = GateRun(gate, packets, stalls=stalls, deadline=2000)
+    pairs = [*zip(packets, run.statuses, strict=True)]
+    assert {status for packet, status in pairs if packet == long} == {LARGE, FULL, OVERRUN}
+    assert {status for packet, status in pairs if packet == short} == {OK, FULL, OVERRUN}
 
 
 # Must-fail twins: a gate with a fault, which the checks find.

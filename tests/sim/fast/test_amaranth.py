@@ -58,8 +58,10 @@ def test_the_last_value_of_an_input_counts(start):
         simulation.set("x", value)
         assert simulation.get("y") == value
     simulation.run(3)
-    simulation.reset()
-    assert simulation.get("y") == 0x81 and simulation.cycle == 0
+    for _ in range(2):
+        simulation.reset()
+        # The look at the value applies it; another reset takes it back.
+        assert simulation.get("y") == 0x81 and simulation.cycle == 0
 
 
 def test_calls_after_a_look_at_a_cycle_still_change_that_cycle(start):

@@ -129,6 +129,26 @@ class _Endless(Stalls):
             yield True
 
 
+def test_a_simulation_is_closed_at_the_end_of_its_block(channel):
+    with pytest.raises(KeyError), FastSimulation(Design()):
+        assert not channel.is_closed
+        raise KeyError
+    assert channel.is_closed
+
+
+def test_silence_and_limits_that_nobody_asked_for(channel):
+    design = FastSimulation(Design())
+    channel.answers += [done(Reason.QUIET), done(Reason.CONDITIONS)]
+    design.run_until_idle()
+    design.run_until({"sums": 1})
+    design.go_live()
+    idle, until, live = (body for _, body in channel.take()[-3:])
+    assert protocol.read_run(idle) == (1_000_000, 1000, [])
+    assert protocol.read_run(until) == (1_000_000, 0, [(3, protocol.ALL_TRANSFERS, 1)])
+    # Awake for 4,096 cycles without a transfer; then 1,000 cycles every 10 milliseconds.
+    assert protocol.read_live(live) == (4096, 10, 1000)
+
+
 @pytest.mark.parametrize("name", ["narrow", "nothing"])
 def test_only_outputs_can_be_ignored(channel, name):
     with pytest.raises(ValueError, match=f"There is no output stream '{name}'"):

@@ -172,8 +172,14 @@ def test_a_program_is_compiled_once(source, tmp_path, monkeypatch):
     os.utime(old, (0, 0))
     (tmp_path / "cache" / "building-old").mkdir()
     os.utime(tmp_path / "cache" / "building-old", (0, 0))
+    # What was used less than 30 days ago stays.
+    times = {"used": 29, "unused": 31}
+    for name, days in times.items():
+        (tmp_path / "cache" / name).write_text("")
+        os.utime(tmp_path / "cache" / name, (time.time() - days * 86_400,) * 2)
     assert count(options=["-O3"]) == 5
-    assert len(list((tmp_path / "cache").iterdir())) == 5
+    left = {path.name for path in (tmp_path / "cache").iterdir()}
+    assert len(left) == 6 and left & times.keys() == {"used"}
 
 
 def test_a_compiler_that_fails_is_quoted(source, tmp_path, monkeypatch):
