@@ -155,7 +155,12 @@ def test_figures_in_words(fields, bus_bytes, text):
 
 @pytest.mark.parametrize(
     ("cycles", "text"),
-    [(1, "1 cycle (0.01 us at"), (99_999, "99999 cycles (999.99 us at"), (250_000, "(2.5 ms at")],
+    [
+        (1, "1 cycle (0.01 us at"),
+        (99_999, "99999 cycles (999.99 us at"),
+        (100_000, "(1.0 ms at"),
+        (250_000, "(2.5 ms at"),
+    ],
 )
 def test_a_recovery_has_a_time_in_its_unit(cycles, text):
     figures = timing(plan_of({"a": "uint32"}, 4))
