@@ -94,7 +94,7 @@ def run_cover(given: argparse.Namespace) -> int:
         print(f"{each.name}: {', '.join(each.adds)}")
     names = [each.name for each in chosen]
     if given.out is not None:
-        where = "the folders" if given.path else library.distro
+        where = "the folders" if given.path else "the recordings" if given.bag else library.distro
         head = _HEAD.format(where=where, bus_bytes=given.bus_bytes)
         text = head + "".join(f"{name}\n" for name in sorted(names))
         Path(given.out).parent.mkdir(parents=True, exist_ok=True)

@@ -189,12 +189,19 @@ def test_types_of_a_recording_are_chosen_from(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("folder", "where"), [("src", "any of the folders has;"), (None, "any of lyrical has;")]
+    ("origin", "where"),
+    [
+        ("--path", "any of the folders has;"),
+        ("--bag", "any of the recordings has;"),
+        (None, "any of lyrical has;"),
+    ],
 )
-def test_the_file_tells_where_its_types_are_from(tmp_path, folder, where):
-    make_files(tmp_path, {"src/p/msg/A.msg": "int16 a\n"})
+def test_the_file_tells_where_its_types_are_from(tmp_path, origin, where):
+    folder = make_files(tmp_path, {"src/p/msg/A.msg": "int16 a\n"}) / "src"
     path = tmp_path / "chosen.txt"
-    words = ["--path", str(tmp_path / folder)] if folder else ["std_msgs/msg/Bool"]
+    words = ["std_msgs/msg/Bool"]
+    if origin is not None:
+        words = [origin, str(folder if origin == "--path" else make_recording(tmp_path, "bag"))]
     assert main(["cover", *words, "--out", str(path)]) == 0
     assert where in path.read_text().splitlines()[0]
 
