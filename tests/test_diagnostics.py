@@ -27,6 +27,7 @@ def test_lines_are_counted_from_1():
     text = "\na\n\nb"
     spans = [diagnostic(text, start, start).span for start in range(len(text) + 1)]
     assert [(s.line, s.column) for s in spans] == [(1, 1), (2, 1), (2, 2), (3, 1), (4, 1), (4, 2)]
+    assert [s.line_text for s in spans] == ["", "a", "a", "", "b", "b"]
 
 
 def test_long_line_is_cut_around_the_place():

@@ -79,12 +79,14 @@ def test_streams_are_restored_afterwards(capsys):
         # Only a whole text moves the cursor, and only where there are bars.
         print("\x1b[A\x1b[2J", end="", file=sys.stderr)
         print("\rno bar\x1b[A", end="")
+        # A carriage return moves the cursor only where a text starts with it.
+        print("a\rb", file=sys.stderr)
         sys.stdout.writelines(["\x07\n"])
     assert (sys.stdout, sys.stderr) == before
     # Progress bars move the cursor; control characters in their text do not act.
     assert capsys.readouterr() == (
         "\\x1b[2J\n\\rno bar\\x1b[A\\x07\n",
-        "\rbar \\x1b[2J\n\x1b[A\x1b[0m\n\x1b[A\x1b[0m\n\\x1b[A\\x1b[2J",
+        "\rbar \\x1b[2J\n\x1b[A\x1b[0m\n\x1b[A\x1b[0m\n\\x1b[A\\x1b[2Ja\\rb\n",
     )
 
 

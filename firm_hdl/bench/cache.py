@@ -35,7 +35,9 @@ def measure_once(
     """
     if folder is None:
         return measure(rtlil, device, seeds, mapping=mapping)
-    parts = [FORMAT, rtlil, repr(device), PREPARATIONS, list(seeds), mapping, versions(device)]
+    # Without seeds, nextpnr is not run, and may be missing.
+    tools = versions(device, with_placer=bool(seeds))
+    parts = [FORMAT, rtlil, repr(device), PREPARATIONS, list(seeds), mapping, tools]
     key = hashlib.sha256(json.dumps(parts).encode()).hexdigest()
     file = folder / f"{key}.json"
     with suppress(OSError, ValueError, KeyError, TypeError):

@@ -25,7 +25,7 @@ from firm_hdl.bench.run import BenchTask, run_tasks
 from firm_hdl.bench.software import CLOCK_MHZ, compare_software, machine, software_rows
 from firm_hdl.bench.tables import head, row, summary
 from firm_hdl.bench.tools import versions
-from firm_hdl.frontend import load_all, open_library
+from firm_hdl.frontend import all_names, load_all, open_library
 from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, DIRECTIONS
 
 __all__ = ["add_bench_arguments", "run_bench"]
@@ -175,14 +175,15 @@ def _run_software(given: argparse.Namespace) -> int:
         for name, why in found.missing.items():
             print(f"    {name}: {why}")
     problems = [f"{each.converter}: {each.problem}" for each in results.values() if each.problem]
-    print(*problems, str(tasks[0].stated), sep="\n")
-    return 1 if problems else 0
+    print(*problems, *(str(task.stated) for task in tasks[:1]), sep="\n")
+    return 0 if tasks and not problems else 1
 
 
 def bench_tasks(given: argparse.Namespace) -> list[BenchTask]:
     """Return a task for each type, bus width and direction."""
     library = open_library(given.distro, given.path, given.bag, depends=given.depends)
-    messages = load_all(library, library.names() if given.all else given.types)
+    names = all_names(given.distro, given.path, given.bag) if given.all else given.types
+    messages = load_all(library, names)
     stated = replace(STATED, count=given.messages, seed=given.message_seed)
     widths: Sequence[int] = given.bus_bytes or [8]
     return [

@@ -16,7 +16,7 @@ from functools import cache
 from firm_hdl.covering.branches import branches
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.productions import productions
-from firm_hdl.model import Array, Field, Message, Primitive, Sequence, String, closure
+from firm_hdl.model import Array, Dialect, Field, Message, Primitive, Sequence, String, closure
 from firm_hdl.plan import Plan
 from firm_hdl.plan.shape import constructs
 from firm_hdl.wire import Wire, lay_out
@@ -81,13 +81,14 @@ def _grammar(library: Library, message: Message) -> Iterator[str]:
         if each.package:
             is_idl = library.is_idl(each.name)
             language = "idl" if is_idl else each.dialect
-            for production in _productions(each, is_idl):
+            for production in _productions(each.text, each.dialect, is_idl):
                 yield f"{language} {production}"
 
 
+# By the text, which is not compared: equal messages may have been written differently.
 @cache
-def _productions(message: Message, is_idl: bool) -> frozenset[str]:
-    return productions(message.text, message.dialect, is_idl=is_idl)
+def _productions(text: str, dialect: Dialect, is_idl: bool) -> frozenset[str]:
+    return productions(text, dialect, is_idl=is_idl)
 
 
 def _meaning(message: Message) -> Iterator[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from tqdm import tqdm
@@ -14,7 +14,7 @@ from firm_hdl.covering.choose import FAMILIES, all_features, choose, cost
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.files import read_file
-from firm_hdl.frontend import Library, load_all, open_library
+from firm_hdl.frontend import Library, all_names, load_all, open_library
 from firm_hdl.model import Message
 from firm_hdl.plan.shape import shape
 
@@ -68,7 +68,10 @@ def run_cover(given: argparse.Namespace) -> int:
     """Run ``firm-hdl cover``; return 1 if the checked types lack a feature."""
     library = open_library(given.distro, given.path, given.bag, depends=given.depends)
     kept = None if given.check is None else read_chosen(given.check)
-    messages = load_all(library, given.types) if given.types else _usable(library, given.path)
+    if given.types:
+        messages = load_all(library, given.types)
+    else:
+        messages = _usable(library, all_names(given.distro, given.path, given.bag))
     types: dict[str, frozenset[str]] = {}
     costs, shapes = {}, set()
     for message in tqdm(messages, unit="type", desc="features", disable=None):
@@ -82,6 +85,8 @@ def run_cover(given: argparse.Namespace) -> int:
         types[message.name] = all_features(library, message, plan, with_branches=given.branches)
         costs[message.name] = cost(plan)
         shapes.add(shape(plan))
+    if not types:
+        raise BuildError("there are no types to choose from")
     if kept is not None:
         return _check(types, kept, given.check)
     chosen = choose(types, costs)
@@ -89,7 +94,7 @@ def run_cover(given: argparse.Namespace) -> int:
         print(f"{each.name}: {', '.join(each.adds)}")
     names = [each.name for each in chosen]
     if given.out is not None:
-        where = "the folders" if given.path else library.distro
+        where = "the folders" if given.path else "the recordings" if given.bag else library.distro
         head = _HEAD.format(where=where, bus_bytes=given.bus_bytes)
         text = head + "".join(f"{name}\n" for name in sorted(names))
         Path(given.out).parent.mkdir(parents=True, exist_ok=True)
@@ -98,12 +103,10 @@ def run_cover(given: argparse.Namespace) -> int:
     return 0
 
 
-def _usable(library: Library, paths: Sequence[str]) -> list[Message]:
-    """Return all types of folders, or of a library; print errors of types that are left out."""
+def _usable(library: Library, names: Iterable[str]) -> list[Message]:
+    """Return the messages of types; print errors of types that are left out."""
     found = []
-    # Folders may also have services and actions, which the embedded distributions do not have.
-    named = Library(library.distro, paths, origins=()) if paths else library
-    for name in named.interfaces():
+    for name in names:
         try:
             found += load_all(library, [name])
         except DefinitionError as error:

@@ -33,9 +33,12 @@ def seconds(value: float) -> str:
     for most, factor, unit in ((1e-3, 1e6, "µs"), (1, 1e3, "ms"), (120, 1, "s")):
         if value < most:
             return f"{number(value * factor)} {unit}"
+    # Rounded before it is divided, so that 179.6 s are not 2 min 60 s.
     if value < 7200:
-        return f"{int(value // 60)} min {value % 60:.0f} s"
-    return f"{int(value // 3600)} h {value % 3600 / 60:.0f} min"
+        minutes, rest = divmod(round(value), 60)
+        return f"{minutes} min {rest} s"
+    hours, minutes = divmod(round(value / 60), 60)
+    return f"{hours} h {minutes} min"
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ __all__ = ["Change", "compare"]
 
 _STEP = re.compile(r"step \d+")
 _STEP_PATH = re.compile(r"steps\[([^]]*)\]")
+_AGAIN = re.compile(r"loop \d+ again")
 # A slice of a step: ``0..3``, ``4``, ``at 8``.
 _PLACE = re.compile(r"(?:at )?\d+(?:\.\.\d+)?")
 
@@ -101,11 +102,23 @@ def _fold(facts: Mapping[str, str], others: Mapping[str, str]) -> dict[str, str]
     return folded
 
 
+class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
+    """A loader that refuses a key that a mapping has twice: YAML would take the last one only."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        keys = [key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode)]
+        for key, count in Counter(keys).items():
+            if count > 1:
+                line = node.start_mark.line + 1
+                raise ValueError(f"Not a plan: the mapping in line {line} has {key!r} twice")
+        found: dict[Any, Any] = super().construct_mapping(node, deep)
+        return found
+
+
 def _facts(text: str) -> dict[str, str]:
     """Give every value of a plan, by path."""
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
-        document = yaml.load(text, Loader=loader)
+        document = yaml.load(text, Loader=_Loader)
     except yaml.YAMLError as error:
         raise ValueError(f"Not YAML: {error}") from None
     if not isinstance(document, dict) or not isinstance(document.get("steps"), dict):
@@ -149,6 +162,10 @@ def _step_name(content: Mapping[Any, Any]) -> str:
 
 def _flatten(path: str, value: Any, names: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     if isinstance(value, Mapping):
+        # The first loop that has elements left is repeated.
+        loops = [key for key in value if _AGAIN.fullmatch(str(key))]
+        if len(loops) > 1:
+            yield f"{path}.order", ", ".join(loops)
         for key, inner in value.items():
             yield from _flatten(f"{path}.{key}", inner, names)
     elif isinstance(value, list):

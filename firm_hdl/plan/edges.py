@@ -55,8 +55,7 @@ def _ways(
         yield "no rest"
         if counts.get(("rest", step.rest), 0):
             yield "rest"
-    if step.align != 1:
-        yield from (f"padding {count}" for count in padding)
+    yield from (f"padding {count}" for count in padding)
     if isinstance(step, RunStep) and counts[RUN_COUNTER, index] > _once(plan, step):
         yield "again"
     for way, jump in successors(step):

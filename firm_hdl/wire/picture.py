@@ -115,7 +115,7 @@ def _grid(grid: Grid, left: int, y: int) -> tuple[list[str], int, int]:
         for piece in pieces:
             shapes += _cell(piece, left, top)
         named = (p.cell for p in pieces if p.starts and p.cell.kind != "padding")
-        label = ", ".join(f"{cell.name} {cell.type}".strip() for cell in named)
+        label = ", ".join(f"{cell.name} {cell.type}" for cell in named)
         if label:
             shapes.append(f'<text x="{x}" y="{top + 15}">{escape(label)}</text>')
             right = max(right, x + int(len(label) * CHARACTER_WIDTH))

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from firm_hdl.bench import cache
-from firm_hdl.bench.devices import DEVICES
+from firm_hdl.bench.devices import DEVICES, Device
 from firm_hdl.bench.flow import Measured
 from tests.bench.results import result
 
@@ -25,7 +25,7 @@ def test_each_input_has_figures_of_its_own(tmp_path: Path, monkeypatch: pytest.M
         return found
 
     monkeypatch.setattr(cache, "measure", measure)
-    monkeypatch.setattr(cache, "versions", lambda device: tools)
+    monkeypatch.setattr(cache, "versions", lambda device, *, with_placer: tools)
     usual = {
         "rtlil": "a",
         "device": DEVICES["ecp5"],
@@ -71,7 +71,7 @@ def test_figures_with_a_problem_and_damaged_files_are_measured_again(
     assert good is not None
     found = [replace(good, problem="no room"), good, replace(good, mapping="again")]
     monkeypatch.setattr(cache, "measure", lambda *_, **__: found.pop(0))
-    monkeypatch.setattr(cache, "versions", lambda device: {})
+    monkeypatch.setattr(cache, "versions", lambda device, *, with_placer: {})
 
     def once() -> Measured:
         return cache.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=tmp_path)
@@ -90,7 +90,7 @@ def test_a_file_that_has_no_figures_is_replaced(
     assert good is not None
     found = [good, replace(good, mapping="again")]
     monkeypatch.setattr(cache, "measure", lambda *_, **__: found.pop(0))
-    monkeypatch.setattr(cache, "versions", lambda device: {})
+    monkeypatch.setattr(cache, "versions", lambda device, *, with_placer: {})
     folder = tmp_path / "new" / "folder"
 
     def once() -> str:
@@ -110,8 +110,24 @@ def test_other_preparations_of_yosys_have_figures_of_their_own(
     assert good is not None
     found = [good, replace(good, mapping="again")]
     monkeypatch.setattr(cache, "measure", lambda *_, **__: found.pop(0))
-    monkeypatch.setattr(cache, "versions", lambda device: {})
+    monkeypatch.setattr(cache, "versions", lambda device, *, with_placer: {})
     for preparations, mapping in ((("", "proc; "), good.mapping), (("",), "again")):
         monkeypatch.setattr(cache, "PREPARATIONS", preparations)
         measured = cache.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=tmp_path)
         assert measured.mapping == mapping
+
+
+@pytest.mark.parametrize(("seeds", "with_placer"), [((), False), ((0,), True)])
+def test_nextpnr_is_looked_for_only_if_it_is_run(
+    seeds: tuple[int, ...], with_placer: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+
+    def versions(device: Device, **options: bool) -> dict[str, str]:
+        asked.append((device.name, options))
+        return {}
+
+    monkeypatch.setattr(cache, "measure", lambda *_, **__: result().measured)
+    monkeypatch.setattr(cache, "versions", versions)
+    cache.measure_once("a", DEVICES["ecp5"], seeds, mapping="", folder=tmp_path)
+    assert asked == [("ecp5", {"with_placer": with_placer})]

@@ -16,8 +16,9 @@ from firm_hdl.bench.results import Result
 from firm_hdl.bench.run import BenchTask
 from firm_hdl.cli import main
 from firm_hdl.errors import UserError
-from firm_hdl.frontend import load_message
 from tests.bench.results import result
+from tests.frontend.recordings import make_recording
+from tests.frontend.workspace import make_files
 
 BOOL = "std_msgs/msg/Bool"
 
@@ -84,33 +85,47 @@ def test_two_percent_more_are_not_worse(
     assert main(["bench", BOOL, "--compare", str(file)]) == status
 
 
-def test_all_types_of_a_library_are_listed_without_paths(
-    asked: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_all_are_the_types_of_the_folders_listed_without_paths(
+    asked: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    names = [BOOL, "std_msgs/msg/Char"]
-    library = SimpleNamespace(distro="kilted", names=lambda: names)
-    given: list[object] = []
-
-    def open_library(*origins: object, **options: object) -> object:
-        given.append((origins, options))
-        return library
-
-    monkeypatch.setattr(command, "open_library", open_library)
-    monkeypatch.setattr(command, "load_all", lambda of, types: [load_message(n) for n in types])
-    for words, origins, depends in (
-        (["--path", "a", "--depends", "c"], (["a"], []), ["c"]),
-        (["--bag", "b"], ([], ["b"]), []),
-    ):
-        assert main(["bench", "--all", "--distro", "kilted", *words]) == 0
-        assert given.pop() == (("kilted", *origins), {"depends": depends})
-        assert [task.converter.type for task in asked["tasks"]] == [n for n in names for _ in "rw"]
-        for task in asked["tasks"]:
-            assert (task.paths, task.bags) == ((*origins[0], *depends), tuple(origins[1]))
-            assert task.converter.distro == "kilted"
+    files = {
+        "src/p/msg/A.msg": "q/B b\n",
+        "src/p/srv/S.srv": "---\n",
+        "more/q/msg/B.msg": "int8 c\n",
+    }
+    src, more = (str(make_files(tmp_path, files) / name) for name in ("src", "more"))
+    words = ["--distro", "humble", "--path", src, "--depends", more]
+    assert main(["bench", "--all", *words]) == 0
+    # Neither types of the distribution, nor those on which others depend.
+    names = ["p/msg/A", "p/srv/S_Request", "p/srv/S_Response"]
+    assert [task.converter.type for task in asked["tasks"]] == [n for n in names for _ in "rw"]
+    for task in asked["tasks"]:
+        assert (task.paths, task.bags, task.converter.distro) == ((src, more), (), "humble")
     assert "12.5 ns" not in capsys.readouterr().out
-    assert main(["bench", names[1]]) == 0
-    assert [task.converter.type for task in asked["tasks"]] == [names[1]] * 2
+    assert main(["bench", "q/B", *words]) == 0
+    assert [task.converter.type for task in asked["tasks"]] == ["q/msg/B"] * 2
     assert "    12.5 ns, 8.0 of them routing" in capsys.readouterr().out
+
+
+def test_all_of_a_recording_are_its_types(asked: dict[str, Any], tmp_path: Path) -> None:
+    bag = str(make_recording(tmp_path, "bag"))
+    assert main(["bench", "--all", "--bag", bag, "--direction", "serializer"]) == 0
+    assert {(task.converter.distro, task.bags) for task in asked["tasks"]} == {("noetic", (bag,))}
+    assert sorted(task.converter.type for task in asked["tasks"]) == [
+        "my_msgs/Spot",
+        "my_msgs/Wheel",
+        "std_msgs/Header",
+        "std_msgs/String",
+    ]
+
+
+@pytest.mark.parametrize("words", [[], ["--software"]])
+def test_a_folder_without_types_has_no_figures(
+    words: list[str], asked: dict[str, Any], tmp_path: Path
+) -> None:
+    asked["results"] = []
+    assert main(["bench", "--all", "--path", str(tmp_path), *words]) == 1
+    assert asked["tasks"] == []
 
 
 def test_a_task_takes_its_type_from_its_own_folders(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -160,6 +160,27 @@ def test_types_on_which_others_depend_are_found_and_not_chosen_from(tmp_path, ca
     assert err.startswith("1 of 1 types ")
 
 
+def test_types_on_which_others_depend_are_not_chosen_from_beside_a_recording(tmp_path, capsys):
+    make_files(tmp_path, {"q/msg/B.msg": "int16 c\n"})
+    bag = str(make_recording(tmp_path, "bag"))
+    assert main(["cover", "--bag", bag, "--depends", str(tmp_path)]) == 0
+    out, err = capsys.readouterr()
+    assert "q/msg/B" not in out and " of 4 types " in err
+
+
+@pytest.mark.parametrize("option", ["--out", "--check"])
+def test_nothing_is_no_covering_set(tmp_path, capsys, option):
+    make_files(tmp_path / "src", {"p/msg/Bad.msg": "int33 a\n"})
+    file = tmp_path / "chosen.txt"
+    if option == "--check":
+        file.write_text("std_msgs/msg/Bool\n")
+    assert main(["cover", "--path", str(tmp_path / "src"), option, str(file)]) == 1
+    told = capsys.readouterr().err.splitlines()
+    assert told[0].startswith("left out: p/msg/Bad: ")
+    assert told[-1] == "error: there are no types to choose from"
+    assert file.exists() == (option == "--check")
+
+
 def test_types_of_a_recording_are_chosen_from(tmp_path, capsys):
     bag = str(make_recording(tmp_path, "bag"))
     assert main(["cover", "--bag", bag]) == 0
@@ -168,12 +189,19 @@ def test_types_of_a_recording_are_chosen_from(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("folder", "where"), [("src", "any of the folders has;"), (None, "any of lyrical has;")]
+    ("origin", "where"),
+    [
+        ("--path", "any of the folders has;"),
+        ("--bag", "any of the recordings has;"),
+        (None, "any of lyrical has;"),
+    ],
 )
-def test_the_file_tells_where_its_types_are_from(tmp_path, folder, where):
-    make_files(tmp_path, {"src/p/msg/A.msg": "int16 a\n"})
+def test_the_file_tells_where_its_types_are_from(tmp_path, origin, where):
+    folder = make_files(tmp_path, {"src/p/msg/A.msg": "int16 a\n"}) / "src"
     path = tmp_path / "chosen.txt"
-    words = ["--path", str(tmp_path / folder)] if folder else ["std_msgs/msg/Bool"]
+    words = ["std_msgs/msg/Bool"]
+    if origin is not None:
+        words = [origin, str(folder if origin == "--path" else make_recording(tmp_path, "bag"))]
     assert main(["cover", *words, "--out", str(path)]) == 0
     assert where in path.read_text().splitlines()[0]
 

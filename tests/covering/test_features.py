@@ -86,6 +86,15 @@ def test_builtin_types_have_fields_and_no_text(tmp_path):
     assert family(found, "definition") == {"field message", "field uint32", "field uint8"}
 
 
+def test_equal_types_have_the_productions_of_their_own_texts(tmp_path):
+    found = []
+    for name, text in (("one", "uint8 a 1\n"), ("other", "uint8 a 1  # one\n")):
+        ours = library(tmp_path / name, {"p/T": text})
+        message = ours.message("p/T")
+        found.append(family(all_features(ours, message, build_plan(lay_out(message))), "grammar"))
+    assert found[0] != found[1] and any("COMMENT" in production for production in found[1])
+
+
 def test_the_cost_of_a_type_is_that_of_its_steps(tmp_path):
     message = library(tmp_path, {"p/T": "uint64[3] a\nuint8 b\nuint8 c\n"}).message("p/T")
     plans = [build_plan(lay_out(message), bus_bytes=bus) for bus in (1, 8)]

@@ -156,6 +156,12 @@ def test_numbers_have_three_digits_that_matter(value, text):
         (120, "2 min 0 s"),
         (7199, "119 min 59 s"),
         (7200, "2 h 0 min"),
+        # Numbers are rounded to seconds or minutes, of which no more than 59 are left.
+        (179.4, "2 min 59 s"),
+        (179.6, "3 min 0 s"),
+        (7259, "2 h 1 min"),
+        (10_769, "2 h 59 min"),
+        (10_771, "3 h 0 min"),
     ],
 )
 def test_units_of_time_change_at_their_limits(value, text):

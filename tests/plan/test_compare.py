@@ -10,6 +10,7 @@ from firm_hdl import load_message
 from firm_hdl.plan import build_plan, to_yaml
 from firm_hdl.plan.compare import Change, _step_names, compare
 from firm_hdl.wire import lay_out
+from tests.strategies import make
 
 
 def plan(name, **options):
@@ -116,6 +117,38 @@ def test_texts_that_are_no_plans_are_refused(text, is_old):
     texts = [text, "steps: {}"] if is_old else ["steps: {}", text]
     with pytest.raises(ValueError, match=r"^Not (YAML|a plan: it has no steps)"):
         compare(*texts)
+
+
+@pytest.mark.parametrize(
+    ("line", "again", "where", "key"),
+    [
+        ("  x: float64\n", "  x: float64\n", "leaves", "x"),
+        ("    next: end\n", "    next: end\n", "step 2", "next"),
+        # The last one alone would be the same plan.
+        ("  step 1:", "  step 1:\n    next: end\n", "steps", "step 1"),
+    ],
+)
+def test_a_key_that_is_there_twice_is_no_plan(line, again, where, key):
+    text = to_yaml(plan("geometry_msgs/msg/Point"))
+    twice = text.replace(line, again + line)
+    assert twice.count(line) == text.count(line) + 1 == 2
+    first = next(n for n, each in enumerate(twice.splitlines(), 1) if f"{where}:" in each) + 1
+    message = rf"^Not a plan: the mapping in line {first} has '{key}' twice$"
+    for texts in ((text, twice), (twice, text)):
+        with pytest.raises(ValueError, match=message):
+            compare(*texts)
+
+
+def test_loops_that_are_tried_in_another_order_are_a_change():
+    pair = make("ros1", {"x": "uint64", "y": "uint64"}, "Pair")
+    row = make("ros1", {"p": (pair, "[2]")}, "Row")
+    old = build_plan(lay_out(make("ros1", {"rows": (row, "[3]")})))
+    *others, last = old.steps
+    (inner, outer) = last.exits.repeats
+    exits = replace(last.exits, repeats=(outer, inner))
+    new = replace(old, steps=(*others, replace(last, exits=exits)))
+    (change,) = differences(old, new)
+    assert change.endswith(".next.order: loop 1 again, loop 0 again -> loop 0 again, loop 1 again")
 
 
 @pytest.mark.parametrize("content", ["", "5", "words of", "[a]"])

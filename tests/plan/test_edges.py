@@ -151,3 +151,12 @@ def test_paddings_count_from_the_end_of_the_header():
     built = build_plan(lay_out(make("ros2", {"s": "string<=3", "d": "float64"})), bus_bytes=1)
     (found,) = paddings(built).values()
     assert found == {0, 1, 2, 3, 4}
+
+
+@pytest.mark.parametrize(
+    ("kind", "counts"), [("uint8", []), ("uint16", [0, 1]), ("uint32", range(4))]
+)
+def test_paddings_of_each_alignment_are_decisions(kind, counts):
+    built = build_plan(lay_out(make("ros2", {"s": "string", "n": kind})))
+    found = {edge.way for edge in edges(built) if edge.way.startswith("padding")}
+    assert found == {f"padding {count}" for count in counts}

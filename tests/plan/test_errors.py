@@ -199,6 +199,26 @@ def test_a_length_over_the_bound_is_written_as_promised(bus_bytes):
 
 
 @every_bus
+def test_lengths_of_the_bound_are_written_without_an_error(bus_bytes):
+    plan = plan_for(bus_bytes)
+    value = changed(s="abcdef", ps=[{"x": 1, "y": 2}] * 3)
+    packet, status = encode(plan, to_transfers(plan, MESSAGE, value))
+    assert status == "OK" and read(packet, bus_bytes) == ("OK", value)
+
+
+@every_bus
+@pytest.mark.parametrize(("text", "packet"), [("", "00000000"), ("a", "020000006100|0000")])
+def test_an_empty_string_may_be_written_without_its_nul(bus_bytes, text, packet):
+    message = make("ros2", {"s": "string", "x": "uint32"})
+    plan = plan_for(bus_bytes, message)
+    streams = to_transfers(plan, message, {"s": text, "x": 5})
+    want = bytes.fromhex(f"00010000{packet}05000000".replace("|", ""))
+    assert encode(plan, streams, bare_strings=True) == (want, "OK")
+    # Without the option, the NUL is always there.
+    assert len(encode(plan, streams)[0]) == 16
+
+
+@every_bus
 @pytest.mark.parametrize("name", ["s.items", "q.items", "f.items"])
 @pytest.mark.parametrize("which", [0, -1])
 def test_last_that_disagrees_is_reported_and_the_length_rules(bus_bytes, name, which):

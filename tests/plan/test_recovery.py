@@ -12,6 +12,7 @@ from firm_hdl.plan import Fixed, build_plan, decode
 from firm_hdl.plan.recovery import Recovery, recovery
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
+from tests.steps import calls_at_most
 from tests.strategies import make
 
 AFTER = 4
@@ -198,3 +199,13 @@ def test_what_padding_may_save_is_claimed_beside_the_budget():
 def test_a_short_sequence_takes_few_words(bound, words):
     plan = build_plan(lay_out(make("ros2", {"a": f"uint8[<={bound}]"}, "T"), "ros1"))
     assert recovery(plan, 2).longest_packet == 2 + words
+
+
+def test_large_elements_are_not_followed_step_by_step():
+    element = make("ros1", {"a": "uint8[131072]"}, "Element")
+    plan = build_plan(lay_out(make("ros1", {"e": (element, "[]")})))
+    # Three elements alone have 49,152 words.
+    with calls_at_most(100_000):
+        found = recovery(plan, 2)
+    # 16 MiB have room for 127 whole elements beside the length.
+    assert found.longest_packet == 2 + 127 * (131072 // 8)

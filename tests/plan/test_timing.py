@@ -16,6 +16,7 @@ PAIR = make("ros1", {"x": "uint16", "y": "uint16"}, "Pair")
 WIDE = make("ros1", {"x": "uint64", "y": "uint64"}, "Wide")
 TEXT = make("ros1", {"s": "string"}, "Text")
 ROW = make("ros1", {"texts": (TEXT, "[]")}, "Row")
+TABLE = make("ros1", {"rows": (ROW, "[]")}, "Table")
 
 
 def plan_of(fields, bus_bytes, dialect="ros1"):
@@ -50,6 +51,8 @@ def test_figures_of_a_type_of_one_size():
         ({"d": "uint64[3]", "t": (TEXT, "[<=3]")}, 8, cost(28, 4, 5), cost(43, 6, 8, 8 + 2)),
         # Nested loops have 4 of each: the length of a row is between the lengths of texts.
         ({"d": "uint64[3]", "rows": (ROW, "[]")}, 8, cost(28, 4, 5), cost(108, 14, 25, 24 + 4 * 3)),
+        # With one more level, 2 of each: 2 tables and 4 rows, with 2 texts each.
+        ({"d": "uint64[3]", "ts": (TABLE, "[]")}, 8, cost(28, 4, 5), cost(84, 11, 19, 18 + 4)),
         # The deserializer knows too late that the length of `w` ends the packet.
         ({"s": "string", "w": (WIDE, "[]")}, 8, cost(8, 1, 2, 3), cost(8, 1, 2, 3)),
         # So elements that fill the bus are easier than no elements.
@@ -152,7 +155,12 @@ def test_figures_in_words(fields, bus_bytes, text):
 
 @pytest.mark.parametrize(
     ("cycles", "text"),
-    [(1, "1 cycle (0.01 us at"), (99_999, "99999 cycles (999.99 us at"), (250_000, "(2.5 ms at")],
+    [
+        (1, "1 cycle (0.01 us at"),
+        (99_999, "99999 cycles (999.99 us at"),
+        (100_000, "(1.0 ms at"),
+        (250_000, "(2.5 ms at"),
+    ],
 )
 def test_a_recovery_has_a_time_in_its_unit(cycles, text):
     figures = timing(plan_of({"a": "uint32"}, 4))

@@ -63,6 +63,8 @@ CASES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("rich", {"runs.1.items": -1}, ["run 1: its leaf is not of kind 'items'"]),
     ("narrow", {"runs.0.items": 0}, ["run 0: items are wider than the bus"]),
     ("rich", {"runs.0.terminated": True}, ["run 0: a NUL follows items that are not bytes"]),
+    # Of two reasons, the one about the items.
+    ("rich", {"runs.2.terminated": True}, ["run 2: a NUL follows items that are not bytes"]),
     ("entered", {"runs.0.terminated": True}, ["run 0: a NUL follows items of a constant count"]),
     # Steps.
     ("rich", {"steps": ()}, ["there are no steps"]),
