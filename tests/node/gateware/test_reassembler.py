@@ -38,10 +38,9 @@ def frame(
 
 def whole(bench, frames):
     """Return the numbers of the messages that are whole, and the counters."""
-    bad = [DAMAGED in each for each in frames if isinstance(each, tuple)]
-    assert all(bad)
-    sides = [(lambda last, is_bad=isinstance(each, tuple): is_bad & last) for each in frames]
-    packets = [each[0] if isinstance(each, tuple) else each for each in frames]
+    pairs = [each if isinstance(each, tuple) else (each, "") for each in frames]
+    packets = [packet for packet, _ in pairs]
+    sides = [(lambda last, what=what: (what == DAMAGED) & last) for _, what in pairs]
     source = list(beats(packets, BUS, sides))
     seen = bench.run({"i": source}, {"i": len(source)}, settle=20)
     found = []
