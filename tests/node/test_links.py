@@ -17,6 +17,7 @@ from firm_hdl.node.messages import NodeMessage
 from firm_hdl.sim import Stalls
 from tests.depth import by_depth
 from tests.gateware.packets.bench import PacketBench, beats
+from tests.node import cobs
 from tests.node.traffic import (
     counters_of,
     frames_of,
@@ -304,6 +305,31 @@ def test_damaged_bytes_lose_their_own_frame_only():
     _, out, counters = bench.run({"bytes_in": list(stream)}, {"received": 9})
     assert out == [m for n, m in enumerate(messages) if n not in wrong]
     assert counters["passed"] == 9 and counters["lost"] == 3 and counters["malformed"] >= 2
+
+
+def test_what_is_too_short_for_a_header_is_counted_once():
+    """With and without a whole CRC; two zeros in a row are no frame."""
+    stream = b"".join(b"\0" + cobs.encode(b"abcd"[:size]) + b"\0" for size in (1, 2, 3, 4))
+    stream += b"".join(write_frame(bytes(size)) for size in (0, 1, 15)) + bytes(3)
+    message = some(1, 1, (20,))
+    stream += write_frame(frames_of(message)[0])
+    _, out, counters = byte_bench().run({"bytes_in": list(stream)}, {"received": 1})
+    assert out == message and counters == {"passed": 1, "malformed": 7}
+
+
+def test_a_block_that_is_cut_is_no_frame_whatever_its_crc_says():
+    messages = some(3, 1, (20,))
+    parts = [bytearray(write_frame(frame)) for frame in frames_of(messages)]
+    # The last block says that a byte more follows; those that came have the right CRC.
+    at = 1
+    while at + parts[1][at] < len(parts[1]) - 1:
+        at += parts[1][at]
+    parts[1][at] += 1
+    stream = b"".join(parts)
+    _, out, counters = byte_bench().run({"bytes_in": list(stream)}, {"received": 2})
+    assert out == [messages[0], messages[2]]
+    assert counters == {"passed": 2, "cut": 1, "lost": 1}
+    assert received_by_host(ByteStreamReader().feed(stream))[0] == out
 
 
 def test_a_uart_link_talks_to_itself():

@@ -8,6 +8,7 @@ import struct
 import pytest
 
 from firm_hdl.node.gateware.reassembler import Reassembler
+from firm_hdl.sim import Stalls
 from tests.gateware.packets.bench import PacketBench, beats, with_side
 from tests.node.traffic import counters_of
 
@@ -36,13 +37,13 @@ def frame(
     return header + payload
 
 
-def whole(bench, frames):
+def whole(bench, frames, **options):
     """Return the numbers of the messages that are whole, and the counters."""
     pairs = [each if isinstance(each, tuple) else (each, "") for each in frames]
     packets = [packet for packet, _ in pairs]
     sides = [(lambda last, what=what: (what == DAMAGED) & last) for _, what in pairs]
     source = list(beats(packets, BUS, sides))
-    seen = bench.run({"i": source}, {"i": len(source)}, settle=20)
+    seen = bench.run({"i": source}, {"i": len(source)}, settle=20, **options)
     found = []
     for packet, aborted in zip(seen.packets["o"], seen.sides["o"], strict=True):
         if 1 not in aborted:
@@ -139,3 +140,9 @@ def test_which_messages_are_whole(bench, frames, passed, counters):
 def test_a_fragment_without_bytes_is_no_part_of_its_message(bench):
     frames = [frame(0, A, **FIRST), frame(0, **SECOND), frame(0, B, **SECOND), frame(1)]
     assert whole(bench, frames) == ([0, 1], {"stray": 1})
+
+
+def test_a_message_that_is_cut_counts_once_however_long_its_end_waits(bench):
+    frames = [frame(0, A, **FIRST), frame(1, A, **FIRST), frame(2)]
+    late = {"o": Stalls.bits("0000001")}
+    assert whole(bench, frames, stalls=late) == ([2], {"cut": 2})
