@@ -7,11 +7,15 @@ import struct
 
 import pytest
 
+from firm_hdl.frontend import Library
+from firm_hdl.node import Node, read_description_text
 from firm_hdl.node.messages import NodeMessage
 from firm_hdl.sim import Stalls
+from tests.frontend.workspace import make_files
+from tests.gateware.packets.bench import PacketBench, beats
 from tests.node.samples import read
 from tests.node.test_core import CoreBench
-from tests.node.traffic import messages_of
+from tests.node.traffic import frames_of, messages_of, received_by_host
 
 TEXT = """\
 node: n
@@ -90,3 +94,43 @@ def test_a_message_has_the_size_that_the_description_allows_at_most(bench):
     seen = bench.run(sent, want={"short": 2}, settle=40)
     assert seen.packets["short"] == [string(b"abc"), string(b"ab")]
     assert bench.counters(SHORT, "in") == {"passed": 2, "length": 1, "bytes_low": 12 + 11}
+
+
+ROS_1 = """\
+node: n
+bus_bytes: 4
+accelerator: firm_hdl.node.loop:Loop
+subscribe:
+  /a: {type: std_msgs/String, memory_bytes: 64}
+publish:
+  /b: {type: std_msgs/String, memory_bytes: 64}
+"""
+
+
+def string_of_ros_1(text):
+    """Return a String of ROS 1: no encapsulation, and no zero at its end."""
+    return struct.pack("<I", len(text)) + text
+
+
+def test_messages_of_ros_1_pass_through_gates_and_converters():
+    description = read_description_text(ROS_1, library=Library("noetic"))
+    node = Node(description)
+    bench = PacketBench(node, {"in": node.link.frames_in}, {"out": (node.link.frames_out, 4, None)})
+    good = [string_of_ros_1(text) for text in (b"", b"abcde", b"xyz")]
+    # One of ROS 2 is none of ROS 1: it claims more bytes than there are.
+    packets = [good[0], string(b"abc"), *good[1:]]
+    sent = frames_of(NodeMessage(topic=1, packet=packet) for packet in packets)
+    seen = bench.run({"in": list(beats(sent, 4))}, {"out": 3}, settle=30)
+    out, _ = received_by_host(seen.packets["out"])
+    assert out == [NodeMessage(topic=2, packet=packet) for packet in good]
+
+
+def test_services_of_ros_1_take_their_own_requests(tmp_path):
+    make_files(tmp_path, {"own/srv/Set.srv": "bool on\n---\nbool ok\n"})
+    text = "node: n\nserve: {/a: {type: own/Set, memory_bytes: 64}}\n"
+    bench = CoreBench(read_description_text(text, library=Library("noetic", [tmp_path])))
+    # A boolean of one byte, and one that has the encapsulation of ROS 2 before it.
+    sent = [NodeMessage(topic=1, packet=packet, tag=5) for packet in (b"\1", b"\0\1\0\0\1")]
+    seen = bench.run(sent, want={"a": 1}, settle=40)
+    assert seen.packets["a"] == [b"\1"] and seen.sides["a"] == [{5}]
+    assert bench.counters(1, "in")["trailing"] == 1
