@@ -61,3 +61,14 @@ def test_a_callback_may_close_its_participant(pair, caplog):
         writer.write(b"1234")
         assert wait(lambda: not two._thread.is_alive())
     assert not caplog.records
+
+
+def test_a_participant_that_has_left_says_nothing_more():
+    made = Participant(**OPTIONS)
+    writer, reader = made.writer(TOPIC, TYPE), made.reader(TOPIC, TYPE, lambda sample: None)
+    made.close()
+    sent = made.counters["sent"]
+    for each in (writer, reader):
+        each.close()
+    made.close()
+    assert made.counters["sent"] == sent > 0 and not made._core.outbox

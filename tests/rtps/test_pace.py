@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.rtps import Participant, Qos
-from firm_hdl.rtps.pacing import Pacer
 from firm_hdl.rtps.transport import Transport
 from tests.rtps.test_participant import DOMAIN, OPTIONS, TOPIC, TYPE, wait
 
@@ -56,24 +55,3 @@ def test_datagrams_that_the_system_does_not_take_are_counted():
     assert wait(lambda: transport.sizes)
     made.close()
     assert made.counters["dropped"] == made.counters["sent"] == len(transport.sizes)
-
-
-def passed(pacer, now):
-    """Send datagrams of 1,024 bytes while there is no pause; return how many, and the pause."""
-    for count in range(1000):
-        if (pause := pacer.wait(now)) > 0:
-            return count, pause
-        pacer.note(1024)
-    raise AssertionError
-
-
-def test_after_a_pause_a_chunk_passes_at_once():
-    """64 KiB at first, then 16 KiB after each pause, at 1,000 bytes per second."""
-    pacer = Pacer(1000.0)
-    assert passed(pacer, 0.0) == (64, pytest.approx(16.384))
-    # The pause is not over.
-    assert passed(pacer, 10.0) == (0, pytest.approx(6.384))
-    # 17,000 bytes: the 17th datagram has 616 of them, and leaves a debt of 408.
-    assert passed(pacer, 17.0) == (17, pytest.approx(16.792))
-    # However long nothing is sent, no more than 64 KiB pass.
-    assert passed(pacer, 1e6) == (64, pytest.approx(16.384))
