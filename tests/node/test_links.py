@@ -333,6 +333,24 @@ def test_a_block_that_is_cut_is_no_frame_whatever_its_crc_says():
     assert received_by_host(ByteStreamReader().feed(stream))[0] == out
 
 
+def test_a_link_stores_as_many_messages_as_it_may():
+    bench = LinkBench(
+        part := ByteLink(8, Link(kind="uart", memory_bytes=4096, packets=2)), 8,
+        {"bytes_in": part.bytes_in},
+    )  # fmt: skip
+    messages = some(20, 1, (1,))
+    stream = b"".join(map(write_frame, frames_of(messages)))
+    late = {"received": Stalls.bits("0" * 4 * len(stream) + "1" * 10**4)}
+    _, out, counters = bench.run({"bytes_in": list(stream)}, {"received": 2}, stalls=late)
+    # Besides those two, some are on their way to the output.
+    assert 2 <= len(out) <= 10 and counters == {"passed": len(out), "full": 20 - len(out)}
+
+
+@pytest.mark.parametrize(("baud", "cycles"), [(13_000_000, 8), (13_600_000, 7), (1_000_000, 100)])
+def test_a_bit_takes_the_nearest_number_of_cycles(baud, cycles):
+    assert UartLink(8, Link(kind="uart", baud=baud), 100e6).cycles == cycles
+
+
 def test_a_uart_link_talks_to_itself():
     """Two links on a line, both ways at once."""
     m = Module()

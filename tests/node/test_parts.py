@@ -215,6 +215,9 @@ def test_a_line_that_breaks_is_no_byte():
     late = {"o": Stalls.bits("0" * 200 + "1" * 200)}
     seen = bench.run({"line": levels[:40] * 3}, {"line": 120, "o": 1}, stalls=late, deadline=400)
     assert seen.others["o"] == [0x5A] and len(seen.events["overrun"]) == 2
+    # A byte without a stop bit is no overrun, though the one before it was not taken.
+    seen = bench.run({"line": levels[:92]}, {"line": 92, "o": 1}, stalls=late, deadline=400)
+    assert len(seen.events["broken"]) == 1 and not seen.events["overrun"]
     with pytest.raises(ValueError, match=r"^A bit must take 4 cycles at least, not 3$"):
         UartReceiver(3)
 

@@ -329,13 +329,20 @@ def test_a_sample_in_fragments_keeps_its_inline_qos():
     assert whole is not None and whole.inline == inline and whole.payload == bytes(12)
 
 
-@pytest.mark.parametrize("others", [0, 1])
-def test_a_sample_that_takes_all_memory_gives_it_back(others):
+@pytest.mark.parametrize(
+    ("parts", "left"),
+    [
+        ([(9, 1), (9, 2), (9, 3)], []),
+        # Older ones make room, and a newer one does not.
+        ([(1, 1), (9, 1), (9, 2)], [9, 9]),
+        ([(9, 1), (1, 1), (9, 2)], [1]),
+    ],
+)
+def test_a_sample_without_memory_gives_all_of_its_own_back(parts, left):
     # A fragment of 4 bytes takes 204.
     budget = Budget(2 * 204)
     reassembly = Reassembly(budget)
-    for number in range(1, others + 1):
-        assert reassembly.add(part(number, 1)) is None
-    for first in (1, 2, 3):
-        assert reassembly.add(part(9, first)) is None
-    assert budget.used == 0 and 9 not in reassembly and 1 not in reassembly
+    for number, first in parts:
+        assert reassembly.add(part(number, first)) is None
+    assert budget.used == 204 * len(left)
+    assert {number for number in (1, 9) if number in reassembly} == set(left)
