@@ -17,6 +17,7 @@ from firm_hdl.node.messages import NodeMessage
 from firm_hdl.sim import Stalls
 from tests.depth import by_depth
 from tests.gateware.packets.bench import PacketBench, beats
+from tests.node import cobs
 from tests.node.traffic import (
     counters_of,
     frames_of,
@@ -304,6 +305,50 @@ def test_damaged_bytes_lose_their_own_frame_only():
     _, out, counters = bench.run({"bytes_in": list(stream)}, {"received": 9})
     assert out == [m for n, m in enumerate(messages) if n not in wrong]
     assert counters["passed"] == 9 and counters["lost"] == 3 and counters["malformed"] >= 2
+
+
+def test_what_is_too_short_for_a_header_is_counted_once():
+    """With and without a whole CRC; two zeros in a row are no frame."""
+    stream = b"".join(b"\0" + cobs.encode(b"abcd"[:size]) + b"\0" for size in (1, 2, 3, 4))
+    # The last one before a frame is as short as can be.
+    stream += b"".join(write_frame(bytes(size)) for size in (1, 15, 0)) + bytes(3)
+    message = some(1, 1, (20,))
+    stream += write_frame(frames_of(message)[0])
+    _, out, counters = byte_bench().run({"bytes_in": list(stream)}, {"received": 1})
+    assert out == message and counters == {"passed": 1, "malformed": 7}
+
+
+def test_a_block_that_is_cut_is_no_frame_whatever_its_crc_says():
+    messages = some(3, 1, (20,))
+    parts = [bytearray(write_frame(frame)) for frame in frames_of(messages)]
+    # The last block says that a byte more follows; those that came have the right CRC.
+    at = 1
+    while at + parts[1][at] < len(parts[1]) - 1:
+        at += parts[1][at]
+    parts[1][at] += 1
+    stream = b"".join(parts)
+    _, out, counters = byte_bench().run({"bytes_in": list(stream)}, {"received": 2})
+    assert out == [messages[0], messages[2]]
+    assert counters == {"passed": 2, "cut": 1, "lost": 1}
+    assert received_by_host(ByteStreamReader().feed(stream))[0] == out
+
+
+def test_a_link_stores_as_many_messages_as_it_may():
+    bench = LinkBench(
+        part := ByteLink(8, Link(kind="uart", memory_bytes=4096, packets=2)), 8,
+        {"bytes_in": part.bytes_in},
+    )  # fmt: skip
+    messages = some(20, 1, (1,))
+    stream = b"".join(map(write_frame, frames_of(messages)))
+    late = {"received": Stalls.bits("0" * 4 * len(stream) + "1" * 10**4)}
+    _, out, counters = bench.run({"bytes_in": list(stream)}, {"received": 2}, stalls=late)
+    # Besides those two, some are on their way to the output.
+    assert 2 <= len(out) <= 10 and counters == {"passed": len(out), "full": 20 - len(out)}
+
+
+@pytest.mark.parametrize(("baud", "cycles"), [(13_000_000, 8), (13_600_000, 7), (1_000_000, 100)])
+def test_a_bit_takes_the_nearest_number_of_cycles(baud, cycles):
+    assert UartLink(8, Link(kind="uart", baud=baud), 100e6).cycles == cycles
 
 
 def test_a_uart_link_talks_to_itself():

@@ -215,6 +215,9 @@ def test_a_line_that_breaks_is_no_byte():
     late = {"o": Stalls.bits("0" * 200 + "1" * 200)}
     seen = bench.run({"line": levels[:40] * 3}, {"line": 120, "o": 1}, stalls=late, deadline=400)
     assert seen.others["o"] == [0x5A] and len(seen.events["overrun"]) == 2
+    # A byte without a stop bit is no overrun, though the one before it was not taken.
+    seen = bench.run({"line": levels[:92]}, {"line": 92, "o": 1}, stalls=late, deadline=400)
+    assert len(seen.events["broken"]) == 1 and not seen.events["overrun"]
     with pytest.raises(ValueError, match=r"^A bit must take 4 cycles at least, not 3$"):
         UartReceiver(3)
 
@@ -230,10 +233,10 @@ def packet(size):
     return (size - 4).to_bytes(4, "little") + bytes(range(1, size - 3))
 
 
-def through_gate(requests, bus=8, **options):
+def through_gate(requests, bus=8, most=1000, **options):
     """Send pairs of a packet and a tag; return those that came out, and the counters."""
     store = Store(
-        message=TEXT, max_message_bytes=1000, memory_bytes=ROOM, packets=4, when_full="drop"
+        message=TEXT, max_message_bytes=most, memory_bytes=ROOM, packets=4, when_full="drop"
     )
     gate = RequestGate(bus, store, "ros1")
     bench = PacketBench(
@@ -278,6 +281,11 @@ def test_requests_that_nobody_takes_are_dropped_whole_and_counted():
     assert [tag for _, tag in out] == sorted(tag for _, tag in out)
     assert counters == {"passed": len(out), "full": 60 - len(out)}
     assert 3 < len(out) < 40
+
+
+def test_a_request_has_the_size_that_is_allowed_at_most():
+    requests = [(packet(size), size) for size in (20, 21, 19)]
+    assert through_gate(requests, most=20) == (requests[::2], {"passed": 2, "length": 1})
 
 
 # The clock and the counters of bytes, alone.

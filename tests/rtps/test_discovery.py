@@ -191,6 +191,25 @@ def test_endpoints_are_ended_by_their_own_participant_alone(station):
     assert [each.guid for each in station.core.remotes(writers=True)] == [theirs.guid]
 
 
+def test_what_is_for_all_readers_reaches_each_that_is_matched(station):
+    """8.3.8.2: reader 0 means all of them."""
+    readers = [station.reader() for _ in range(3)]
+    other = station.reader(topic="rt/other")
+    announce(station, 0.0)
+    tell(station, 0.0, *announcement(WRITER, 1, PUBLICATIONS_WRITER))
+    happened(station)
+    begin = Heartbeat(reader=0, writer=0x203, first=1, last=0, count=1, final=True)
+    sample = Data(reader=0, writer=0x203, sequence_number=1, payload=b"abcd")
+    tell(station, 0.0, begin, sample)
+    arrived = [event.reader for event in station.core.events]
+    assert sorted(map(bytes, arrived)) == sorted(bytes(each.guid) for each in readers)
+    # One that is named is the only one.
+    station.core.events.clear()
+    for number, each in enumerate((readers[1], other), 2):
+        tell(station, 0.0, replace(sample, reader=each.guid.entity, sequence_number=number))
+    assert [event.reader for event in station.core.events] == [readers[1].guid]
+
+
 def test_policies_that_change(station):
     station.reader()
     announce(station, 0.0)

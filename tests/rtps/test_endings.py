@@ -61,3 +61,16 @@ def test_a_callback_may_close_its_participant(pair, caplog):
         writer.write(b"1234")
         assert wait(lambda: not two._thread.is_alive())
     assert not caplog.records
+
+
+def test_a_participant_that_has_left_says_nothing_more(pair):
+    one, two = pair
+    writer, reader = one.writer(TOPIC, TYPE), one.reader(TOPIC, TYPE, lambda sample: None)
+    two.reader(TOPIC, TYPE, lambda sample: None)
+    assert writer.wait_for_match()
+    one.close()
+    sent = one.counters["sent"]
+    for each in (writer, reader):
+        each.close()
+    one.close()
+    assert one.counters["sent"] == sent > 0 and not one._core.outbox

@@ -10,10 +10,11 @@ import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from firm_hdl.rtps import Guid, Sample, SampleIdentity
-from firm_hdl.rtps.ros import names, services
+from firm_hdl.rtps.ros import Context, Node, names, services
 from firm_hdl.rtps.ros.graph import GraphInfo, NodeInfo
 from firm_hdl.rtps.ros.services import Client, Service
 from firm_hdl.rtps.wire.octets import MalformedError
+from tests.rtps.test_participant import OPTIONS
 
 GUIDS = [Guid(bytes(range(12)), entity) for entity in (0x1C1, 0x103, 0x204, 0x304)]
 INFO = GraphInfo(
@@ -243,6 +244,57 @@ def test_replies_wait_neither_long_nor_in_great_number(monkeypatch, patience, le
     assert [reply for reply, _ in replies.sent] == left
 
 
+def test_a_reply_is_sent_if_its_reader_comes_while_it_is_put_aside():
+    class Late(Replies):
+        """Replies whose reader comes between the first look at the readers and the next one."""
+
+        def __getattribute__(self, name):
+            if name == "matched":
+                found, self.readers = self.readers, (SimpleNamespace(guid=READER.writer),)
+                return found
+            return super().__getattribute__(name)
+
+    service, replies = serving()
+    replies = Late()
+    replies.readers = ()
+    service.open(SimpleNamespace(), replies)
+    service.on_request(request(1, READER))
+    assert replies.sent == [(b"1", SampleIdentity(READER.writer, 1))]
+
+
+def test_calls_that_are_given_up_are_forgotten():
+    client = Client(SimpleNamespace(wait_until=lambda condition, timeout: True))
+    client.open(endpoint_of(1), endpoint_of(1, 0x104))
+    client.call_async(b"?").cancel()
+    assert not client._pending
+    with pytest.raises(TimeoutError, match=r"^no reply in 0\.001 s$"):
+        client.call(b"?", timeout=0.001)
+    assert not client._pending
+
+
+def test_a_call_waits_for_its_server_and_its_reply_together(monkeypatch):
+    now, waited = [100.0], []
+
+    class Answer:
+        def result(self, timeout):
+            waited.append(timeout)
+            return b"!"
+
+        def cancel(self):
+            waited.append("cancelled")
+
+    def wait_until(condition, timeout):
+        waited.append(timeout)
+        now[0] += 7.5
+        return True
+
+    monkeypatch.setattr(services, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    client = Client(SimpleNamespace(wait_until=wait_until))
+    client.call_async = lambda payload: Answer()
+    assert client.call(b"?", timeout=10.0) == client.call(b"?", timeout=5.0) == b"!"
+    assert waited == [10.0, 2.5, "cancelled", 5.0, 0.0, "cancelled"]
+
+
 def test_requests_that_come_before_the_service_is_open_are_answered_in_order():
     service, replies = Service(None, lambda payload: payload), Replies()
     for number in (1, 2):
@@ -263,3 +315,16 @@ def test_replies_of_futures(caplog):
     assert replies.sent == [] and [each.message for each in caplog.records] == ["a service failed"]
     futures[2].set_result(b"!")
     assert replies.sent == [(b"!", SampleIdentity(GUIDS[1], 2))]
+
+
+def test_a_context_has_a_node_of_each_complete_name_once():
+    with Context(**OPTIONS) as context:
+        made = [Node("n", space, context=context) for space in ("/a", "/b", "/", "/a/b")]
+        for space in ("/a", "a", "/a/", "/", "/a/b"):
+            with pytest.raises(ValueError, match=r"^there is a node 'n' in '.*' already$"):
+                Node("n", space, context=context)
+        # One that is closed makes room for another one.
+        made[1].close()
+        Node("n", "/b", context=context)
+        names_of = [(each.namespace, each.name) for each in context.nodes()]
+        assert sorted(names_of) == [("/", "n"), ("/a", "n"), ("/a/b", "n"), ("/b", "n")]

@@ -162,6 +162,27 @@ def test_fields_of_later_versions_are_skipped():
     assert (read.submessage.payload, len(read.submessage.inline.items)) == (b"abcd", 1)
 
 
+@pytest.mark.parametrize("version", [b"\2\0", b"\2\1", b"\2\2", b"\2\4", b"\2\xff"])
+def test_other_minor_versions_are_read(version):
+    """8.6.1: old releases of peers write 2.1 and 2.2, and later ones keep to what is known."""
+    datagram = message.write(OTHER, [HEARTBEAT])
+    content = message.read(datagram[:4] + version + datagram[6:], ME)
+    assert [each.submessage for each in content.received] == [HEARTBEAT] and not content.error
+    for major in (1, 3):
+        with pytest.raises(MalformedError, match=rf"^RTPS version {major}\.{version[1]}$"):
+            message.read(datagram[:4] + bytes([major, version[1]]) + datagram[6:], ME)
+
+
+def test_the_identifier_of_the_standard_counts_more_than_that_of_a_vendor():
+    standard, own = (bytes([number]) * 16 + bytes(4) + b"\7\0\0\0" for number in (1, 2))
+    both = ParameterList(((0x800F, own), (0x0083, standard)))
+    alone = ParameterList(((0x800F, own),))
+    for vendor, related in ((b"\1\x0f", own), (b"\1\xff", own), (b"\1\x10", None)):
+        assert both.related(vendor) == SampleIdentity(Guid.parse(standard), 7)
+        wanted = None if related is None else SampleIdentity(Guid.parse(related), 7)
+        assert alone.related(vendor) == wanted
+
+
 def test_a_source_by_hand():
     body = bytes.fromhex("00000000 0203 0110") + ME
     read = InfoSource.decode(0, Cursor(body, little=True))

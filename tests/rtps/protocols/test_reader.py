@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from firm_hdl.rtps import Guid
-from firm_hdl.rtps.fragments import Budget
+from firm_hdl.rtps.fragments import Budget, Reassembly
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.numbers import NumberSet
+from firm_hdl.rtps.wire.parameters import ParameterList, Pid
 from firm_hdl.rtps.wire.reliability import AckNack, Gap, HeartbeatFrag, NackFrag
 from tests.rtps.test_endpoints import (
     ADDRESS,
@@ -304,3 +307,42 @@ def test_fragments_are_asked_for_again(sent):
     nacks = sent.take(NackFrag)
     assert [each.sequence_number for each in nacks] == [1, 2, 3, 4] * 2
     assert {each.missing for each in nacks} == {NumberSet(1, (1, 2))}
+
+
+def test_a_sample_that_fragments_have_completed_is_not_waited_for(sent):
+    """What is missing besides is asked for again in the usual time; if nothing is, never."""
+    reader = Listener(sent)
+    reader.on_data_frag(HERE, part(1, 1, 3), None, 1.0)
+    assert reader.got == [1]
+    reader.on_heartbeat(HERE, heartbeat(1, 1, count=2, final=False), 1.0)
+    assert reader.tick(1.0) == float("inf")
+    reader.on_heartbeat(HERE, heartbeat(1, 2, count=3), 1.0)
+    assert reader.tick(1.0) == pytest.approx(1.1)
+
+
+def test_a_sample_in_fragments_keeps_its_inline_qos():
+    """It names the request that a large reply answers."""
+    inline = ParameterList(((Pid.KEY_HASH, bytes(16)),))
+    reassembly = Reassembly(Budget(1 << 20))
+    assert reassembly.add(replace(part(1, 1, 2), inline=inline)) is None
+    whole = reassembly.add(replace(part(1, 3), inline=inline))
+    assert whole is not None and whole.inline == inline and whole.payload == bytes(12)
+
+
+@pytest.mark.parametrize(
+    ("parts", "left"),
+    [
+        ([(9, 1), (9, 2), (9, 3)], []),
+        # Older ones make room, and a newer one does not.
+        ([(1, 1), (9, 1), (9, 2)], [9, 9]),
+        ([(9, 1), (1, 1), (9, 2)], [1]),
+    ],
+)
+def test_a_sample_without_memory_gives_all_of_its_own_back(parts, left):
+    # A fragment of 4 bytes takes 204.
+    budget = Budget(2 * 204)
+    reassembly = Reassembly(budget)
+    for number, first in parts:
+        assert reassembly.add(part(number, first)) is None
+    assert budget.used == 204 * len(left)
+    assert {number for number in (1, 9) if number in reassembly} == set(left)

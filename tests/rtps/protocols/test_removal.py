@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
+
+from firm_hdl.rtps import Qos
 from tests.rtps.network import Network
 
 
@@ -15,3 +19,21 @@ def test_an_endpoint_can_be_removed_twice():
         two.core.remove(reader.guid, network.now)
     assert network.run(5, lambda: not list(two.core.remotes(writers=True)))
     assert writer.matched == reader.matched == ()
+
+
+def test_an_endpoint_that_is_removed_takes_no_memory():
+    network = Network()
+    one, two = network.station(), network.station()
+
+    def use():
+        writer, reader = one.writer(Qos(depth=0)), two.reader()
+        assert network.run(5, lambda: len(writer.matched) == 1)
+        one.write(writer, bytes(100))
+        one.core.remove(writer.guid, network.now)
+        two.core.remove(reader.guid, network.now)
+        return weakref.ref(writer), weakref.ref(reader)
+
+    kept = use()
+    assert network.run(5, lambda: not list(two.core.remotes(writers=True)))
+    gc.collect()
+    assert [each() for each in kept] == [None, None]

@@ -248,6 +248,17 @@ def test_pauses_are_short_again_after_progress(sent):
     assert writer.tick(9.0) == pytest.approx(9.05)
 
 
+def test_pauses_are_short_for_the_first_sample_of_a_reader_that_has_said_nothing(sent):
+    writer = Writer(HERE, KEEP_ALL, sent.append)
+    writer.match(endpoint(THERE), ADDRESS, 0.0)
+    for now in (1.0, 2.0, 3.0, 4.0):
+        writer.tick(now)
+    # Nothing is missing, so the pauses have grown. The sample begins anew.
+    writer.write(b"abcd", 4.0)
+    assert writer.tick(4.0) == pytest.approx(4.05)
+    assert writer.tick(4.05) == pytest.approx(4.15)
+
+
 @pytest.mark.parametrize("answer", ["ack", "fragments"])
 def test_a_reader_that_has_answered_once_is_asked_for_ever(sent, answer):
     writer = Writer(HERE, KEEP_ALL, sent.append)

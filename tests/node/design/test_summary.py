@@ -1,0 +1,101 @@
+"""The summary of a node: figures that follow from its description, written down by hand."""
+
+from __future__ import annotations
+
+from firm_hdl.estimates import estimates_of
+from firm_hdl.node import read_description_text
+from firm_hdl.node.summary import facts_of, summary
+from firm_hdl.plan import build_plan
+from firm_hdl.wire import lay_out
+from tests.node.samples import read
+
+ROS_1 = """\
+node: n
+distro: noetic
+bus_bytes: 4
+clock_mhz: 62.5
+link: udp
+subscribe:
+  /a: {type: geometry_msgs/Vector3, rate_hz: 1000000}
+  /b: {type: geometry_msgs/Vector3, rate_hz: 2000000}
+publish:
+  /c: {type: geometry_msgs/Vector3}
+"""
+
+
+def rows_of(text):
+    return [line.split() for line in text.splitlines() if line[:1].isdigit()]
+
+
+def test_the_head_of_a_node_of_ros_1():
+    # 9 counters of the link, 3 of the node, 11 of each subscription and 6 of the publication.
+    lines = summary(read_description_text(ROS_1)).splitlines()
+    assert lines[0] == "/n: noetic, ros1, 32-bit bus, 62.5 MHz"
+    assert lines[1] == (
+        "link udp: memory_bytes 1024, packets 16, datagram_bytes 1472, data_bytes 1, port 7411, "
+        "host_port 7411"
+    )
+    assert lines[2].startswith("fingerprint ") and lines[2].endswith(", 40 counters")
+    host = ROS_1.replace("link: udp", "link: {kind: udp, host: 10.0.0.7, host_port: 9}")
+    assert (
+        summary(read_description_text(host))
+        .splitlines()[1]
+        .endswith(", port 7411, host 10.0.0.7, host_port 9")
+    )
+    stream = ROS_1.replace("link: udp", "namespace: /r")
+    assert summary(read_description_text(stream)).splitlines()[:2] == [
+        "/r/n: noetic, ros1, 32-bit bus, 62.5 MHz",
+        "link stream",
+    ]
+
+
+def test_rates_add_up_to_a_clock():
+    text = summary(read_description_text(ROS_1))
+    # Three numbers of 8 bytes are 6 beats of 4 bytes, and as many cycles.
+    common = ["geometry_msgs/Vector3", "24", "64"]
+    assert rows_of(text) == [
+        ["1", "subscribe", "/a", *common, "drop", "6", "1e+06", "Hz", "6", "MHz"],
+        ["2", "subscribe", "/b", *common, "drop", "6", "2e+06", "Hz", "12", "MHz"],
+        ["3", "publish", "/c", *common, "wait", "6", "-", "-"],
+    ]
+    assert "clock for all stated rates on one link: 18 MHz\n" in text
+
+
+def test_sizes_of_messages():
+    sizes = {(row[0], row[1]): row[4] for row in rows_of(summary(read()))}
+    assert sizes == {
+        ("1", "subscribe"): "52",
+        ("2", "subscribe"): "9-",
+        ("3", "publish"): "28",
+        ("4", "request"): "28-",
+        ("4", "response"): "12-76",
+    }
+
+
+def test_a_clock_is_that_of_cycles_not_of_beats():
+    (topic,) = facts_of(
+        read("node: n\nsubscribe: {/a: {type: std_msgs/msg/UInt8MultiArray, rate_hz: 10}}\n")
+    )["topics"]
+    store = topic["packets"]["in"]
+    # An array without elements has three lengths in two beats.
+    assert store["cycles"]["cycles"] > store["cycles"]["beats"]
+    assert store["clock_hz"] == 10 * store["cycles"]["cycles"]
+
+
+def test_packets_are_no_longer_than_the_limit_of_the_topic():
+    text = "node: n\nsubscribe: {/a: {type: std_msgs/msg/String, max_message_bytes: 20}}\n"
+    store = facts_of(read(text))["topics"][0]["packets"]["in"]
+    assert store["cycles"]["bytes"] <= 20 and store["max_message_bytes"] == 20
+
+
+def test_areas_are_those_of_the_converter_of_each_direction():
+    text = "node: n\n{}: {{/a: {{type: geometry_msgs/msg/Twist}}}}\n"
+    for kind, part in (("subscribe", "deserializer"), ("publish", "serializer")):
+        description = read(text.format(kind))
+        ((_, made),) = description.topics[0].stores
+        plan = build_plan(
+            lay_out(made.message, "cdr"), bus_bytes=8, max_message_bytes=made.max_message_bytes
+        )
+        wanted, (topic,) = estimates_of(plan)[part], facts_of(description)["topics"]
+        (store,) = topic["packets"].values()
+        assert (store["estimate"]["lut"], store["estimate"]["ff"]) == (wanted.lut, wanted.ff)
