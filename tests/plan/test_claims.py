@@ -117,9 +117,11 @@ def test_the_nul_of_a_string_takes_room(dialect, limit):
 
 
 @pytest.mark.parametrize(("room", "counts"), [(255, False), (256, True)])
-def test_a_string_is_counted_with_its_nul(room, counts):
+# A bound that no packet has room for makes no difference.
+@pytest.mark.parametrize("kind", ["string", "string<=255", "string<=1000"])
+def test_a_string_is_counted_with_its_nul(kind, room, counts):
     """A length that can claim 256 bytes is counted; the NUL is one of them."""
-    row = make("ros2", {"s": "string"}, "Row")
+    row = make("ros2", {"s": kind}, "Row")
     layout = lay_out(make("ros2", {"rows": (row, "[]")}))
     plan = build_plan(layout, max_message_bytes=layout.min_bytes + room)
     assert [begin.claim is not None for begin in plan.begins.values()] == [counts, counts]
