@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 from amaranth.back import rtlil
 from amaranth.hdl import ClockDomain, Module, signed, unsigned
@@ -16,13 +18,14 @@ from firm_hdl import (
     RecordReader,
     RecordWriter,
     Serializer,
+    Status,
     StatusSignature,
     load_message,
     record_layout,
 )
 from firm_hdl.gateware import record
 from firm_hdl.plan import encode
-from firm_hdl.sim import receive_packets, send_packets, to_transfers
+from firm_hdl.sim import receive_packets, receive_statuses, send_packets, to_transfers
 from tests.strategies import make
 
 POINT = make("ros1", {"x": "uint16", "y": "int16"}, "Point")
@@ -74,17 +77,21 @@ def through(message, packets, **options):
     out = []
 
     async def source(ctx):
-        ctx.set(dut.rx_status.ready, 1)
-        ctx.set(dut.tx_status.ready, 1)
         await send_packets(ctx, dut.i, packets)
 
     async def sink(ctx):
         out.extend(await receive_packets(ctx, dut.o, len(packets)))
 
+    async def statuses(ctx, port):
+        assert await receive_statuses(ctx, port, len(packets)) == [Status.OK] * len(packets)
+
     sim = Simulator(dut)
     sim.add_clock(1e-8)
     sim.add_testbench(source)
     sim.add_testbench(sink)
+    # `last` of each array counts, too, which packets do not show.
+    for port in (dut.rx_status, dut.tx_status):
+        sim.add_testbench(partial(statuses, port=port))
     sim.run()
     return out
 
