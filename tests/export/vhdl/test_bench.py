@@ -10,6 +10,7 @@ from firm_hdl import load_message
 from firm_hdl.export.vhdl.parts import packets_text
 from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.verify.results.verdict import NotJudgedError
+from tests.depth import by_depth
 from tests.export.vhdl.test_layer import nasty, vhdl_of, write
 from tests.tools import run_script
 
@@ -53,7 +54,7 @@ def test_passes(ghdl, tmp_path, name, distro, bus_bytes):
     assert (folder / "work" / "transfers.txt").read_text().count("\n") >= len(packets)
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 8])
+@pytest.mark.parametrize("bus_bytes", by_depth([1], [1, 8]))
 def test_nasty_names_pass(ghdl, tmp_path, bus_bytes):
     message = nasty(tmp_path)
     _, plan = vhdl_of(message, bus_bytes)

@@ -29,8 +29,8 @@ from tests.tools import run_script
     ("name", "bus_bytes"),
     [
         ("sensor_msgs/msg/JointState", 8),
-        ("", 1),
-        *by_depth([], [("std_msgs/msg/Bool", 1), ("", 8)]),
+        ("", 8),
+        *by_depth([], [("std_msgs/msg/Bool", 1), ("", 1)]),
     ],
 )
 def test_bench_passes(ghdl, tmp_path, name, bus_bytes):

@@ -184,7 +184,7 @@ def bridge_of(board=None, graph=None, description=ECHO):
     return made, said
 
 
-def run_until(bridge, condition, seconds=20.0):
+def run_until(bridge, condition, seconds=60.0):
     """Run a bridge until a condition holds; whether it does."""
     end = time.monotonic() + seconds
     while not condition():

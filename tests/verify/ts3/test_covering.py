@@ -27,7 +27,7 @@ STRIDE = 20
 MOST_CASES = by_depth(12, None)
 # All cases of these types take as long as those of all other types together.
 LARGE = ("InteractiveMarker", "InteractiveMarkerControl", "InteractiveMarkerInit")
-FEW_CASES = by_depth(4, None)
+FEW_CASES = by_depth(2, None)
 KNOWN = {("lyrical", "sensor_msgs/msg/Joy"): (NAN_KEY,)}
 
 
