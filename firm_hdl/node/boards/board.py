@@ -26,6 +26,8 @@ class Board(ABC):
         Most bytes of a frame, header included. `None`: no limit.
     sample_seconds : float
         How often the time of the node is compared with that of the host.
+    silent_seconds : float
+        A board from which nothing whole came for so long is gone.
     bytes_per_second : float or None
         How fast the way is; `None`: fast enough not to be waited for.
     counters : Counter of str
@@ -34,6 +36,7 @@ class Board(ABC):
     """
 
     sample_seconds = 1.0
+    silent_seconds = 5.0
 
     def __init__(self, name: str, frame_bytes: int | None = None) -> None:
         self.name = name

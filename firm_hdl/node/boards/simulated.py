@@ -51,6 +51,8 @@ class SimulatedBoard(Board):
     """
 
     sample_seconds = 0.1
+    # An answer takes seconds on a busy machine, and a simulation that has ended says so.
+    silent_seconds = 60.0
 
     def __init__(
         self, description: Description, *, accelerator: Any = None, engine: EngineName = "auto"

@@ -119,6 +119,7 @@ class BoardSide:
             self._board.frame_bytes,
             time.monotonic(),
             sample_seconds=self._board.sample_seconds,
+            silent_seconds=self._board.silent_seconds,
             before=self._before,
         )
 

@@ -32,9 +32,6 @@ __all__ = ["ROUND_SECONDS", "Session", "SilentBoardError", "WrongBoardError"]
 REPEAT_SECONDS = 0.25
 """A request without an answer is repeated after so long."""
 
-SILENT_SECONDS = 5.0
-"""A board from which nothing whole came for so long is gone."""
-
 ROUND_SECONDS = 5.0
 """All counters of a board are read in turn; a round begins so often."""
 
@@ -80,6 +77,8 @@ class Session:
         Seconds of a clock that never jumps.
     sample_seconds : float
         How often the clocks are compared.
+    silent_seconds : float
+        A board from which nothing whole came for so long is gone.
     before : Session or None
         The last session with the same board. Its counters go on, or are kept if the board has
         started again since.
@@ -105,10 +104,11 @@ class Session:
         now: float,
         *,
         sample_seconds: float = 1.0,
+        silent_seconds: float = 5.0,
         before: Session | None = None,
     ) -> None:
         self._description, self._frame_bytes = description, frame_bytes
-        self._sample_seconds = sample_seconds
+        self._sample_seconds, self._silent_seconds = sample_seconds, silent_seconds
         self._counters = [each for each in registers(description) if each.part != "identity"]
         self._keeper = ClockKeeper(nominal_rate(description.clock_hz))
         self._sender = MessageSender(frame_bytes)
@@ -153,10 +153,10 @@ class Session:
         Raises
         ------
         SilentBoardError
-            If the board has not answered for `SILENT_SECONDS`.
+            If the board has not answered for `silent_seconds`.
         """
-        if now - self._heard > SILENT_SECONDS:
-            raise SilentBoardError(f"no answer for {SILENT_SECONDS:g} s")
+        if now - self._heard > self._silent_seconds:
+            raise SilentBoardError(f"no answer for {self._silent_seconds:g} s")
         if now < self._waits_until:
             return []
         request, is_sample = self._next(now)

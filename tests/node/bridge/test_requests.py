@@ -8,7 +8,6 @@ from firm_hdl.node.bridge import session as sessions
 from firm_hdl.node.bridge.session import (
     REPEAT_SECONDS,
     ROUND_SECONDS,
-    SILENT_SECONDS,
     SilentBoardError,
 )
 from firm_hdl.node.bridge.unconfirmed import PASS_SECONDS
@@ -144,7 +143,7 @@ def test_an_answer_counts_once():
 
 def test_a_board_is_gone_after_its_time_of_silence_and_not_before():
     script = Script(is_known=False)
-    script.now += SILENT_SECONDS
+    script.now += 5.0
     assert script.ask()
     script.now += 0.001
     with pytest.raises(SilentBoardError):

@@ -9,7 +9,6 @@ import pytest
 
 from firm_hdl.node.bridge.session import (
     REPEAT_SECONDS,
-    SILENT_SECONDS,
     Session,
     SilentBoardError,
     WrongBoardError,
@@ -99,12 +98,13 @@ def test_messages_of_a_board_wait_until_it_is_known():
     assert wrong.got == [] and wrong.session.lost_on_the_way()["held back"] == 1
 
 
-def test_a_board_that_does_not_answer_is_gone():
-    talk = Talk()
+@pytest.mark.parametrize(("options", "seconds"), [({}, 5), ({"silent_seconds": 7.0}, 7)])
+def test_a_board_that_does_not_answer_is_gone(options, seconds):
+    talk = Talk(**options)
     talk.node.is_mute = True
-    with pytest.raises(SilentBoardError, match="no answer for 5 s"):
+    with pytest.raises(SilentBoardError, match=f"no answer for {seconds} s"):
         talk.run(60)
-    assert SILENT_SECONDS <= talk.now - 100 < SILENT_SECONDS + 1
+    assert seconds <= talk.now - 100 < seconds + 1
 
 
 def test_a_board_that_falls_silent_is_gone():

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from firm_hdl.node.boards import Board
+from firm_hdl.node.boards.simulated import SimulatedBoard
 from tests.node.bridge.clocks import Sleeper
 from tests.node.bridge.fakes import HEARD
 
@@ -25,6 +27,18 @@ def test_until_the_clocks_are_compared(sleeper):
     assert sleeper.sleep() == 0.3
     assert sleeper.sleep(0.2) == 0.1
     assert sleeper.sleep(0.1) == 0.3
+
+
+def test_how_long_a_board_may_say_nothing_is_its_own(sleeper):
+    sleeper.board.silent_seconds = 2.0
+    sleeper.board.node.is_mute = True
+    sleeper.sleep()
+    sleeper.sleep(1.9)
+    assert sleeper.said == []
+    sleeper.sleep(0.2)
+    assert sleeper.said == ["board fake: no answer for 2 s; trying again"]
+    # An answer of a simulation on a busy machine may take longer than that of a board.
+    assert (Board.silent_seconds, SimulatedBoard.silent_seconds) == (5.0, 60.0)
 
 
 def test_until_a_board_that_is_gone_is_tried_again(sleeper):
