@@ -186,15 +186,26 @@ def test_recording_without_definitions_says_what_to_do(tmp_path):
         RecordingOrigin(path)
 
 
-def test_topic_without_definition_is_distinguished_from_a_missing_one(tmp_path):
-    path = without_definition(tmp_path / "r", "p/msg/B")
+@pytest.mark.parametrize(
+    ("recorded", "asked"),
+    [
+        ("p/msg/B", "p/B"),
+        ("p/msg/B", "p/msg/B"),
+        # A name without its kind may also be that of a message.
+        ("p/srv/B_Request", "p/B_Request"),
+        ("p/action/B_Goal", "p/B_Goal"),
+    ],
+)
+def test_topic_without_definition_is_distinguished_from_a_missing_one(tmp_path, recorded, asked):
+    path = without_definition(tmp_path / "r", recorded)
     ours = open_library(bags=[path])
     assert ours.names() == ["p/msg/A"]
-    with pytest.raises(DefinitionError) as error:
-        ours.message("p/B")
-    assert str(error.value) == (
-        f"error: '{path}' has a topic of type 'p/msg/B', but not its definition"
-    )
+    for look_up in (ours.message, ours.interface, ours.source):
+        with pytest.raises(DefinitionError) as error:
+            look_up(asked)
+        assert str(error.value) == (
+            f"error: '{path}' has a topic of type '{recorded}', but not its definition"
+        )
 
 
 def without_definition(path, name):

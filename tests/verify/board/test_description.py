@@ -2,14 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from firm_hdl.errors import UserError
+from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.verify.board import description
-from firm_hdl.verify.board.description import chosen_loops, loop_text, write_description
+from firm_hdl.verify.board.description import (
+    chosen_loops,
+    described_board,
+    loop_text,
+    write_description,
+)
 from firm_hdl.verify.systems.options import Request
+from tests.frontend.workspace import make_files
 from tests.verify.board.fakes import BOTH, STRING, described
 
+NODE = """\
+node: n
+distro: jazzy
+accelerator: firm_hdl.node.loop:Loop
+subscribe: {/a: {type: mine/msg/A}}
+publish: {/b: {type: mine/msg/A}}
+"""
 REQUEST = Request(distros=("lyrical",), widths=(4,))
 
 
@@ -52,6 +67,15 @@ def test_each_type_comes_in_once_and_goes_out_once_in_the_order_of_names():
 )
 def test_the_link_is_that_of_the_board(board, link):
     assert f"link: {link}" in loop_text([STRING], "lyrical", board=board).splitlines()
+
+
+def test_types_of_a_given_node_are_in_the_folders_of_the_request(tmp_path):
+    make_files(tmp_path, {"mine/msg/A.msg": "int8 x\n", "node.yaml": NODE})
+    request = replace(REQUEST, node=str(tmp_path / "node.yaml"), paths=(str(tmp_path),))
+    ((came, goes),) = described_board(request, ()).loops()
+    assert (came.name, goes.name) == ("/a", "/b")
+    with pytest.raises(DefinitionError):
+        described_board(replace(request, paths=()), ())
 
 
 def test_a_type_that_is_named_needs_a_loop():

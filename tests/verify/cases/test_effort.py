@@ -46,6 +46,14 @@ def test_cases_without_new_decisions_fill_the_remaining_effort(plan):
     assert effort.packets_to_simulate(plan, packets, taken, most=2 * work) == [0, 1]
 
 
+def test_a_case_that_is_too_large_leaves_room_for_smaller_ones(plan):
+    # After the first case, the second one has the most new decisions for its work.
+    packets = [bytes(8), bytes(400), bytes(8)]
+    taken = [some_edges(*range(9)), some_edges(*range(9, 60)), some_edges(1)]
+    work = effort.work_of(plan, 8)
+    assert effort.packets_to_simulate(plan, packets, taken, most=2 * work) == [0, 2]
+
+
 def test_new_decisions_may_cost_four_times_as_much(plan):
     work = effort.work_of(plan, 8)
     # The second packet takes what the first one took, the third something else, too.
