@@ -166,6 +166,16 @@ def test_an_empty_sequence_in_an_element_does_not_end_the_message(dialect, bus_b
     assert statuses == [Status.OK] * 2
 
 
+@pytest.mark.parametrize("kinds", [("uint8[]", "uint8[<=1]"), ("uint8[<=1]", "uint8[]")])
+def test_a_long_sequence_and_a_short_one_have_a_counter_for_the_long_one(kinds):
+    message = make("ros2", dict(zip("ab", kinds, strict=True)))
+    long, short = (300).to_bytes(4, "little") + bytes(range(150)) * 2, b"\1\0\0\0\7"
+    parts = (long, short) if kinds[0] == "uint8[]" else (short + bytes(3), long)
+    packet = b"\0\1\0\0" + b"".join(parts)
+    packets, statuses = loopback(message, [packet] * 2, bus_bytes=1, max_message_bytes=512)
+    assert (packets, statuses) == ([packet] * 2, [Status.OK] * 2)
+
+
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8])
 @pytest.mark.parametrize("field", ["uint8", "uint16[2]", "uint8[40]", "float64[9]", "string"])
 def test_a_packet_begins_only_with_its_message(field, bus_bytes):
