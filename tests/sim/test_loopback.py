@@ -374,3 +374,14 @@ def test_gates_stay_open_after_what_is_offered():
     seen = harness.run_packets([PACKET] * 4, RunOptions(stalls=stalls, observe=observe))
     assert seen.packets == [PACKET] * 4
     assert waited > 20 and not fell
+
+
+def test_a_gate_is_closed_while_it_stalls_though_a_transfer_waits():
+    rx, tx = Deserializer(IMAGE), Serializer(IMAGE)
+    first, *_ = leaf_streams(tx.message, tx.tree).values()
+    harness = Harness(rx, tx, gated=True, probes=[first.valid])
+    offered = []
+    stalls = {"message": Stalls.bits("0" * 40 + "1" * 400)}
+    options = RunOptions(stalls=stalls, observe=lambda values: offered.append(values[0]))
+    assert harness.run_packets([PACKET], options).packets == [PACKET]
+    assert offered.index(1) >= 40
