@@ -128,6 +128,23 @@ def test_fields_can_be_chosen():
     )
 
 
+INNER = make("ros1", {"a": "uint8", "b": "uint16"}, "Inner")
+
+
+@pytest.mark.parametrize("kind", [RecordReader, RecordWriter])
+def test_the_rest_has_only_what_the_record_has_not(kind):
+    message = make("ros1", {"in_it": INNER, "beside": INNER, "c": "uint8"})
+
+    def rest_of(fields):
+        members = dict(kind(message, fields=fields).signature.members.items())
+        return members.get("rest")
+
+    assert rest_of(["in_it", "beside", "c"]) is None
+    members = rest_of(["in_it", "beside.a"]).signature.members
+    assert set(members) == {"beside", "c"}
+    assert set(members["beside"].signature.members) == {"b"}
+
+
 @pytest.mark.parametrize("bus_bytes", [1, 4, 8, 16])
 @pytest.mark.parametrize("fields", [None, ["corners"], ["holes", "closed"]])
 def test_records_come_through_with_the_rest_beside_them(bus_bytes, fields):
