@@ -226,24 +226,30 @@ def test_rules_of_other_oracles_are_left_alone(judged):
     assert judged(TEXT, [foreign], {TEXT: X}).verdict == Passed(2)
 
 
-def of_b(*members):
+def of_b(*members, name="p/B"):
     """Facts about the message that the other one needs."""
-    return Accepted({"structure": {"p/B": fields(*members)["structure"]["p/A"]}})
+    return Accepted({"structure": {name: fields(*members)["structure"]["p/A"]}})
 
 
 NEEDS, NEEDED, NEEDED_EVEN = "B b\n", "int8 x # odd\n", "int8 x # even\n"
+NEEDS_BOTH = "B b\nq/C c\n"
 
 
 @pytest.fixture
 def judged_with(court, monkeypatch):
-    """Return a function that judges a definition by answers; it needs `p/B`, in another file."""
+    """Return a function that judges a definition by answers; it needs others in other files.
 
-    def judge(text, rules, answers, distro="noetic", file="p/msg/B.msg", kind=Reader):
+    The definition that it needs is `p/B`. With a text for `q/C`, it needs that one, too.
+    """
+
+    def judge(text, rules, answers, distro="noetic", file="p/msg/B.msg", kind=Reader, other=None):
         monkeypatch.setattr(explain, "KNOWN", tuple(rules))
-        universe = court(distro, {"p/msg/A.msg": NEEDS, file: text}).universe
+        more = {} if other is None else {"q/msg/C.msg": other}
+        needs = NEEDS if other is None else NEEDS_BOTH
+        universe = court(distro, {"p/msg/A.msg": needs, file: text, **more}).universe
         (case,) = universe.select(["p/A"])
         oracle, ours = kind(answers), read(universe, case)
-        return compare(oracle, case, ours, answers[NEEDS], universe).verdict
+        return compare(oracle, case, ours, answers[needs], universe).verdict
 
     return judge
 
@@ -290,3 +296,43 @@ def test_an_oracle_is_not_asked_for_a_needed_definition_that_it_cannot_read(judg
     answers = {NEEDS: Refused("no B")}
     found = judged_with(idl, [], answers, "lyrical", "p/msg/B.idl", ReadsMessages)
     assert found == Failed(("verdict: firm-hdl accepts; oracle refuses: no B",))
+
+
+@pytest.mark.parametrize("known", ["p/B", "q/C"])
+def test_any_of_the_definitions_that_are_needed_may_have_a_known_difference(judged_with, known):
+    """Neither the first one decides, nor do all of them have to."""
+    odd, even, plain = "int8 {} # odd\n", "int8 {} # even\n", "int8 {}\n"
+    rules = [rule("plain", "odd", "even")]
+    texts = {"p/B": plain.format("x"), "q/C": plain.format("y")}
+    answers = {NEEDS_BOTH: Refused("it lacks one")}
+    for name, member in (("p/B", "x"), ("q/C", "y")):
+        right, wide = (of_b(f"{kind} {member}", name=name) for kind in ("int8", "int16"))
+        answers |= {plain.format(member): right, even.format(member): right}
+        answers[odd.format(member)] = wide
+        if name == known:
+            texts[name] = odd.format(member)
+    found = judged_with(texts["p/B"], rules, answers, other=texts["q/C"])
+    assert found == NotJudged(f"it needs {known}, a known difference: plain")
+
+
+@pytest.mark.parametrize("known", ["p/B", "q/C"])
+def test_any_of_the_needed_definitions_that_we_refuse_may_be_the_known_one(judged_with, known):
+    rules = [rule("mistake", "k-k", "k", is_mistake=True)]
+    texts, answers = {}, {NEEDS_BOTH: Accepted(fields("p/B b", "q/C c"))}
+    for name, member in (("p/B", "x"), ("q/C", "y")):
+        texts[name] = f"int8 {member}{'k-k' if name == known else '-z'}\n"
+        answers[texts[name]] = of_b(f"int8 {member}", name=name)
+        answers[f"int8 {member}k\n"] = of_b(f"int8 {member}k", name=name)
+    found = judged_with(texts["p/B"], rules, answers, other=texts["q/C"])
+    assert found == NotJudged(f"it needs {known}, a known difference: mistake")
+
+
+@pytest.mark.parametrize("place", ["B b", "x-y"])
+def test_a_text_that_no_other_text_replaces_may_be_any_that_was_read(judged_with, place):
+    """An oracle that changes what is needed reads several texts; one of them is enough."""
+    answers = {NEEDS: Accepted(fields("p/B b")), "int8 x-y\n": of_b("int8 x")}
+    here = rule("here", unavoidable=lambda case: place in case.text)
+    there = rule("there", unavoidable=lambda case: "absent" in case.text)
+    found = judged_with("int8 x-y\n", [there, here], answers, kind=ChangesAll)
+    assert found == NotJudged("here: here")
+    assert isinstance(judged_with("int8 x-y\n", [there], answers, kind=ChangesAll), Failed)
