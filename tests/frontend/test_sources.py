@@ -63,6 +63,7 @@ def test_only_definitions_in_the_folder_of_their_kind_count(tmp_path):
         ("<?xml version='1.0'?>\n<package>\n  <name>real</name>\n</package>\n", "real"),
         ("<package><version>1</version></package>", "folder"),
         ("<package><name/></package>", "folder"),
+        ("<package><name> \n </name></package>", "folder"),
         ("", "folder"),
         ("<pack", "folder"),
     ],
@@ -213,6 +214,16 @@ def test_package_whose_name_cannot_be_read_is_refused_when_it_is_used(tmp_path, 
         f"error: '{tmp_path}/p/package.xml' is in an encoding that is not known"
     )
     assert have.find("p", "msg", "C") is None
+
+
+def test_package_whose_package_xml_is_no_file_is_refused_when_it_is_used(tmp_path):
+    make_files(tmp_path, {"p/package.xml/x": "", "p/msg/A.msg": "", "q/msg/B.msg": "# q"})
+    have = sources(tmp_path)
+    assert have.find("q", "msg", "B").source.text == "# q"
+    with pytest.raises(DefinitionError) as error:
+        have.find("p", "msg", "A")
+    reason = "it is a folder, not a regular file"
+    assert str(error.value) == f"error: '{tmp_path}/p/package.xml' cannot be read: {reason}"
 
 
 @pytest.mark.parametrize("good", ["one", "two"])

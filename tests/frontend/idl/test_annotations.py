@@ -73,6 +73,11 @@ def test_units_are_texts_with_or_without_the_name_value(annotation, unit):
     assert members(f"{annotation} long a;")["a"].unit == unit
 
 
+def test_of_several_units_the_first_with_a_value_counts():
+    text = '@unit(value="m") @unit(value="s") long a; @unit @unit("s") @unit(value="m") long b;'
+    assert [member.unit for member in members(text).values()] == ["m", "s"]
+
+
 @pytest.mark.parametrize(
     ("annotation", "value"),
     {"@default(value=3)": 3, "@default(3)": 3, "@default(other=4, value=3)": 3}.items(),

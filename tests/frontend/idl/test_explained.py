@@ -288,3 +288,13 @@ def test_each_name_too_many_of_a_typedef_is_reported():
     _, wrong = read("module p { typedef long A, B, C[2]; struct T { long a; }; };")
     rule = "a typedef declares one name in ROS 2; '{}' is too many"
     assert [error.message for error in wrong] == [rule.format("B"), rule.format("C")]
+
+
+def test_errors_at_one_place_are_in_the_order_of_their_words():
+    """What is found first depends on the order of the checks, which tells a user nothing."""
+    text = "module p { typedef long b; typedef short a, b; struct T { long x; }; };"
+    wrong = read(text)[1]
+    assert [(each.message, each.span.start) for each in wrong] == [
+        ("a typedef declares one name in ROS 2; 'b' is too many", text.index("b; struct")),
+        ("typedef 'b' is already declared as another type", text.index("b; struct")),
+    ]
