@@ -261,12 +261,14 @@ def test_all_of_a_recording_are_its_types(workdir, capsys):
 
 
 def test_figures_of_all_include_the_types_of_the_distribution(workdir, capsys):
-    (workdir / "src/p/msg/A.msg").unlink()
     (workdir / "src/p/msg/Bad.msg").unlink()
-    assert main(["metrics", "--all", "--path", "src", "--format", "csv", "--wire", "ros1"]) == 0
+    words = ["--path", "src", "--depends", "more", "--format", "csv", "--wire", "ros1"]
+    assert main(["metrics", "--all", *words]) == 0
     rows = capsys.readouterr().out.splitlines()
     named = {name for row in rows for name in row.split(",") if name.count("/") == 2}
-    assert {"p/msg/C", "std_msgs/msg/Bool", "sensor_msgs/msg/Imu"} <= named
+    assert {"p/msg/A", "p/msg/C", "std_msgs/msg/Bool", "sensor_msgs/msg/Imu"} <= named
+    # Those on which others depend are no part of all.
+    assert "q/msg/B" not in named
     assert all(",ros1," in row for row in rows[1:])
 
 
