@@ -9,6 +9,7 @@ definition in IDL is shown as an equivalent ``.msg`` text.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 
 from firm_hdl.errors import DefinitionError, Diagnostic
@@ -31,6 +32,9 @@ MOST_CHARACTERS = 1 << 26
 """Limit on a shown text. Its length can grow exponentially with the number of types."""
 
 _SEPARATOR = "---"
+
+# What ends a line, as `str.splitlines` says. A ``.msg`` cannot have it in a value.
+_LINE_END = re.compile("[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]")
 
 
 def show(library: Library, name: str) -> str:
@@ -152,10 +156,9 @@ class _Ros2:
 
     def nested(self, message: Message) -> _Entries:
         if self._library.is_idl(message.name):
-            entries = _as_msg(message)
-        else:
-            entries = _lines(message.text, message.fields)
-        for line, nested in entries:
+            yield from _as_msg(message, with_comments=False)
+            return
+        for line, nested in _lines(message.text, message.fields):
             shown = line.partition("#")[0].strip()
             if shown:
                 yield shown, nested
@@ -174,13 +177,16 @@ def _lines(text: str, fields: Iterable[Field]) -> _Entries:
         yield line, None if item is None else _message_in(item)
 
 
-def _as_msg(message: Message) -> _Entries:
+def _as_msg(message: Message, *, with_comments: bool = True) -> _Entries:
     """Write a message in the form of a ``.msg`` file."""
-    yield from _comment(message.comment)
+    if with_comments:
+        yield from _comment(message.comment)
     members: Iterable[Constant | Field] = (*message.constants, *message.fields)
     for member in members:
-        yield from _comment(member.comment)
-        unit = f"  # [{member.unit}]" if member.unit is not None else ""
+        unit = ""
+        if with_comments:
+            yield from _comment(member.comment)
+            unit = f"  # [{_in_a_line(member.unit)}]" if member.unit is not None else ""
         if isinstance(member, Constant):
             value = _literal(member.value)
             yield f"{member.type} {member.name}={value}{unit}", None
@@ -200,7 +206,12 @@ def _literal(value: Value) -> str:
         case bool():
             return str(value).lower()
         case str():
-            return '"' + value.replace('"', '\\"') + '"'
+            return '"' + _in_a_line(value.replace('"', '\\"')) + '"'
         case tuple():
             return f"[{', '.join(map(_literal, value))}]"
     return repr(value)
+
+
+def _in_a_line(text: str) -> str:
+    """Write line ends as escapes, so that a text in IDL does not break its line."""
+    return _LINE_END.sub(lambda end: ascii(end[0])[1:-1], text)

@@ -222,6 +222,25 @@ def test_values_of_an_idl_are_spelled_as_in_a_msg(tmp_path):
     )
 
 
+def test_a_text_in_an_idl_stays_in_its_line_and_is_shown_to_its_end(tmp_path):
+    idl = r"""module p { module msg {
+      module T_Constants { @unit("a\nb") const string S = "one\ntwo\r# three"; };
+      @verbatim(language="comment", text="of T") struct T {
+        @verbatim(language="comment", text="of s") @unit(value="m") @default(value="#1\x1c\"#\"")
+        string s; @default(value="('# a', 'b')") string t[2]; }; }; };"""
+    files = {"p/msg/T.idl": idl, "p/msg/V.msg": "T t # one\nint8 x\n"}
+    ours = Library("lyrical", [make_files(tmp_path, files)])
+    members = [
+        ('string S="one\\ntwo\\r# three"', r"  # [a\nb]"),
+        (r'string s "#1\x1c\"#\""', "  # [m]"),
+        ('string[2] t ["# a", "b"]', ""),
+    ]
+    first, second, third = (text + unit for text, unit in members)
+    assert show(ours, "p/T") == f"# of T\n{first}\n# of s\n{second}\n{third}\n"
+    nested = "".join(f"\t{text}\n" for text, _ in members)
+    assert show(ours, "p/V") == f"T t # one\n{nested}int8 x\n"
+
+
 def test_values_of_an_idl_read_back_as_those_of_a_msg(tmp_path):
     idl = """module p { module msg {
       module T_Constants { const string Q = "say \\"a\\" 'b'"; const boolean B = TRUE; };
