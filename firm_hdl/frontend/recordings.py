@@ -93,6 +93,7 @@ class RecordingOrigin:
         for name in sorted(self._empty):
             self._define(name, "msg", "")
         self._missing -= self._definitions.keys()
+        self._of_dds -= self._definitions.keys()
         if not self._definitions:
             raise _refusal(self._why_empty())
 

@@ -123,6 +123,17 @@ def test_types_in_another_language_are_refused_among_others(tmp_path):
     )
 
 
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_type_in_another_language_has_the_definition_of_another_topic(tmp_path, order):
+    b = "module p { module msg { struct B { p::msg::A a; }; }; };"
+    a = "module p { module msg { struct A { long x; }; }; };"
+    text = "".join(f"{LINE}\nIDL: p/msg/{name}\n{each}\n" for name, each in (("B", b), ("A", a)))
+    topics = [("p/msg/A", DDS), ("p/msg/B", text)][::order]
+    ours = open_library(bags=[record_in_idl(tmp_path / "r", *topics[0], topics[1])])
+    assert ours.names() == ["p/msg/A", "p/msg/B"]
+    assert [item.name for item in ours.message("p/A").fields] == ["x"]
+
+
 def test_sections_of_blanks_count_unless_they_are_before_the_first_heading(tmp_path):
     b = f"{LINE}\nMSG: p/B\n \n"
     ours = open_library(bags=[record(tmp_path / "msg", "p/msg/A", f" \n{b}{LINE}\nMSG: p/C\n\n")])
