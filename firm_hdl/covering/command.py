@@ -58,7 +58,9 @@ def read_chosen(path: str | Path) -> list[str]:
         lines = read_file(path, 1 << 24).decode("utf-8").splitlines()
     except UnicodeDecodeError:
         raise BuildError(f"'{path}' is not UTF-8 text") from None
-    names = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
+    wanted = (line.strip() for line in lines if not line.startswith("#"))
+    # A name that is there twice is one type.
+    names = list(dict.fromkeys(name for name in wanted if name))
     if not names:
         raise BuildError(f"'{path}' names no types")
     return names

@@ -91,6 +91,14 @@ def test_blanks_and_comments_in_a_file_are_ignored(tmp_path):
     assert read_chosen(path) == ["a/msg/B", "c/msg/D"]
 
 
+def test_a_name_that_is_there_twice_is_one_type(tmp_path, capsys):
+    path = tmp_path / "chosen.txt"
+    path.write_text(f"{NAMES[0]}\n{NAMES[2]}\n{NAMES[0]}\n")
+    assert read_chosen(path) == [NAMES[0], NAMES[2]]
+    assert main(["cover", *NAMES, "--check", str(path)]) == 0
+    assert capsys.readouterr().err.startswith("2 of 3 types have 100 % of the ")
+
+
 def test_out_and_check_exclude_each_other(capsys):
     with pytest.raises(SystemExit) as stopped:
         main(["cover", "--out", "a", "--check", "b"])
