@@ -192,6 +192,12 @@ LIST = make("ros2", {"a": "uint8[]"}, "List")
         ),
         # What is not in a sequence of messages, or has no length inside, shares no budget.
         ("ros1", {"a": "uint8[]", "p": (PAIR, "[]"), "s": "string"}, {}),
+        # A sequence beside another one, in the same message, is not in it.
+        (
+            "ros1",
+            {"h": make("ros2", {"l": (LIST, "[]"), "b": "uint8[]"}, "H")},
+            {"h.l": (4, 1024, 0, ROOM - 4), "h.l.item.a": (1, 4096, 0, None)},
+        ),
         # A bound that is too small, and one that is just large enough: 4,096 bytes.
         ("ros1", {"l": (make("ros2", {"a": "float64[<=511]"}, "L"), "[]")}, {}),
         (

@@ -44,6 +44,10 @@ PLANS = {
     ),
     # A loop of constant count that begins at the start.
     "rows": plan_of({"r": (make("ros1", {"x": "uint8", "w": "uint16"}, "R"), "[3]"), "y": "uint8"}),
+    # Elements with padding before each but the first one.
+    "elements": plan_of(
+        {"p": (make("ros2", {"x": "uint32", "y": "uint8"}, "P"), "[]"), "z": "uint32"}, 8, "ros2"
+    ),
     # Padding of items only, before the first one.
     "gap": plan_of({"a": "uint8[]", "d": "float64[]"}, 8, "ros2"),
     # Padding of the first of two elements only.

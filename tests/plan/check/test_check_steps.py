@@ -298,6 +298,16 @@ OFFSETS: list[tuple[str, dict[str, Any], set[str]]] = [
         },
         wrong_padding(0, "r.item.x", [(3, 1, 0), (7, 1, 0)]) | wrong_padding(1, "y", [(3, 1, 0)]),
     ),
+    # The right padding for the next element, but within the loop: after the last one, it is none.
+    (
+        "elements",
+        {
+            "steps.1.slices": (*PLANS["elements"].steps[1].slices, Pad(at=5, bytes=3)),
+            "steps.1.bytes": 8,
+            "steps.1.align": 1,
+        },
+        {"step 2: padding that no value follows"},
+    ),
     # The right padding for the first element, but outside the loop.
     (
         "pairs",
