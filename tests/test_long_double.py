@@ -127,6 +127,9 @@ def test_metrics_give_the_figures_that_exist(run):
     assert (status, err) == (0, "")
     assert out.splitlines()[1].split()[3:] == ["2", "2", "0", *"-----", "long_doubles"]
     assert out.splitlines()[2] == f"p/msg/Wide has no sizes: {SENTENCE}"
+    # Whichever row it is that has none.
+    status, out, err = run("metrics", "p/Good", "p/Wide")
+    assert out.splitlines()[3:] == [f"p/msg/Wide has no sizes: {SENTENCE}"]
 
 
 def test_a_constant_is_built_as_a_number_without_bits(run):

@@ -118,7 +118,11 @@ def test_a_type_that_cannot_be_used_does_not_keep_the_others_out(tmp_path, capsy
     assert "left out: own_msgs/msg/Bad: " in err and "left out: own_msgs/msg/Large: " in err
     # A type that the user names is an error.
     assert main(["cover", "--path", str(tmp_path), "own_msgs/msg/Bad"]) == 1
-    assert main(["cover", "--path", str(tmp_path), "own_msgs/msg/Large"]) == 1
+    for names in (["Large"], ["Large", "Good"], ["Good", "Large"]):
+        words = [f"own_msgs/msg/{name}" for name in names]
+        capsys.readouterr()
+        assert main(["cover", "--path", str(tmp_path), *words]) == 1
+        assert "left out" not in capsys.readouterr().err
 
 
 def test_folders_are_chosen_from_with_services_and_without_the_distribution(tmp_path, capsys):
