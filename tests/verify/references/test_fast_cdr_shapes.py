@@ -17,11 +17,13 @@ from tests.strategies import make
 RELEASES = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
 HEADER = bytes.fromhex("00010000")
 INNER = make("ros2", {"a": "uint8", "b": "int16"}, "Inner")
-NUMBERS = {
-    **{"bool": "?", "byte": "B", "char": "B", "float32": "f", "float64": "d"},
-    **{"int8": "b", "uint8": "B", "int16": "h", "uint16": "H"},
-    **{"int32": "i", "uint32": "I", "int64": "q", "uint64": "Q"},
-}
+NUMBERS = dict(
+    zip(
+        "bool byte char float32 float64 int8 uint8 int16 uint16 int32 uint32 int64 uint64".split(),
+        "?BBfdbBhHiIqQ",
+        strict=True,
+    )
+)
 
 
 def aligned(packet, size):
