@@ -21,6 +21,7 @@ from firm_hdl.rtlil.ir import Cell, Design, Module
 from firm_hdl.rtlil.read import parse
 from firm_hdl.rtlil.simplify import simplified
 from firm_hdl.vhdl.declare import part_names
+from firm_hdl.vhdl.instance import component_names
 from firm_hdl.vhdl.module import EntityNames, ModuleWriter
 from firm_hdl.vhdl.names import AMS, Scope
 from firm_hdl.vhdl.package import PACKAGE, PACKAGE_NAME
@@ -126,10 +127,11 @@ def _read(text: str) -> Design:
 
 def _port_names(netlist: Design, entities: Mapping[str, str]) -> dict[str, dict[str, str]]:
     """Name the ports of all modules."""
-    return {
-        name: _names_of_ports(module, Scope([entities[name], "rtl"], _avoided(netlist, module)))
-        for name, module in netlist.modules.items()
-    }
+    found = {}
+    for name, module in netlist.modules.items():
+        reserved = [entities[name], "rtl", *component_names(module, netlist.modules)]
+        found[name] = _names_of_ports(module, Scope(reserved, _avoided(netlist, module)))
+    return found
 
 
 def _avoided(netlist: Design, module: Module) -> Collection[str]:

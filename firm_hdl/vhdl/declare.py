@@ -9,6 +9,7 @@ from typing import Literal, TypeAlias
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Value, Wire
 from firm_hdl.vhdl.expr import Declared
 from firm_hdl.vhdl.graph import Graph
+from firm_hdl.vhdl.instance import component_names
 from firm_hdl.vhdl.names import AMS, Scope, legal
 from firm_hdl.vhdl.text import bit_literal, literal
 from firm_hdl.vhdl.uses import INLINE, output
@@ -110,7 +111,8 @@ def declare(
     vectors : bool
         Whether ports are `std_logic_vector`.
     """
-    scope = Scope([entity, "rtl", *port_names.values()], AMS)
+    components = component_names(graph.module, graph.modules)
+    scope = Scope([entity, "rtl", *port_names.values(), *components], AMS)
     drivers = _drivers(graph, child_names)
     ports, signals = _ports(graph, port_names, drivers, scope, vectors=vectors)
     declared = {port.wire: port.inner or port.outer for port in ports}

@@ -6,7 +6,7 @@ and width. A port that is connected to a whole wire is an output.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Spec, Value, spec_width
 from firm_hdl.vhdl.expr import Values
@@ -15,7 +15,7 @@ from firm_hdl.vhdl.names import is_identifier
 from firm_hdl.vhdl.text import bit_literal, literal
 from firm_hdl.vhdl.uses import output
 
-__all__ = ["component", "foreign_instance", "instance"]
+__all__ = ["component", "component_names", "foreign_instance", "instance"]
 
 
 def instance(
@@ -35,6 +35,20 @@ def instance(
             associations += _associate(ports[port], spec, values, vector=vector)
     yield f"{label} : entity work.{entity}"
     yield from _port_map(associations)
+
+
+def component_names(module: Module, modules: Collection[str]) -> set[str]:
+    """Return the identifiers of foreign components, which nothing else in the module may have.
+
+    Parameters
+    ----------
+    modules : collection of str
+        Names of all modules of the design.
+    """
+    cells = [item for item in module.items if isinstance(item, Cell)]
+    kinds = {cell.kind for cell in cells if not cell.kind.startswith("$")}
+    # An extended identifier differs from all basic ones.
+    return {kind for kind in kinds - {*modules} if is_identifier(kind)}
 
 
 def component(cell: Cell, graph: Graph) -> Iterator[str]:
@@ -121,8 +135,11 @@ def _mode(cell: Cell, port: str, graph: Graph) -> str:
         return "out"
     wires = [graph.module.wires[chunk.wire] for chunk in spec if isinstance(chunk, Slice)]
     directions = {wire.direction for wire in wires}
-    if "inout" in directions:
+    if directions == {"inout"}:
         return "inout"
+    if "inout" in directions:
+        # Pads that are used in one way only tell the mode. VHDL does not connect them to `inout`.
+        return "out" if "output" in directions else "in"
     driven = {output(other) for other in graph.cells if other.kind in ("$dff", "$adff")}
     if directions == {"output"} and not any(
         wire.name in driven or wire.name in _sources(graph) for wire in wires

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from amaranth.hdl import ClockDomain, Const, Instance, Module, Signal, unsigned
+from amaranth.hdl import Cat, ClockDomain, Const, Instance, IOPort, Module, Signal, unsigned
 from amaranth.lib import enum
 from amaranth.lib.memory import Memory
 
@@ -156,6 +156,61 @@ def test_an_output_that_the_design_itself_drives_is_an_input_of_a_component(
     vhdl = convert(m, name="t", ports=[a, *driven, read.data])
     assert vhdl.files["t.vhd"].count("D : in std_logic_vector(3 downto 0)") == 8
     assert vhdl.files["t.vhd"].count("Q : out std_logic_vector(3 downto 0)") == 1
+    analyse(vhdl, tmp_path)
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_nothing_else_has_the_name_of_a_component(tmp_path: Path) -> None:
+    """VHDL does not tell upper from lower case, so a primitive ``PLL`` has the name of ``pll``."""
+    m, inner = Module(), Module()
+    a, pad = Signal(4, name="a"), Signal(4, name="pad")
+    register, wire, below = (Signal(4, name=name) for name in ("reg_1", "NET_1", "pll"))
+    m.submodules.memory = memory = Memory(shape=4, depth=4, init=[1])
+    m.submodules.pll = Instance("PLL", i_a=a, o_q=wire)
+    m.submodules.u1 = Instance("Reg_1", i_a=register)
+    m.submodules.u2 = Instance("net_1", i_a=wire)
+    m.submodules.u3 = Instance("Memory", i_a=wire)
+    m.submodules.inner = inner
+    inner.submodules.u = Instance("PLL", i_a=below)
+    # A basic identifier is another one than an extended one.
+    m.submodules.u4 = Instance("a-b", i_a=a)
+    m.submodules.u5 = Instance("PAD", i_a=a)
+    read = memory.read_port(domain="comb")
+    m.d.comb += [below.eq(a), pad.eq(read.data), read.addr.eq(wire)]
+    m.d.sync += register.eq(wire)
+    vhdl = convert(m, name="t", ports=[a, pad])
+    text = vhdl.files["t.vhd"]
+    for name in ("PLL", "Reg_1", "net_1", "Memory", "PAD", "\\a-b\\"):
+        assert f"  component {name} is\n" in text, name
+        assert f" : {name}\n" in text, name
+    names = vhdl.entities["t"]
+    given = {*names.ports.values(), *names.signals.values(), *names.memories.values()}
+    given |= {*names.instances.values()}
+    assert not {each.lower() for each in given} & {"pll", "reg_1", "net_1", "memory", "pad"}
+    assert names.ports["a"] == "a"
+    analyse(vhdl, tmp_path)
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_the_mode_of_pads_is_that_of_all_of_them(tmp_path: Path) -> None:
+    m = Module()
+    both, came, left, inside, x = (
+        IOPort(width, name=name)
+        for name, width in (("both", 4), ("came", 2), ("left", 2), ("inside", 2), ("x", 4))
+    )
+    m.submodules.u = Instance("unit", io_P=both[0], i_C=came[0], o_L=left[0], io_I=inside)
+    # Bits of a pad that another use makes `inout`, together with bits of one that has one way.
+    m.submodules.v = Instance("reader", i_C=Cat(both[1], came[1]), i_X=x[:2])
+    m.submodules.w = Instance("writer", o_L=Cat(left[1], both[2]), i_X=x[2:])
+    vhdl = convert(m, name="t", ports=[both, came, left, inside, x])
+    words = " ".join(vhdl.files["t.vhd"].split())
+    two = "std_logic_vector(1 downto 0)"
+    for ports in (
+        f"P : inout std_logic; C : in std_logic; L : out std_logic; I : inout {two}",
+        f"C : in {two}; X : in {two}",
+        f"L : out {two}; X : in {two}",
+    ):
+        assert f"port ( {ports} );" in words
     analyse(vhdl, tmp_path)
 
 
