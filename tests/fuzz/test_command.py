@@ -73,6 +73,12 @@ def test_a_status_too_few_or_too_many_is_a_failure_of_its_circuit(number):
     assert (failure.expected, failure.came) == ("250", str(number + 100))
 
 
+@pytest.mark.parametrize(("packets", "rules"), [(256, []), (257, ["too few packets were sent"])])
+def test_as_many_packets_as_were_asked_for_are_enough(packets, rules):
+    found = outcome(SAID, task=replace(TASK, packets=packets))
+    assert [failure.rule for failure in found.failures] == rules
+
+
 def test_every_circuit_has_a_failure_of_its_own():
     broken = {"failure": {"rule": "r", "packet": 0, "hex": "00", "cycle": 0}}
     assert outcome(SAID | broken, OTHER | {"packets": 100}, SAID).failures == (
@@ -235,6 +241,8 @@ def test_a_task_is_run_with_its_room_its_seed_and_its_packets(name, monkeypatch)
     monkeypatch.setattr(fuzz_run, "circuits_of", circuits_of)
     monkeypatch.setattr(fuzz_run, "build", build)
     monkeypatch.setattr(fuzz_run, "find_tools", lambda: "tools")
+    # The clock of the export and of the compilers stops before the program runs.
+    monkeypatch.setattr(fuzz_run, "cpu_seconds", iter([3.0, 5.5]).__next__)
     Ran.calls.clear()
     found = run_task(replace(TASK, type=name, circuits=("loop",)))
     message = message_of(name)
@@ -246,6 +254,7 @@ def test_a_task_is_run_with_its_room_its_seed_and_its_packets(name, monkeypatch)
     assert seen["built"] == (["circuits"], table, "tools")
     assert Ran.calls == [(("loop",), {"seed": 9, "first": 7, "packets": 200})]
     assert (found.wire, found.packets, found.failures) == (message.wire, 256, ())
+    assert (found.build_seconds, found.run_seconds) == (2.5, 0.5)
     assert not seen["folder"].exists()
 
 

@@ -11,7 +11,6 @@ import pytest
 
 from firm_hdl import Deserializer, load_message
 from firm_hdl.export.record_top import RecordTop, record_ports, why_no_record
-from firm_hdl.export.top import DIRECTIONS
 from firm_hdl.export.tree import taken_names, tree_of
 from firm_hdl.export.vhdl.parts import packets_text
 from firm_hdl.export.vhdl.values import values_of
@@ -229,15 +228,25 @@ def test_an_array_of_one_bool_is_a_vector_of_one_bit():
 
 
 def test_ports_are_those_of_the_converter_around_the_record():
+    """Clock and reset, packets, the record and the status, in this order, as for flat ports."""
     plan = build_plan(lay_out(load_message("std_msgs/msg/Bool")), bus_bytes=1)
-    for direction in DIRECTIONS:
+    packet = "tdata 8", "tkeep 1", "tlast 1"
+    status = ["out m_axis_status_tdata 8", "out m_axis_status_tvalid 1"]
+    status.append("in m_axis_status_tready 1")
+    for direction, base, more in (("deserializer", "s_axis", ()), ("serializer", "m_axis", ("",))):
         ports = [
             f"{port.direction} {port.name} {port.width}"
-            for port in record_ports(plan, direction, 1)
-            if port.name.startswith("msg")
+            for port in record_ports(plan, direction, 13)
         ]
         to, fro = ("out", "in") if direction == "deserializer" else ("in", "out")
-        assert ports == [f"{to} msg_data 1", f"{to} msg_valid 1", f"{fro} msg_ready 1"]
+        beat = [*packet, *("tuser 1" for _ in more), "tvalid 1"]
+        assert ports == [
+            *("in aclk 1", "in aresetn 1"),
+            *(f"{fro} {base}_{name}" for name in beat),
+            f"{to} {base}_tready 1",
+            *(f"{to} msg_data 13", f"{to} msg_valid 1", f"{fro} msg_ready 1"),
+            *status,
+        ]
 
 
 USERS_OWN = """\
