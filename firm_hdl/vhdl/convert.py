@@ -20,8 +20,7 @@ from amaranth.back import rtlil as amaranth_rtlil
 from firm_hdl.rtlil.ir import Cell, Design, Module
 from firm_hdl.rtlil.read import parse
 from firm_hdl.rtlil.simplify import simplified
-from firm_hdl.vhdl.declare import part_names
-from firm_hdl.vhdl.instance import component_names
+from firm_hdl.vhdl.declare import fixed_names, part_names
 from firm_hdl.vhdl.module import EntityNames, ModuleWriter
 from firm_hdl.vhdl.names import AMS, Scope
 from firm_hdl.vhdl.package import PACKAGE, PACKAGE_NAME
@@ -129,7 +128,7 @@ def _port_names(netlist: Design, entities: Mapping[str, str]) -> dict[str, dict[
     """Name the ports of all modules."""
     found = {}
     for name, module in netlist.modules.items():
-        reserved = [entities[name], "rtl", *component_names(module, netlist.modules)]
+        reserved = [entities[name], "rtl", *fixed_names(module, netlist.modules)]
         found[name] = _names_of_ports(module, Scope(reserved, _avoided(netlist, module)))
     return found
 

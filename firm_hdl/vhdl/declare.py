@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -10,11 +10,22 @@ from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Value, Wire
 from firm_hdl.vhdl.expr import Declared
 from firm_hdl.vhdl.graph import Graph
 from firm_hdl.vhdl.instance import component_names
-from firm_hdl.vhdl.names import AMS, Scope, legal
+from firm_hdl.vhdl.names import AMS, Scope, is_identifier, legal
 from firm_hdl.vhdl.text import bit_literal, literal
 from firm_hdl.vhdl.uses import INLINE, output
 
-__all__ = ["Names", "declare", "enumeration", "initial_value", "part_names"]
+__all__ = [
+    "Names",
+    "attributes_of",
+    "declare",
+    "enumeration",
+    "fixed_names",
+    "initial_value",
+    "part_names",
+]
+
+_INTERNAL = ("init", "src", "generator", "top", "enum_base_type")
+"""Attributes that are for readers of RTLIL."""
 
 Role: TypeAlias = Literal["register", "logic", "alias"]
 DriverKind: TypeAlias = Literal["register", "logic", "submodule", "foreign"]
@@ -111,8 +122,8 @@ def declare(
     vectors : bool
         Whether ports are `std_logic_vector`.
     """
-    components = component_names(graph.module, graph.modules)
-    scope = Scope([entity, "rtl", *port_names.values(), *components], AMS)
+    fixed = fixed_names(graph.module, graph.modules)
+    scope = Scope([entity, "rtl", *port_names.values(), *fixed], AMS)
     drivers = _drivers(graph, child_names)
     ports, signals = _ports(graph, port_names, drivers, scope, vectors=vectors)
     declared = {port.wire: port.inner or port.outer for port in ports}
@@ -136,6 +147,28 @@ def declare(
         labels=scope.give_all({name: name for name in instances}),
         scope=scope,
     )
+
+
+def fixed_names(module: Module, modules: Collection[str]) -> set[str]:
+    """Return the identifiers that nothing else in the module may have: tools know them.
+
+    Parameters
+    ----------
+    modules : collection of str
+        Names of all modules of the design.
+    """
+    attributes = {name for wire in module.wires.values() for name in attributes_of(wire)}
+    # An extended identifier differs from all basic ones.
+    return {name for name in attributes if is_identifier(name)} | component_names(module, modules)
+
+
+def attributes_of(wire: Wire) -> dict[str, Value]:
+    """Return the attributes of a wire that are for tools, such as ``keep``."""
+    return {
+        name: value
+        for name, value in wire.attributes.items()
+        if name not in _INTERNAL and not name.startswith("enum_value_")
+    }
 
 
 def _request(graph: Graph, wire: str, owner: str, driver: _Driver) -> _Request:

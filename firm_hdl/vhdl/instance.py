@@ -15,7 +15,7 @@ from firm_hdl.vhdl.names import is_identifier
 from firm_hdl.vhdl.text import bit_literal, literal
 from firm_hdl.vhdl.uses import output
 
-__all__ = ["component", "component_names", "foreign_instance", "instance"]
+__all__ = ["component", "component_names", "exact", "foreign_instance", "instance"]
 
 
 def instance(
@@ -53,12 +53,12 @@ def component_names(module: Module, modules: Collection[str]) -> set[str]:
 
 def component(cell: Cell, graph: Graph) -> Iterator[str]:
     """Yield the declaration of a foreign component."""
-    yield f"component {_exact(cell.kind)} is"
+    yield f"component {exact(cell.kind)} is"
     if cell.parameters:
         yield "  generic ("
         last = len(cell.parameters) - 1
         for index, (name, value) in enumerate(cell.parameters.items()):
-            yield f"    {_exact(name)} : {_generic(value)[0]}{'' if index == last else ';'}"
+            yield f"    {exact(name)} : {_generic(value)[0]}{'' if index == last else ';'}"
         yield "  );"
     ports = {name: spec for name, spec in cell.ports.items() if spec}
     if ports:
@@ -67,23 +67,23 @@ def component(cell: Cell, graph: Graph) -> Iterator[str]:
             width = spec_width(spec)
             kind = "std_logic" if width == 1 else f"std_logic_vector({width - 1} downto 0)"
             end = "" if index == len(ports) - 1 else ";"
-            yield f"    {_exact(name)} : {_mode(cell, name, graph)} {kind}{end}"
+            yield f"    {exact(name)} : {_mode(cell, name, graph)} {kind}{end}"
         yield "  );"
     yield "end component;"
 
 
 def foreign_instance(cell: Cell, graph: Graph, values: Values, label: str) -> Iterator[str]:
     """Yield the instantiation of a foreign component."""
-    yield f"{label} : {_exact(cell.kind)}"
+    yield f"{label} : {exact(cell.kind)}"
     if cell.parameters:
-        generics = [(_exact(name), _generic(value)[1]) for name, value in cell.parameters.items()]
+        generics = [(exact(name), _generic(value)[1]) for name, value in cell.parameters.items()]
         yield "  generic map ("
         yield from _aligned(generics)
         yield "  )"
     associations: list[tuple[str, str]] = []
     for port, spec in cell.ports.items():
         if spec:
-            associations += _associate(_exact(port), spec, values, vector=True)
+            associations += _associate(exact(port), spec, values, vector=True)
     yield from _port_map(associations)
 
 
@@ -168,7 +168,7 @@ def _sources(graph: Graph) -> set[str]:
     return names | set(graph.name_of.values())
 
 
-def _exact(name: str) -> str:
+def exact(name: str) -> str:
     """Keep a foreign name unchanged, as an extended identifier if necessary."""
     return name if is_identifier(name) else "\\" + name.replace("\\", "\\\\") + "\\"
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Spec, Value
 from firm_hdl.vhdl.body import Body
-from firm_hdl.vhdl.declare import Role, declare, enumeration, initial_value
+from firm_hdl.vhdl.declare import Role, attributes_of, declare, enumeration, initial_value
 from firm_hdl.vhdl.expr import Values
-from firm_hdl.vhdl.instance import component, foreign_instance, instance
+from firm_hdl.vhdl.instance import component, exact, foreign_instance, instance
 from firm_hdl.vhdl.memory import MemoryText, memory_id
 from firm_hdl.vhdl.messages import message
 from firm_hdl.vhdl.package import PACKAGE_NAME
@@ -20,8 +20,6 @@ from firm_hdl.vhdl.text import wrap
 from firm_hdl.vhdl.uses import output
 
 __all__ = ["EntityNames", "ModuleWriter"]
-
-_INTERNAL = ("init", "src", "generator", "top", "enum_base_type")
 
 _TITLES: Mapping[Role, str] = {
     "register": "Registers.",
@@ -203,20 +201,19 @@ class ModuleWriter:
         uses: list[str] = []
         for signal in self._names.signals:
             owner = self._graph.name_of.get(signal.wire, signal.wire)
-            attributes: dict[str, Value] = {
-                **self._module.wires[signal.wire].attributes,
-                **self._module.wires[owner].attributes,
+            attributes = {
+                **attributes_of(self._module.wires[signal.wire]),
+                **attributes_of(self._module.wires[owner]),
             }
             for name, value in attributes.items():
-                if name in _INTERNAL or name.startswith("enum_value_"):
-                    continue
                 kind, text = _attribute(value)
                 if types.setdefault(name, kind) != kind:
                     raise ValueError(f"attribute {name!r} has values of different types")
-                uses.append(f"attribute {name} of {signal.declared.name} : signal is {text};")
+                what = exact(name)
+                uses.append(f"attribute {what} of {signal.declared.name} : signal is {text};")
         if uses:
             yield ""
-            yield from (f"attribute {name} : {kind};" for name, kind in types.items())
+            yield from (f"attribute {exact(name)} : {kind};" for name, kind in types.items())
             yield from uses
 
     def _memories(self) -> list[MemoryText]:

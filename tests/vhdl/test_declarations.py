@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -188,6 +189,32 @@ def test_nothing_else_has_the_name_of_a_component(tmp_path: Path) -> None:
     given |= {*names.instances.values()}
     assert not {each.lower() for each in given} & {"pll", "reg_1", "net_1", "memory", "pad"}
     assert names.ports["a"] == "a"
+    analyse(vhdl, tmp_path)
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_names_of_attributes_stay_and_nothing_else_has_them(tmp_path: Path) -> None:
+    """Tools know attributes by name; Amaranth's own platforms use names with dots."""
+    m, a, o = Module(), Signal(2, name="a"), Signal(2, name="ASYNC_REG")
+    for name in ("KEEP", "amaranth.vivado.false_path", "signal", "async_reg"):
+        r = Signal(2, name="keep", attrs={"keep": 1, name: "x"} if name != "KEEP" else {"keep": 2})
+        m.d.sync += r.eq(a)
+        m.d.comb += o[0].eq(r[0]) if name == "KEEP" else []
+        a = r
+    m.d.comb += o[1].eq(a[1])
+    vhdl = convert(m, name="t", ports=[o])
+    text = vhdl.files["t.vhd"]
+    declared = re.findall(r"^  attribute (\S+) : (\w+);$", text, re.M)
+    assert dict(declared) == {
+        "keep": "integer",
+        "\\amaranth.vivado.false_path\\": "string",
+        "\\signal\\": "string",
+        "async_reg": "string",
+    }
+    assert text.count("attribute keep of ") == 4 and len(declared) == 4
+    assert text.count("attribute \\signal\\ of ") == 1
+    names = {*vhdl.entities["t"].signals.values(), *vhdl.entities["t"].ports.values()}
+    assert not {name.lower() for name in names} & {"keep", "async_reg"}
     analyse(vhdl, tmp_path)
 
 
