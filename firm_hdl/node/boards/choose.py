@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 from urllib.parse import SplitResult, parse_qsl, urlsplit
 
@@ -37,8 +38,12 @@ def board_of(name: str, description: Description, **simulation: Any) -> Board:
         from firm_hdl.node.boards.simulated import SimulatedBoard
 
         return SimulatedBoard(description, **simulation)
-    url = urlsplit(name)
     link = description.link
+    try:
+        url = urlsplit(name)
+    except ValueError as error:
+        # Such as a bracket that is not closed.
+        raise UserError(f"'{name}' is no board: {error}") from None
     match url.scheme:
         case "udp":
             default = link.port if link.kind == "udp" else None
@@ -52,9 +57,11 @@ def board_of(name: str, description: Description, **simulation: Any) -> Board:
 
 def _address(name: str, url: SplitResult, default: int | None) -> tuple[str, int]:
     try:
-        port = url.port or default
+        port = default if url.port is None else url.port
     except ValueError:
-        raise UserError(f"'{name}' has no port from 1 to 65535") from None
+        port = 0
+    if port == 0:
+        raise UserError(f"'{name}' has no port from 1 to 65535")
     if not url.hostname or url.path not in ("", "/") or url.query:
         raise UserError(f"'{name}' is not {url.scheme}://HOST:PORT")
     if port is None:
@@ -66,7 +73,7 @@ def _device(name: str, url: SplitResult, baud: int) -> tuple[str, int]:
     if url.netloc or not url.path:
         raise UserError(f"'{name}' is not serial:///dev/DEVICE, with three '/'")
     for key, value in parse_qsl(url.query, keep_blank_values=True):
-        if key != "baud" or not value.isdigit():
+        if key != "baud" or not re.fullmatch("[0-9]{1,9}", value):
             raise UserError(f"'{name}' has an option other than 'baud=RATE'")
         baud = int(value)
     if baud not in BAUD_RATES:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from concurrent.futures import Future
 from typing import Any
 
@@ -131,6 +132,6 @@ def _domain(domain: int | None) -> int:
     if domain is not None:
         return domain
     text = os.environ.get("ROS_DOMAIN_ID") or "0"
-    if not text.isdigit():
+    if not re.fullmatch("[0-9]{1,9}", text):
         raise UserError(f"ROS_DOMAIN_ID is '{text}', and should be a number from 0 to 232")
     return int(text)

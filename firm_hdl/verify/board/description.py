@@ -157,13 +157,17 @@ def _short(name: str) -> str:
 
 def _link(board: str | None) -> str:
     """Return the link of a node behind a board of that form."""
-    url = urlsplit("udp:" if board is None else board)
+    try:
+        url = urlsplit("udp:" if board is None else board)
+    except ValueError:
+        # The name is an error that is found elsewhere.
+        return "stream"
     if url.scheme == "udp":
         return f"{{kind: udp{_port(url)}}}"
     if url.scheme in ("tcp", "serial"):
         rates = [value for key, value in parse_qsl(url.query) if key == "baud"]
         # A rate that is none is an error of the board's name, which is found elsewhere.
-        return f"{{kind: uart, baud: {rates[-1]}}}" if rates and rates[-1].isdigit() else "uart"
+        return f"{{kind: uart, baud: {rates[-1]}}}" if rates and rates[-1].isdecimal() else "uart"
     return "stream"
 
 

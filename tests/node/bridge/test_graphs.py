@@ -100,9 +100,11 @@ def test_the_domain_of_the_environment(monkeypatch):
     assert RtpsGraph(ECHO, domain=0)._options["domain"] == 0
     monkeypatch.setenv("ROS_DOMAIN_ID", "")
     assert RtpsGraph(ECHO)._options["domain"] == 0
-    monkeypatch.setenv("ROS_DOMAIN_ID", "seven")
-    with pytest.raises(UserError, match="ROS_DOMAIN_ID is 'seven', and should be a number"):
-        RtpsGraph(ECHO)
+    for wrong in ("seven", "-1", "\N{SUPERSCRIPT TWO}", "9" * 5000):
+        monkeypatch.setenv("ROS_DOMAIN_ID", wrong)
+        message = f"ROS_DOMAIN_ID is '{wrong}', and should be a number"
+        with pytest.raises(UserError, match=message):
+            RtpsGraph(ECHO)
 
 
 @pytest.mark.parametrize(

@@ -59,9 +59,11 @@ def test_each_type_comes_in_once_and_goes_out_once_in_the_order_of_names():
         ("udp://a:99", "{kind: udp, port: 99}"),
         # That the name of a board is wrong is told where it is opened.
         ("udp://a:99999", "{kind: udp}"),
+        ("udp://[a", "stream"),
         ("tcp://a:99", "uart"),
         ("serial:///dev/a?baud=9600&baud=115200", "{kind: uart, baud: 115200}"),
         ("serial:///dev/a?baud=fast", "uart"),
+        ("serial:///dev/a?baud=\N{SUPERSCRIPT TWO}", "uart"),
         ("sim", "stream"),
     ],
 )
