@@ -11,13 +11,14 @@ from amaranth.sim import Simulator
 
 from firm_hdl.node import Link
 from firm_hdl.node.bytestream import ByteStreamReader, write_frame
-from firm_hdl.node.links import ByteLink, StreamLink, UartLink, UdpLink
+from firm_hdl.node.links import ByteLink, StreamLink, UartLink, UdpLink, link_of
 from firm_hdl.node.links.ports import datagram_layout
 from firm_hdl.node.messages import NodeMessage
 from firm_hdl.sim import Stalls
 from tests.depth import by_depth
 from tests.gateware.packets.bench import PacketBench, beats
 from tests.node import cobs
+from tests.node.samples import RELAY, read
 from tests.node.traffic import (
     counters_of,
     frames_of,
@@ -87,7 +88,7 @@ def test_what_is_no_frame_of_a_stream_is_dropped():
     assert out == messages and counters == {"passed": 8, "malformed": 8}
 
 
-ADDRESS, PORT = 0xC0A80105, 5005
+ADDRESS, PORT, NODE_PORT = 0xC0A80105, 5005, 7798
 
 
 def words_of(datagram, words, ip=ADDRESS, port=PORT, error=0):
@@ -103,7 +104,7 @@ def words_of(datagram, words, ip=ADDRESS, port=PORT, error=0):
             "length": len(datagram),
             "ip_address": ip,
             "src_port": port,
-            "dst_port": 7411,
+            "dst_port": NODE_PORT,
         }
         out.append(sum(int(v) << layout[name].offset for name, v in value.items()))
     return out
@@ -118,16 +119,15 @@ def datagrams_of(bits, words):
         assert value["last_be"] in (0, 1 << used - 1) and bool(value["last_be"]) == value["last"]
         part += value["data"].to_bytes(words, "little")[:used]
         if value["last"]:
-            assert value["length"] == len(part) and value["src_port"] == 7411
+            assert value["length"] == len(part) and value["src_port"] == NODE_PORT
             out.append((part, value["ip_address"], value["dst_port"]))
             part = b""
     return out
 
 
 def udp_bench(bus, **options):
-    link = Link(
-        **({"kind": "udp", "memory_bytes": 512, "packets": 8, "datagram_bytes": 48} | options)
-    )
+    usual = {"memory_bytes": 512, "packets": 8, "datagram_bytes": 48, "port": NODE_PORT}
+    link = Link(kind="udp", **(usual | options))
     part = UdpLink(bus, link)
     return LinkBench(
         part, bus, {"datagrams_in": part.datagrams_in}, others={"datagrams_out": part.datagrams_out}
@@ -349,6 +349,11 @@ def test_a_link_stores_as_many_messages_as_it_may():
 @pytest.mark.parametrize(("baud", "cycles"), [(13_000_000, 8), (13_600_000, 7), (1_000_000, 100)])
 def test_a_bit_takes_the_nearest_number_of_cycles(baud, cycles):
     assert UartLink(8, Link(kind="uart", baud=baud), 100e6).cycles == cycles
+
+
+def test_a_bit_of_a_node_takes_cycles_of_its_own_clock():
+    description = read(RELAY, clock_mhz="50", link="{kind: uart, baud: 400000}")
+    assert link_of(description).cycles == 125
 
 
 def test_a_uart_link_talks_to_itself():

@@ -5,14 +5,17 @@ from __future__ import annotations
 
 import random
 import struct
+import sys
 
 import pytest
+from amaranth.hdl import DriverConflict, Fragment
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.node import Node, accelerator_signature
-from firm_hdl.node.control import ControlRequest, Operation
+from firm_hdl.node.accelerator import conflicts_reported
+from firm_hdl.node.control import ControlRequest, ControlResponse, Operation, registers
 from firm_hdl.node.messages import NodeMessage
 from firm_hdl.sim import Stalls
 from tests.depth import by_depth
@@ -129,6 +132,60 @@ def test_message_ports_come_out_without_an_accelerator():
     assert not hasattr(node, "io")
 
 
+BACK = """\
+node: back
+distro: jazzy
+bus_bytes: 16
+clock_mhz: 62.5
+accelerator: firm_hdl.node.loop:Loop
+subscribe:
+  /came: {type: std_msgs/msg/UInt16}
+publish:
+  /goes: {type: std_msgs/msg/UInt16}
+"""
+
+
+COUNTED = {
+    ("link", "passed"): 8,
+    ("link", "malformed"): 1,
+    ("node", "unknown"): 1,
+    ("node", "control"): 4,
+    ("subscribe_came", "passed"): 3,
+    ("publish_goes", "bytes_low"): 18,
+}
+"""What has been counted when the host has read four registers."""
+
+
+def test_the_clock_and_all_counters_come_out_and_are_read_by_the_host():
+    description = read(BACK)
+    node = Node(description)
+    found = {"sec": node.time.sec, "nanosec": node.time.nanosec}
+    for part, name in COUNTED:
+        found[part, name] = node.counters[part][name]
+    outputs = {"out": (node.link.frames_out, 16, None)}
+    bench = PacketBench(node, {"in": node.link.frames_in}, outputs, final=found)
+    messages = [NodeMessage(topic=1, packet=b"\0\1\0\0" + bytes([n, 9])) for n in range(3)]
+    messages.append(NodeMessage(topic=77, packet=b"abc"))
+    # The frequency of the clock, its rate, and two counters of the link.
+    numbers = {each.name: each.number for each in registers(description)[:15]}
+    asked = [numbers[name] for name in ("clock_hz", "rate", "passed", "malformed")]
+    for number in asked:
+        request = ControlRequest(operation=Operation.READ, argument=number)
+        messages.append(NodeMessage(topic=0, packet=request.encode(), tag=number))
+    frames = [b"no frame", *frames_of(messages)]
+    # Each request is answered before the next one comes.
+    pause = {"in": Stalls.bits("1" + "0" * 15)}
+    seen = bench.run({"in": list(beats(frames, 16))}, {"out": 7}, stalls=pause, deadline=500)
+    out, _ = received_by_host(seen.packets["out"])
+    answers = {m.tag: ControlResponse.decode(m.packet) for m in out if m.topic == 0}
+    # The request that reads `passed` is the seventh message.
+    assert [answers[number].value for number in asked] == [62_500_000, 16 << 22, 7, 1]
+    assert {name: bench.state[name] for name in COUNTED} == COUNTED
+    # A cycle has 16 ns, and the run ends soon after the last answer.
+    times = [each.nanoseconds for each in answers.values()]
+    assert bench.state["sec"] == 0 and times[-1] < bench.state["nanosec"] < times[-1] + 16 * 60
+
+
 @pytest.mark.parametrize("link", ["udp", "uart"])
 def test_other_links_have_their_own_ports(link):
     node = Node(read(echo_text(link=link)))
@@ -160,6 +217,43 @@ def test_a_module_beside_the_description_is_found(tmp_path):
         Node(description)
     object.__setattr__(description, "folder", str(tmp_path))
     assert type(Node(description).accelerator) is Echo
+
+
+def test_the_folder_of_the_description_comes_first_and_is_searched_for_the_accelerator_alone(
+    tmp_path, monkeypatch
+):
+    for name, text in (
+        ("there", "raise KeyError"),
+        ("here", "from tests.node.accelerators import *"),
+    ):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "found_twice.py").write_text(f"{text}\n")
+    monkeypatch.syspath_prepend(tmp_path / "there")
+    description = read(echo_text().replace("tests.node.accelerators", "found_twice"))
+    object.__setattr__(description, "folder", str(tmp_path / "here"))
+    before = list(sys.path)
+    assert type(Node(description).accelerator) is Echo and sys.path == before
+    # Also if nothing is found.
+    (tmp_path / "here" / "found_twice.py").write_text("raise KeyError\n")
+    monkeypatch.delitem(sys.modules, "found_twice")
+    with pytest.raises(DefinitionError, match="raised KeyError"):
+        Node(description)
+    assert sys.path == before
+
+
+def test_the_code_of_an_accelerator_that_is_given_raises_its_own_errors():
+    """There is no name in the description at which they could be reported."""
+    description = read(echo_text().replace("accelerator: tests.node.accelerators:Echo", ""))
+
+    class Raises(_Fits):
+        def elaborate(self, platform):
+            raise KeyError("mine")
+
+    accelerator = Raises(accelerator_signature(description))
+    with pytest.raises(KeyError, match="mine"):
+        Fragment.get(Node(description, accelerator), None)
+    with pytest.raises(DriverConflict, match="two"), conflicts_reported(description):
+        raise DriverConflict("two")
 
 
 class _Fits(wiring.Component):
