@@ -313,6 +313,16 @@ def test_a_block_without_an_end_takes_no_memory():
     assert reader.counters.large == 1
 
 
+@pytest.mark.parametrize("most", [1, 249, 250, 251, 503, 504, 505, 2000])
+def test_the_largest_frame_passes_however_many_bytes_its_stuffing_adds(most):
+    for frame in (bytes(most), b"\1" * most, b"\1" * (most - 1) + b"\0"):
+        reader = ByteStreamReader(max_bytes=most)
+        assert reader.feed(write_frame(frame)) == [frame]
+        assert reader.feed(write_frame(b"\1" * (most + 2))) == []
+        found = reader.counters
+        assert (found.passed, found.large, found.damaged) == (1, 1, 0)
+
+
 def test_a_reader_that_skips_the_check_is_found(monkeypatch):
     """The twin: with a CRC that is always right, damage passes."""
     monkeypatch.setattr(zlib, "crc32", lambda data: 0)

@@ -142,6 +142,14 @@ def test_limits_of_a_topic():
     assert store("memory_bytes: 32").memory_bytes == 32
 
 
+@pytest.mark.parametrize("bus_bytes", [8, 16])
+def test_a_memory_has_room_for_two_beats_at_least(bus_bytes):
+    text = f"node: n\nbus_bytes: {bus_bytes}\n" + TOPIC.replace("Bool", "Bool, memory_bytes: %d")
+    assert described(text % (2 * bus_bytes)).topics[0].store("in").memory_bytes == 2 * bus_bytes
+    with pytest.raises(DefinitionError, match=f"from {2 * bus_bytes} to 67108864, not {bus_bytes}"):
+        described(text % bus_bytes)
+
+
 def test_a_caret_stays_below_its_own_value():
     """Of a list or a mapping, within its own line, and no further than its end."""
     with pytest.raises(DefinitionError) as caught:

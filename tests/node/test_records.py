@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 
@@ -19,6 +20,7 @@ from firm_hdl.node.records.messages import other_ports
 from firm_hdl.node.top import node_ports
 from firm_hdl.verify.cases.stimuli import stimuli
 from tests.depth import by_depth
+from tests.frontend.workspace import make_files
 from tests.node.samples import LIBRARY, RELAY, read
 from tests.tools import run_script
 
@@ -72,6 +74,42 @@ def test_types_with_one_package_of_vhdl_are_refused(tmp_path):
     description = read_description_text(text, paths=[tmp_path])
     with pytest.raises(UserError, match="a/b_C and a_b/C would have one package of VHDL, 'a_"):
         message_ports(description, node_ports(Node(description)))
+
+
+def test_types_inside_of_messages_have_packages_too(tmp_path):
+    files = {"a_b/msg/C.msg": "int8 x\n", "a/msg/b_C.msg": "int8 x\n"}
+    files |= {"own/msg/One.msg": "a_b/C c\n", "own/msg/Two.msg": "a/b_C c\n"}
+    make_files(tmp_path, files)
+    text = "node: n\nsubscribe:\n  /a: {type: own/One}\n  /b: {type: own/Two}\ndistro: noetic\n"
+    description = read_description_text(text, paths=[tmp_path])
+    with pytest.raises(UserError, match="a/b_C and a_b/C would have one package of VHDL, 'a_"):
+        message_ports(description, node_ports(Node(description)))
+
+
+def test_the_manifest_names_what_is_in_the_files(relay):
+    manifest = json.loads((relay / "manifest.json").read_text())
+    records, ports = manifest["records"], {each["name"]: each for each in manifest["ports"]}
+    vhdl = (relay / "vhdl" / f"{records['entity']}.vhd").read_text()
+    structs = (relay / "systemverilog" / f"{records['module']}.sv").read_text()
+    assert f"\nentity {records['entity']} is" in vhdl
+    assert f"\nmodule {records['module']} (" in structs
+    listed = (relay / records["sv_files"]).read_text().split()
+    assert f"{records['module']}.sv" in listed
+    for each in records["ports"]:
+        for name, kind in (("name", "message_type"), ("ready", "ready_type")):
+            way = rf"\s*: (in |out) work\.{each['package']}\.{each[kind]}\b"
+            assert re.search(rf"\b{each[name]}{way}", vhdl), (each, kind)
+            typed = rf"(input |output) {each['sv_package']}::{each[f'sv_{kind}']} {each[name]}\b"
+            assert re.search(typed, structs), (each, kind)
+        assert any(port["member"].startswith(f"{each['member']}.") for port in ports.values())
+    # The clock and the reset are ports, each of its own meaning.
+    assert ports[manifest["clock"]]["member"] == "clock"
+    assert ports[manifest["reset"]]["member"].startswith("reset")
+    bench = manifest["bench"]
+    assert f"module {bench['verilog']};" in (relay / bench["verilog_file"]).read_text()
+    assert f"{bench['vhdl']}.vhd" in (relay / bench["vhdl_files"]).read_text().split()
+    runs = [(relay / bench[f"run_{tool}"]).read_text() for tool in ("ghdl", "iverilog")]
+    assert "iverilog" in runs[1] and "iverilog" not in runs[0] and "ghdl" in runs[0].lower()
 
 
 def looped(language, folder):

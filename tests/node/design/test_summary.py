@@ -99,3 +99,113 @@ def test_areas_are_those_of_the_converter_of_each_direction():
         wanted, (topic,) = estimates_of(plan)[part], facts_of(description)["topics"]
         (store,) = topic["packets"].values()
         assert (store["estimate"]["lut"], store["estimate"]["ff"]) == (wanted.lut, wanted.ff)
+
+
+WRITTEN_OUT = """\
+node: tiny
+namespace: /r
+distro: jazzy
+bus_bytes: 4
+clock_mhz: 62.5
+link: {kind: uart, baud: 500000, packets: 3, memory_bytes: 2048}
+accelerator: a.b:C
+subscribe:
+  in: {type: std_msgs/msg/String, port: p, reliability: best_effort, history: keep_all, depth: 7,
+    durability: transient_local, memory_bytes: 512, packets: 5, max_message_bytes: 300, rate_hz: 20}
+publish:
+  /out: {type: std_msgs/msg/UInt16, when_full: drop}
+"""
+OF_THE_NODE = {
+    "node": "tiny",
+    "namespace": "/r",
+    "distro": "jazzy",
+    "wire": "cdr",
+    "bus_bytes": 4,
+    "clock_hz": 62.5e6,
+    "link": {"kind": "uart", "memory_bytes": 2048, "packets": 3, "baud": 500_000},
+    "accelerator": "a.b:C",
+}
+HEADER = [(1, "version"), (1, "flags"), (2, "topic"), (4, "length"), (4, "tag")]
+HEADER += [(2, "sequence"), (2, "fragment")]
+OF_TOPICS = [
+    {
+        "id": 1,
+        "kind": "subscribe",
+        "name": "/r/in",
+        "type": "std_msgs/msg/String",
+        "port": "p",
+        "rate_hz": 20.0,
+        "qos": {
+            "reliability": "best_effort",
+            "durability": "transient_local",
+            "history": "keep_all",
+            "depth": 7,
+        },
+    },
+    {
+        "id": 2,
+        "kind": "publish",
+        "name": "/out",
+        "type": "std_msgs/msg/UInt16",
+        "port": "out",
+        "rate_hz": None,
+        "qos": {
+            "reliability": "reliable",
+            "durability": "volatile",
+            "history": "keep_last",
+            "depth": 10,
+        },
+    },
+]
+OF_PACKETS = [
+    # 4 bytes of encapsulation, a length, and the 0 at the end of the text.
+    {
+        "message": "std_msgs/msg/String",
+        "min_bytes": 9,
+        "max_bytes": None,
+        "memory_bytes": 512,
+        "stored_packets": 5,
+        "when_full": "drop",
+        "max_message_bytes": 300,
+    },
+    {
+        "message": "std_msgs/msg/UInt16",
+        "min_bytes": 6,
+        "max_bytes": 6,
+        "memory_bytes": 64,
+        "stored_packets": 16,
+        "when_full": "drop",
+        "max_message_bytes": 64,
+    },
+]
+
+
+def part(whole, like):
+    return {key: whole[key] for key in like}
+
+
+def test_what_a_host_has_to_know_of_a_node():
+    """The manifest has the same."""
+    description = read(WRITTEN_OUT)
+    facts = facts_of(description)
+    assert part(facts, OF_THE_NODE) == OF_THE_NODE
+    assert len(facts["fingerprint"]) == 16
+    assert int(facts["fingerprint"], 16) == description.fingerprint
+    assert facts["frame"]["version"] == 0xF1
+    assert [(each["bytes"], each["name"]) for each in facts["frame"]["header"]] == HEADER
+    for found, topic, packets, way in zip(
+        facts["topics"], OF_TOPICS, OF_PACKETS, ("in", "out"), strict=True
+    ):
+        assert part(found, topic) == topic
+        assert list(found["packets"]) == [way]
+        assert part(found["packets"][way], packets) == packets
+    hashes = [topic.definition_hash for topic in description.topics]
+    assert [each["definition_sha256"] for each in facts["topics"]] == hashes
+    numbered = {
+        each["number"]: (each["owner"], each["part"], each["name"]) for each in facts["registers"]
+    }
+    # Nine counters of the link and three of the node lie before those of topics.
+    assert numbered[1] == ("node", "identity", "fingerprint_low")
+    assert numbered[16 + 9] == ("node", "node", "unknown")
+    assert numbered[16 + 12 + 1] == ("/r/in", "in", "truncated")
+    assert numbered[16 + 12 + 11 + 1] == ("/out", "out", "aborted")
