@@ -143,6 +143,64 @@ def test_a_node_that_was_reset_is_set_again():
         assert (keeper.sample(now, same, now + 100_000) is None) is (second == 11)
 
 
+def sampled(keeper, sent_ns, offset_ns, delay=100_000):
+    """Give a keeper the response of a node whose clock is so far ahead; return its request."""
+    seconds, part = divmod(sent_ns + delay // 2 + offset_ns, 10**9)
+    response = ControlResponse(
+        operation=1, result=Result.OK, value=0, seconds=seconds, nanoseconds=part
+    )
+    return keeper.sample(sent_ns, response, sent_ns + delay)
+
+
+@pytest.mark.parametrize("offset", [-900_000, 900_000])
+def test_a_rate_is_changed_by_500_ppm_at_most(offset):
+    """However long the clock has been too far ahead, or behind."""
+    keeper = ClockKeeper(NOMINAL)
+    found = [sampled(keeper, START + second * 10**9 // 8, offset) for second in range(20)]
+    assert found[0] is None
+    assert {each.operation for each in found[1:]} == {Operation.SET_RATE}
+    limit = NOMINAL * 500e-6 * (-1 if offset > 0 else 1)
+    assert {each.argument for each in found[1:]} == {NOMINAL + round(limit)}
+    # What was learnt has the same limit, so it is unlearnt in less than a minute.
+    found = [sampled(keeper, START + (3 + second) * 10**9, -offset // 3) for second in range(30)]
+    assert (found[-1].argument - NOMINAL) * limit < 0
+
+
+@pytest.mark.parametrize(
+    ("offset", "delay", "sets"),
+    [
+        (1_000_000, 100_000, False),
+        (1_000_001, 100_000, True),
+        (-1_000_001, 100_000, True),
+        # A delay that is longer says less: the clock may be right.
+        (5_000_000, 20_000_000, False),
+        (20_000_001, 20_000_000, True),
+    ],
+)
+def test_a_clock_is_set_only_if_it_is_certainly_far_away(offset, delay, sets):
+    keeper = ClockKeeper(NOMINAL)
+    for second in range(3):
+        sampled(keeper, START + second * 10**9, 0)
+    request = sampled(keeper, START + 3 * 10**9, offset, delay)
+    assert (request is not None and request.operation == Operation.SET_TIME) is sets
+
+
+def test_a_host_whose_clock_stands_or_goes_back_learns_nothing_of_the_rate():
+    keeper = ClockKeeper(NOMINAL)
+    assert sampled(keeper, START, 0) is None
+    for second in (0, -2):
+        assert sampled(keeper, START + second * 10**9, 500_000) is None
+    # From there, it goes on.
+    assert sampled(keeper, START - 10**9, 500_000).operation == Operation.SET_RATE
+
+
+def test_seconds_of_the_node_are_those_of_the_host_modulo_two_to_the_32():
+    """They return to 0 in 2106, as those of ROS 2 do."""
+    request = sampled(ClockKeeper(NOMINAL), ((1 << 32) + 5) * 10**9, -(10**15))
+    assert request.operation == Operation.SET_TIME
+    assert struct.unpack_from("<I", request.encode(), 8) == (5,)
+
+
 @pytest.mark.parametrize(("delay", "counts"), [(200_000, True), (200_001, False)])
 def test_a_delay_of_more_than_twice_the_usual_one_does_not_count(delay, counts):
     keeper = ClockKeeper(NOMINAL)

@@ -4,12 +4,16 @@
 from __future__ import annotations
 
 import re
+from types import SimpleNamespace
 
 import pytest
 
 from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
+from firm_hdl.node import Node
+from firm_hdl.node import build as node_build
 from firm_hdl.node.build import build_node
+from firm_hdl.node.top import node_ports
 from firm_hdl.node.units import check_units
 from firm_hdl.verify.cases.stimuli import stimuli
 from tests.node.samples import RELAY, read
@@ -67,6 +71,31 @@ def test_the_command_shows_the_place_and_writes_nothing(
         f"node:  {name}  # its name\n       {'^' * len(name)}\n"
     )
     assert [each.name for each in tmp_path.iterdir()] == ["node.yaml"]
+
+
+@pytest.mark.parametrize(
+    ("name", "owner"),
+    [
+        ("firm_hdl_types_pkg", "its messages"),
+        ("firm_hdl_sv_pkg", "its structs"),
+        ("firm_hdl_bench_pkg", "its benches"),
+        ("std_msgs_msg_uint16_cdr_4_sv_pkg", "its structs"),
+    ],
+)
+def test_the_files_of_each_kind_are_compared(name, owner, monkeypatch, tmp_path):
+    """The circuit is left out: its only unit is the node itself."""
+
+    def convert(circuit, *, name, header):
+        ports = {port.name: port.name for port in node_ports(Node(read(RELAY)))}
+        entity = SimpleNamespace(ports=ports)
+        return SimpleNamespace(top=name, files={f"{name}.vhd": ""}, entities={name: entity})
+
+    monkeypatch.setattr(node_build, "convert", convert)
+    monkeypatch.setattr(node_build.rtlil, "convert", lambda *_, **__: "circuit")
+    message = f"the node and {owner} would both have a unit with the name '{name}'"
+    with pytest.raises(DefinitionError, match=message):
+        build_node(read(RELAY, node=name), tmp_path)
+    assert not [*tmp_path.iterdir()]
 
 
 @pytest.mark.thorough
