@@ -34,6 +34,28 @@ def test_an_entry_is_one_change(root):
 
 
 @pytest.mark.parametrize(
+    ("new", "line"),
+    [
+        ("if x:\n        x = 1\n    return y", 6),
+        ("if x:\n        x = 1\n        x = 2\n    return x", 6),
+        ("if x:\n        x = 2\n    return x", 5),
+        ("if x:\n        x = 1\n    ", 6),
+        ("if x:\n        x = 1\n", 6),
+        ("", 4),
+    ],
+)
+def test_a_change_starts_at_the_first_line_that_differs(root, new, line):
+    """Tests are chosen by this line, and the lines before it may run in other ones."""
+    (root / NAME).write_text("# x\n\ndef f(x):\n    if x:\n        x = 1\n    return x\n")
+    path = root / "faults.yaml"
+    old = "if x:\n        x = 1\n    return x"
+    path.write_text(yaml.safe_dump([{"path": NAME, "old": old, "new": new}]))
+    (fault,) = read_faults(root, path)
+    text = (root / NAME).read_text()
+    assert (fault.line, fault.change.apply(text)) == (line, text.replace(old, new))
+
+
+@pytest.mark.parametrize(
     ("given", "message"),
     [
         ({**FAULT, "old": "x * x"}, "fault 2: 0 places have the text in firm_hdl/wire/toy.py"),

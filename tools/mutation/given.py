@@ -62,6 +62,20 @@ def _fault(root: Path, owners: dict[str, str], where: str, entry: object) -> Mut
     if count != 1 or old == new:
         problem = "the new text is the old one" if count == 1 else f"{count} places have the text"
         raise GivenFaultError(f"{where}: {problem} in {name}")
-    start = text.index(old)
-    change = Change(start, start + len(old), new, RULE, scope=str(given.get("why", "")))
+    start, end = text.index(old), text.index(old) + len(old)
+    same = _same_lines(old, new)
+    change = Change(start + same, end, new[same:], RULE, scope=str(given.get("why", "")))
     return identify(name, owners[name], text, [change])[0]
+
+
+def _same_lines(old: str, new: str) -> int:
+    """Return the characters of the first lines, which stay as they are.
+
+    Tests are chosen by the line where a change starts. The last line of `old` counts as changed.
+    """
+    count = 0
+    for before, after in zip(old.splitlines(True)[:-1], new.splitlines(True), strict=False):
+        if before != after:
+            break
+        count += len(before)
+    return count
