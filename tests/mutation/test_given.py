@@ -40,7 +40,8 @@ def test_an_entry_is_one_change(root):
         ("if x:\n        x = 1\n        x = 2\n    return x", 6),
         ("if x:\n        x = 2\n    return x", 5),
         ("if x:\n        x = 1\n    ", 6),
-        ("if x:\n        x = 1\n", 6),
+        ("if x:\n        x = 1", 6),
+        ("if x:", 5),
         ("", 4),
     ],
 )

@@ -62,8 +62,12 @@ def _fault(root: Path, owners: dict[str, str], where: str, entry: object) -> Mut
     if count != 1 or old == new:
         problem = "the new text is the old one" if count == 1 else f"{count} places have the text"
         raise GivenFaultError(f"{where}: {problem} in {name}")
-    start, end = text.index(old), text.index(old) + len(old)
+    start = text.index(old)
+    # Up to the line end, so that whole lines are compared.
+    rest = text[start + len(old) :].partition("\n")
+    old, new = (each + rest[0] + rest[1] for each in (old, new))
     same = _same_lines(old, new)
+    end = start + len(old)
     change = Change(start + same, end, new[same:], RULE, scope=str(given.get("why", "")))
     return identify(name, owners[name], text, [change])[0]
 
