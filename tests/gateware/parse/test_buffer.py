@@ -51,17 +51,25 @@ class Reference:
 class Comparison:
     """A buffer with random traffic, compared with the reference in each cycle.
 
-    `tamper`: a function that changes observed values, so that a test can show that they matter.
+    Parameters
+    ----------
+    tamper : function or None
+        Changes observed values, so that a test can show that they matter.
+    lasts, leaves : float
+        Shares of the beats that end a packet, and of the cycles in which an ended packet is left.
     """
 
-    def __init__(self, dut, seed, tamper=None):
+    def __init__(self, dut, seed, tamper=None, *, lasts=0.3, leaves=0.5):
         self.dut, self.tamper = dut, tamper
+        self.lasts, self.leaves = lasts, leaves
         self.bus = dut.plan.bus_bytes
         self.rng, self.reference = random.Random(seed), Reference(self.bus)
         self.modulus = 2 * self.reference.depth
         self.offered = None
-        # The longest time without a transfer while the whole ring is free.
+        # The longest time without a transfer while half of the ring is free.
         self.waiting = 0
+        # The largest number of packets that have ended and are not left.
+        self.most_ended = 0
 
     async def run(self, ctx):
         for cycle in range(CYCLES):
@@ -70,10 +78,12 @@ class Comparison:
             self.check_beat(ctx, cycle)
             self.offer(ctx)
             leave = self.free(ctx, limit // self.bus, ended)
-            self.take(ctx, cycle, limit // self.bus)
+            self.take(ctx, cycle)
             if leave:
                 self.reference.start = following
             assert len(self.reference.beats) - self.reference.freed <= self.reference.depth
+            kept = self.reference.beats[self.reference.start :]
+            self.most_ended = max(self.most_ended, sum(last for _, _, last in kept))
             await ctx.tick()
 
     def check_window(self, ctx, cycle, limit, ended, following):
@@ -104,7 +114,7 @@ class Comparison:
     def offer(self, ctx):
         rng, packets = self.rng, self.dut.packets
         if self.offered is None and rng.random() < 0.7:
-            last = rng.random() < 0.3
+            last = rng.random() < self.lasts
             self.offered = rng.randint(1, self.bus) if last else rng.randint(0, self.bus), last
         if self.offered is not None:
             number = len(self.reference.beats)
@@ -114,16 +124,17 @@ class Comparison:
     def free(self, ctx, here, ended):
         """Leave the packet or not; free some of the beats before the reader."""
         reference = self.reference
-        leave = ended and self.rng.random() < 0.5
+        leave = ended and self.rng.random() < self.leaves
         ctx.set(self.dut.next, leave)
         if self.rng.random() < 0.6:
             reference.freed = self.rng.randint(reference.freed, max(reference.freed, here))
         ctx.set(self.dut.freed, reference.freed % self.modulus)
         return leave
 
-    def take(self, ctx, cycle, here):
+    def take(self, ctx, cycle):
         taken = self.offered is not None and ctx.get(self.dut.packets.ready)
-        has_room = self.reference.freed >= here
+        used = len(self.reference.beats) - self.reference.freed
+        has_room = used <= self.reference.depth // 2
         self.waiting = self.waiting + 1 if self.offered and not taken and has_room else 0
         assert self.waiting < 4, "beats are not taken although there is room"
         if taken:
@@ -131,14 +142,14 @@ class Comparison:
             self.offered = None
 
 
-def compare(dut, seed, tamper=None):
-    """Run a comparison to its end, and return its reference."""
-    comparison = Comparison(dut, seed, tamper)
+def compare(dut, seed, tamper=None, **shares):
+    """Run a comparison to its end, and return it."""
+    comparison = Comparison(dut, seed, tamper, **shares)
     simulator = Simulator(dut)
     simulator.add_clock(1e-6)
     simulator.add_testbench(comparison.run)
     simulator.run()
-    return comparison.reference
+    return comparison
 
 
 def packet_beat(number, count, last, bus):
@@ -148,10 +159,16 @@ def packet_beat(number, count, last, bus):
 
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 64])
 def test_beats_and_ends_of_packets(bus_bytes):
-    reference = compare(buffer_of(bus_bytes), seed=bus_bytes)
+    reference = compare(buffer_of(bus_bytes), seed=bus_bytes).reference
     # The traffic covers all cases: the ring was full, and several packets were in it.
     assert len(reference.beats) > CYCLES / 5
     assert sum(last for _, _, last in reference.beats) > CYCLES / 20
+
+
+def test_ends_of_as_many_packets_as_the_ring_has_beats():
+    """Each beat is a packet, and they are left more slowly than they come."""
+    comparison = compare(buffer_of(8), seed=1, lasts=0.97, leaves=0.2)
+    assert comparison.most_ended >= comparison.reference.depth
 
 
 @pytest.mark.parametrize(
