@@ -6,7 +6,9 @@ from hypothesis import strategies as st
 from firm_hdl.gateware.members import member_tree
 
 names = st.lists(
-    st.sampled_from(["a", "b", "a_", "a__b", "a__valid", "b_", "_b", "clk", "clk_", "signature"]),
+    st.sampled_from(
+        ["a", "b", "a_", "a__b", "a__valid", "a__ready", "b_", "_b", "clk", "clk_", "signature"]
+    ),
     min_size=1,
     max_size=3,
 )
@@ -44,7 +46,9 @@ def test_names_that_would_share_a_port_are_kept_apart():
     assert members("clk", "clk_") == ["clk_", "clk__"]
     # Of names that may clash, the first one in wire order has as few underscores as possible.
     assert members("clk_", "clk") == ["clk_", "clk__"]
-    assert members("x", "x__valid") == ["x", "x__valid_"]
+    for port in ("payload", "valid", "ready"):
+        assert members("x", f"x__{port}") == ["x", f"x__{port}_"]
+        assert members("a.x", f"a__x__{port}") == ["a.x", f"a__x__{port}_"]
 
 
 @given(paths=st.lists(names.map(tuple), unique=True, min_size=1, max_size=8))
