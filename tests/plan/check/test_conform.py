@@ -40,6 +40,21 @@ def test_an_array_of_items_wider_than_the_bus_is_a_loop_of_as_many(count, bus_by
     assert check(plan, more)
 
 
+def test_counts_of_loops_are_compared_in_wire_order():
+    """The loop after a sequence may follow its length at once, before the loops in its elements."""
+    row = make("ros1", {"x": "uint8", "s": "string"}, "Row")
+
+    def layout_of(*counts):
+        first, second, third = (f"[{count}]" for count in counts)
+        element = make("ros1", {"m": (row, first), "n": (row, second)}, "Element")
+        return lay_out(make("ros1", {"e": (element, "[]"), "f": (row, third)}))
+
+    layout = layout_of(2, 5, 3)
+    assert check(build_plan(layout), layout) == []
+    for counts in ((2, 3, 5), (5, 2, 3), (2, 5, 4)):
+        assert check(build_plan(layout_of(*counts)), layout)
+
+
 @pytest.mark.parametrize(
     ("kind", "counted"),
     # Lengths that may claim 4,096 bytes are counted; the NUL is one of them.
