@@ -334,5 +334,12 @@ def test_leaves_without_gates_are_not_stalled(name):
     harness = SimpleNamespace(leaf_ports=["a", "b", "c"])
     with pytest.raises(ValueError, match=f"^Stream '{name}' can be stalled in a gated harness"):
         Harness._refuse_leaf_stalls(harness, {name: Stalls.bits("10")})
-    for stalls in (None, {}, {"other": Stalls.bits("10")}, {name: Stalls.bits("1")}):
+    # Stalls of all streams are those of the streams that can be stalled.
+    for stalls in (
+        None,
+        Stalls.bits("10"),
+        {},
+        {"other": Stalls.bits("10")},
+        {name: Stalls.bits("1")},
+    ):
         Harness._refuse_leaf_stalls(harness, stalls)
