@@ -137,7 +137,8 @@ class _MoverLogic:
         sizes = geometry(plan)
         counted = [plan.runs[s.run].counted for s in plan.steps if isinstance(s, RunStep)]
         ports = {}
-        if any(counted) or any(s.rest is not None or s.bytes > bus for s in plan.steps):
+        # A step takes the rest of each counted run.
+        if any(s.rest is not None or s.bytes > bus for s in plan.steps):
             ports["items"] = (order.items_at, sizes.item_lanes, order.items_bytes)
         if not all(counted) or any(s.bytes for s in plan.steps):
             ports["map"] = (order.map_at, sizes.map_lanes, order.map_bytes)
