@@ -204,6 +204,17 @@ def test_a_length_over_its_bound_is_sent_as_promised_and_marked():
     ]
 
 
+@pytest.mark.parametrize("count", [3, 8, 40])
+def test_elements_far_over_their_bound_are_all_sent(count):
+    message = make("ros1", {"e": (make("ros1", {"x": "uint8"}, "E"), "[<=2]"), "z": "uint8"})
+    items = list(range(count))
+    sent = encode(message, [{0: [count], 1: items, 2: [9]}, {0: [1], 1: [7], 2: [8]}])
+    assert sent.statuses == [Status.LENGTH, Status.OK]
+    assert sent.packet_errors == [True, False]
+    packet = count.to_bytes(4, "little") + bytes(items) + b"\x09"
+    assert sent.packets == [packet, b"\1\0\0\0\7\x08"]
+
+
 @pytest.mark.parametrize("slack", range(6))
 def test_cdr_packets_may_be_padded_by_up_to_three_bytes(slack):
     message = make("ros2", {"x": "uint32"})
