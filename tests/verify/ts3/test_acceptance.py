@@ -241,9 +241,14 @@ def test_fault_in_the_golden_model_is_found(monkeypatch):
     assert not any(f.startswith("hardware") for f in result.failures)
 
 
+def refuse(found):
+    raise ValueError("it is refused")
+
+
 @pytest.mark.parametrize(
     ("which", "change", "output"),
     [
+        ("encode", refuse, "it is refused"),
         ("decode", lambda found: replace(found, status="TRUNCATED"), "status TRUNCATED"),
         ("encode", lambda found: (found[0], "ITEMS"), "status ITEMS when encoding"),
         ("encode", lambda found: (found[0], "LENGTH"), "status LENGTH when encoding"),
@@ -254,9 +259,10 @@ def test_each_answer_of_the_golden_model_is_judged(monkeypatch, which, change, o
     original = getattr(acceptance, which)
     monkeypatch.setattr(acceptance, which, lambda *given: change(original(*given)))
     result = accept("humble", "std_msgs/msg/UInt8", Options(simulated=False))
-    assert result.failures
     for failure in result.failures:
         assert failure.startswith("golden model, case ") and f": {output}" in failure
+    # One wrong answer hides no other one.
+    assert len({failure.partition(": ")[0] for failure in result.failures}) == result.cases > 1
 
 
 def test_unknown_types_fail_and_say_how_to_repeat():
