@@ -327,10 +327,11 @@ def test_a_process_that_dies_fails_its_definition_and_other_errors_end_the_run(
 
 
 def test_a_run_keeps_nothing_and_ends_its_oracles(request_of, monkeypatch):
-    closed = []
+    opened, closed = [], []
 
     class Closing(Fake):
         def __init__(self, universe):
+            opened.append(type(self).name)
             super().__init__(type(self).name, Refused("no"), 0)
 
         def missing(self):
@@ -349,7 +350,8 @@ def test_a_run_keeps_nothing_and_ends_its_oracles(request_of, monkeypatch):
         judgements = [each for share in run.judgements() for each in share]
         assert [number for number, _ in sorted(judgements, key=lambda each: each[0])] == [0, 1]
         assert closed == ["one", "two", "three"] and running._sessions
-    assert closed[3:] == ["one", "two"] and not running._sessions
+    # All definitions are judged by the same ones.
+    assert closed[3:] == ["one", "two"] and opened == closed and not running._sessions
 
 
 def test_tests_differ_in_all_that_was_asked_for(request_of):

@@ -334,3 +334,35 @@ def test_an_error_of_the_generator_of_hashes_stands_for_the_hash():
         assert hashes.of(file_of("it"), {}) == f"raises {text}"
     hashes._of = lambda element, request: (element, request)
     assert hashes.of(file_of("it"), {"a": 1}) == ("it", {"a": 1})
+
+
+@pytest.mark.parametrize(
+    ("files", "found"),
+    [
+        ({}, "raises ValueError: q/msg/B is not there"),
+        ({"B.msg": ["q/msg/C"]}, "raises ValueError: q/msg/C is not there"),
+        ({"B.msg": ["q/msg/C", "q/msg/D"], "C.msg": []}, "raises ValueError: q/msg/D is not there"),
+        ({"B.idl": []}, ["p/msg/A", "q/msg/B"]),
+        # A definition in a .msg file is the one that counts.
+        ({"B.msg": [], "B.idl": ["q/msg/C"]}, ["p/msg/A", "q/msg/B"]),
+        ({"B.idl": ["q/msg/C"], "C.msg": ["q/msg/B"]}, ["p/msg/A", "q/msg/B", "q/msg/C"]),
+    ],
+)
+def test_types_that_a_hash_needs_are_those_of_files(files, found):
+    def content(request):
+        if request["file"] not in files:
+            raise FileNotFoundError(request["file"])
+        return file_of(files[request["file"]])
+
+    def described(element, request):
+        fields = [{"type": {"nested_type_name": need}} for need in ["", *element]]
+        return {f"{request['package']}/msg/{request['name']}": {"fields": fields}}
+
+    describing = SimpleNamespace(
+        extract_full_type_description=lambda name, described: sorted(described),
+        calculate_type_hash=lambda names: names,
+    )
+    hashes = worker._Hashes(SimpleNamespace(content=content), describing)
+    hashes._individual = described
+    answer = hashes.of(file_of(["q/msg/B"]), asked())
+    assert answer == (found if isinstance(found, str) else {"p/msg/A": found})
