@@ -103,6 +103,70 @@ def test_everything_irrelevant_is_removed(make_message, shows, lines, value):
     assert shrink(make_message, shows) == (lines, value)
 
 
+# A difference that only some lengths show is reached in steps of a half, or at once, alone.
+HALVES = {
+    "string s": [
+        (b"abcdefgh", {4, 8}, b"a", {"s": b"abcd"}),
+        (b"abcdefgh", {4, 8}, b"h", {"s": b"efgh"}),
+        (b"abcdefgh", {2, 4, 8}, b"d", {"s": b"cd"}),
+        (b"abcdefgh", {0, 8}, b"", {"s": b""}),
+        # The longer half of an odd length is the second one.
+        (b"abcde", {3, 5}, b"", {"s": b"xxx"}),
+        (b"abcde", {2, 5}, b"", {"s": b"xx"}),
+    ],
+    "uint8[] s": [
+        ([1, 2, 3, 4, 5, 6, 7, 8], {4, 8}, [1], {"s": [1, 0, 0, 0]}),
+        ([1, 2, 3, 4, 5, 6, 7, 8], {4, 8}, [8], {"s": [0, 0, 0, 8]}),
+        ([1, 2, 3, 4, 5, 6, 7, 8], {2, 4, 8}, [4], {"s": [0, 4]}),
+        ([1, 2, 3, 4, 5, 6, 7, 8], {0, 8}, [], {"s": []}),
+    ],
+    "uint8[8] s": [
+        ([1, 2, 3, 4, 5, 6, 7, 8], {4, 8}, [1], {"s": [1, 0, 0, 0]}),
+        ([1, 2, 3, 4, 5, 6, 7, 8], {4, 8}, [8], {"s": [0, 0, 0, 8]}),
+        ([1, 2, 3, 4, 5, 6, 7, 8], {2, 4, 8}, [4], {"s": [0, 4]}),
+        ([1, 2, 3, 4, 5, 6, 7, 8], {1, 8}, [], {"s": [0]}),
+    ],
+    "uint8[5] s": [
+        ([1, 2, 3, 4, 5], {3, 5}, [], {"s": [0, 0, 0]}),
+        ([1, 2, 3, 4, 5], {2, 5}, [], {"s": [0, 0]}),
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "sizes", "needed", "least"),
+    [(text, *case) for text, cases in HALVES.items() for case in cases],
+)
+def test_each_half_of_a_value_is_tried_alone(make_message, text, value, sizes, needed, least):
+    def shows(_, value):
+        return len(value["s"]) in sizes and all(each in value["s"] for each in needed)
+
+    _, found = shrink(make_message, shows, text, {"s": value})
+    assert found == least
+
+
+@pytest.mark.parametrize(
+    ("sizes", "needed", "kept"),
+    [
+        ({4, 8}, "a", "abcd"),
+        ({4, 8}, "h", "efgh"),
+        ({2, 4, 8}, "c", "cd"),
+        # A quarter is taken out, and one field alone.
+        ({6, 8}, "", "cdefgh"),
+        ({6, 8}, "ac", "abcdgh"),
+        ({7, 8}, "", "bcdefgh"),
+        ({7, 8}, "abcdefg", "abcdefg"),
+    ],
+)
+def test_each_half_and_quarter_of_the_fields_is_taken_out(make_message, sizes, needed, kept):
+    def shows(all_, _):
+        return len(all_) in sizes and {*needed} <= all_.keys()
+
+    text = "\n".join(f"uint8 {name}" for name in "abcdefgh")
+    lines, _ = shrink(make_message, shows, text, dict.fromkeys("abcdefgh", 1))
+    assert lines == [f"uint8 {name}" for name in kept]
+
+
 def test_an_element_keeps_the_type_that_it_needs(make_message):
     def shows(_, value):
         return any(isinstance(each, list) and len(each) > 1 for each in value.values())

@@ -134,6 +134,22 @@ def test_trends_are_of_tests_with_a_circuit_and_a_figure():
     assert ("depth", "simulation") not in trends
 
 
+def test_trends_are_in_the_order_of_their_names():
+    # By chance, a set of so many names hardly has this order.
+    names = [f"{letter}_figure" for letter in "hbfdacge"]
+    records = [
+        a_record(
+            a_test(f"p/T{number}"),
+            metrics=dict.fromkeys(names, number + 1.0),
+            seconds=Seconds(testing=1.0 + number),
+        )
+        for number in range(3)
+    ]
+    trends = summarise({"r": run_of(*records)}).trends
+    found = [trend.metric for trend in trends if trend.time == "total"]
+    assert found == sorted(names)
+
+
 def test_known_differences_are_part_of_the_share_that_is_drawn():
     verdicts = (Passed(1), KnownDifference(("k",), 1), Failed(("no",)), NotJudged("no"))
     records = [a_record(a_test(f"p/T{n}"), verdict=each) for n, each in enumerate(verdicts)]

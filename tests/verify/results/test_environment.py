@@ -42,6 +42,21 @@ def test_every_change_of_an_input_changes_the_digest(files, tmp_path):
     assert digest_of(tmp_path / "a") != digest_of(tmp_path / "b", files)
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["msg/A.msg", "srv/A.srv", "action/A.action", "msg/A.idl", "package.xml", "A.lyrical.yaml"],
+)
+def test_the_text_of_every_kind_of_input_counts_and_not_its_time(name, tmp_path):
+    path = make_files(tmp_path, {f"p/{name}": "one"}) / "p" / name
+    first = inputs_digest([str(tmp_path)])
+    os.utime(path, (1000, 1000))
+    assert inputs_digest([str(tmp_path)]) == first
+    # The new text is as long as the old one.
+    path.write_text("two")
+    os.utime(path, (1000, 1000))
+    assert inputs_digest([str(tmp_path)]) != first
+
+
 def test_a_recording_counts_by_its_size_and_its_time(tmp_path):
     bag = tmp_path / "run.bag"
     seen = []
