@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from firm_hdl.node.boards.board import BoardError
 from firm_hdl.node.frame import FLAG_START, HEADER_BYTES
 from firm_hdl.verify.board import talk as talking
 from firm_hdl.verify.board.talk import Talk, TalkError, _Window, room_for
@@ -121,6 +122,18 @@ def test_every_bit_of_a_fingerprint_counts(bit):
     node.fingerprint ^= 1 << bit
     with Talk(FakeBoard(node), ONE, 0.3) as talk, pytest.raises(TalkError, match="is another one"):
         talk.open()
+
+
+@pytest.mark.parametrize("method", ["open", "send", "flush", "receive"])
+def test_a_board_that_is_gone_ends_the_talk_with_its_own_words(method, talk, monkeypatch):
+    def fails(*given):
+        raise BoardError("fake: it is gone")
+
+    board = talk._board
+    monkeypatch.setattr(board, method, fails)
+    monkeypatch.setattr(type(board), "waits_to_send", method == "flush")
+    with pytest.raises(TalkError, match=r"^fake: it is gone$"):
+        talk.open() if method == "open" else talk.read([16])
 
 
 def test_a_second_session_begins_anew(talk):
