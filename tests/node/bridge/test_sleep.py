@@ -57,6 +57,17 @@ def test_until_a_graph_that_is_gone_is_tried_again(sleeper):
     assert sleeper.sleep(0.4) == 0.5
 
 
+def test_until_the_board_or_the_graph_is_due_whichever_is_first(sleeper):
+    sleeper.board.sample_seconds = 1.5
+    assert sleeper.sleep() == 0.5
+    sleeper.graph.is_dead = True
+    # It is asked each second how it is. The clocks are compared 0.5 s later.
+    assert sleeper.sleep(1.0) == 0.2
+    assert sleeper.sleep(0.2) == 0.3
+    assert sleeper.sleep(0.3) == 0.1
+    assert sleeper.sleep(0.1) == 0.5
+
+
 def test_until_the_oldest_message_has_waited_for_too_long(sleeper):
     sleeper.board.is_dead = True
     sleeper.sleep()
