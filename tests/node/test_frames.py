@@ -42,6 +42,10 @@ def frames_of(sent, frame_bytes=None, sequence=0):
     return [sender.frames(message) for message in sent]
 
 
+def frame_of(sequence, *, start=False):
+    return encode_header(Header(topic=1, length=0, sequence=sequence, start=start))
+
+
 def received(frames, **options):
     receiver = MessageReceiver(**options)
     out = [message for frame in frames if (message := receiver.take(frame)) is not None]
@@ -159,6 +163,19 @@ def test_a_sender_that_starts_again_is_heard_at_once():
     first, second = (frames_of([NodeMessage(topic=1, packet=b"a")] * 5) for _ in range(2))
     out, counters = received(frame for each in (*first, *second) for frame in each)
     assert len(out) == 10 and counters.lost == counters.late == 0
+
+
+@pytest.mark.parametrize(
+    ("expected", "begins", "lost"),
+    [(6, 9, 3), (6, 0x8005, 0x7FFF), (6, 0x8006, 0), (65534, 2, 4), (6, 6, 0), (None, 9, 0)],
+)
+def test_what_is_lost_before_a_message_unless_its_sender_begins(expected, begins, lost):
+    """The numbers are expected and found; as many as 32,767 may be missing."""
+    before = b"" if expected is None else frame_of(expected - 1)
+    for start, count in ((False, lost), (True, 0)):
+        out, counters = received([*([before] if before else []), frame_of(begins, start=start)])
+        assert len(out) == counters.passed == 1 + bool(before)
+        assert (counters.lost, counters.late) == (count, 0), start
 
 
 def test_one_that_starts_far_back_is_heard_without_its_first_message():
