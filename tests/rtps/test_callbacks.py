@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 
 from firm_hdl.rtps import Durability, Participant, Qos
@@ -119,6 +121,61 @@ def test_each_callback_is_that_of_its_endpoint(pair):
     assert matches.count(("first", writer.guid, True)) == 1
     assert {name for name, _, _ in matches} == {"first", "writer"}
     assert first.guid not in one._endpoints and len(one._endpoints) == 2
+
+
+def test_endpoints_without_callbacks_are_told_nothing_and_the_user_of_all(pair, told, caplog):
+    one, two = pair
+    writer = two.writer(TOPIC, TYPE)
+    reader = one.reader(TOPIC, TYPE, print)
+    durable = one.reader(TOPIC, TYPE, print, Qos(durability=Durability.TRANSIENT_LOCAL))
+    assert wait(lambda: {"Matched", "Incompatible"} <= {*told})
+    assert reader.matched and writer.wait_for_match() and durable.matched == ()
+    assert [each.message for each in caplog.records] == []
+
+
+def test_callbacks_may_close_endpoints_that_are_to_be_told_next(pair, told, caplog):
+    """Two readers match, and two clash; that which is told first closes the other of its kind."""
+    one, two = pair
+    pairs, heard = {}, []
+
+    def notes(kind, number):
+        def note(*_):
+            heard.append(kind)
+            pairs[kind][1 - number].close()
+
+        return {"on_match": note, "on_incompatible": note}
+
+    durable = Qos(durability=Durability.TRANSIENT_LOCAL)
+    for kind, qos in (("fits", Qos()), ("clashes", durable)):
+        pairs[kind] = [
+            one.reader(TOPIC, TYPE, print, qos, **notes(kind, number)) for number in (0, 1)
+        ]
+    two.writer(TOPIC, TYPE)
+    assert wait(lambda: told.count("Matched") == told.count("Incompatible") == 2)
+    assert sorted(heard) == ["clashes", "fits"] and len(one._endpoints) == 2
+    assert [each.message for each in caplog.records] == []
+
+
+def test_a_reader_that_closes_itself_gets_no_sample_that_has_arrived(pair, caplog):
+    one, two = pair
+    heard, sent = [], threading.Event()
+
+    def take(sample):
+        heard.append(sample.payload)
+        if len(heard) == 1:
+            sent.wait(20)
+        else:
+            reader.close()
+
+    reader = one.reader(TOPIC, TYPE, take)
+    writer = two.writer(TOPIC, TYPE)
+    assert writer.wait_for_match()
+    for payload in (b"1...", b"2...", b"3..."):
+        writer.write(payload)
+    sent.set()
+    assert wait(lambda: not writer.matched)
+    one.close()
+    assert heard == [b"1...", b"2..."] and [each.message for each in caplog.records] == []
 
 
 def test_closing_twice_is_closing_once():
