@@ -1,0 +1,112 @@
+# amaranth: UnusedElaboratable=no
+"""Counters of 32 bits, which stay at their largest value instead of beginning again."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+from amaranth.hdl import Module, Signal, Value
+from amaranth.sim import Simulator
+
+from firm_hdl.gateware.packets.counters import add_counters, counters_layout
+from firm_hdl.node.gateware.reassembler import Reassembler
+from firm_hdl.node.links import bytestream
+from tests.node import cobs
+
+MOST = 0xFFFF_FFFF
+
+
+def simulated(part, use):
+    simulator = Simulator(part)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(use)
+    simulator.run()
+
+
+def test_events_are_counted_up_to_the_largest_value():
+    m, event = Module(), Signal()
+    counters = Signal(counters_layout("first", "other"))
+    add_counters(m, counters, {"first": event, "other": ~event})
+
+    async def use(ctx):
+        await ctx.tick()
+        ctx.set(event, 1)
+        await ctx.tick().repeat(3)
+        ctx.set(counters, {"first": MOST - 3, "other": MOST})
+        seen = []
+        for _ in range(6):
+            seen.append(ctx.get(counters.first))
+            await ctx.tick()
+        assert seen == [MOST - 3, MOST - 2, MOST - 1, MOST, MOST, MOST]
+        ctx.set(event, 0)
+        await ctx.tick().repeat(4)
+        assert (ctx.get(counters.first), ctx.get(counters.other)) == (MOST, MOST)
+
+    simulated(m, use)
+
+
+@pytest.mark.parametrize(
+    ("before", "gap", "after"),
+    [
+        (7, 5, 12),
+        (MOST - 5, 5, MOST),
+        (MOST - 4, 5, MOST),
+        (MOST, 5, MOST),
+        (MOST - 9, 32767, MOST),
+    ],
+)
+def test_lost_messages_are_counted_up_to_the_largest_value(before, gap, after):
+    part = Reassembler(16)
+
+    async def use(ctx):
+        async def take(sequence):
+            header = struct.pack("<BBHIIHH", 0xF1, 1, 1, 0, 0, sequence, 0)
+            ctx.set(Value.cast(part.i.payload.data), int.from_bytes(header, "little"))
+            ctx.set(part.i.valid, 1)
+            await ctx.tick().until(part.i.ready)
+            ctx.set(part.i.valid, 0)
+            await ctx.tick().repeat(9)
+
+        ctx.set(part.o.ready, 1)
+        ctx.set(part.i.payload.count, 16)
+        ctx.set(part.i.payload.last, 1)
+        await take(4)
+        assert ctx.get(part.lost) == 0
+        ctx.set(part.lost, before)
+        await take(5 + gap)
+        assert ctx.get(part.lost) == after
+        # The next one follows, so none is missing.
+        await take(6 + gap)
+        assert ctx.get(part.lost) == after
+
+    simulated(part, use)
+
+
+@pytest.mark.parametrize(
+    ("frames", "total"), [(0, 2), (7, 9), (MOST - 2, MOST), (MOST - 1, MOST), (MOST, MOST)]
+)
+def test_malformed_frames_of_both_kinds_are_counted_up_to_the_largest_value(
+    monkeypatch, frames, total
+):
+    """Besides so many frames with a wrong header, a byte stream has two that are too short."""
+
+    class Receiver(bytestream.FrameReceiver):
+        def elaborate(self, platform):
+            m = Module()
+            m.d.comb += [self.frames.ready.eq(1), self.counters.malformed.eq(frames)]
+            return m
+
+    monkeypatch.setattr(bytestream, "FrameReceiver", Receiver)
+    part = bytestream.ByteLink(1, None)
+
+    async def use(ctx):
+        ctx.set(part.bytes_in.valid, 1)
+        for byte in (b"\0" + cobs.encode(b"ab")) * 2 + b"\0":
+            ctx.set(part.bytes_in.payload, byte)
+            await ctx.tick().until(part.bytes_in.ready)
+        ctx.set(part.bytes_in.valid, 0)
+        await ctx.tick().repeat(60)
+        assert ctx.get(part.counters.malformed) == total
+
+    simulated(part, use)
