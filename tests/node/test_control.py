@@ -215,6 +215,25 @@ def test_a_delay_of_more_than_twice_the_usual_one_does_not_count(delay, counts):
     assert keeper.offset_ns == (3000 if counts else 2000)
 
 
+@pytest.mark.parametrize(
+    ("delays", "counts"),
+    [
+        # One that is short, for once, is not the usual one; nor is one that is long.
+        ([100] * 4 + [40] + [100] * 4, [True] * 9),
+        ([100] * 4 + [900] + [200, 202, 198], [True] * 4 + [False, True, False, True]),
+        # What has been usual for 16 samples is forgotten after 8 others.
+        ([50] * 16 + [200] * 9, [True] * 16 + [False] * 7 + [True] * 2),
+        ([50] * 40 + [200] * 9, [True] * 40 + [False] * 7 + [True] * 2),
+    ],
+)
+def test_the_usual_delay_is_that_in_the_middle_of_the_last_16(delays, counts):
+    keeper, found = ClockKeeper(NOMINAL), []
+    for second, delay in enumerate(delays):
+        sampled(keeper, START + second * 10**9, 10 * second, 1000 * delay)
+        found.append(keeper.offset_ns == 10 * second)
+    assert found == counts
+
+
 def test_a_keeper_that_never_changes_the_rate_is_found():
     """The twin: without corrections, 100 ppm are 10 ms after 100 s."""
 
