@@ -163,6 +163,20 @@ def test_a_sample_without_memory_is_not_put_together():
         assert 7 not in reassembly
 
 
+def test_a_sample_that_outgrows_the_memory_is_given_up_and_may_begin_again():
+    for fitting in (1, 2):
+        # A byte too few for one more.
+        budget = Budget(204 * fitting + 203)
+        reassembly = Reassembly(budget)
+        for first in range(1, fitting + 1):
+            assert reassembly.add(part(first, b"abcd")) is None
+        assert budget.used == 204 * fitting
+        assert reassembly.add(part(fitting + 1, b"efgh")) is None
+        assert 7 not in reassembly and budget.used == 0
+        assert reassembly.add(part(3, b"ij")) is None
+        assert reassembly.missing(7) == [1, 2] and budget.used == 202
+
+
 def test_no_more_fragments_are_missing_than_one_answer_can_name():
     reassembly = Reassembly(Budget(1 << 20))
     reassembly.add(part(1, b"abcd", sample_bytes=4 * 1000))
