@@ -326,6 +326,8 @@ end
 
 def test_names_are_legal_and_never_merged(tmp_path: Path) -> None:
     names = "signal a__b a_b A_B _a a_ range RANGE 0x a$b a.b resize work top rtl p_clk".split()
+    # VHDL ignores case.
+    names += ["Unsigned", "RESIZE", "Std_Logic", "Signal", "TOP"]
     module = Module()
     source = Signal(8, name="source")
     signals = [Signal(8, name=name) for name in names]
@@ -335,6 +337,9 @@ def test_names_are_legal_and_never_merged(tmp_path: Path) -> None:
     given = vhdl.entities["top"].ports
     assert len({name.lower() for name in given.values()}) == len(given) == len(names) + 3
     assert given["a_b"] == "a_b" and given["rtl"] != "rtl" and given["a__b"] != "a_b"
+    # What the text itself uses stays visible.
+    hidden = {"unsigned", "resize", "std_logic", "signal", "work", "top", "rtl"}
+    assert not hidden & {name.lower() for name in given.values()}
     analyse(vhdl, tmp_path)
 
 

@@ -53,6 +53,18 @@ def test_constants_of_two_types_of_one_name_are_all_there(tmp_path):
         assert re.search(rf"constant {entry.name} +: signed\(7 downto 0\) := {value};", text)
 
 
+def test_packages_of_names_that_meet_are_told_apart(tmp_path):
+    """Joined to one name, package and type are the same for the first two."""
+    files = {"p/T": "a_msg_b/C x\na/BMsgC y\na/C z\n", "a_msg_b/C": "int8 x"}
+    files |= {"a/BMsgC": "int16 x", "a/C": "int32 x"}
+    message = library(tmp_path, files).message("p/T")
+    made = layer(message)
+    names = [node.package for node in tree_of(message, plan_of(message)).root.children]
+    assert len({name.lower() for name in names}) == 3
+    for name, item in zip(names, ("int8", "int16", "int32"), strict=True):
+        assert re.search(rf"\bx +: {item}_stream_t;", made.packages[f"{name}.vhd"]), name
+
+
 def test_types_of_one_name_have_records_of_their_own(tmp_path):
     message = library(tmp_path, TWO).message("p/T")
     root = tree_of(message, plan_of(message)).root
