@@ -54,9 +54,9 @@ def test_constants_of_two_types_of_one_name_are_all_there(tmp_path):
 
 
 def test_packages_of_names_that_meet_are_told_apart(tmp_path):
-    """Joined to one name, package and type are the same for the first two."""
-    files = {"p/T": "a_msg_b/C x\na/BMsgC y\na/C z\n", "a_msg_b/C": "int8 x"}
-    files |= {"a/BMsgC": "int16 x", "a/C": "int32 x"}
+    """VHDL ignores case, so the names of the types are one."""
+    files = {"p/T": "a/AB x\na/Ab y\na/ABC z\n", "a/AB": "int8 x"}
+    files |= {"a/Ab": "int16 x", "a/ABC": "int32 x"}
     message = library(tmp_path, files).message("p/T")
     made = layer(message)
     names = [node.package for node in tree_of(message, plan_of(message)).root.children]
