@@ -256,6 +256,17 @@ def test_an_output_is_converted_if_an_instance_has_another_type(unsigned_ports: 
     assert text.count("<=") == 1 and "q => f" in text and "p => c" in text
 
 
+@pytest.mark.parametrize("unsigned_ports", [False, True])
+def test_a_pad_of_both_ways_is_a_vector_whatever_other_ports_are(unsigned_ports: bool) -> None:
+    m, pad, a = Module(), IOPort(4, name="pad"), Signal(4, name="a")
+    m.submodules.u = Instance("unit", io_P=pad, i_a=a)
+    files = convert(m, name="t", ports=[pad, a], unsigned_ports=unsigned_ports).files
+    words = " ".join(files["t.vhd"].partition("\narchitecture")[0].split())
+    other = "unsigned" if unsigned_ports else "std_logic_vector"
+    assert "pad : inout std_logic_vector(3 downto 0)" in words
+    assert f"a : in {other}(3 downto 0)" in words
+
+
 def test_choices_of_computed_values_have_their_names() -> None:
     m = Module()
     a, b, o = (Signal(2, name=name) for name in "abo")
