@@ -46,6 +46,25 @@ def test_a_signal_keeps_its_attributes_whatever_drives_it() -> None:
     }
 
 
+@pytest.mark.usefixtures("ghdl")
+def test_each_kind_of_value_of_an_attribute_has_its_type(tmp_path: Path) -> None:
+    """A constant with a width is a text of bits."""
+    m = Module()
+    a, o = Signal(name="a"), Signal(name="o")
+    attributes = {"word": "x", "number": 70_000, "bits": Const(5, 4), "wide": Const(1 << 39, 40)}
+    register = Signal(name="r", attrs=attributes)
+    m.d.sync += register.eq(a)
+    m.d.comb += o.eq(register)
+    vhdl = convert(m, name="t", ports=[a, o])
+    found = re.findall(r"attribute (\w+) (?:: (\w+)|of r : signal is (.*));", vhdl.files["t.vhd"])
+    kinds = {name: kind for name, kind, _ in found if kind}
+    values = {name: value for name, _, value in found if value}
+    assert kinds == dict.fromkeys(attributes, "string") | {"number": "integer"}
+    wide = "1" + "0" * 39
+    assert values == {"word": '"x"', "number": "70000", "bits": '"0101"', "wide": f'"{wide}"'}
+    analyse(vhdl, tmp_path)
+
+
 def test_one_attribute_has_one_type() -> None:
     m = Module()
     a, o = Signal(name="a"), Signal(2, name="o")
