@@ -108,15 +108,14 @@ class _Default:
 
 
 def _members(case: DefinitionCase) -> Iterator[tuple[re.Match[str], list[_Default]]]:
-    """Yield the members that have defaults."""
+    """Yield the members with their defaults."""
     code = blanked(case.text)
     for member in _MEMBER.finditer(code):
         found = [
             _Default(*match.span(), case.text[match.start("value") : match.end("value")].strip())
             for match in _DEFAULT.finditer(code, *member.span("notes"))
         ]
-        if found:
-            yield member, found
+        yield member, found
 
 
 @RULES.text("idl-defaults", "rosidl_parser takes several defaults of a member.", is_mistake=True)
