@@ -115,6 +115,14 @@ waivers.vlt
 """All files of Twist with default options."""
 
 
+def test_without_a_folder_the_output_is_in_vhdl_out(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (built,) = build(("std_msgs/msg/Bool",))
+    assert built.folder.parts[:2] == ("vhdl_out", Library().distro)
+    assert [path.name for path in tmp_path.iterdir()] == ["vhdl_out"]
+    assert (tmp_path / built.folder / "manifest.json").is_file()
+
+
 def test_folder_is_complete(tmp_path):
     seen: list[Built] = []
     built = build(
