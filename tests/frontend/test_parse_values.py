@@ -268,6 +268,11 @@ def test_ros2_refuses_defaults(line):
     refused(line, "ros2")
 
 
+def test_ros2_quoted_items_may_be_empty():
+    values = field("""string[] x ['', "", 'a', ""]""").default.items
+    assert [item.value for item in values] == ["", "", "a", ""]
+
+
 @pytest.mark.parametrize("line", ["int32 x 5", "int32[] x [1]", "string x a", "int32 x y z"])
 def test_ros1_has_no_defaults(line):
     assert "the end of the line" in refused(line, "ros1")

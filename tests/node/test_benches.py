@@ -239,6 +239,18 @@ def test_packets_are_chosen_that_have_room_on_their_whole_way():
     }
 
 
+def test_all_frames_of_a_message_are_compared():
+    """A datagram of 32 bytes has 16 bytes of a message."""
+    given = [bytes(range(size)) for size in (1, 16, 17, 40, 5)]
+    description = read(TEXTS, link=WIDE_UDP)
+    script = link_script(description, lambda *_: given, has_accelerator=False)
+    texts = [line[2:].replace("--", "00") for line in script.lines if line[0] == "<"]
+    frames = [bytes.fromhex(text) for text in texts]
+    back = [frame[16:] for frame in frames if frame[2] == 3]
+    assert [len(part) for part in back] == [1, 16, 16, 1, 16, 16, 8, 5]
+    assert b"".join(back) == b"".join(given)
+
+
 def test_packets_of_an_unknown_accelerator_are_only_those_that_it_never_sees():
     description = read(TEXTS)
     script = link_script(description, lambda *_: [b"abcd"], has_accelerator=True)
