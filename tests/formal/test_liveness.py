@@ -60,3 +60,9 @@ def test_what_never_moves_breaks_its_claim(name, claim):
             play(study.build, lambda widths, run=run: steps(name, run, widths))[0][claim]
             for run in range(12)
         )
+
+
+def test_claims_of_all_kinds_of_blocks_are_asked():
+    """No names at all would be no failure of the test above."""
+    assert len(LIVE) > 30
+    assert {claim.rpartition(" ")[2] for _, claim in LIVE} == {"moves", "time"}

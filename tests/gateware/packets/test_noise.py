@@ -6,6 +6,9 @@ from __future__ import annotations
 import random
 
 import pytest
+from amaranth.hdl import Module, Value
+from amaranth.lib.wiring import Component, In, Out, connect, flipped
+from amaranth.sim import Simulator
 
 from firm_hdl import (
     Deserializer,
@@ -17,6 +20,7 @@ from firm_hdl import (
     Parser,
     Serializer,
 )
+from firm_hdl.gateware.signatures import PacketSignature
 from firm_hdl.plan import decode, encode
 from firm_hdl.sim import Harness, RunOptions, Stalls
 from firm_hdl.sim.payloads import packet_beats
@@ -42,6 +46,35 @@ def text(size):
 GOOD = [text(s) + text(t) + b"\7" for s, t in ((2, 3), (0, 0), (3, 9), (1, 0))]
 BAD = [GOOD[0][:6], text(5) + text(1) + b"\7", GOOD[2] + b"\7\7"]
 MIXED = [packet for pair in zip(GOOD, BAD, strict=False) for packet in pair] + GOOD
+
+
+class Wire(Component):
+    """Passes a packet stream on, with the payload as it is."""
+
+    def __init__(self):
+        super().__init__({"i": In(PacketSignature(1)), "o": Out(PacketSignature(1))})
+
+    def elaborate(self, platform):
+        m = Module()
+        connect(m, flipped(self.i), flipped(self.o))
+        return m
+
+
+def test_there_is_noise_beside_a_low_valid_alone():
+    """Otherwise the tests below would find nothing."""
+    part = with_noise(Wire)
+    came, left = Value.cast(part.i.payload), Value.cast(part.o.payload)
+
+    async def testbench(ctx):
+        for valid, want in ((0, ~0x2A5 & 0x3FF), (1, 0x2A5)):
+            ctx.set(came, 0x2A5)
+            ctx.set(part.i.valid, valid)
+            await ctx.delay(1e-6)
+            assert (ctx.get(left), ctx.get(part.o.valid)) == (want, valid)
+
+    simulator = Simulator(part)
+    simulator.add_testbench(testbench)
+    simulator.run()
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 4])
