@@ -1,6 +1,11 @@
 # What a newcomer types. Everything is installed into .venv, which `make clean` removes.
 
-PYTHON ?= python3
+# pyenv compiles Python without optimizations unless it is asked for them, and tests then take 1.6 times
+# as long. So the system's Python is used where the first one of the PATH was compiled like that.
+OPTIMIZED := import ensurepip, sys, sysconfig, venv; flags = sysconfig.get_config_var("CONFIG_ARGS"); \
+  sys.exit(sys.version_info < (3, 10) or sys.base_prefix != "/usr" and "--enable-optimizations" not in flags)
+PYTHON ?= $(shell for python in python3 /usr/bin/python3; do \
+  $$python -c '$(OPTIMIZED)' 2>/dev/null && echo $$python && exit; done; echo python3)
 VENV   := .venv
 BIN    := $(VENV)/bin
 JOBS   ?= 2
