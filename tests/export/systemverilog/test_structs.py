@@ -76,7 +76,7 @@ def test_linters_find_nothing_in_hard_types(design, verilator, tmp_path, bus_byt
         for name in ("p/msg/Outer", "p/srv/Ask", "p/action/Go")
         for each in given.interface(name).messages
     ]
-    for message in (*messages, nasty(tmp_path / "noetic"), load_message("std_msgs/msg/Empty")):
+    for message in (*messages, nasty(), load_message("std_msgs/msg/Empty")):
         design.add(message, bus_bytes)
     design.add(load_message("std_msgs/Empty", distro="noetic"), bus_bytes)
     clean(design, verilator)

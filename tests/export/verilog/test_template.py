@@ -45,7 +45,7 @@ def write_stub(message: Message, direction: str, bus_bytes: int, folder: Path) -
 def messages(tmp_path: Path) -> list[Message]:
     return [
         hard(tmp_path).message("p/msg/Outer"),
-        nasty(tmp_path / "noetic"),
+        nasty(),
         load_message("std_msgs/Empty", distro="noetic"),
         load_message("sensor_msgs/msg/CameraInfo"),
     ]

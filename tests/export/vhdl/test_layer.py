@@ -7,7 +7,9 @@ import re
 import subprocess
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -19,7 +21,9 @@ from firm_hdl.export.vhdl.layer import UserLayer, user_layer
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan, build_plan
+from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 
 NASTY = """\
 # Keywords, doubles, outer underscores, case.
@@ -74,22 +78,52 @@ WARNINGS = [
 ]
 
 
+def plan_of(message: Message, bus_bytes: int = 8) -> Plan:
+    return build_plan(lay_out(message), bus_bytes=bus_bytes)
+
+
 def vhdl_of(
     message: Message,
     bus_bytes: int = 8,
-    stimuli: Iterable[bytes] = (),
+    packets: Iterable[bytes] = (),
     ports: Ports = "records",
 ) -> tuple[Output, Plan]:
-    plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
-    name = f"{message.name}_{plan.wire}_{bus_bytes}"
+    made = _vhdl(message, texts_of(message), bus_bytes, tuple(packets), ports)
+    return made, plan_of(message, bus_bytes)
+
+
+def texts_of(message: Message) -> tuple[object, ...]:
+    """Return the texts of a message and its parts: equal messages may have other comments."""
+    return (message.text, *map(texts_of, message.children))
+
+
+@cache
+def _vhdl(
+    message: Message,
+    texts: tuple[object, ...],
+    bus_bytes: int,
+    packets: tuple[bytes, ...],
+    ports: Ports,
+) -> Output:
+    """Write the VHDL once for all tests of a type: making circuits takes seconds."""
+    plan = plan_of(message, bus_bytes)
     made = Converters(
         message=message,
         plan=plan,
-        name=name,
+        name=f"{message.name}_{plan.wire}_{bus_bytes}",
         options=Options(bus_bytes=bus_bytes, ports=ports),
-        stimuli=list(stimuli),
+        stimuli=packets,
     )
-    return to_vhdl(replace(made, circuits=made.make_circuits())), plan
+    return to_vhdl(replace(made, circuits=_circuits(message, bus_bytes)))
+
+
+@cache
+def _circuits(message: Message, bus_bytes: int) -> dict[Direction, str]:
+    """Make the circuits, which are the same with records and with flat ports."""
+    plan = plan_of(message, bus_bytes)
+    name = f"{message.name}_{plan.wire}_{bus_bytes}"
+    options = Options(bus_bytes=bus_bytes)
+    return Converters(message=message, plan=plan, name=name, options=options).make_circuits()
 
 
 def write(folder: Path, files: dict[str, str]) -> None:
@@ -111,13 +145,15 @@ def analyse(ghdl: str, folder: Path, files: Iterable[str]) -> None:
     assert (done.returncode, done.stdout + done.stderr) == (0, "")
 
 
-def nasty(tmp_path: Path) -> Message:
-    folder = tmp_path / "src" / "nasty_msgs" / "msg"
-    folder.mkdir(parents=True)
-    (folder / "Signal.msg").write_text(NASTY)
-    (folder / "Inner.msg").write_text(INNER)
-    (folder / "Empty.msg").write_text("")
-    return load_message("nasty_msgs/Signal", distro="noetic", paths=[tmp_path / "src"])
+@cache
+def nasty() -> Message:
+    with TemporaryDirectory() as source:
+        folder = Path(source) / "nasty_msgs" / "msg"
+        folder.mkdir(parents=True)
+        (folder / "Signal.msg").write_text(NASTY)
+        (folder / "Inner.msg").write_text(INNER)
+        (folder / "Empty.msg").write_text("")
+        return load_message("nasty_msgs/Signal", distro="noetic", paths=[source])
 
 
 def layer(message: Message, bus_bytes: int = 8) -> UserLayer:
@@ -165,8 +201,8 @@ def test_comments_and_units_stand_above_their_fields(tmp_path):
     assert "    far : float32_stream_t;  -- float32 [m]\n" in text
 
 
-def test_constants_have_their_values(tmp_path):
-    text = re.sub(" +:", " :", own_package(layer(nasty(tmp_path))))
+def test_constants_have_their_values():
+    text = re.sub(" +:", " :", own_package(layer(nasty())))
     for line in (
         # `severity error` must stay usable.
         'constant ERROR_CONSTANT : unsigned(7 downto 0) := x"01";  -- uint8 1',
@@ -181,8 +217,8 @@ def test_constants_have_their_values(tmp_path):
         assert line in text, line
 
 
-def test_types_are_shared_and_no_two_names_meet(tmp_path):
-    made = layer(nasty(tmp_path))
+def test_types_are_shared_and_no_two_names_meet():
+    made = layer(nasty())
     text = "".join(made.packages.values())
     assert text.count("  type inner_t is record\n") == 1
     nodes = list(made.tree.root.walk())
@@ -196,9 +232,12 @@ def test_types_are_shared_and_no_two_names_meet(tmp_path):
         assert len(set(types)) == len(types)
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 8])
+# On a bus of one byte, test_wide.py analyses strings.
+@pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 8]))
 def test_nasty_names_are_analysed_without_warnings(ghdl, tmp_path, bus_bytes):
-    made, _ = vhdl_of(nasty(tmp_path), bus_bytes)
+    # With the packets of other tests, for which it is made anyway.
+    packets = stimuli(nasty(), plan_of(nasty(), bus_bytes))
+    made, _ = vhdl_of(nasty(), bus_bytes, packets)
     write(tmp_path / "vhdl", made.files)
     analyse(ghdl, tmp_path / "vhdl", [*made.manifest["files"], *made.manifest["bench"]["files"]])
 
@@ -266,7 +305,8 @@ end architecture;
 
 
 def test_users_own_design_reads_a_twist(ghdl, tmp_path):
-    made, _ = vhdl_of(load_message("geometry_msgs/msg/Twist", distro="lyrical"))
+    message = load_message("geometry_msgs/msg/Twist", distro="lyrical")
+    made, _ = vhdl_of(message, packets=stimuli(message, plan_of(message)))
     write(tmp_path, {**made.files, "user.vhd": USERS_OWN})
     analyse(ghdl, tmp_path, [*made.manifest["files"], "user.vhd"])
     command = [ghdl, "--elab-run", "--std=08", "user", "--ieee-asserts=disable-at-0"]

@@ -11,8 +11,9 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.export.vhdl.parts import PARTS
+from firm_hdl.verify.cases.stimuli import stimuli
 from tests.examples.test_examples import load
-from tests.export.vhdl.test_layer import analyse, vhdl_of, write
+from tests.export.vhdl.test_layer import analyse, plan_of, vhdl_of, write
 
 ROOT = Path(__file__).parents[3]
 README = (ROOT / "README.md").read_text()
@@ -52,7 +53,9 @@ INSTANCE = """\
 
 @pytest.fixture(scope="module")
 def converters():
-    made, _ = vhdl_of(load_message("geometry_msgs/msg/Twist", distro="lyrical"))
+    message = load_message("geometry_msgs/msg/Twist", distro="lyrical")
+    # The same VHDL as for other tests of this type, so that it is made once.
+    made, _ = vhdl_of(message, packets=stimuli(message, plan_of(message)))
     return made
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from firm_hdl import Deserializer, load_message
+from firm_hdl.export.backend import Output
 from firm_hdl.export.record_top import RecordTop, record_ports, why_no_record
 from firm_hdl.export.tree import taken_names, tree_of
 from firm_hdl.export.vhdl.parts import packets_text
@@ -19,7 +20,16 @@ from firm_hdl.plan import build_plan
 from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.vhdl.names import PREDEFINED
 from firm_hdl.wire import lay_out
-from tests.export.vhdl.test_layer import WARNINGS, analyse, layer, own_package, vhdl_of, write
+from tests.depth import by_depth
+from tests.export.vhdl.test_layer import (
+    WARNINGS,
+    analyse,
+    layer,
+    own_package,
+    plan_of,
+    vhdl_of,
+    write,
+)
 from tests.strategies import make
 from tests.tools import run_script
 
@@ -60,12 +70,16 @@ def arrays(tmp_path: Path, distro: str) -> Message:
     return load_message("array_msgs/Arrays", distro=distro, paths=[tmp_path / "src"])
 
 
+def with_packets(message: Message, bus_bytes: int = 8) -> tuple[Output, list[bytes]]:
+    """Return a type's VHDL and its packets; tests with the same packets share the VHDL."""
+    packets = stimuli(message, plan_of(message, bus_bytes))
+    return vhdl_of(message, bus_bytes, packets)[0], packets
+
+
 def write_folder(folder: Path, message: Message, bus_bytes: int) -> tuple[str, list[bytes]]:
     """Write the VHDL folder of a type; return its record bench and its packets."""
-    plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
-    packets = stimuli(message, plan)
+    vhdl, packets = with_packets(message, bus_bytes)
     assert packets
-    vhdl, _ = vhdl_of(message, bus_bytes, packets)
     write(folder, vhdl.files)
     [_, bench] = vhdl.manifest["bench"]["entities"]
     assert bench.endswith("_record_tb")
@@ -90,8 +104,9 @@ def check(ghdl: str, folder: Path, message: Message, bus_bytes: int) -> None:
     ("name", "distro", "bus_bytes"),
     [
         ("geometry_msgs/msg/Twist", "lyrical", 8),
-        ("geometry_msgs/PoseWithCovariance", "noetic", 8),
+        ("shape_msgs/Plane", "noetic", 2),
         ("std_msgs/msg/Bool", "lyrical", 1),
+        *by_depth([], [("geometry_msgs/PoseWithCovariance", "noetic", 8)]),
     ],
 )
 def test_whole_messages_come_back(ghdl, tmp_path, name, distro, bus_bytes):
@@ -99,9 +114,13 @@ def test_whole_messages_come_back(ghdl, tmp_path, name, distro, bus_bytes):
 
 
 @pytest.mark.parametrize(
-    ("distro", "bus_bytes"), [("noetic", 1), ("noetic", 16), ("lyrical", 4), ("lyrical", 8)]
+    ("distro", "bus_bytes"),
+    [
+        ("noetic", 8),
+        ("lyrical", 8),
+        *by_depth([], [("noetic", 1), ("noetic", 16), ("lyrical", 4)]),
+    ],
 )
-@pytest.mark.sampled(2)
 def test_arrays_and_nasty_names_come_back(ghdl, tmp_path, distro, bus_bytes):
     check(ghdl, tmp_path / "vhdl", arrays(tmp_path, distro), bus_bytes)
 
@@ -134,14 +153,14 @@ def test_swapped_members_fail(ghdl, tmp_path):
 
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])
 def test_arrays_are_analysed_without_warnings(ghdl, tmp_path, distro):
-    vhdl, _ = vhdl_of(arrays(tmp_path, distro))
+    vhdl, _ = with_packets(arrays(tmp_path, distro))
     write(tmp_path / "vhdl", vhdl.files)
     analyse(ghdl, tmp_path / "vhdl", [*vhdl.manifest["files"], *vhdl.manifest["bench"]["files"]])
     assert "--warn-hide" in WARNINGS
 
 
 def test_package_reads_like_the_definition(tmp_path):
-    vhdl, _ = vhdl_of(arrays(tmp_path, "noetic"))
+    vhdl, _ = with_packets(arrays(tmp_path, "noetic"))
     text = vhdl.files["array_msgs_arrays_ros1_8_pkg.vhd"]
     start = text.index("  type arrays_value_t is record\n")
     record = text[start : text.index("  end record;\n", start)]
@@ -315,7 +334,7 @@ end architecture;
 
 
 def test_users_own_design_reads_a_whole_twist(ghdl, tmp_path):
-    vhdl, _ = vhdl_of(load_message("geometry_msgs/msg/Twist", distro="lyrical"))
+    vhdl, _ = with_packets(load_message("geometry_msgs/msg/Twist", distro="lyrical"))
     write(tmp_path, {**vhdl.files, "user.vhd": USERS_OWN})
     subprocess.run(
         [ghdl, "-a", "--std=08", *vhdl.manifest["files"], "user.vhd"], cwd=tmp_path, check=True

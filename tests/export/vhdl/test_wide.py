@@ -6,7 +6,8 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.export.vhdl.parts import packets_text
-from tests.export.vhdl.test_layer import vhdl_of, write
+from tests.depth import by_depth
+from tests.export.vhdl.test_layer import analyse, vhdl_of, write
 from tests.tools import run_script
 
 # Bytes of ROS 2's own type support (humble, Fast CDR), and bytes derived from them for bounds.
@@ -17,14 +18,16 @@ PACKETS = [
 ]
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 8, 32])
+@pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 8, 32]))
 def test_wstrings_pass(ghdl, tmp_path, bus_bytes):
     folder = tmp_path / "my_msgs" / "msg"
     folder.mkdir(parents=True)
     (folder / "Wide.msg").write_text("uint8 x\nwstring w\nuint8 y\nwstring<=3 b\n")
     message = load_message("my_msgs/msg/Wide", paths=[tmp_path])
     packets = [bytes.fromhex(text) for text in PACKETS]
-    write(tmp_path / "vhdl", vhdl_of(message, bus_bytes, packets)[0].files)
+    made, _ = vhdl_of(message, bus_bytes, packets)
+    write(tmp_path / "vhdl", made.files)
+    analyse(ghdl, tmp_path / "vhdl", [*made.manifest["files"], *made.manifest["bench"]["files"]])
     status, output = run_script(tmp_path / "vhdl" / "run_ghdl.sh", GHDL=ghdl)
     assert status == 0 and output.startswith("PASS my_msgs/msg/Wide, "), output
     assert (tmp_path / "vhdl" / "work" / "results.txt").read_text() == packets_text(packets)
