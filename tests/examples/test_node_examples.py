@@ -69,7 +69,7 @@ def read(packets, name, kind):
     return [STORE.deserialize_cdr(p, kind) for topic, p in packets if topic == name]
 
 
-# The circuit is large. Those of the next tests have topics as well, and tests/node has all the rest.
+# The circuit is large. Those of the next tests have topics, too, and tests/node has the rest.
 @pytest.mark.thorough
 def test_wheels(start):
     made, topics = start("wheels/wheels.yaml")

@@ -13,6 +13,8 @@ from firm_hdl.frontend import Library
 from firm_hdl.identity import md5sum
 from firm_hdl.model import Action, Field, Message
 
+from tests.depth import by_depth
+
 from ..frontend.workspace import library, make_files
 
 # As ``rosmsg md5`` and ``rossrv md5`` print them.
@@ -55,13 +57,15 @@ def test_sums_of_the_corpus_are_those_of_genmsg(corpus):
         want = dict(list(csv.reader(lines, delimiter="\t"))[1:])
     noetic = Library("noetic", [corpus / "ros1"])
     ours = {}
-    for path in sorted((corpus / "ros1").glob("*/*/*.*")):
+    for path in sorted((corpus / "ros1").glob("*/*/*.*"))[:: by_depth(8, 1)]:
         package, kind = path.parts[-3:-1]
         interface = noetic.interface(f"{package}/{kind}/{path.stem}")
         parts = interface.messages[:3] if isinstance(interface, Action) else (interface,)
         ours.update((part.name, md5sum(part)) for part in parts)
-    assert {name: ours.get(name) for name in want if ours.get(name) != want[name]} == {}
     assert len(want) == 5915
+    expected = {name: want[name] for name in by_depth(ours.keys() & want.keys(), want.keys())}
+    assert {name: ours.get(name) for name in expected if ours.get(name) != want[name]} == {}
+    assert len(expected) > by_depth(650, 5900)
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,13 @@ import pytest
 
 from firm_hdl.frontend import Library, show
 from firm_hdl.model import Array
+from tests.depth import by_depth
 from tests.frontend.workspace import make_files
 from tests.steps import calls_at_most
 
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
-DEEP = 5000
+# More than Python's stack has.
+DEEP = by_depth(1500, 5000)
 
 
 @pytest.fixture(scope="module")
@@ -63,10 +65,10 @@ def test_a_lattice_is_evaluated_once_for_each_message(tmp_path, dialect):
 
 @pytest.mark.parametrize("dialect", DISTROS)
 def test_many_fields_take_little_time(tmp_path, dialect):
-    count = 12_000
+    count = by_depth(3000, 12_000)
     text = "".join(f"float64 field{i}  # number {i}\n" for i in range(count))
     make_files(tmp_path, {"p/msg/T.msg": text})
-    with calls_at_most(10_000_000):
+    with calls_at_most(by_depth(1_600_000, 10_000_000)):
         library = Library(DISTROS[dialect], [tmp_path])
         message = library.message("p/T")
         assert len(message.fields) == count

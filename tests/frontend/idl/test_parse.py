@@ -24,6 +24,7 @@ from firm_hdl.frontend.idl.tree import (
     Typedef,
     Unary,
 )
+from tests.depth import by_depth
 from tests.steps import calls_at_most
 
 
@@ -138,10 +139,11 @@ def test_operators_bind_as_in_c():
 
 
 def test_long_texts_are_read_in_time():
-    members = "".join(f'@unit(value="m") sequence<double, {i + 1}> a{i}; ' for i in range(5000))
-    with calls_at_most(30_000_000):
+    count = by_depth(1500, 5000)
+    members = "".join(f'@unit(value="m") sequence<double, {i + 1}> a{i}; ' for i in range(count))
+    with calls_at_most(by_depth(4_700_000, 30_000_000)):
         (struct,) = parse(f"struct T {{ {members} }};")
-        assert len(struct.members) == 5000
+        assert len(struct.members) == count
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from firm_hdl.frontend import Library
 from firm_hdl.frontend.idl import read_idl
 from firm_hdl.frontend.syntax import ConstantSyntax, FieldSyntax
 from firm_hdl.model import IDL_PRIMITIVES, Array, Sequence, String
+from tests.depth import by_depth
 from tests.frontend.workspace import make_files
 from tests.steps import calls_at_most
 
@@ -310,7 +311,7 @@ def test_a_thousand_mistakes_are_enough():
 
 @pytest.mark.parametrize("kind", ["typedefs", "constants", "includes"])
 def test_long_chains_need_neither_stack_nor_time(kind):
-    count, sources = 3000, {}
+    count, sources = by_depth(1200, 3000), {}
     if kind == "typedefs":
         chain = "".join(f"typedef A{i} A{i + 1}; " for i in reversed(range(count)))
         text = f"module p {{ typedef long A0; {chain} struct T {{ A{count} a; A5 b; }}; }};"
@@ -320,12 +321,14 @@ def test_long_chains_need_neither_stack_nor_time(kind):
     else:
         for i in range(count):
             sources[f"F{i}"] = f'#include "F{i + 1}"\nmodule p {{ const long A{i} = {i}; }};'
-        text = '#include "F0"\nmodule p { struct T { long a[A2999]; }; };'.replace("A", "p::A")
+        text = '#include "F0"\nmodule p { struct T { long a[A%s]; }; };' % (count - 1)
+        text = text.replace("A", "p::A")
 
     def include(path):
         return Source(name=path, text=sources[path]) if path in sources else None
 
-    with calls_at_most(15_000_000):
+    # What grows with the square of the count makes too many calls with either count.
+    with calls_at_most(by_depth(3_500_000, 15_000_000)):
         messages, wrong = read_idl(Source(name="test.idl", text=text), include)
         assert wrong == []
         assert messages["T"].members
@@ -348,9 +351,10 @@ def test_a_long_default_before_many_names_takes_no_time():
 
 
 def test_long_types_before_many_names_take_no_time():
-    chain = "+".join("1" * 5000)
-    text = f"module p {{ struct T {{ sequence<long, {chain}> {','.join('a' * 5000)}; }}; }};"
-    with calls_at_most(7_000_000):
+    count = by_depth(1500, 5000)
+    chain = "+".join("1" * count)
+    text = f"module p {{ struct T {{ sequence<long, {chain}> {','.join('a' * count)}; }}; }};"
+    with calls_at_most(by_depth(1_100_000, 7_000_000)):
         read(text)
 
 
