@@ -14,14 +14,16 @@ from tests.depth import by_depth
 from tests.strategies import BUS_WIDTHS, definitions
 from tests.verify.judged import NAN_KEY, TIME_KEY, assert_passed
 
-MOST_WORK = 5_000
+MOST_WORK = by_depth(500, 5_000)
 """Limit on beats times leaves of the smallest packet; larger examples may take minutes."""
+
+MOST_CASES = by_depth(4, 8)
 
 
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 # Shrinking would simulate for many minutes; the failure message has the command to repeat it.
 @settings(
-    max_examples=by_depth(6, 40),
+    max_examples=by_depth(4, 40),
     deadline=None,
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=list(HealthCheck),
@@ -35,7 +37,7 @@ def test_random_types_pass(wire, definition, bus_bytes, seed):
     message = definition.message
     layout = lay_out(message, wire)
     assume(work_of(build_plan(layout, bus_bytes=bus_bytes), layout.min_bytes) <= MOST_WORK)
-    options = Options(bus_bytes=bus_bytes, wire=wire, seed=seed, most_cases=8)
+    options = Options(bus_bytes=bus_bytes, wire=wire, seed=seed, most_cases=MOST_CASES)
     result = Result(distro="", name=message.name)
     oracle = RosbagsOracle(definition.store(), message.dialect)
     accept_message(message, oracle, definition.rosbags_name, options, result)
