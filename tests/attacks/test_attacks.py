@@ -24,6 +24,8 @@ INTERNAL_ERROR = re.compile(
     r"\b[A-Z]\w*(?:Error|Exception)\b|invalid literal|index out of range|unpack|"
     r"unsupported operand|argument must be|recursion depth|Exceeds the limit"
 )
+# These build a type before they fail, as `out_file` does.
+SLOW = {"out_distro_is_file", "out_is_link_to_file"}
 # A command that hangs is stopped after this time.
 MOST_SECONDS = 120
 
@@ -77,7 +79,13 @@ def check_end(
         assert name in attack.changes or after.get(name) == text, f"{name} is lost"
 
 
-@pytest.mark.parametrize("attack", ATTACKS, ids=lambda attack: attack.name)
+@pytest.mark.parametrize(
+    "attack",
+    [
+        pytest.param(each, id=each.name, marks=[pytest.mark.thorough] * (each.name in SLOW))
+        for each in ATTACKS
+    ],
+)
 @pytest.mark.sampled(2)
 def test_attack(attack, tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)

@@ -93,9 +93,12 @@ def test_dask_that_is_not_installed_is_an_error(monkeypatch):
         list(run_each(square, TASKS, executor="dask://127.0.0.1:1"))
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def cluster():
-    """Return a Dask cluster of two workers on this machine, and its name as an executor."""
+    """Return a Dask cluster of two workers on this machine, and its name as an executor.
+
+    A cluster takes seconds to start. It replaces a worker that was killed. The last test closes it.
+    """
     distributed = pytest.importorskip("distributed")
     local_cluster = distributed.LocalCluster(
         n_workers=2,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tests.depth import by_depth
 from tests.mutation.test_tool import MODULE, ROOT
 from tools.mutation.explained import Explanation, explain, read_explanations
 from tools.mutation.mutants import identify
@@ -50,8 +51,10 @@ def test_scores_are_shares_of_all_mutants_and_of_those_without_an_explanation():
 
 
 def test_explanations_are_of_existing_mutants():
-    explanations = read_explanations()
-    mutants = all_mutants(ROOT, only={each.path for each in explanations})
+    # Those of one file in four take seconds, too.
+    paths = {*sorted({each.path for each in read_explanations()})[:: by_depth(4, 1)]}
+    explanations = [each for each in read_explanations() if each.path in paths]
+    mutants = all_mutants(ROOT, only=paths)
     there = {(m.path, m.change.scope, m.change.rule, m.place.old, m.place.new) for m in mutants}
     for each in explanations:
         assert (each.path, each.scope, each.rule, each.old, each.new) in there, each

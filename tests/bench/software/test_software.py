@@ -38,6 +38,7 @@ from firm_hdl.model import (
 )
 from firm_hdl.wire import Wire
 from tests.bench.results import result
+from tests.depth import THOROUGH
 from tests.tools import need
 
 
@@ -112,7 +113,8 @@ def test_fast_cdr_has_every_kind_of_field() -> None:
         found.deserialize,
         found.serialize,
     )
-    assert time_fastcdr(sample_of(everything("ros1"), "cdr"), 1, 0.02).serialize > 0
+    if THOROUGH:  # Another compilation, of the same kinds of fields.
+        assert time_fastcdr(sample_of(everything("ros1"), "cdr"), 1, 0.02).serialize > 0
 
 
 PADDED = Message(
