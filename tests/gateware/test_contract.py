@@ -3,11 +3,21 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import pytest
 from amaranth.sim import Simulator
 
 from firm_hdl import Deserializer, Serializer, Status
-from firm_hdl.sim import Stalls, encode, loopback, receive_packets, send_packets
+from firm_hdl.sim import (
+    Harness,
+    RunOptions,
+    Stalls,
+    encode,
+    loopback,
+    receive_packets,
+    send_packets,
+)
 from firm_hdl.wire import RULES
 from tests.depth import by_depth
 from tests.strategies import make
@@ -148,7 +158,7 @@ def test_status_waits_until_it_is_taken_and_holds_the_next_packet():
     simulate(dut, feed, take)
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8])
+@pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 2, 4, 8]))
 @pytest.mark.parametrize("dialect", ["ros1", "ros2"])
 def test_an_empty_sequence_in_an_element_does_not_end_the_message(dialect, bus_bytes):
     # The rest of a sequence has a step of its own here, which is the last one or goes on with the
@@ -215,14 +225,21 @@ def test_elements_far_over_their_bound_are_all_sent(count):
     assert sent.packets == [packet, b"\1\0\0\0\7\x08"]
 
 
+@cache
+def converters(bus_bytes, *fields):
+    """Return both converters of a type, in series: they are built once for all packets."""
+    message = make("ros2", dict(fields))
+    return Harness(*(kind(message, bus_bytes=bus_bytes) for kind in (Deserializer, Serializer)))
+
+
 @pytest.mark.parametrize("slack", range(6))
 def test_cdr_packets_may_be_padded_by_up_to_three_bytes(slack):
-    message = make("ros2", {"x": "uint32"})
     packet = b"\0\1\0\0\5\0\0\0"
     for bus_bytes in (1, 2, 4, 8, 16):
-        packets, statuses = loopback(message, [packet + bytes(slack), packet], bus_bytes=bus_bytes)
-        assert packets == [packet, packet]
-        assert statuses == [Status.OK if slack <= 3 else Status.TRAILING, Status.OK]
+        both = converters(bus_bytes, ("x", "uint32"))
+        seen = both.run_packets([packet + bytes(slack), packet])
+        assert seen.packets == [packet, packet]
+        assert list(seen.statuses) == [Status.OK if slack <= 3 else Status.TRAILING, Status.OK]
 
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 2, 4, 8]))
@@ -231,19 +248,17 @@ def test_cdr_packets_may_be_padded_by_up_to_three_bytes(slack):
 def test_padding_may_come_long_after_the_message(bus_bytes, slack):
     # The step that ends the message does not see where the packet ends, and its own end is where no
     # step starts.
-    fixed = make("ros2", {"x": "uint16"})
-    text = make("ros2", {"x": "uint16", "s": "string"})
+    fixed = converters(bus_bytes, ("x", "uint16"))
+    text = converters(bus_bytes, ("x", "uint16"), ("s", "string"))
     start = [0, 1, 0, 0, 7, 7]
     texts = [[*start, 0, 0, count + 1, 0, 0, 0, *range(1, count + 1), 0] for count in range(9)]
-    for message, packets in ((fixed, [start]), (text, texts)):
-        statuses = loopback(
-            message,
+    for both, packets in ((fixed, [start]), (text, texts)):
+        seen = both.run_packets(
             [bytes([*packet, *[0xFF] * slack]) for packet in packets for _ in range(2)],
-            bus_bytes=bus_bytes,
-            stalls={"packets_in": Stalls.bits("10000")},
-        ).statuses
+            RunOptions(stalls={"packets_in": Stalls.bits("10000")}),
+        )
         wanted = Status.OK if slack <= 3 else Status.TRAILING
-        assert statuses == [wanted] * (2 * len(packets))
+        assert list(seen.statuses) == [wanted] * (2 * len(packets))
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 8, 32])

@@ -11,13 +11,15 @@ from firm_hdl import Deserializer, Serializer, Status
 from firm_hdl.plan import decode, encode
 from firm_hdl.sim import Harness, RunOptions, Stalls, to_transfers
 from firm_hdl.sim.transfers import join_transfers
+from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.gateware.traffic import is_quick
 from tests.plan.test_random_messages import damaged, serialize, typed_values
 from tests.strategies import BUS_WIDTHS, make, values
 
 few = settings(
     deadline=None,
-    max_examples=12,
+    max_examples=by_depth(5, 12),
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
@@ -84,7 +86,7 @@ def test_a_packet_may_end_with_a_length_or_a_step_without_bytes(end, bus_bytes):
         packets = [empty, text] * 3
     else:
         packets = [bytes(4) + count.to_bytes(4, "little") for count in (0, 1, 5)]
-    packets *= 5
+    packets *= by_depth(1 if len(packets) == 8 else 2, 5)
     messages = [decode(tx.plan, packet).streams for packet in packets]
     both = Harness(rx, tx, gated=True)
     for stalls in (None, Stalls(probability=0.5, seed=1)):
@@ -126,7 +128,9 @@ def test_strings_and_bytes_side_by_side_may_be_empty():
 @given(data=st.data(), case=typed_values(wide=True), options=options, stalls=stall_plans)
 def test_bad_packets_are_reported_and_do_not_affect_the_next(wire, data, case, options, stalls):
     definition, value = case
-    rx = Deserializer(definition.message, wire=wire, max_message_bytes=100_000, **options)
+    # A deserializer completes what a damaged length claims: tens of thousands of cycles.
+    most = by_depth(lay_out(definition.message, wire).min_bytes + 700, 100_000)
+    rx = Deserializer(definition.message, wire=wire, max_message_bytes=most, **options)
     assume(is_quick(rx.plan))
     good = encode(rx.plan, to_transfers(rx.plan, definition.message, value))[0]
     packets = [good]

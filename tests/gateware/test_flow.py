@@ -137,6 +137,7 @@ def walk(plan, packets, tamper=lambda length: length):
 
 @pytest.mark.parametrize("bus_bytes", [1, 4, 8, 16])
 @pytest.mark.parametrize("name", MESSAGES)
+@pytest.mark.sampled(2)
 def test_steps_are_those_of_the_interpreter(name, bus_bytes):
     plan = build_plan(lay_out(MESSAGES[name]), bus_bytes=bus_bytes)
     assert walk(plan, random_packets(plan, 12)) >= 12

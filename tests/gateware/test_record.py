@@ -147,6 +147,7 @@ def test_the_rest_has_only_what_the_record_has_not(kind):
 
 @pytest.mark.parametrize("bus_bytes", [1, 4, 8, 16])
 @pytest.mark.parametrize("fields", [None, ["corners"], ["holes", "closed"]])
+@pytest.mark.sampled(2)
 def test_records_come_through_with_the_rest_beside_them(bus_bytes, fields):
     values = [
         {

@@ -10,6 +10,7 @@ from amaranth.sim import Simulator
 from firm_hdl import Deserializer, Serializer, Status
 from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.sim.payloads import PacketCollector, all_beats, decoder_of, encoder_of
+from tests.depth import by_depth
 from tests.strategies import make
 
 MESSAGE = make(
@@ -129,7 +130,7 @@ def test_deserializer_forgets_the_packet_under_way(bus_bytes):
     right = repeated(transfers_of_good(bus_bytes))
     for what, packet in BEFORE.items():
         cycles = range(1, 2 * -(-len(packet) // bus_bytes) + 10)
-        for number, at in enumerate(cycles[:: 1 + len(cycles) // 8]):
+        for number, at in enumerate(cycles[:: 1 + len(cycles) // by_depth(5, 8)]):
             found = after_reset_of_reader(bench, packet, at, TAKEN[number % len(TAKEN)])
             assert found == (right, [Status.OK] * 2), (what, at)
 
@@ -184,15 +185,18 @@ def after_reset_of_writer(bench, transfers, after, at, until, offers):
 def test_serializer_forgets_the_message_under_way(bus_bytes):
     bench = Bench(Serializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=400), GOOD)
     good = transfers_of_good(bus_bytes)
-    for what, change in {
+    every = by_depth(2, 1)
+    changes = {
         "good": {},
         "length": {1: [30], 2: letters(b"0123456789" * 3, bus_bytes)},
         "items": {2: [(lanes, not last) for lanes, last in good[2]]},
         "loop": {3: [9], 4: list(range(9))},
-    }.items():
-        # The output is blocked before a reset in each cycle; then leaves are missing.
+    }
+    for number, (what, change) in enumerate(changes.items()):
+        # The output is blocked before a reset in each cycle, or in every other one; then leaves
+        # are missing.
         for at, until, offers in [
-            *((at, at - 5, 5) for at in range(5, 14 + 30 // bus_bytes)),
+            *((at, at - 5, 5) for at in range(5 + number % every, 14 + 30 // bus_bytes, every)),
             *((9, 9, offers) for offers in range(1, 6)),
         ]:
             found = after_reset_of_writer(bench, good | change, good, at, until, offers)

@@ -14,6 +14,7 @@ import pytest
 from firm_hdl import Deserializer, Serializer
 from firm_hdl.sim import Harness, RunOptions, Stalls, from_transfers
 from firm_hdl.sim.transfers import split_transfers, transfer_table
+from tests.depth import by_depth
 from tests.strategies import BUS_WIDTHS, make
 
 some_buses = pytest.mark.parametrize("bus_bytes", [1, 4, 16])
@@ -171,8 +172,7 @@ def check_reading(message, table, bus_bytes, **options):
             assert (reported.name, from_transfers(rx.plan, message, got)) == (status, value), text
 
 
-@every_bus
-@pytest.mark.sampled(2)
+@pytest.mark.parametrize("bus_bytes", by_depth([4, 16], BUS_WIDTHS))
 def test_first_error_of_a_packet_in_wire_order_is_reported(bus_bytes):
     check_reading(MESSAGE, READ, bus_bytes)
 
@@ -199,6 +199,7 @@ PLACES = {
 
 @pytest.mark.parametrize("dialect", PLACES)
 @every_bus
+@pytest.mark.sampled(2)
 def test_items_that_are_not_whole_are_zero_whatever_is_in_their_lanes(bus_bytes, dialect):
     text, (x, a, b) = PLACES[dialect]
     whole = packet(text)
@@ -280,8 +281,7 @@ def lanes_of(items, lanes, last, noise):
     return found
 
 
-@every_bus
-@pytest.mark.sampled(2)
+@pytest.mark.parametrize("bus_bytes", by_depth([2, 16], BUS_WIDTHS))
 def test_first_error_of_a_message_is_reported_and_marks_its_packet(bus_bytes):
     tx = Serializer(SENT, bus_bytes=bus_bytes)
     leaves = {str(leaf): number for number, leaf in enumerate(tx.plan.leaves)}

@@ -17,7 +17,7 @@ from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.strategies import make
 
-WIDTHS = by_depth((1, 8, 64), (1, 2, 4, 8, 16, 64))
+WIDTHS = by_depth((1, 8, 16), (1, 2, 4, 8, 16, 64))
 TEXT = make("ros2", {"w": "wstring"})
 BETWEEN = make("ros2", {"x": "uint8", "w": "wstring", "y": "uint8"})
 BOUNDED = make("ros2", {"w": "wstring<=3", "y": "uint8"})

@@ -1,21 +1,38 @@
-"""Random packets for tests of parts of converters."""
+"""Random packets for tests of parts of converters, and a bench for parsers."""
 
 from __future__ import annotations
 
 import random
+from functools import lru_cache
 
+from amaranth.hdl import Cat, Value
+
+from firm_hdl import Parser
 from firm_hdl.plan import Plan, encode
+from firm_hdl.sim.bench import Bench, Ports
 from tests.depth import by_depth
 
-__all__ = ["is_quick", "random_packets"]
+__all__ = ["is_quick", "parser_bench", "random_packets"]
 
-MOST_LANES = by_depth(400, 1 << 20)
+MOST_LANES = by_depth(256, 1 << 20)
 """Limit on steps times bytes of the bus; larger circuits take seconds to generate, up to 15."""
 
 
 def is_quick(plan: Plan) -> bool:
     """Return whether the circuits of a random plan are small enough for this depth of tests."""
     return len(plan.steps) * plan.bus_bytes <= MOST_LANES
+
+
+@lru_cache(maxsize=4)
+def parser_bench(parser: Parser) -> Bench:
+    """Return a bench of a parser; each run of it starts with all initial values."""
+    status = Cat(Value.cast(parser.status.payload), Value.cast(parser.sizes))
+    ports = Ports(
+        sources={"packets": parser.packets},
+        sinks={"status": parser.status},
+        payloads={"status": status},
+    )
+    return Bench(parser, ports)
 
 
 def random_packets(

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import random
+from functools import cache
 
 import pytest
 from amaranth.hdl import Value
@@ -15,6 +16,7 @@ from firm_hdl.gateware.signatures import leaf_shape
 from firm_hdl.plan import build_plan, decode
 from firm_hdl.sim.payloads import encoder_of
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.gateware.parse.test_places import MESSAGES
 from tests.gateware.traffic import random_packets
 
@@ -115,15 +117,21 @@ def rounded(position, mask, phase, bus):
 @pytest.mark.parametrize("name", MESSAGES)
 def test_words_make_the_packets(name, bus_bytes):
     plan = build_plan(lay_out(MESSAGES[name]), bus_bytes=bus_bytes)
-    packets = random_packets(plan, 12)
+    packets = random_packets(plan, by_depth(6, 12))
     assert packets_of(plan, words_of(plan, packets)) == [(packet, 0) for packet in packets]
+
+
+@cache
+def some_words():
+    plan = build_plan(lay_out(MESSAGES["cdr"]), bus_bytes=8)
+    packets = random_packets(plan, 12)
+    return plan, packets, words_of(plan, packets)
 
 
 @pytest.mark.parametrize("field", [name for name in FIELDS if name not in ("max_beats", "waits")])
 def test_each_field_matters(field):
-    plan = build_plan(lay_out(MESSAGES["cdr"]), bus_bytes=8)
-    packets = random_packets(plan, 12)
-    words = [word | {field: word[field] ^ 1} for word in words_of(plan, packets)]
+    plan, packets, words = some_words()
+    words = [word | {field: word[field] ^ 1} for word in words]
     try:
         found = packets_of(plan, words)
     except AssertionError:

@@ -13,11 +13,12 @@ from firm_hdl.plan import build_plan
 from firm_hdl.sim import Stalls
 from firm_hdl.sim.payloads import beats_of
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.gateware.packets.bench import PacketBench, beats, with_side
 from tests.gateware.test_parser import has_path
 from tests.gateware.traffic import random_packets
 
-IMU = load_message("sensor_msgs/msg/Imu")
+TYPE = load_message(by_depth("std_msgs/msg/Header", "sensor_msgs/msg/Imu"))
 
 
 def run(arbiter, sent, stalls=None, **options):
@@ -70,7 +71,7 @@ def some(count, bus_bytes, seed, sizes=(1, 2, 5)):
 @pytest.mark.parametrize("bus_bytes", [1, 8, 64])
 @pytest.mark.parametrize("inputs", [1, 2, 3, 8])
 def test_packets_stay_whole_under_any_stall(bus_bytes, inputs):
-    plan = build_plan(lay_out(IMU), bus_bytes=bus_bytes)
+    plan = build_plan(lay_out(TYPE), bus_bytes=bus_bytes)
     sent = [random_packets(plan, 2, seed) + some(9, bus_bytes, seed) for seed in range(inputs)]
     for stalls in (None, Stalls(0.3, max_cycles=7), {"out": Stalls(0.7, max_cycles=3)}):
         run(PacketArbiter(bus_bytes, inputs), sent, stalls)

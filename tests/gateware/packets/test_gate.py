@@ -42,13 +42,20 @@ TYPES = [
 ]
 
 
-@pytest.mark.parametrize("bus_bytes", [2, 8])
-@pytest.mark.parametrize(("name", "distro"), TYPES)
-@pytest.mark.sampled(2)
+@pytest.mark.parametrize(
+    ("name", "distro", "bus_bytes"),
+    # Large packets on a narrow bus, and small ones on a wide one, are left to thorough tests.
+    [
+        pytest.param(*each, bus, marks=[pytest.mark.thorough] if small == (bus == 8) else [])
+        for each in TYPES
+        for small in [each[0] in (HEADER, "std_msgs/Empty")]
+        for bus in (2, 8)
+    ],
+)
 def test_only_good_packets_pass_whole_and_in_order_under_any_stall(name, distro, bus_bytes):
     message = load_message(name, distro=distro)
     most = 10_000
-    _, packets = random_packets(message, bus_bytes, 4)
+    _, packets = random_packets(message, bus_bytes, by_depth(3, 4))
     want = expected_statuses(message, packets, bus_bytes, most)
     largest = max(map(len, packets))
     memory = max(2 * bus_bytes, 1 << largest.bit_length())
@@ -67,6 +74,7 @@ def test_only_good_packets_pass_whole_and_in_order_under_any_stall(name, distro,
 
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
 @pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@pytest.mark.sampled(2)
 def test_bad_packets_of_each_kind_between_good_ones(bus_bytes, when_full):
     good = bytes.fromhex(GOOD)
     packets, want = [good], [OK]
@@ -97,7 +105,7 @@ def test_latency_is_exact(bus_bytes, more):
     assert first == [run.times[0], run.times[2]]
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@pytest.mark.parametrize("bus_bytes", by_depth((1, 8, 64), BUS_WIDTHS))
 def test_a_beat_per_cycle_through_long_packets(bus_bytes):
     fields = (Field(name="data", type=Sequence(element=PRIMITIVES["ros1"]["uint8"])),)
     message = Message(name="p/Long", dialect="ros1", fields=fields)
@@ -127,11 +135,12 @@ def test_a_packet_per_cycle():
         assert run.left == run.times == list(range(first, first + 100))
 
 
-@pytest.mark.parametrize("bus_bytes", by_depth((1, 8, 64), BUS_WIDTHS))
+@pytest.mark.parametrize("bus_bytes", by_depth((8, 64), BUS_WIDTHS))
 def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_few_cycles(bus_bytes):
     gate = PacketGate(load_message(DIAGNOSTICS), bus_bytes=bus_bytes, memory_bytes=256)
     packets = [BOMB, NO_BOMB, BOMB, BOMB, NO_BOMB]
-    run = GateRun(gate, packets)
+    bench = gate_bench(gate)
+    run = GateRun(gate, packets, bench)
     assert [status.name for status in run.statuses] == "TRUNCATED OK TRUNCATED TRUNCATED OK".split()
     # The gate is free again: the next packet is in, whole, and has its status.
     own, next_own = beats_of(len(BOMB), bus_bytes), beats_of(len(NO_BOMB), bus_bytes)
@@ -141,7 +150,7 @@ def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_fe
         # The parser takes 15 cycles for a bomb, and 3 for the beats of the other packet.
         assert run.times == [24, 27, 42, 57, 60]
     # The delays of many bombs do not add up.
-    many = GateRun(gate, [BOMB] * 20 + [NO_BOMB])
+    many = GateRun(gate, [BOMB] * 20 + [NO_BOMB], bench)
     steps = len(BOMB) // 4 + 4
     assert many.times[-1] <= 20 * max(own, steps) + next_own + LATENCY + ERROR
 
@@ -163,10 +172,11 @@ def test_a_packet_as_large_as_the_memory_passes_and_a_larger_one_does_not(bus_by
     want = [OK, LARGE, OK, OK, LARGE, OK, GateStatus.TRUNCATED, OK]
     gate = PacketGate(message, bus_bytes=bus_bytes, memory_bytes=memory, when_full=when_full)
     gap = {"in": Stalls.bits("0" * 80 + "1" * beats_of(memory + 1, bus_bytes))}
+    bench = gate_bench(gate)
     if when_full == "wait":
-        assert GateRun(gate, packets).statuses == want
+        assert GateRun(gate, packets, bench).statuses == want
     for each, status in zip(packets, want, strict=True):
-        assert GateRun(gate, [each], stalls=gap).statuses == [status]
+        assert GateRun(gate, [each], bench, stalls=gap).statuses == [status]
 
 
 def test_the_link_is_held_exactly_when_nothing_has_room():
@@ -206,7 +216,7 @@ def test_reset_in_the_middle_discards_all(when_full, monkeypatch):
     bench = gate_bench(gate, keeps_state=True)
     want = expected_statuses(load_message(HEADER), packets, 4)
     source = list(beats(packets, 4))
-    for count in range(1, len(source)):
+    for count in range(1, len(source), by_depth(2, 1)):
         with pytest.raises(DeadlineError):
             stuck = {"out": Stalls.bits("0" * 99 + "1"), "status": Stalls.bits("0" * 99 + "1")}
             bench.run({"in": source[:count]}, {"in": 99}, stalls=stuck, limit=count + 2 + count % 7)
@@ -215,7 +225,8 @@ def test_reset_in_the_middle_discards_all(when_full, monkeypatch):
         assert run.left[0] == run.lasts[0] + LATENCY + (BACKLOG if when_full == "drop" else 0)
 
 
-@pytest.mark.parametrize("seed", range(5))
+# The gate of seed 0 reads packets of 300 bytes on a narrow bus.
+@pytest.mark.parametrize("seed", [pytest.param(0, marks=pytest.mark.thorough), 1, 2, 3, 4])
 def test_random_gates_with_random_stalls_and_resets(seed):
     rng = random.Random(seed)
     name, distro = rng.choice([("std_msgs/msg/Bool", "lyrical"), *TYPES])
@@ -299,16 +310,22 @@ class _LosesStatuses(_Verdicts):
         self.m.d.comb += self.room.eq(1)
 
 
+def check_header_gate():
+    packets = [bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]] * 20
+    gate = PacketGate(load_message(HEADER), bus_bytes=8, memory_bytes=64)
+    run = GateRun(gate, packets, stalls={"status": Stalls.bits("0" * 150 + "1" * 3)})
+    assert run.statuses == expected_statuses(load_message(HEADER), packets, 8)
+
+
+@pytest.fixture(scope="module")
+def right_gate():
+    """See that the check passes without a fault, once for all faults."""
+    check_header_gate()
+
+
+@pytest.mark.usefixtures("right_gate")
 @pytest.mark.parametrize("fault", [_LetsAllPass, _DoesNotWaitForTheVerdict, _LosesStatuses])
 def test_a_fault_of_the_gate_is_found(monkeypatch, fault):
-    packets = [bytes.fromhex(GOOD), bytes.fromhex(GOOD)[:11]] * 20
-
-    def check():
-        gate = PacketGate(load_message(HEADER), bus_bytes=8, memory_bytes=64)
-        run = GateRun(gate, packets, stalls={"status": Stalls.bits("0" * 150 + "1" * 3)})
-        assert run.statuses == expected_statuses(load_message(HEADER), packets, 8)
-
-    check()
     monkeypatch.setattr("firm_hdl.gateware.packets.gate._Verdicts", fault)
     with pytest.raises(AssertionError):
-        check()
+        check_header_gate()

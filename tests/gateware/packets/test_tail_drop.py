@@ -11,6 +11,7 @@ from firm_hdl import GateStatus, PacketGate, load_message
 from firm_hdl.gateware.packets.gate import BACKLOG_BEATS, _Verdicts
 from firm_hdl.gateware.packets.tail_drop import MOST_DROPPED
 from firm_hdl.sim import Stalls
+from tests.depth import by_depth
 from tests.gateware.packets.bench import beats
 from tests.gateware.packets.gates import (
     BOMB,
@@ -63,7 +64,7 @@ def short_backlog(monkeypatch):
 
 
 def check_overruns(bus_bytes, takes):
-    packets, want = strings(bus_bytes, 25)
+    packets, want = strings(bus_bytes, by_depth(16, 25))
     message = load_message(DIAGNOSTICS)
     gate = PacketGate(message, bus_bytes=bus_bytes, memory_bytes=4096, when_full="drop")
     bench = gate_bench(gate)
@@ -72,8 +73,9 @@ def check_overruns(bus_bytes, takes):
     assert OVERRUN in run.statuses and OK in run.statuses
     for status, without in zip(run.statuses, want, strict=True):
         assert status in (without, OVERRUN)
-    # Afterwards, the gate works as before.
-    gap = {"in": Stalls.bits("0" * 2 * bus_bytes + "1"), "status": Stalls.bits(takes)}
+    # Afterwards, the gate works as before, with twice as many cycles per beat as it needs.
+    wait = by_depth(bus_bytes // 2, 2 * bus_bytes)
+    gap = {"in": Stalls.bits("0" * wait + "1"), "status": Stalls.bits(takes)}
     assert GateRun(gate, packets[-5:], bench, stalls=gap, deadline=2000).statuses == want[-5:]
 
 

@@ -39,6 +39,7 @@ def of_all_sizes(most):
 
 
 @pytest.mark.parametrize(("in_bytes", "out_bytes"), PAIRS)
+@pytest.mark.sampled(3)
 def test_packets_are_the_same_under_any_stall(in_bytes, out_bytes):
     plan = build_plan(lay_out(IMU), bus_bytes=in_bytes)
     packets = random_packets(plan, 1)

@@ -12,9 +12,10 @@ from firm_hdl.gateware.parse.buffer import Buffer
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.geometry import ring_beats
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.strategies import make
 
-CYCLES = 1500
+CYCLES = by_depth(700, 1500)
 
 
 def buffer_of(bus_bytes):

@@ -21,6 +21,7 @@ from firm_hdl.plan import BeginRun, RunStep, build_plan
 from firm_hdl.plan.cycles import packet_of
 from firm_hdl.sim.payloads import all_beats
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.gateware.traffic import random_packets
 from tests.strategies import make
 
@@ -148,7 +149,7 @@ def compare(plan, packets, tamper=lambda name, value: value):
 @pytest.mark.sampled(2)
 def test_orders_are_those_of_the_interpreter(name, bus_bytes):
     plan = build_plan(lay_out(MESSAGES[name]), bus_bytes=bus_bytes)
-    assert compare(plan, random_packets(plan, 15)) >= 30
+    assert compare(plan, random_packets(plan, by_depth(8, 15))) >= 30
 
 
 @pytest.mark.parametrize("field", ["step", "items_at", "map_at", "items_bytes", "items", "ends"])
