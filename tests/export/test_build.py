@@ -19,6 +19,7 @@ from firm_hdl.export.build import BuildError, Built, build, check_size
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, from_yaml
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.export.test_sample import SAMPLE, files
 
 # The package's face has a function of this name.
@@ -340,9 +341,11 @@ def test_size_just_below_the_limit_passes():
 
 
 def test_output_is_the_same_everywhere(tmp_path):
+    name = by_depth("MultiArrayLayout", "JointState")
+    package = by_depth("std_msgs", "sensor_msgs")
     script = (
         "import sys; from firm_hdl.export import build\n"
-        "build(['sensor_msgs/msg/JointState', 'std_msgs/msg/Empty'], sys.argv[1])"
+        f"build(['{package}/msg/{name}', 'std_msgs/msg/Empty'], sys.argv[1])"
     )
     trees = []
     for seed, place in (("0", "a"), ("1", "b/c")):
@@ -357,7 +360,7 @@ def test_output_is_the_same_everywhere(tmp_path):
         command = [sys.executable, "-c", script, "out"]
         subprocess.run(command, cwd=home, env=environment, check=True)
         trees.append(tree(home / "out"))
-    folders = ("sensor_msgs_msg_JointState_cdr_8", "std_msgs_msg_Empty_cdr_8")
+    folders = (f"{package}_msg_{name}_cdr_8", "std_msgs_msg_Empty_cdr_8")
     assert {name.split("/")[1] for name in trees[0]} == {*folders}
     # Another back end adds files, and removes none.
     assert len(trees[0]) >= 90
@@ -368,7 +371,7 @@ def test_output_is_the_same_everywhere(tmp_path):
 
 
 def test_several_processes_write_the_same_files(tmp_path):
-    types = ["std_msgs/msg/Empty", "std_msgs/msg/String", "std_msgs/msg/Bool"]
+    types = ["std_msgs/msg/Empty", *by_depth([], ["std_msgs/msg/String"]), "std_msgs/msg/Bool"]
     reported = []
     for jobs in (1, 2):
         built = build(types, tmp_path / str(jobs), jobs=jobs, report=reported.append)

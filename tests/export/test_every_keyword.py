@@ -16,14 +16,15 @@ from firm_hdl.names import identifiers as names
 from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
-from tests.depth import THOROUGH
+from tests.depth import THOROUGH, by_depth
 from tests.export.test_packaging import run
 from tests.frontend.workspace import make_files
 
 # Building circuits with fields for all keywords takes 20 s.
 ALL = THOROUGH
 LANGUAGES = ("2001", "2005", "2005-sv", "2009", "2012")
-SPOT = sorted({*sorted(VHDL)[::60], *sorted(VERILOG)[::60], "buffer", "final"})
+STEP = by_depth(120, 60)
+SPOT = sorted({*sorted(VHDL)[::STEP], *sorted(VERILOG)[::STEP], "buffer", "final"})
 
 
 def definitions(words: Iterable[str]) -> dict[str, str]:

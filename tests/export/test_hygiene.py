@@ -19,10 +19,13 @@ from tests.depth import by_depth
 from tests.tools import need
 
 # Strings and nested sequences; a fixed size, so a record view; arrays in a record view.
-TYPES = (
-    "sensor_msgs/msg/JointState",
-    "geometry_msgs/msg/Twist",
-    "geometry_msgs/msg/PoseWithCovariance",
+TYPES = by_depth(
+    ("std_msgs/msg/MultiArrayLayout", "geometry_msgs/msg/Point", "shape_msgs/msg/Plane"),
+    (
+        "sensor_msgs/msg/JointState",
+        "geometry_msgs/msg/Twist",
+        "geometry_msgs/msg/PoseWithCovariance",
+    ),
 )
 
 
@@ -33,7 +36,8 @@ def folders(tmp_path_factory) -> list[Path]:
     # On a narrow bus, a string needs no alignment, but a sequence does.
     for bus_bytes in by_depth((4,), (1, 4)):
         options = Options(bus_bytes=bus_bytes)
-        made += build(("std_msgs/msg/String", "sensor_msgs/msg/Joy"), out, options=options)
+        types = by_depth((), ("std_msgs/msg/String",))
+        made += build((*types, "sensor_msgs/msg/Joy"), out, options=options)
     return [each.folder for each in made]
 
 

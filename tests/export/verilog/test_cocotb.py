@@ -11,8 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.export.backend import Options
 from firm_hdl.export.build import build
 from firm_hdl.verify.cases.stimuli import stimuli
+from tests.depth import by_depth
 from tests.tools import need
 
 LOOPBACK = """\
@@ -58,9 +60,10 @@ print(f"{tests} tests, {failed} failed")
 def folder(tmp_path_factory) -> Path:
     found = find_spec("cocotb_tools") and find_spec("cocotbext") and find_spec("cocotbext.axi")
     need("cocotbext-axi", "here" if found else None)
-    (built,) = build(
-        ["sensor_msgs/msg/LaserScan"], tmp_path_factory.mktemp("built"), stimuli=stimuli
-    )
+    name = by_depth("std_msgs/msg/Header", "sensor_msgs/msg/LaserScan")
+    options = Options(ports=by_depth("flat", "records"))
+    out = tmp_path_factory.mktemp("built")
+    (built,) = build([name], out, stimuli=stimuli, options=options)
     return built.folder
 
 

@@ -16,6 +16,7 @@ from firm_hdl.export.top import Top
 from firm_hdl.export.verilog import to_verilog
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.rtlil import without_indices
+from tests.depth import by_depth
 from tests.tools import need
 
 
@@ -99,7 +100,7 @@ def yosys() -> Tool:
         raise
 
 
-@pytest.mark.parametrize("device", ["ecp5", "ice40"])
+@pytest.mark.parametrize("device", by_depth(["ecp5"], ["ecp5", "ice40"]))
 @pytest.mark.parametrize("keeps", [False, True])
 def test_yosys_keeps_bits_and_elements_apart(
     yosys: Tool, tmp_path: Path, device: str, keeps: bool, monkeypatch: pytest.MonkeyPatch
