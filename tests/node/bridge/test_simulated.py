@@ -8,7 +8,7 @@ import struct
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend import Library
+from firm_hdl.frontend import open_library
 from firm_hdl.node import read_description_text
 from firm_hdl.node.boards import BoardError, simulated
 from firm_hdl.node.boards.simulated import SimulatedBoard
@@ -57,23 +57,27 @@ node: names
 distro: noetic
 accelerator: tests.live.nodes:Echo
 subscribe:
-  /heard: {type: sensor_msgs/JointState, memory_bytes: 8192}
+  /heard: {type: own_msgs/Names, memory_bytes: 8192}
 publish:
-  /said: {type: sensor_msgs/JointState, memory_bytes: 8192}
+  /said: {type: own_msgs/Names, memory_bytes: 8192}
 """
 
 
 @pytest.mark.parametrize("stalls", [simulated._STALLS, ()])
-def test_many_short_parts_do_not_overrun_a_gate(stalls, monkeypatch):
+def test_many_short_parts_do_not_overrun_a_gate(stalls, monkeypatch, tmp_path):
     """Each beat has two names, and a parser takes one per cycle. The twin's link is full."""
     monkeypatch.setattr(simulated, "_STALLS", stalls)
     monkeypatch.setattr(session, "ROUND_SECONDS", 0.1)
-    description = read_description_text(NAMES, library=Library("noetic"))
+    definition = tmp_path / "own_msgs" / "msg" / "Names.msg"
+    definition.parent.mkdir(parents=True)
+    definition.write_text("string[] names\n")
+    library = open_library("noetic", [str(tmp_path)], ())
+    description = read_description_text(NAMES, library=library)
     graph = FakeGraph()
     board = SimulatedBoard(description, engine="amaranth")
     made, said = bridge_of(board, graph, description)
     count = 1100
-    packet = struct.pack("<IIIII", 0, 0, 0, 0, count) + bytes(4 * count) + bytes(12)
+    packet = struct.pack("<I", count) + bytes(4 * count)
     try:
         assert run_until(made, lambda: graph.opened, 60), said
         graph.say(description.topics[0], packet)

@@ -13,10 +13,10 @@ from tests.verify.judged import assert_passed
 TASKS = list(collect_tasks((), ()))
 WIDTHS = (8, 4)
 OTHER_WIDTHS = (1, 2, 16, 32, 64)
-LARGEST = 12
+LARGEST = 60
 """Number of largest types; each has so many leaves that its test takes as long as many others."""
 SAMPLE = range(by_depth(LARGEST, 0), len(TASKS), by_depth(72, 9))
-SIMULATED = by_depth(12, 1)
+SIMULATED = by_depth(24, 1)
 """One in this many of the other types is simulated. For the rest, only the plan is judged."""
 
 
