@@ -186,7 +186,7 @@ def test_a_long_sequence_and_a_short_one_have_a_counter_for_the_long_one(kinds):
     assert (packets, statuses) == ([packet] * 2, [Status.OK] * 2)
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8])
+@pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 2, 4, 8]))
 @pytest.mark.parametrize("field", ["uint8", "uint16[2]", "uint8[40]", "float64[9]", "string"])
 def test_a_packet_begins_only_with_its_message(field, bus_bytes):
     # On a narrow bus, the encapsulation header has beats of its own.

@@ -19,7 +19,7 @@ from tests.strategies import BUS_WIDTHS, make, values
 
 few = settings(
     deadline=None,
-    max_examples=by_depth(5, 12),
+    max_examples=by_depth(4, 12),
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )

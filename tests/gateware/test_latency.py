@@ -56,7 +56,7 @@ TYPES = {
     ),
 }
 every_type = pytest.mark.parametrize("case", TYPES)
-every_bus = pytest.mark.parametrize("bus_bytes", by_depth([1, 8, 64], [1, 2, 4, 8, 64]))
+every_bus = pytest.mark.parametrize("bus_bytes", by_depth([1, 8, 32], [1, 2, 4, 8, 32, 64]))
 
 
 def prefixes(plan, packet):

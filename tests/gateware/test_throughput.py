@@ -63,7 +63,7 @@ def fixed_types():
                 yield pytest.param(library.message(name), id=f"{distro}-{name}")
 
 
-@pytest.mark.parametrize("message", list(fixed_types())[:: by_depth(4, 1)])
+@pytest.mark.parametrize("message", list(fixed_types())[:: by_depth(8, 1)])
 @pytest.mark.sampled(2)
 def test_types_of_fixed_size_run_at_line_rate(message):
     packets = fixed_packets(message, PACKETS)
@@ -125,7 +125,7 @@ def blob(name, frame_id, size):
 @pytest.mark.parametrize(
     ("name", "extra", "size"),
     [
-        ("sensor_msgs/msg/Image", 12, BLOB_BYTES),
+        pytest.param("sensor_msgs/msg/Image", 12, BLOB_BYTES, marks=pytest.mark.thorough),
         ("sensor_msgs/msg/CompressedImage", 11, BLOB_BYTES),
         ("sensor_msgs/msg/PointCloud2", 14, BLOB_BYTES),
     ],
@@ -214,12 +214,15 @@ VARIED = [
     ("trajectory_msgs/msg/JointTrajectoryPoint", "lyrical"),
     ("geometry_msgs/msg/Twist", "lyrical"),
 ]
+# More of the same, with many steps.
+LARGE = [("rosgraph_msgs/Log", "noetic")]
 
 
 @pytest.mark.parametrize(
     ("name", "distro", "bus_bytes"),
     [
-        *((*each, 8) for each in VARIED),
+        *((*each, 8) for each in VARIED if each not in LARGE),
+        *(pytest.param(*each, 8, marks=pytest.mark.thorough) for each in LARGE),
         *((*each, bus) for each in VARIED[:3] for bus in by_depth((4,), (1, 2, 4, 16))),
         *((*each, 2) for each in VARIED[4:6]),
         (*VARIED[0], 64),

@@ -40,7 +40,13 @@ PARTS = {
 one_clock = [name for name in PARTS if name != "crossing"]
 
 
-@pytest.mark.parametrize("part", PARTS)
+def usual(names, *thorough):
+    """Return parameters; parts whose logic others have, too, are left to thorough tests."""
+    mark = pytest.mark.thorough
+    return [pytest.param(name, marks=[mark] if name in thorough else []) for name in names]
+
+
+@pytest.mark.parametrize("part", usual([*PARTS], "gate", "arbiter_of_one", "same"))
 def test_the_verilog_compiles(part, tmp_path):
     text = verilog.convert(PARTS[part](), name=part, emit_src=False)
     (tmp_path / "part.v").write_text(text)
@@ -68,7 +74,7 @@ def meaningful_steps(steps):
     return steps
 
 
-@pytest.mark.parametrize("part", one_clock)
+@pytest.mark.parametrize("part", usual(one_clock, "gate_drop"))
 def test_vhdl_in_ghdl_equals_the_part_in_python(part, tmp_path):
     need("ghdl", GHDL)
     vhdl, component = convert(PARTS[part](), name="dut"), PARTS[part]()

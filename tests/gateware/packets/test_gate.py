@@ -109,7 +109,7 @@ def test_latency_is_exact(bus_bytes, more):
 def test_a_beat_per_cycle_through_long_packets(bus_bytes):
     fields = (Field(name="data", type=Sequence(element=PRIMITIVES["ros1"]["uint8"])),)
     message = Message(name="p/Long", dialect="ros1", fields=fields)
-    sizes = [700, 64, 701, 300]
+    sizes = [700, 64, 701, 300] if bus_bytes > 1 else by_depth([200, 64, 201], [700, 64, 701, 300])
     packets = [size.to_bytes(4, "little") + random.Random(size).randbytes(size) for size in sizes]
     gate = PacketGate(message, bus_bytes=bus_bytes, memory_bytes=4096)
     run = GateRun(gate, packets)
@@ -135,7 +135,7 @@ def test_a_packet_per_cycle():
         assert run.left == run.times == list(range(first, first + 100))
 
 
-@pytest.mark.parametrize("bus_bytes", by_depth((8, 64), BUS_WIDTHS))
+@pytest.mark.parametrize("bus_bytes", by_depth((8,), BUS_WIDTHS))
 def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_few_cycles(bus_bytes):
     gate = PacketGate(load_message(DIAGNOSTICS), bus_bytes=bus_bytes, memory_bytes=256)
     packets = [BOMB, NO_BOMB, BOMB, BOMB, NO_BOMB]

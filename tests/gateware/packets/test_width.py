@@ -15,12 +15,13 @@ from firm_hdl.plan import build_plan
 from firm_hdl.sim import Stalls
 from firm_hdl.sim.payloads import beats_of
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.gateware.packets.bench import PacketBench, beats
 from tests.gateware.test_parser import has_path
 from tests.gateware.traffic import random_packets
 from tests.strategies import BUS_WIDTHS
 
-IMU = load_message("sensor_msgs/msg/Imu")
+TYPE = load_message(by_depth("std_msgs/msg/Header", "sensor_msgs/msg/Imu"))
 PAIRS = list(product(BUS_WIDTHS, repeat=2))
 
 
@@ -41,7 +42,7 @@ def of_all_sizes(most):
 @pytest.mark.parametrize(("in_bytes", "out_bytes"), PAIRS)
 @pytest.mark.sampled(3)
 def test_packets_are_the_same_under_any_stall(in_bytes, out_bytes):
-    plan = build_plan(lay_out(IMU), bus_bytes=in_bytes)
+    plan = build_plan(lay_out(TYPE), bus_bytes=in_bytes)
     packets = random_packets(plan, 1)
     wide = max(in_bytes, out_bytes)
     packets += of_all_sizes(2 * wide + 1 if wide <= 16 else 20)

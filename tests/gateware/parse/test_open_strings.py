@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.depth import by_depth
 from tests.gateware.test_status_table import HEAD, check_reading
 from tests.strategies import make
 
@@ -16,7 +17,7 @@ def with_length(text: bytes) -> str:
     return (len(text).to_bytes(4, "little") + text).hex()
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 4, 8])
+@pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 4, 8]))
 @pytest.mark.parametrize("end", ["", "uint8"])
 def test_all_characters_before_the_wrong_byte_transfer(bus_bytes, end):
     last = "07" if end else ""

@@ -146,7 +146,7 @@ def compare(plan, packets, tamper=lambda name, value: value):
 
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 16])
 @pytest.mark.parametrize("name", MESSAGES)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 def test_orders_are_those_of_the_interpreter(name, bus_bytes):
     plan = build_plan(lay_out(MESSAGES[name]), bus_bytes=bus_bytes)
     assert compare(plan, random_packets(plan, by_depth(8, 15))) >= 30
