@@ -9,11 +9,14 @@ from itertools import count
 import pytest
 
 from firm_hdl.verify.results.verdict import Failed
+from firm_hdl.verify.ros_python import worker
 from firm_hdl.verify.ts1.command import Tally
 from firm_hdl.verify.ts1.judge import judge
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.universe import Universe, write_definitions
+from tests.depth import THOROUGH
 from tests.frontend.workspace import make_files
+from tests.verify.ts1.nursery import nursed
 
 
 def judged_by(run):
@@ -68,8 +71,14 @@ def need(name, missing):
 
 
 @pytest.fixture
-def court(tmp_path):
-    """A function that makes a court from texts of ``package/kind/file``."""
+def court(tmp_path, monkeypatch, request):
+    """A function that makes a court from texts of ``package/kind/file``.
+
+    In `make test`, its oracles' processes are forked, which takes less time, except for a module
+    with `OWN_PROCESSES`.
+    """
+    if not THOROUGH and not getattr(request.module, "OWN_PROCESSES", False):
+        nursed(monkeypatch, worker)
     numbers = count()
     with ExitStack() as stack:
         yield lambda distro, files: Court(distro, tmp_path / str(next(numbers)), files, stack)

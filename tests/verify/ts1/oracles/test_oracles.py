@@ -20,6 +20,8 @@ from firm_hdl.verify.ts1.oracles.oracle import Accepted, NotJudged, Refused
 from tests.verify.judged import assert_passed
 from tests.verify.ts1.conftest import need
 
+# Some of these tests kill a worker, or end it: it is to be started as users start it.
+OWN_PROCESSES = True
 MODULES = Path(debian.__file__).parent
 FILES = {
     "p/msg/A.msg": "int8 N=010\nq/B[2] bs\nHeader header\nHeader[] headers\n",
