@@ -38,11 +38,11 @@ UNEQUAL = Attempt(
 
 @pytest.mark.usefixtures("tools")
 def test_both_converters_are_proved(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["prove", "std_msgs/msg/Bool"]) == 0
+    assert main(["prove", "std_msgs/msg/Bool", "--bus-bytes", "1"]) == 0
     lines = sorted(line[:9] + line.split("s  ")[1] for line in capsys.readouterr().out.splitlines())
     assert lines == [
-        "equal    std_msgs/msg/Bool deserializer (lyrical, 8 bytes)",
-        "equal    std_msgs/msg/Bool serializer (lyrical, 8 bytes)",
+        "equal    std_msgs/msg/Bool deserializer (lyrical, 1 bytes)",
+        "equal    std_msgs/msg/Bool serializer (lyrical, 1 bytes)",
     ]
 
 

@@ -21,6 +21,7 @@ from firm_hdl.equivalence.solve import solve
 from firm_hdl.equivalence.tools import answer_of
 from firm_hdl.jobs import ToolError, TooSlowError
 from firm_hdl.vhdl.convert import Vhdl, convert
+from tests.depth import by_depth
 
 # A product of two primes of 31 bits: to decide whether the output is ever 1 is to factor it.
 PRODUCT = 1500450271 * 1836311903
@@ -42,14 +43,14 @@ def factors() -> tuple[str, Vhdl]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ShortTimeouts(Tools):
-    """Tools whose solvers have a limit of 2 s; the other tools have no limit."""
+    """Tools whose solvers have a limit of seconds; the other tools have no limit."""
 
     def run_ghdl(self, folder: Path, *arguments: str, timeout: float | None = None) -> str:
         return Tools.run_ghdl(self, folder, *arguments)
 
     def run_yosys(self, folder: Path, script: str, timeout: float | None = None) -> None:
         is_solver = "abc " in script or "sat " in script
-        Tools.run_yosys(self, folder, script, 2 if is_solver else None)
+        Tools.run_yosys(self, folder, script, by_depth(1, 2) if is_solver else None)
 
 
 @pytest.fixture
@@ -87,6 +88,8 @@ def test_the_command_says_undecided_and_fails(
     assert [line.split()[0] for line in lines] == ["undecided", "output"] * 2
 
 
+# What the command says of such a proof, and that it proves at all, other tests see.
+@pytest.mark.thorough
 def test_the_command_asks_the_solvers(
     short_timeouts: Tools, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

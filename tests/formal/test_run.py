@@ -25,13 +25,13 @@ FAST = [
 
 
 @pytest.mark.parametrize("key", FAST)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_claim_holds(key):
     assert prove(key).result == "proved"
 
 
 @pytest.mark.parametrize("key", FAST)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_twin_is_found(key):
     answer = refute(key)
     assert answer.result == "broken"
