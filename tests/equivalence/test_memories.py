@@ -178,7 +178,7 @@ RTLIL_TWINS = {
 
 
 @pytest.mark.parametrize("what", RTLIL_TWINS)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 def test_a_change_of_the_rtlil_is_found(what: str, tools: Tools) -> None:
     text, vhdl = _full_design()
     number, old, new = RTLIL_TWINS[what]

@@ -14,24 +14,30 @@ from firm_hdl.formal.command import main
 from firm_hdl.formal.run import all_proofs, prove, refute
 from firm_hdl.formal.scene import Scene
 from firm_hdl.gateware.packets.slice import StreamSlice
+from tests.depth import by_depth
 
 FAST = [
-    *("slice/valid-stays", "slice/order", "arbiter/whole-packets", "arbiter/turns"),
-    *("router/order", "router/counters", "fifo-wait-1/one-outcome", "width-1-4/count"),
-    *("gate-bool/input-moves", "gate-bool/output-moves", "parser-string/one-status"),
-    *("tail-drop/room", "claims-noetic/pending", "record-reader/order", "record-writer/one-each"),
-    *("gate-drop/output-moves", "crossing/nothing-extra"),
+    *("slice/order", "arbiter/turns", "router/counters", "claims-noetic/pending"),
+    "crossing/nothing-extra",
+    # About 2 s each. tests/formal/test_liveness.py breaks what moves, in short runs.
+    *by_depth(
+        (),
+        (
+            *("slice/valid-stays", "arbiter/whole-packets", "router/order"),
+            *("fifo-wait-1/one-outcome", "width-1-4/count", "gate-bool/input-moves"),
+            *("gate-bool/output-moves", "parser-string/one-status", "tail-drop/room"),
+            *("record-reader/order", "record-writer/one-each", "gate-drop/output-moves"),
+        ),
+    ),
 ]
 
 
 @pytest.mark.parametrize("key", FAST)
-@pytest.mark.sampled(4)
 def test_claim_holds(key):
     assert prove(key).result == "proved"
 
 
 @pytest.mark.parametrize("key", FAST)
-@pytest.mark.sampled(4)
 def test_twin_is_found(key):
     answer = refute(key)
     assert answer.result == "broken"
