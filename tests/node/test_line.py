@@ -19,6 +19,7 @@ from firm_hdl.node.messages import NodeMessage
 from firm_hdl.plan import build_plan
 from firm_hdl.sim.payloads import beats_of
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.gateware.traffic import random_packets
 from tests.node.test_core import CoreBench
 from tests.node.traffic import messages_of
@@ -32,7 +33,7 @@ SENT = 7
 
 def eight_topics():
     library = open_library("lyrical", (), ())
-    return CoreBench(read_description_text(EIGHT_TOPICS, library=library))
+    return read_description_text(EIGHT_TOPICS, library=library)
 
 
 def good_packets(store, count):
@@ -99,7 +100,7 @@ def check_cycles(bench, count, **options):
 
 
 def test_every_cycle_of_eight_topics_carries_a_beat_in_both_directions():
-    check_cycles(eight_topics(), 6)
+    check_cycles(CoreBench(eight_topics()), by_depth(3, 6))
 
 
 class _LosesACycleBetweenPackets(NodeCore):
@@ -133,6 +134,6 @@ class _LosesACycleToTheLink(NodeCore):
     ],
 )
 def test_a_cycle_without_a_beat_is_found(fault):
-    description = eight_topics().description
+    description = eight_topics()
     with pytest.raises(AssertionError):
         check_cycles(CoreBench(description, fault(description)), 2)

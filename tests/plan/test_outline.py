@@ -13,11 +13,14 @@ from firm_hdl.plan.outline import outline
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out, walk
 from firm_hdl.wire.layout import LoopNode, RunNode, Scalar, Trigger
+from tests.depth import by_depth
 from tests.plan.test_random_messages import damaged, typed_values
 from tests.strategies import BUS_WIDTHS, make
 
 slow = settings(
-    deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=by_depth(40, 100),
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 UINT8 = PRIMITIVES["ros1"]["uint8"]
 

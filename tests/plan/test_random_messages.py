@@ -13,11 +13,14 @@ from firm_hdl.model import Message
 from firm_hdl.plan import Plan, build_plan, check, decode, encode, from_yaml, to_yaml
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.plan.reference import Reference
 from tests.strategies import BUS_WIDTHS, Definition, definitions, make, to_rosbags, values
 
 slow = settings(
-    deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=by_depth(40, 100),
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 WIRES = ("ros1", "cdr")
 

@@ -31,11 +31,14 @@ from firm_hdl.wire import (
     lay_out,
     walk,
 )
+from tests.depth import by_depth
 from tests.plan.reference import Reference
 from tests.strategies import definitions, make, values
 
 slow = settings(
-    deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=by_depth(40, 100),
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 P = PRIMITIVES["ros2"]
 # Up to iron, the default middleware wrote four bytes.

@@ -116,6 +116,7 @@ NUMBERS = {
 
 
 @pytest.mark.parametrize("index", range(len(PLANS)))
+@pytest.mark.sampled(2)
 def test_every_small_change_of_a_plan_is_found(index):
     layout, plan = PLANS[index]
     tried = 0

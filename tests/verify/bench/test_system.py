@@ -30,30 +30,33 @@ def run_bench(ghdl, name, distro="lyrical", bus_bytes=8, **options):
     return benches.run_bench((Request(**options), ghdl), test)
 
 
+def thorough(*values):
+    return pytest.param(*values, marks=pytest.mark.thorough)
+
+
 # The types of tests/export/vhdl/test_bench.py have no loops, and arrays of floats only.
 SAMPLE = [
     # Two levels of loops over strings.
-    ("lyrical", "diagnostic_msgs/msg/DiagnosticArray", 8),
+    thorough("lyrical", "diagnostic_msgs/msg/DiagnosticArray", 8),
     # Sequences of every kind, `bool` and `byte` among them.
-    ("lyrical", "rcl_interfaces/msg/ParameterValue", 8),
+    thorough("lyrical", "rcl_interfaces/msg/ParameterValue", 8),
     # Runs of a constant length in a loop, and structures in another.
     ("noetic", "shape_msgs/Mesh", 8),
     # A leaf without bytes between other leaves.
-    ("noetic", "nav_msgs/GetMapActionGoal", 8),
+    thorough("noetic", "nav_msgs/GetMapActionGoal", 8),
     # Bounds, and strings of one character a lane.
     ("lyrical", "shape_msgs/msg/SolidPrimitive", 2),
 ]
 
 
 @pytest.mark.parametrize(("distro", "name", "bus_bytes"), SAMPLE)
-@pytest.mark.sampled(2)
 def test_bench_passes_with_the_bytes_and_transfers_of_rosbags(ghdl, distro, name, bus_bytes):
     result = run_bench(ghdl, name, distro, bus_bytes)
     assert assert_passed(result) == result.packets >= 3
     assert result.metrics["transfers"] >= result.packets
 
 
-@pytest.mark.parametrize("name", ["own_msgs/msg/Deep", "own_msgs/srv/Ask_Response"])
+@pytest.mark.parametrize("name", [thorough("own_msgs/msg/Deep"), "own_msgs/srv/Ask_Response"])
 def test_types_of_ones_own_pass_as_well(ghdl, tmp_path, name):
     result = run_bench(ghdl, name, paths=(str(own_package(tmp_path)),))
     assert assert_passed(result) == result.packets
