@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import struct
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
@@ -18,7 +19,7 @@ from firm_hdl.sim import Harness, RunOptions, Stalls
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.gateware import test_parser
-from tests.gateware.test_throughput import measure_deserializer
+from tests.gateware.test_throughput import harness_of, measure_deserializer
 from tests.strategies import make
 
 MOST = 1024
@@ -96,9 +97,14 @@ def test_the_interpreter_gives_the_statuses_of_the_table(bus_bytes):
         check_statuses(replace(plan, steps=steps), bombs())
 
 
+@cache
+def reader(bus_bytes):
+    return Deserializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=MOST)
+
+
 def check_transfers(rx, packets, stalls=None):
     """Send packets through a deserializer; compare all transfers and statuses with the plan."""
-    seen = Harness(rx, None).run_packets(packets, RunOptions(stalls=stalls))
+    seen = harness_of(rx).run_packets(packets, RunOptions(stalls=stalls))
     decoded = [decode(rx.plan, packet) for packet in packets]
     assert [status.name for status in seen.statuses] == [each.status for each in decoded]
     want = {}
@@ -117,7 +123,7 @@ SLOW = {"packets_in": Stalls(0.3, 1, 2, seed=5), "message": Stalls(0.4, 1, 3, se
     by_depth([(8, SLOW)], [(b, s) for b in (1, 8, 64) for s in (None, SLOW)]),
 )
 def test_a_deserializer_refuses_what_claims_too_much(bus_bytes, stalls):
-    rx = Deserializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=MOST)
+    rx = reader(bus_bytes)
     rows = by_depth(bombs()[3:4] + bombs()[9:12], bombs())
     packets = [each for packet, _ in rows for each in (packet, good(rx.plan))]
     check_transfers(rx, packets, stalls)
@@ -196,7 +202,7 @@ def test_a_parser_with_a_larger_budget_is_found():
 
 @pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 2, 8, 64]))
 def test_counted_lengths_take_the_cycles_of_the_plan(bus_bytes):
-    rx = Deserializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=MOST)
+    rx = reader(bus_bytes)
     packets = [good(rx.plan)] * 2 + [numbers(0) + b"\5", good(rx.plan)]
     traffic = [packet_of(rx.plan, packet) for packet in packets]
     assert sum(visit.held for visit in traffic[0].visits) == 2 * CHECK_CYCLES
@@ -206,7 +212,7 @@ def test_counted_lengths_take_the_cycles_of_the_plan(bus_bytes):
 
 @pytest.mark.parametrize("lengths", [(60, 299), (60, 300), (30, 0, 60, 359)])
 def test_recovery_takes_the_cycles_of_the_interpreter_and_at_most_the_bound(lengths):
-    rx = Deserializer(MESSAGE, bus_bytes=8, max_message_bytes=MOST)
+    rx = reader(8)
     packet = bomb(*lengths)
     visits = decode(rx.plan, packet).steps
     (status,) = measure_deserializer(rx, [packet])

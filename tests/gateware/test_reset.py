@@ -185,7 +185,7 @@ def after_reset_of_writer(bench, transfers, after, at, until, offers):
 def test_serializer_forgets_the_message_under_way(bus_bytes):
     bench = Bench(Serializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=400), GOOD)
     good = transfers_of_good(bus_bytes)
-    every = by_depth(2, 1)
+    every = by_depth(3, 1)
     changes = {
         "good": {},
         "length": {1: [30], 2: letters(b"0123456789" * 3, bus_bytes)},
@@ -193,7 +193,7 @@ def test_serializer_forgets_the_message_under_way(bus_bytes):
         "loop": {3: [9], 4: list(range(9))},
     }
     for number, (what, change) in enumerate(changes.items()):
-        # The output is blocked before a reset in each cycle, or in every other one; then leaves
+        # The output is blocked before a reset in each cycle, or in some; then leaves
         # are missing.
         for at, until, offers in [
             *((at, at - 5, 5) for at in range(5 + number % every, 14 + 30 // bus_bytes, every)),

@@ -17,7 +17,7 @@ from firm_hdl.sim.transfers import split_transfers, transfer_table
 from tests.depth import by_depth
 from tests.strategies import BUS_WIDTHS, make
 
-some_buses = pytest.mark.parametrize("bus_bytes", [1, 4, 16])
+some_buses = pytest.mark.parametrize("bus_bytes", by_depth([1, 16], [1, 4, 16]))
 every_bus = pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
 # No stalls; then stalls on all streams, longest on `status`.
 SLOW = Stalls(0.3, 1, 2, seed=5)

@@ -89,7 +89,7 @@ def ros_packets(name, bus_bytes, count):
 
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
 @pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 def test_packets_of_ros_leave_whole_and_in_order_under_any_stall(bus_bytes, when_full):
     # On a narrow bus, each packet takes many cycles.
     count = min(30, 5 + 3 * bus_bytes)
