@@ -29,12 +29,14 @@ STORE = get_typestore(Stores.ROS2_JAZZY)
 
 
 @pytest.fixture
-def modules():
-    """Forget the modules of accelerators, which have no package."""
+def modules(tmp_path):
+    """Forget the modules of accelerators, which have no package. Others may be patched later."""
     before = set(sys.modules)
     yield
     for name in set(sys.modules) - before:
-        del sys.modules[name]
+        file = Path(getattr(sys.modules[name], "__file__", None) or "/")
+        if file.is_relative_to(EXAMPLES) or file.is_relative_to(tmp_path):
+            del sys.modules[name]
 
 
 @pytest.fixture

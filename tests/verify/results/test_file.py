@@ -236,7 +236,7 @@ def test_workers_end_with_a_run_that_was_killed(tmp_path):
     script = tmp_path / "fake.py"
     script.write_text(
         FAKE.replace(
-            "time.sleep(0.01)", "time.sleep(0.2); print('pid', os.getpid(), flush=True)"
+            "time.sleep(0.01)", "time.sleep(0.2); os.write(1, b'pid %d\\n' % os.getpid())"
         ).replace("import sys", "import os, sys")
     )
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
