@@ -1,8 +1,9 @@
 """Oracles' processes that are forked from one that has loaded ROS's modules.
 
-Loading takes a quarter of a second, and a hundred tests have a folder, and so a process, of their
-own. Each process still runs `worker_script` from its start, with its own arguments. How it is
-started and ended by itself, `tests.verify.ts1.oracles.test_oracles` tests.
+Loading takes a quarter of a second, rosidl_parser's first file takes another one, and a hundred
+tests have a folder, and so a process, of their own. Each process still runs `worker_script` from
+its start, with its own arguments. How it is started and ended by itself,
+`tests.verify.ts1.oracles.test_oracles` tests.
 """
 
 from __future__ import annotations
@@ -19,12 +20,16 @@ __all__ = ["nursed"]
 
 # It forks a process for each line of arguments, which come with the ends of two pipes.
 _NURSE = """
-import contextlib, importlib, json, os, runpy, signal, socket, sys
+import contextlib, gc, importlib, json, os, runpy, signal, socket, sys
 
 sys.path.insert(0, sys.argv[3])
 with contextlib.suppress(OSError):  # The modules are loaded before a folder is read.
-    importlib.import_module("worker_" + sys.argv[2]).readers("/nowhere")
+    judges, _ = importlib.import_module("worker_" + sys.argv[2]).readers("/nowhere")
+    if "rosidl_parser" in judges:  # It makes its tables when it reads its first file.
+        first = {"package": "p", "kind": "msg", "name": "A", "file": "A.msg", "text": "int8 x\\n"}
+        judges["rosidl_parser"]({**first, "has_events": False})
 del sys.path[0]
+gc.freeze()
 asked = socket.socket(fileno=0)
 signal.signal(signal.SIGCHLD, signal.SIG_IGN)
 while True:
@@ -40,7 +45,7 @@ while True:
             os.close(end)
         sys.argv = json.loads(line)
         runpy.run_path(sys.argv[0], run_name="worker_script")["main"]()
-        sys.exit()
+        os._exit(0)  # All is written. To clear Python's memory takes as long as a short answer.
     for end in ends:
         os.close(end)
     asked.send(str(child).encode())
@@ -95,7 +100,9 @@ def _nurse(python, family, modules, environment):
 def _popen(command, *, env, **_):
     """Fork what `Worker` starts."""
     python, script, family, folder, modules = command
-    nurse, _process = _nurse(python, family, modules, tuple(sorted(env.items())))
+    # pytest writes the name of each test into the environment.
+    variables = (each for each in env.items() if each[0] != "PYTEST_CURRENT_TEST")
+    nurse, _process = _nurse(python, family, modules, tuple(sorted(variables)))
     request, answers = os.pipe(), os.pipe()
     line = json.dumps([script, family, folder, modules]).encode()
     socket.send_fds(nurse, [line], [request[0], answers[1]])
