@@ -7,6 +7,7 @@ import pytest
 from firm_hdl.export.backend import Converters, Output
 from firm_hdl.export.top import DIRECTIONS
 from firm_hdl.export.vhdl.backend import Vhdl
+from tests.export.hollow import hollow_converters
 
 
 def quick_vhdl(self: Vhdl, converters: Converters) -> Output:
@@ -23,3 +24,9 @@ def quick(monkeypatch):
         lambda top, module, header: f"{header}module {module};\n",
     )
     monkeypatch.setattr(Vhdl, "write", quick_vhdl)
+
+
+@pytest.fixture
+def hollow(monkeypatch):
+    """Build converters without their insides."""
+    hollow_converters(monkeypatch)

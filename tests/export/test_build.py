@@ -20,6 +20,7 @@ from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, from_yaml
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
+from tests.export.hollow import hollow_converters
 from tests.export.test_sample import SAMPLE, files
 
 # The package's face has a function of this name.
@@ -116,6 +117,7 @@ waivers.vlt
 """All files of Twist with default options."""
 
 
+@pytest.mark.usefixtures("hollow")
 def test_without_a_folder_the_output_is_in_vhdl_out(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (built,) = build(("std_msgs/msg/Bool",))
@@ -146,7 +148,9 @@ def test_folder_is_complete(tmp_path):
     assert set(FILES_OF_TWIST.split()) - found == set()
 
 
-def test_vhdl_compiles_in_the_order_of_the_manifest_and_stimuli_are_the_callers(tmp_path):
+def test_vhdl_compiles_in_the_order_of_the_manifest_and_stimuli_are_the_callers(
+    tmp_path, monkeypatch
+):
     options = {"stimuli": lambda message, plan: [b"\x00\x01\x00\x00\x01"]}
     built = build_one(tmp_path, **options)
     vhdl = json.loads((built.folder / "manifest.json").read_text())["vhdl"]
@@ -161,6 +165,7 @@ def test_vhdl_compiles_in_the_order_of_the_manifest_and_stimuli_are_the_callers(
     assert (built.folder / "vhdl" / "run_ghdl.sh").stat().st_mode & 0o111
     assert (built.folder / "vhdl" / "stimuli.txt").read_text().splitlines()[1:] == ["0001000001"]
     assert build_one(tmp_path, **options).was_current
+    hollow_converters(monkeypatch)
     assert not build_one(tmp_path).was_current
     assert not (built.folder / "vhdl" / "stimuli.txt").exists()
 

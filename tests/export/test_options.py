@@ -13,6 +13,7 @@ from firm_hdl.wire import lay_out
 from tests.strategies import make
 
 
+@pytest.mark.usefixtures("hollow")
 def test_files_go_where_the_documentation_looks_for_them(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (built,) = build(["std_msgs/msg/Bool"])

@@ -365,6 +365,7 @@ def test_vunit_runs_the_benches(folders, tmp_path):
     assert f"fail {tests} of {tests}" in output
 
 
+@pytest.mark.usefixtures("hollow")
 def test_without_packets_nothing_runs_them(tmp_path):
     [built] = build(TYPES[:1], tmp_path)
     names = {path.name for path in (built.folder / "vhdl").iterdir()}

@@ -117,7 +117,7 @@ def test_type_that_rosbags_cannot_write_has_no_stimuli(monkeypatch):
 
     monkeypatch.setattr("firm_hdl.verify.cases.stimuli.judge_of", refuse)
     message = load_message("std_msgs/msg/String")
-    vhdl, plan = vhdl_of(message)
+    vhdl, plan = vhdl_of(message, hollow=True)
     assert stimuli(message, plan) == []
     assert "stimuli.txt" not in vhdl.files
 

@@ -24,6 +24,7 @@ from firm_hdl.plan import Plan, build_plan
 from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
+from tests.export.hollow import hollow_converters
 
 NASTY = """\
 # Keywords, doubles, outer underscores, case.
@@ -87,8 +88,13 @@ def vhdl_of(
     bus_bytes: int = 8,
     packets: Iterable[bytes] = (),
     ports: Ports = "records",
+    hollow: bool = False,
 ) -> tuple[Output, Plan]:
-    made = _vhdl(message, texts_of(message), bus_bytes, tuple(packets), ports)
+    """Return a type's VHDL; that of a hollow one has all but the insides of the converters."""
+    with pytest.MonkeyPatch.context() as patch:
+        if hollow:
+            hollow_converters(patch)
+        made = _vhdl(message, texts_of(message), bus_bytes, tuple(packets), ports, hollow)
     return made, plan_of(message, bus_bytes)
 
 
@@ -104,6 +110,7 @@ def _vhdl(
     bus_bytes: int,
     packets: tuple[bytes, ...],
     ports: Ports,
+    hollow: bool,
 ) -> Output:
     """Write the VHDL once for all tests of a type: making circuits takes seconds."""
     plan = plan_of(message, bus_bytes)
@@ -114,11 +121,11 @@ def _vhdl(
         options=Options(bus_bytes=bus_bytes, ports=ports),
         stimuli=packets,
     )
-    return to_vhdl(replace(made, circuits=_circuits(message, bus_bytes)))
+    return to_vhdl(replace(made, circuits=_circuits(message, bus_bytes, hollow)))
 
 
 @cache
-def _circuits(message: Message, bus_bytes: int) -> dict[Direction, str]:
+def _circuits(message: Message, bus_bytes: int, hollow: bool) -> dict[Direction, str]:
     """Make the circuits, which are the same with records and with flat ports."""
     plan = plan_of(message, bus_bytes)
     name = f"{message.name}_{plan.wire}_{bus_bytes}"
@@ -235,9 +242,9 @@ def test_types_are_shared_and_no_two_names_meet():
 # On a bus of one byte, test_wide.py analyses strings.
 @pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 8]))
 def test_nasty_names_are_analysed_without_warnings(ghdl, tmp_path, bus_bytes):
-    # With the packets of other tests, for which it is made anyway.
+    # All names are in packages, in ports and in benches.
     packets = stimuli(nasty(), plan_of(nasty(), bus_bytes))
-    made, _ = vhdl_of(nasty(), bus_bytes, packets)
+    made, _ = vhdl_of(nasty(), bus_bytes, packets, hollow=by_depth(True, False))
     write(tmp_path / "vhdl", made.files)
     analyse(ghdl, tmp_path / "vhdl", [*made.manifest["files"], *made.manifest["bench"]["files"]])
 

@@ -70,6 +70,13 @@ def arrays(tmp_path: Path, distro: str) -> Message:
     return load_message("array_msgs/Arrays", distro=distro, paths=[tmp_path / "src"])
 
 
+def hollow_arrays(tmp_path: Path, distro: str) -> Output:
+    """Return the VHDL of arrays, in `make test` without the insides of the converters."""
+    message = arrays(tmp_path, distro)
+    packets = stimuli(message, plan_of(message, 8))
+    return vhdl_of(message, 8, packets, hollow=by_depth(True, False))[0]
+
+
 def with_packets(message: Message, bus_bytes: int = 8) -> tuple[Output, list[bytes]]:
     """Return a type's VHDL and its packets; tests with the same packets share the VHDL."""
     packets = stimuli(message, plan_of(message, bus_bytes))
@@ -116,9 +123,9 @@ def test_whole_messages_come_back(ghdl, tmp_path, name, distro, bus_bytes):
 @pytest.mark.parametrize(
     ("distro", "bus_bytes"),
     [
-        ("noetic", 8),
+        # CDR aligns what is in the record.
         ("lyrical", 8),
-        *by_depth([], [("noetic", 1), ("noetic", 16), ("lyrical", 4)]),
+        *by_depth([], [("noetic", 8), ("noetic", 1), ("noetic", 16), ("lyrical", 4)]),
     ],
 )
 def test_arrays_and_nasty_names_come_back(ghdl, tmp_path, distro, bus_bytes):
@@ -153,14 +160,14 @@ def test_swapped_members_fail(ghdl, tmp_path):
 
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])
 def test_arrays_are_analysed_without_warnings(ghdl, tmp_path, distro):
-    vhdl, _ = with_packets(arrays(tmp_path, distro))
+    vhdl = hollow_arrays(tmp_path, distro)
     write(tmp_path / "vhdl", vhdl.files)
     analyse(ghdl, tmp_path / "vhdl", [*vhdl.manifest["files"], *vhdl.manifest["bench"]["files"]])
     assert "--warn-hide" in WARNINGS
 
 
 def test_package_reads_like_the_definition(tmp_path):
-    vhdl, _ = with_packets(arrays(tmp_path, "noetic"))
+    vhdl = hollow_arrays(tmp_path, "noetic")
     text = vhdl.files["array_msgs_arrays_ros1_8_pkg.vhd"]
     start = text.index("  type arrays_value_t is record\n")
     record = text[start : text.index("  end record;\n", start)]
@@ -214,7 +221,7 @@ def test_types_without_a_record_state_the_reason(tmp_path, text, reason):
         RecordTop(Deserializer(message), message)
     assert str(caught.value) == reason
     if "8191" not in text and "1024" not in text:
-        vhdl, _ = vhdl_of(message)
+        vhdl, _ = vhdl_of(message, hollow=True)
         assert vhdl.manifest["record_view"] == {"built": False, "reason": reason}
         assert not [name for name in vhdl.files if "record" in name]
 

@@ -265,6 +265,7 @@ def test_two_types_whose_package_has_one_name_are_not_built_side_by_side(
     assert not (tmp_path / "at once").exists()
 
 
+@pytest.mark.usefixtures("hollow")
 def test_earlier_builds_count(similar, tmp_path):
     options = {"out": tmp_path / "out", "library": Library("noetic", [similar])}
     (before,) = build(["p/A"], **options)
@@ -278,6 +279,7 @@ def test_earlier_builds_count(similar, tmp_path):
     build(["p/B"], **options)
 
 
+@pytest.mark.usefixtures("hollow")
 def test_types_that_are_similar_within_a_message_have_packages_each(ghdl, similar, tmp_path):
     (built,) = build(["p/Both"], tmp_path / "out", library=Library("noetic", [similar]))
     files = (built.folder / "vhdl" / "files.txt").read_text().split()
@@ -355,6 +357,7 @@ def test_vhdl_compiles_as_a_library_of_vunit(ghdl, folders, tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.usefixtures("hollow")
 def test_what_a_folder_had_before_it_is_built_anew_does_not_count(similar, tmp_path):
     options = {"out": tmp_path / "out"}
     build(["p/A"], library=Library("noetic", [similar]), **options)
