@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 from contextlib import ExitStack, closing
+from functools import cache
 from itertools import count
+from types import SimpleNamespace
 
 import pytest
 
@@ -35,11 +37,14 @@ def judged_by(run):
 class Court:
     """Definitions in a folder, and the oracles that judge them."""
 
-    def __init__(self, distro, root, files, stack):
+    def __init__(self, distro, root, files, stack, shared=None):
         (root / "src").mkdir(parents=True, exist_ok=True)
         make_files(root / "src", files)
         self.universe = Universe(distro, [str(root / "src")], str(root / "all"))
-        write_definitions(self.universe)
+        if shared is None:
+            write_definitions(self.universe)
+        else:
+            write_own_definitions(self.universe, shared(distro))
         self._stack = stack
 
     def oracle(self, name):
@@ -60,6 +65,16 @@ class Court:
         return judge(self.universe, self.oracle(name), case)
 
 
+def write_own_definitions(universe, shared):
+    """Do what `write_definitions` does, but link packages without files to those in `shared`."""
+    own = {case.package for case in universe.by_source.values() if os.path.isfile(case.source)}
+    few = {name: case for name, case in universe.by_source.items() if case.package in own}
+    os.makedirs(universe.folder, exist_ok=True)
+    for package in set(os.listdir(shared)) - own:
+        os.symlink(shared / package, os.path.join(universe.folder, package))
+    write_definitions(SimpleNamespace(by_source=few, folder=universe.folder))
+
+
 def need(name, missing):
     """Skip a test whose oracle is not installed; in CI, fail it."""
     if missing is None:
@@ -70,15 +85,32 @@ def need(name, missing):
     pytest.skip(message)
 
 
+@pytest.fixture(scope="session")
+def embedded_definitions(tmp_path_factory):
+    """A function that returns the folder of the definitions that firm-hdl has of a distro."""
+
+    @cache
+    def folder(distro):
+        root = tmp_path_factory.mktemp(distro)
+        write_definitions(Universe(distro, [], str(root / "all")))
+        return root / "all"
+
+    return folder
+
+
 @pytest.fixture
-def court(tmp_path, monkeypatch, request):
+def court(tmp_path, monkeypatch, request, embedded_definitions):
     """A function that makes a court from texts of ``package/kind/file``.
 
-    In `make test`, its oracles' processes are forked, which takes less time, except for a module
-    with `OWN_PROCESSES`.
+    In `make test`, its oracles' processes are forked, and definitions of firm-hdl itself are
+    written once, which takes less time; except for a module with `OWN_PROCESSES`.
     """
+    shared = None
     if not THOROUGH and not getattr(request.module, "OWN_PROCESSES", False):
         nursed(monkeypatch, worker)
+        shared = embedded_definitions
     numbers = count()
     with ExitStack() as stack:
-        yield lambda distro, files: Court(distro, tmp_path / str(next(numbers)), files, stack)
+        yield lambda distro, files: Court(
+            distro, tmp_path / str(next(numbers)), files, stack, shared
+        )
