@@ -1,4 +1,7 @@
-"""Every type of every distribution, with a few cases each."""
+"""Every type of every distribution, with a few cases each; in `make test`, one type in three.
+
+There, other tests plan all types of two distributions, such as `test_covering`.
+"""
 
 from __future__ import annotations
 
@@ -21,6 +24,7 @@ SIMULATED = by_depth(24, 1)
 
 
 @pytest.mark.parametrize("index", range(len(TASKS)), ids=[task.name for task in TASKS])
+@pytest.mark.sampled(3)
 def test_every_type_passes(index):
     task = TASKS[index]
     options = Options(

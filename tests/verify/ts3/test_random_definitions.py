@@ -14,7 +14,7 @@ from tests.depth import by_depth
 from tests.strategies import BUS_WIDTHS, definitions
 from tests.verify.judged import NAN_KEY, TIME_KEY, assert_passed
 
-MOST_WORK = by_depth(500, 5_000)
+MOST_WORK = by_depth(300, 5_000)
 """Limit on beats times leaves of the smallest packet; larger examples may take minutes."""
 
 MOST_CASES = by_depth(4, 8)
@@ -23,7 +23,7 @@ MOST_CASES = by_depth(4, 8)
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 # Shrinking would simulate for many minutes; the failure message has the command to repeat it.
 @settings(
-    max_examples=by_depth(4, 40),
+    max_examples=by_depth(3, 40),
     deadline=None,
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=list(HealthCheck),
