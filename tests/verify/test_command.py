@@ -21,6 +21,7 @@ from firm_hdl.verify.results.verdict import Failed, Passed
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Judged, System
 from firm_hdl.verify.systems.tasks import UnknownTypeError
+from tests.depth import by_depth
 from tests.verify.samples import own_package
 
 BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool"]
@@ -76,15 +77,18 @@ def test_unknown_types_and_folders_are_errors(capsys, tmp_path):
 
 def test_all_with_a_folder_is_all_in_the_folder(capsys, tmp_path, monkeypatch):
     own_package(tmp_path)
+    for name in by_depth(("Deep", "Middle", "Inner"), ()):
+        (tmp_path / "own_msgs" / "msg" / f"{name}.msg").unlink()
     (tmp_path / "own_msgs" / "msg" / "Wide.msg").write_text("wstring text\n")
     arguments = ["verify", "--all", "--path", str(tmp_path), "--cases", "1", "--jobs", "1"]
     assert main([*arguments, "--no-stalls", "--no-broken", "--reference", "none"]) == 0
     output = capsys.readouterr()
     wide = "rosbags has no wstring, which own_msgs/msg/Wide.text is"
     assert f"not judged: own_msgs/msg/Wide (lyrical), ts3, 8-byte bus: {wide}\n" in output.out
-    # Four messages; request, response and event of a service; and one unjudged message.
-    assert "lyrical     7 of    7 types pass (8-byte bus)\n" in output.out
-    assert "\n1 of 8 types not judged\n" in output.out
+    # Messages; request, response and event of a service; and one unjudged message.
+    count = by_depth(1, 4) + 3
+    assert f"lyrical     {count} of    {count} types pass (8-byte bus)\n" in output.out
+    assert f"\n1 of {count + 1} types not judged\n" in output.out
 
 
 def test_one_wrong_definition_does_not_keep_the_others_of_a_folder(capsys, tmp_path):
@@ -107,9 +111,11 @@ def test_the_active_workspace_is_searched(capsys, tmp_path, monkeypatch):
         (tmp_path / name).parent.mkdir(parents=True)
         (tmp_path / name).write_text(text)
     few = ["--jobs", "1", "--cases", "1", "--no-stalls", "--no-broken"]
+    # The others take seconds to start; they get the same definitions.
+    oracle = by_depth(["--oracle", "rosbags"], [])
     prefixes = os.pathsep.join([str(tmp_path / "a"), str(tmp_path / "b")])
     monkeypatch.setenv("AMENT_PREFIX_PATH", prefixes)
-    assert main(["verify", "--systems", "ts1,ts2,ts3", *few, "a_msgs/msg/A"]) == 0
+    assert main(["verify", "--systems", "ts1,ts2,ts3", *few, *oracle, "a_msgs/msg/A"]) == 0
     assert "lyrical     1 of    1 types pass (8-byte bus)\n" in capsys.readouterr().out
     # The option `--path` has priority over the environment variable.
     assert main(["verify", *few, "--all", "--path", str(tmp_path / "a" / "share")]) == 0

@@ -18,11 +18,14 @@ from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Recorder
 from firm_hdl.verify.systems.tasks import TypeUnderTest, collect_tasks
+from tests.depth import THOROUGH
 from tests.tools import need
 from tests.verify.judged import assert_passed
 from tests.verify.samples import own_package
 
 HEADER = "std_msgs/msg/Header"
+# It has one bench, without the record view.
+STRING = "std_msgs/msg/String"
 
 
 def run_bench(ghdl, name, distro="lyrical", bus_bytes=8, **options):
@@ -128,9 +131,10 @@ def test_faults_are_found(ghdl, monkeypatch, file, before, after, output):
 
 
 def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
-    alone = run_bench(ghdl, HEADER)
     both = run_bench(ghdl, "geometry_msgs/msg/Vector3")
-    assert assert_passed(alone) and assert_passed(both) == both.packets
+    assert assert_passed(both) == both.packets
+    if THOROUGH:
+        assert assert_passed(run_bench(ghdl, HEADER))
     # Three leaves, in the first bench; each packet is sent in both.
     assert 2 * both.metrics["transfers"] == 3 * both.packets
     change(monkeypatch, "8_serializer_record.vhd", "<= to_slv(msg", "<= not to_slv(msg")
@@ -139,7 +143,7 @@ def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
 
 
 def test_table_and_status_have_failures_and_the_command_to_repeat(ghdl, monkeypatch, capsys):
-    tasks = collect_tasks(["lyrical"], ["std_msgs/msg/Bool"])
+    tasks = collect_tasks(["lyrical"], [STRING])
     (found,) = Benches(tasks, Request(jobs=1)).run(Recorder())
     assert_passed(found)
     rows = [line.split() for line in capsys.readouterr().out.splitlines()]
@@ -149,9 +153,9 @@ def test_table_and_status_have_failures_and_the_command_to_repeat(ghdl, monkeypa
     (found,) = Benches(tasks, Request(wire="ros1", widths=(4,), jobs=1)).run(Recorder())
     assert isinstance(found.verdict, Failed)
     output = capsys.readouterr().out
-    assert "FAIL std_msgs/msg/Bool (lyrical)\n" in output
+    assert f"FAIL {STRING} (lyrical)\n" in output
     again = "firm-hdl verify --systems bench --distro lyrical --wire ros1 --bus-bytes 4"
-    assert f"again: {again} std_msgs/msg/Bool\n" in output
+    assert f"again: {again} {STRING}\n" in output
 
 
 def test_each_distribution_has_a_row_with_its_own_sums(capsys):
@@ -230,7 +234,7 @@ def test_a_long_failure_is_shortened_and_the_first_one_is_printed():
 
 def test_results_are_kept_and_not_repeated(ghdl, tmp_path, monkeypatch, capsys):
     file = tmp_path / "r.jsonl"
-    names = ["std_msgs/msg/Bool", "std_msgs/msg/Empty"]
+    names = ["std_msgs/msg/Empty", STRING]
     call = ["verify", "--systems", "bench", "--distro", "lyrical", "--jobs", "1", *names]
     call += ["--results", str(file)]
     assert main(call) == 0
@@ -247,5 +251,5 @@ def test_results_are_kept_and_not_repeated(ghdl, tmp_path, monkeypatch, capsys):
     change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
     assert main(call) == 1
     verdicts = {r.test.type: r.verdict.name for r in read_results(file).records.values()}
-    assert verdicts == dict(zip(names, ("passed", "failed"), strict=True))
+    assert verdicts == dict(zip(names, ("failed", "passed"), strict=True))
     assert "1 of 2 types" in capsys.readouterr().out
