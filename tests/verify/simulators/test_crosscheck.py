@@ -25,6 +25,7 @@ from firm_hdl.verify.simulators.crosscheck import first_difference
 from firm_hdl.verify.simulators.semantics import traffic
 from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.vhdl.convert import Vhdl, convert
+from tests.depth import by_depth
 from tests.verify.judged import assert_passed
 from tests.verify.samples import SAMPLE, own_package
 
@@ -36,16 +37,16 @@ def accepted(distro: str, name: str, bus_bytes: int = 8, **options) -> Result:
     return accept(distro, name, Options(bus_bytes=bus_bytes, **chosen))
 
 
-# Other tests of a folder with VHDL have loops over strings; here are a bound, no bytes, one lane.
-QUICK = ("shape_msgs/msg/SolidPrimitive", "bond/Constants", "std_msgs/Header")
+# Other tests of a folder with VHDL have loops over strings, those below have bounds; here are no
+# bytes, and one lane.
+QUICK = ("bond/Constants",)
+SMALL = by_depth([("noetic", "std_msgs/String", 1)], [])
 
 
 @pytest.mark.parametrize(
     ("distro", "name", "bus_bytes"),
-    [
-        pytest.param(*each, marks=[] if each[1] in QUICK else pytest.mark.thorough)
-        for each in SAMPLE
-    ],
+    [pytest.param(*each, marks=[] if each[1] in QUICK else pytest.mark.thorough) for each in SAMPLE]
+    + SMALL,
 )
 def test_vhdl_equals_the_simulation_in_each_cycle(ghdl, distro, name, bus_bytes):
     result = accepted(distro, name, bus_bytes)
@@ -193,7 +194,7 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
         ),
     ],
 )
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(4)
 def test_a_changed_line_is_found(ghdl, monkeypatch, file, pattern, text, output):
     change_line(monkeypatch, file, pattern, text)
     result = accepted("lyrical", HEADER)

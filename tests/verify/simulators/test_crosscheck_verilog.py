@@ -10,9 +10,11 @@ import pytest
 
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.export.backend import Options as BuildOptions
+from firm_hdl.export.backend import Output
 from firm_hdl.export.build import build
 from firm_hdl.export.top import Top
 from firm_hdl.export.verilog import to_verilog
+from firm_hdl.export.vhdl.backend import Vhdl
 from firm_hdl.jobs.processes import ToolError, run_tool
 from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.verify import Options, Result, accept
@@ -43,7 +45,7 @@ WIDE = ("lyrical", "service_msgs/msg/ServiceEventInfo", 16)
         # Ports of all widths, some of more than 64 bits.
         ("iverilog", WIDE),
         # A bus of one byte; no bytes at all, and a leaf that is only a trigger.
-        ("iverilog", ("noetic", "std_msgs/Header", 1)),
+        ("iverilog", ("noetic", by_depth("std_msgs/String", "std_msgs/Header"), 1)),
         ("iverilog", ("noetic", "bond/Constants", 8)),
     ],
     indirect=["of_verilog"],
@@ -95,7 +97,7 @@ TYPES = (
 
 
 @pytest.mark.parametrize("of_verilog", ["iverilog"], indirect=True)
-@pytest.mark.parametrize("name", by_depth(["std_msgs/msg/MultiArrayLayout"], TYPES))
+@pytest.mark.parametrize("name", by_depth(["std_msgs/msg/String"], TYPES))
 def test_verilog_is_the_same_in_every_language(of_verilog, standards, name):
     result = accepted(of_verilog, "lyrical", name, most_cases=2)
     assert_passed(result)
@@ -118,7 +120,7 @@ def test_process_that_waits_for_its_first_change_is_found(of_verilog, standards,
 
 
 EVERY_LANGUAGE = by_depth(
-    ("1364-2001", "1364-2005", "1800-2017"),
+    ("1364-2001", "1800-2017"),
     ("1364-2001", "1364-2005", "1800-2005", "1800-2009", "1800-2012", "1800-2017"),
 )
 # Compiling the C++ is slow. Ports of a bus of 16 bytes have more than 64 bits.
@@ -182,7 +184,8 @@ def test_verilator_output_depends_on_the_text(of_verilog, tmp_path):
         next(make_models(of_verilog, ["replay.v"], tmp_path / "new"))
 
 
-def test_text_is_that_of_build(tmp_path):
+def test_text_is_that_of_build(tmp_path, monkeypatch):
+    monkeypatch.setattr(Vhdl, "write", lambda self, converters: Output(files={}, manifest={}))
     message = load_message(BOOL, distro="lyrical")
     cores = [Deserializer(message), Serializer(message)]
     files = write_inputs(Trace(cores, BOOL), [Top(core) for core in cores], tmp_path)
@@ -277,7 +280,7 @@ UNDEFINED = ("no initial value", "undefined")
     ],
     indirect=["of_verilog"],
 )
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(4)
 def test_a_changed_line_is_found(of_verilog, monkeypatch, change):
     *where, output = CHANGES[change]
     change_line(monkeypatch, *where)
