@@ -68,6 +68,15 @@ def run(*arguments):
     return status
 
 
+@pytest.fixture(scope="module", autouse=True)
+def older_objects():
+    """Leave objects of earlier tests out of each collection, which would take most of the time."""
+    gc.collect()
+    gc.freeze()
+    yield
+    gc.unfreeze()
+
+
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """A folder with the description; modules are forgotten after the test."""

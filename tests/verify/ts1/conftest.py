@@ -103,10 +103,11 @@ def court(tmp_path, monkeypatch, request, embedded_definitions):
     """A function that makes a court from texts of ``package/kind/file``.
 
     In `make test`, its oracles' processes are forked, and definitions of firm-hdl itself are
-    written once, which takes less time; except for a module with `OWN_PROCESSES`.
+    written once, which takes less time; except for tests in `OWN_PROCESSES` of their module.
     """
     shared = None
-    if not THOROUGH and not getattr(request.module, "OWN_PROCESSES", False):
+    name = request.function.__name__
+    if not THOROUGH and name not in getattr(request.module, "OWN_PROCESSES", ()):
         nursed(monkeypatch, worker)
         shared = embedded_definitions
     numbers = count()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
@@ -14,6 +15,13 @@ from tests.verify.ts1.conftest import judged_by, need
 
 JUDGED = ("passed", "failed", "known difference")
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
+
+
+@cache
+def spelled_names(path, distro):
+    """Return the names of the definitions in a folder, except for those with long texts."""
+    cases = Universe(distro, [path]).select([])
+    return tuple(case.spelled_name for case in cases if len(case.text) < 20_000)
 
 
 def differences(request, oracle):
@@ -36,8 +44,7 @@ def differences(request, oracle):
 )
 def test_a_sample_is_read_as_oracles_read_it(corpus, dialect, oracle, step):
     path, distro = str(corpus / dialect), DISTROS[dialect]
-    cases = Universe(distro, [path]).select([])
-    types = tuple(case.spelled_name for case in cases if len(case.text) < 20_000)[::step]
+    types = spelled_names(path, distro)[::step]
     request = Request(distros=(distro,), paths=(path,), types=types)
     wrong, refused, judged = differences(request, oracle)
     assert (wrong, refused) == ([], 0)
