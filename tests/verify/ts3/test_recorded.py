@@ -17,6 +17,8 @@ from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.ts3.result import record_of, same_circuits, test_of
 from tests.verify.judged import assert_passed, without_times
 
+pytestmark = pytest.mark.usefixtures("same_circuit")
+
 TYPES = [f"std_msgs/msg/{name}" for name in ("Bool", "Empty", "Int16", "Char")]
 FAST = ["--jobs", "1", "--cases", "3", "--distro", "humble"]
 

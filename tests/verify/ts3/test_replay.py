@@ -22,6 +22,8 @@ from tests.verify.judged import assert_passed
 from tests.verify.robot import FORMATS, robot, write
 from tests.verify.ts3.test_acceptance import BadByte, BadLeaf
 
+pytestmark = pytest.mark.usefixtures("same_circuit")
+
 STRING = "std_msgs/msg/String"
 TEXT = bytes.fromhex("00010000 04000000 61626300")
 
