@@ -66,7 +66,7 @@ def test_no_packet_takes_longer_than_the_bound(distro, name, bus_bytes):
     plan = build_plan(layout, bus_bytes=bus_bytes, max_message_bytes=most)
     bound = recovery(plan, 1).cycles
     rng = random.Random(name)
-    for _ in range(by_depth(12, 100)):
+    for _ in range(by_depth(5, 100)):
         values = [0, 0, 1, 1, 2, rng.randrange(most), rng.randrange(most // 8), most]
         packet = bomb(plan, rng.choices(values, k=rng.randrange(1, 12)))
         assert steps_after(plan, packet) + AFTER <= bound, packet.hex()

@@ -41,6 +41,7 @@ def not_taken(made, packets):
         "visualization_msgs/msg/InteractiveMarkerUpdate",
     ],
 )
+@pytest.mark.sampled(2)
 def test_every_decision_is_taken(name, bus_bytes):
     made = plan(name, bus_bytes)
     cases = cases_of(name, made)

@@ -12,15 +12,23 @@ from firm_hdl.verify import Options, accept
 from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.strategies import make
 from tests.verify.judged import assert_passed
 
 HEADER = "std_msgs/msg/Header"
+PIXELS = by_depth(600, 3000)
 
 
 @pytest.fixture(scope="module")
 def plan():
     return build_plan(lay_out(Library("lyrical").message(HEADER), "cdr"), bus_bytes=8)
+
+
+@pytest.fixture(scope="module")
+def whole():
+    """All cases of a type, without a limit."""
+    return accept("lyrical", HEADER)
 
 
 def some_edges(*numbers):
@@ -125,8 +133,7 @@ def test_at_least_one_case_is_simulated(plan):
     ) == [0]
 
 
-def test_types_are_simulated_in_part(monkeypatch):
-    whole = accept("lyrical", HEADER)
+def test_types_are_simulated_in_part(monkeypatch, whole):
     monkeypatch.setattr(
         acceptance,
         "packets_to_simulate",
@@ -149,8 +156,7 @@ def test_without_the_largest(plan):
     assert effort.limit_work(plan, cases, 0) == []
 
 
-def test_types_near_the_limit_are_not_stalled(monkeypatch):
-    whole = accept("lyrical", HEADER)
+def test_types_near_the_limit_are_not_stalled(monkeypatch, whole):
     monkeypatch.setattr(effort, "LARGE_WORK", 1)
     once = accept("lyrical", HEADER)
     assert assert_passed(once) and once.note == "neither stalled nor damaged"
@@ -161,17 +167,17 @@ def test_types_near_the_limit_are_not_stalled(monkeypatch):
 def large(tmp_path):
     folder = tmp_path / "large_msgs" / "msg"
     folder.mkdir(parents=True)
-    (folder / "Image.msg").write_text("uint8[3000] pixels\nuint8 last\n")
+    (folder / "Image.msg").write_text(f"uint8[{PIXELS}] pixels\nuint8 last\n")
     (folder / "Cloud.msg").write_text("uint8[6000000] points\nuint8 last\n")
     return Options(paths=(str(tmp_path),))
 
 
 def test_long_messages_are_simulated(large, monkeypatch):
     monkeypatch.setattr(effort, "MOST_CASE_BYTES", 1)
-    monkeypatch.setattr(effort, "MAX_MESSAGE_BYTES", 2000)
+    monkeypatch.setattr(effort, "MAX_MESSAGE_BYTES", PIXELS - 100)
     result = accept("lyrical", "large_msgs/msg/Image", large)
     assert assert_passed(result) == 2 * result.cases == 2
-    assert result.beats > 3000 // 8
+    assert result.beats > PIXELS // 8
 
 
 def test_types_over_the_limit_are_named(large):
