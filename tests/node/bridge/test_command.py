@@ -54,6 +54,9 @@ def test_lines_go_to_a_board_and_back(file, board, capsys, monkeypatch):
 @pytest.mark.parametrize("stdin", [b'\xff\xfe\n{"topic": "/heard", "packet": "01"}\n', None])
 def test_standard_input_may_be_anything(file, board, capsys, monkeypatch, stdin):
     """Bytes that are no text are one bad line; without standard input, there is no line."""
+    # Nothing comes back that may be late.
+    if stdin is None:
+        monkeypatch.setattr(bridge, "_LINGER_SECONDS", 0.1)
     wrapped = None if stdin is None else io.TextIOWrapper(io.BytesIO(stdin), encoding="utf-8")
     monkeypatch.setattr(sys, "stdin", wrapped)
     address = f"udp://127.0.0.1:{board.port}"
