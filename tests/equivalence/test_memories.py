@@ -29,7 +29,7 @@ def _full_design(deep: bool = False) -> tuple[str, Vhdl]:
 
 
 @pytest.mark.parametrize("name", DESIGNS)
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(4)
 def test_memories_are_proved_equal(name: str, tools: Tools) -> None:
     proof = prove(rtlil_of(DESIGNS[name]), convert(rtlil_of(DESIGNS[name])), tools=tools)
     assert proof.result == "equal", proof
@@ -133,7 +133,7 @@ VHDL_TWINS = {
 }
 
 
-@pytest.mark.parametrize("what", [*VHDL_TWINS][:: by_depth(5, 1)])
+@pytest.mark.parametrize("what", [*VHDL_TWINS][:: by_depth(7, 1)])
 def test_a_change_of_the_vhdl_is_found(what: str, tools: Tools) -> None:
     text, vhdl = _full_design()
     old, new = VHDL_TWINS[what]
@@ -214,7 +214,7 @@ def test_a_counterexample_names_the_word(tools: Tools) -> None:
 @pytest.mark.parametrize(
     "name",
     sorted(set(DESIGNS) - {"odd depth", "transparent", "contents alone", "several"})[
-        :: by_depth(4, 1)
+        :: by_depth(6, 1)
     ],
 )
 def test_yosys_makes_the_same_registers_of_a_memory(

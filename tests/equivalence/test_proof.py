@@ -110,7 +110,8 @@ class _Operators(Elaboratable):
         e = Signal(name="e")
         self.inputs = [a, b, sa, sb, e]
         self.values: list[Value] = [-a, -sa, ~a, abs(sa), a.any(), a.all(), a.xor()]
-        for x, y in ((a, b), (sa, sb), (a, sb), (sa, b)):
+        # Operands of both signs are extended alike, whichever is on the left.
+        for x, y in ((a, b), (sa, sb), *by_depth((), ((a, sb), (sa, b)))):
             self.values += [x + y, x - y, x * y, x // y, x % y, x & y, x | y, x ^ y]
             self.values += [x == y, x != y, x < y, x <= y, x > y, x >= y]
         self.values += [a << b, sa << b, a >> b, sa >> b, Mux(e, a, sb), a.bit_select(b, 2)]
@@ -138,7 +139,7 @@ class _WithoutMemory(random_designs.RandomDesign):
 
 # GHDL 2.0's synthesis stops with an internal error at many other seeds, or is wrong: it cuts
 # a number off that is compared with a shorter vector, and takes the wrong bits of a constant.
-@pytest.mark.parametrize("seed", [0, 1, 6])
+@pytest.mark.parametrize("seed", by_depth([0, 6], [0, 1, 6]))
 def test_random_designs_are_proved_equal(
     seed: int, tools: Tools, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -160,6 +161,7 @@ def test_random_designs_are_proved_equal(
         ("std_msgs/Empty", "noetic"),
     ],
 )
+@pytest.mark.sampled(2)
 def test_converters_are_proved_equal(
     name: str, distro: str, direction: Direction, tools: Tools
 ) -> None:
@@ -178,16 +180,19 @@ def test_a_broken_converter_is_found(direction: Direction, part: str, tools: Too
     assert prove(rtlil, twins[0][1], tools=tools).result == "unequal"
 
 
+BUILT = by_depth("std_msgs/msg/String", "sensor_msgs/msg/Joy")
+
+
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a type, for both directions."""
-    (built,) = build(["sensor_msgs/msg/Joy"], tmp_path_factory.mktemp("built"))
+    (built,) = build([BUILT], tmp_path_factory.mktemp("built"))
     return built.folder
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_proved_vhdl_is_the_vhdl_that_build_writes(direction: Direction, built: Path) -> None:
-    _, vhdl = converter_vhdl(load_message("sensor_msgs/msg/Joy"), direction)
+    _, vhdl = converter_vhdl(load_message(BUILT), direction)
     for file, text in vhdl.files.items():
         written = (built / "vhdl" / file).read_text(encoding="utf-8")
         assert _without_header(written) == _without_header(text)

@@ -16,6 +16,7 @@ from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, encode
 from firm_hdl.sim import to_transfers
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.strategies import make
 
 
@@ -110,7 +111,7 @@ def axi_loopback(type_: str, packets: list[bytes], *, distro: str, bus_bytes: in
     return received
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 4, 8, 64])
+@pytest.mark.parametrize("bus_bytes", by_depth([1, 4, 8], [1, 4, 8, 64]))
 def test_packets_come_back(bus_bytes):
     message = load_message("std_msgs/msg/Header")
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)

@@ -26,6 +26,7 @@ from firm_hdl.rtlil.ir import (
     spec_width,
 )
 from firm_hdl.rtlil.simplify import simplified
+from tests.depth import by_depth
 from tests.rtlil.test_evaluate import value_of
 
 INPUTS = {"s": 3, "t": 2}
@@ -141,7 +142,7 @@ class Maker:
         return process(self.assign(0, 4), *self.body(3), *self.body(3))
 
 
-@pytest.mark.parametrize("start", range(0, 400, 100))
+@pytest.mark.parametrize("start", range(0, by_depth(200, 400), 100))
 def test_a_simplified_module_does_the_same(start: int) -> None:
     for seed in range(start, start + 100):
         constant = Bits(f"{seed % 8:03b}")

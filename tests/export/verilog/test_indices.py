@@ -38,7 +38,7 @@ def test_two_elements_never_get_one_name() -> None:
 
 @pytest.mark.parametrize("converter", [Deserializer, Serializer])
 def test_no_name_of_a_converter_has_an_index(converter: type) -> None:
-    design = converter(load_message("sensor_msgs/msg/Imu"))
+    design = converter(load_message(by_depth("shape_msgs/msg/Plane", "sensor_msgs/msg/Imu")))
     assert r"payload.data[1]" in rtlil.convert(design, emit_src=False)
     text = to_verilog(Top(design), module="t", header="")
     assert "payload.data_1 " in text and not re.search(r"\\\S*\[", text)

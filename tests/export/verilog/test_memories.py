@@ -141,7 +141,7 @@ def test_a_memory_whose_name_is_a_keyword_is_renamed() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["one bit", "a structure", *by_depth([], ["asynchronous", "60 bits"])]
+    "name", ["a structure", *by_depth([], ["one bit", "asynchronous", "60 bits"])]
 )
 def test_yosys_infers_distributed_ram(name: str, tmp_path: Path) -> None:
     """On ECP5, an asynchronous memory takes RAM of LUTs and no register."""

@@ -16,6 +16,7 @@ from firm_hdl.export.verilog import to_verilog
 from firm_hdl.export.verilog.ports import named_ports
 from firm_hdl.export.verilog.vectors import whole_vectors
 from firm_hdl.export.verilog.yosys import _named_choices
+from tests.depth import by_depth
 
 
 def test_parts_are_put_together_in_the_order_of_their_bits() -> None:
@@ -72,7 +73,12 @@ def test_ports_that_are_parts_have_the_name_of_the_whole() -> None:
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
-@pytest.mark.parametrize("name", ["sensor_msgs/msg/JointState", "geometry_msgs/msg/Twist"])
+@pytest.mark.parametrize(
+    "name",
+    by_depth(
+        ["std_msgs/msg/MultiArrayLayout"], ["sensor_msgs/msg/JointState", "geometry_msgs/msg/Twist"]
+    ),
+)
 def test_every_signal_of_a_converter_has_a_name(direction: str, name: str) -> None:
     converter = Deserializer if direction == "deserializer" else Serializer
     text = to_verilog(Top(converter(load_message(name))), module="t", header="")

@@ -35,7 +35,10 @@ def verilog_of(type_: str, direction: str, bus_bytes: int = 8, distro: str = "ly
 @pytest.mark.parametrize("direction", DIRECTIONS)
 @pytest.mark.parametrize(
     ("type_", "distro"),
-    [("sensor_msgs/msg/PointCloud2", "lyrical"), ("std_msgs/Empty", "noetic")],
+    [
+        (by_depth("std_msgs/msg/MultiArrayLayout", "sensor_msgs/msg/PointCloud2"), "lyrical"),
+        ("std_msgs/Empty", "noetic"),
+    ],
 )
 def test_every_port_is_there_with_its_width(type_, distro, direction):
     text = verilog_of(type_, direction, distro=distro)

@@ -28,7 +28,7 @@ def write_folder(folder: Path, name: str, distro: str, bus_bytes: int) -> list[b
     ("name", "distro", "bus_bytes"),
     [
         ("geometry_msgs/msg/Twist", "lyrical", 8),
-        ("sensor_msgs/msg/PointCloud2", "lyrical", 4),
+        (by_depth("std_msgs/msg/MultiArrayLayout", "sensor_msgs/msg/PointCloud2"), "lyrical", 4),
         ("std_msgs/Header", "noetic", 2),
         ("std_msgs/Empty", "noetic", 8),
         *by_depth(
@@ -61,7 +61,7 @@ def test_passes(ghdl, tmp_path, name, distro, bus_bytes):
 # Other tests have the circuits on a bus of eight bytes, too.
 @pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 8]))
 def test_nasty_names_pass(ghdl, tmp_path, bus_bytes):
-    message = nasty()
+    message = nasty(is_short=by_depth(True, False))
     packets = stimuli(message, plan_of(message, bus_bytes))
     assert packets
     write(tmp_path / "vhdl", vhdl_of(message, bus_bytes, packets)[0].files)

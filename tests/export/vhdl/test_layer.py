@@ -39,32 +39,34 @@ bool YES=True
 string QUOTE=say "hö" # all of it
 float32 range
 float32 RANGE
-bool signal
 uint16[3] entity
 string type
 int8[] a__b
 int8 a_b
 int8 a_
+Inner[] float64_stream_t
+Inner rdy
+float64[] aclk
+Empty nothing
+uint8 uint8_stream_t
+uint8 after_uint8_stream_t
+bool view
+# More.
+bool signal
 bool[] label
 string[] std_logic
 time time
-Inner[] float64_stream_t
 Inner[2] msg
-Inner rdy
 byte data
 char valid
 int64 ready
 uint64[] last
-float64[] aclk
-Empty nothing
 uint8 unsigned
 uint8 string_stream_t
 string after_string_stream_t
 bool inherit
-uint8 uint8_stream_t
-uint8 after_uint8_stream_t
-bool view
 """
+MORE = "# More.\n"
 INNER = "uint32 process\nuint32 Process\nfloat64[2] units\n"
 
 
@@ -153,11 +155,13 @@ def analyse(ghdl: str, folder: Path, files: Iterable[str]) -> None:
 
 
 @cache
-def nasty() -> Message:
+def nasty(*, is_short: bool = False) -> Message:
+    """Return a message with nasty names: of all fields, or of so many that circuits are quick."""
     with TemporaryDirectory() as source:
         folder = Path(source) / "nasty_msgs" / "msg"
         folder.mkdir(parents=True)
-        (folder / "Signal.msg").write_text(NASTY)
+        text = NASTY.partition(MORE)[0] if is_short else NASTY
+        (folder / "Signal.msg").write_text(text)
         (folder / "Inner.msg").write_text(INNER)
         (folder / "Empty.msg").write_text("")
         return load_message("nasty_msgs/Signal", distro="noetic", paths=[source])

@@ -14,6 +14,7 @@ from firm_hdl.sim.harness import Harness
 from firm_hdl.verify.simulators.crosscheck import first_difference
 from firm_hdl.verify.simulators.semantics import traffic
 from firm_hdl.verify.simulators.trace import Trace, read_row
+from tests.depth import by_depth
 
 PACKETS = [bytes((0, 1, 0, 0, value)) for value in (1, 0, 1)]
 
@@ -74,7 +75,7 @@ def test_rows_have_changes_and_resets_separate_runs(recorded):
     assert trace.run_of(at + 3) == ("stalled", 3)
 
 
-@pytest.mark.parametrize("limit", range(6, 12))
+@pytest.mark.parametrize("limit", range(6, 12, by_depth(2, 1)))
 def test_packet_that_a_reset_has_cut_is_no_part_of_the_next(limit):
     message = load_message("std_msgs/msg/Bool")
     options = {"bus_bytes": 2, "max_message_bytes": 99}
