@@ -13,7 +13,7 @@ from tests.depth import by_depth
 @pytest.mark.parametrize("constant", [True, False])
 def test_a_value_is_picked_from_thousands(constant):
     # Expressions with one level per case would be nested too deeply for Python.
-    count = by_depth(1500, 3000)
+    count = by_depth(1300, 3000)
     chosen, values, result = Signal(count), Signal(16 * count), Signal(16)
     m = Module()
     cases = [

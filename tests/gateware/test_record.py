@@ -26,6 +26,7 @@ from firm_hdl import (
 from firm_hdl.gateware import record
 from firm_hdl.plan import encode
 from firm_hdl.sim import receive_packets, receive_statuses, send_packets, to_transfers
+from tests.depth import by_depth
 from tests.strategies import make
 
 POINT = make("ros1", {"x": "uint16", "y": "int16"}, "Point")
@@ -145,9 +146,13 @@ def test_the_rest_has_only_what_the_record_has_not(kind):
     assert set(members["beside"].signature.members) == {"b"}
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 4, 8, 16])
-@pytest.mark.parametrize("fields", [None, ["corners"], ["holes", "closed"]])
-@pytest.mark.sampled(2)
+@pytest.mark.parametrize(
+    ("fields", "bus_bytes"),
+    by_depth(
+        [(None, 16), (["corners"], 8), (["holes", "closed"], 1), (["holes", "closed"], 8)],
+        [(f, b) for f in (None, ["corners"], ["holes", "closed"]) for b in (1, 4, 8, 16)],
+    ),
+)
 def test_records_come_through_with_the_rest_beside_them(bus_bytes, fields):
     values = [
         {

@@ -9,6 +9,7 @@ from amaranth.sim import Simulator
 
 from firm_hdl import Deserializer, Serializer, Status
 from firm_hdl.gateware.signatures import leaf_streams
+from firm_hdl.sim.levels import divided
 from firm_hdl.sim.payloads import PacketCollector, all_beats, decoder_of, encoder_of
 from tests.depth import by_depth
 from tests.strategies import make
@@ -43,7 +44,7 @@ class Bench:
         top.domains.sync = self.domain = ClockDomain("sync")
         top.submodules.converter = self.converter = converter
         self.leaves = leaf_streams(converter.message, converter.tree)
-        self.simulator = Simulator(top)
+        self.simulator = Simulator(divided(top))
         self.simulator.add_clock(1e-6)
         self.simulator.add_testbench(self._testbench)
         self.used = False
@@ -130,7 +131,7 @@ def test_deserializer_forgets_the_packet_under_way(bus_bytes):
     right = repeated(transfers_of_good(bus_bytes))
     for what, packet in BEFORE.items():
         cycles = range(1, 2 * -(-len(packet) // bus_bytes) + 10)
-        for number, at in enumerate(cycles[:: 1 + len(cycles) // by_depth(5, 8)]):
+        for number, at in enumerate(cycles[:: 1 + len(cycles) // by_depth(4, 8)]):
             found = after_reset_of_reader(bench, packet, at, TAKEN[number % len(TAKEN)])
             assert found == (right, [Status.OK] * 2), (what, at)
 
@@ -185,7 +186,7 @@ def after_reset_of_writer(bench, transfers, after, at, until, offers):
 def test_serializer_forgets_the_message_under_way(bus_bytes):
     bench = Bench(Serializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=400), GOOD)
     good = transfers_of_good(bus_bytes)
-    every = by_depth(3, 1)
+    every = by_depth(4, 1)
     changes = {
         "good": {},
         "length": {1: [30], 2: letters(b"0123456789" * 3, bus_bytes)},

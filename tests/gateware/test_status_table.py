@@ -158,13 +158,18 @@ READ_PLAIN = [
 ]
 
 
-def check_reading(message, table, bus_bytes, **options):
-    """Send each packet of a table, and a good one after each, without and with stalls."""
+def stalls_on(bus_bytes):
+    """Return the stalls for runs on a bus: of two buses, one has none, and one has them."""
+    return by_depth(STALLS[bus_bytes > 4 :][:1], STALLS)
+
+
+def check_reading(message, table, bus_bytes, plans=STALLS, **options):
+    """Send each packet of a table, and a good one after each, under each plan of stalls."""
     good = table[0]
     rows = [row for each in table for row in (each, good)]
     rx = Deserializer(message, bus_bytes=bus_bytes, **options)
     harness = Harness(rx, None, message=message)
-    for stalls in STALLS:
+    for stalls in plans:
         seen = harness.run_packets([packet(text) for text, _, _ in rows], RunOptions(stalls=stalls))
         messages, _ = split_transfers(transfer_table(rx.plan, message), seen.transfers)
         assert len(messages) == len(rows)
@@ -174,17 +179,18 @@ def check_reading(message, table, bus_bytes, **options):
 
 @pytest.mark.parametrize("bus_bytes", by_depth([4, 16], BUS_WIDTHS))
 def test_first_error_of_a_packet_in_wire_order_is_reported(bus_bytes):
-    check_reading(MESSAGE, READ, bus_bytes)
+    check_reading(MESSAGE, READ, bus_bytes, stalls_on(bus_bytes))
 
 
 @some_buses
 def test_string_at_the_end_of_a_message_is_checked_before_trailing_bytes(bus_bytes):
-    check_reading(LAST, READ_LAST, bus_bytes)
+    check_reading(LAST, READ_LAST, bus_bytes, stalls_on(bus_bytes))
 
 
 @some_buses
 def test_limits_are_exact_without_alignment(bus_bytes):
-    check_reading(PLAIN, READ_PLAIN, bus_bytes, max_message_bytes=PLAIN_MOST)
+    plans = stalls_on(bus_bytes)
+    check_reading(PLAIN, READ_PLAIN, bus_bytes, plans, max_message_bytes=PLAIN_MOST)
 
 
 # A bool is 1 for any byte but 0.
@@ -217,7 +223,7 @@ def test_items_that_are_not_whole_are_zero_whatever_is_in_their_lanes(bus_bytes,
         # After an error, whole items are zero, too.
         nothing = {"x": False, "a": [0] * 4, "b": [False] * 3}
         table.append((WRONG + text.removeprefix(HEAD), "ENCAPSULATION", nothing))
-    check_reading(make(dialect, ARRAYS), table, bus_bytes)
+    check_reading(make(dialect, ARRAYS), table, bus_bytes, stalls_on(bus_bytes))
 
 
 # Serializer. A leaf is given by its items and by the place of a wrong `last`.
@@ -299,7 +305,7 @@ def test_first_error_of_a_message_is_reported_and_marks_its_packet(bus_bytes):
         for a, a_last, b_last, c, c_last, _, _ in rows
     ]
     harness = Harness(None, tx, message=SENT)
-    for stalls in STALLS:
+    for stalls in stalls_on(bus_bytes):
         seen = harness.run_messages(messages, RunOptions(stalls=stalls))
         assert seen.packets == [packet(text) for *_, text in rows]
         assert [status.name for status in seen.statuses] == [row[5] for row in rows]

@@ -1,4 +1,4 @@
-"""Random packets for tests of parts of converters, and a bench for parsers."""
+"""Random packets for tests of parts of converters, a bench for parsers, and a search for paths."""
 
 from __future__ import annotations
 
@@ -6,21 +6,43 @@ import random
 from functools import lru_cache
 
 from amaranth.hdl import Cat, Value
+from amaranth.sim import Simulator
 
 from firm_hdl import Parser
 from firm_hdl.plan import Plan, encode
 from firm_hdl.sim.bench import Bench, Ports
 from tests.depth import by_depth
 
-__all__ = ["is_quick", "parser_bench", "random_packets"]
+__all__ = ["has_path", "is_quick", "parser_bench", "random_packets"]
 
-MOST_LANES = by_depth(200, 1 << 20)
+MOST_LANES = by_depth(128, 1 << 20)
 """Limit on steps times bytes of the bus; larger circuits take seconds to generate, up to 15."""
 
 
 def is_quick(plan: Plan) -> bool:
     """Return whether the circuits of a random plan are small enough for this depth of tests."""
     return len(plan.steps) * plan.bus_bytes <= MOST_LANES
+
+
+def has_path(component, inputs, outputs):
+    """Return whether an output changes with the inputs within a cycle."""
+    rng = random.Random(1)
+    changes = []
+
+    async def bench(ctx):
+        for _ in range(by_depth(150, 500)):
+            found = set()
+            for _ in range(4):
+                ctx.set(inputs, rng.getrandbits(len(inputs)))
+                found.add(ctx.get(outputs))
+            changes.append(len(found) > 1)
+            await ctx.tick()
+
+    simulator = Simulator(component)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(bench)
+    simulator.run()
+    return any(changes)
 
 
 @lru_cache(maxsize=4)

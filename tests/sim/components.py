@@ -9,7 +9,9 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.sim import Simulator
 
-__all__ = ["Fault", "Relay", "run_testbenches"]
+from firm_hdl.gateware import Serializer
+
+__all__ = ["Fault", "Faulty", "Relay", "run_testbenches"]
 
 Fault = Literal["", "drop", "change", "swallow", "block"]
 
@@ -62,3 +64,32 @@ def run_testbenches(design, *testbenches, background=()):
     for testbench in background:
         simulator.add_testbench(testbench, background=True)
     simulator.run()
+
+
+class Faulty(wiring.Component):
+    """A serializer with a fault in one of its streams."""
+
+    def __init__(self, fault, *arguments, **options):
+        self.fault = fault
+        self.inner = Serializer(*arguments, **options)
+        self.plan, self.tree = self.inner.plan, self.inner.tree
+        super().__init__(self.inner.signature)
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.inner = inner = self.inner
+        wiring.connect(m, wiring.flipped(self.message), inner.message)
+        wiring.connect(m, inner.packets, wiring.flipped(self.packets))
+        wiring.connect(m, inner.status, wiring.flipped(self.status))
+        m.d.comb += self.packet_error.eq(inner.packet_error)
+        if self.fault == "silent":
+            m.d.comb += self.packets.valid.eq(0)
+        elif self.fault == "unstable":
+            m.d.comb += self.packets.payload.data[0].eq(
+                inner.packets.payload.data[0] ^ ~self.packets.ready
+            )
+        elif self.fault == "count":
+            m.d.comb += self.packets.payload.count.eq(3)
+        elif self.fault == "twice":
+            m.d.comb += self.status.valid.eq(1)
+        return m

@@ -115,7 +115,7 @@ def rounded(position, mask, phase, bus):
 
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8, 16])
 @pytest.mark.parametrize("name", MESSAGES)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 def test_words_make_the_packets(name, bus_bytes):
     plan = build_plan(lay_out(MESSAGES[name]), bus_bytes=bus_bytes)
     packets = random_packets(plan, by_depth(6, 12))

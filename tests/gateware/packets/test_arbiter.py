@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import random
+from functools import lru_cache
 
 import pytest
 from amaranth.hdl import Cat, Const, Value
@@ -15,26 +16,30 @@ from firm_hdl.sim.payloads import beats_of
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.gateware.packets.bench import PacketBench, beats, with_side
-from tests.gateware.test_parser import has_path
-from tests.gateware.traffic import random_packets
+from tests.gateware.traffic import has_path, random_packets
 
 TYPE = load_message(by_depth("std_msgs/msg/Header", "sensor_msgs/msg/Imu"))
+
+
+@lru_cache(maxsize=1)
+def bench_of(arbiter):
+    """Return a bench of an arbiter, the same one as long as it is the same."""
+    return PacketBench(
+        arbiter,
+        {f"in{number}": port for number, port in enumerate(arbiter.packets_in)},
+        {"out": (arbiter.packets_out, arbiter.bus_bytes, arbiter.source)},
+    )
 
 
 def run(arbiter, sent, stalls=None, **options):
     """Send packets to each input; check order and sources; return the input of each packet."""
     bus = arbiter.bus_bytes
-    bench = PacketBench(
-        arbiter,
-        {f"in{number}": port for number, port in enumerate(arbiter.packets_in)},
-        {"out": (arbiter.packets_out, bus, arbiter.source)},
-    )
     sources = {
         f"in{number}": beats(packets, bus, noise=random.Random(number))
         for number, packets in enumerate(sent)
     }
     total = sum(map(len, sent))
-    seen = bench.run(sources, {"out": total}, stalls=stalls, **options)
+    seen = bench_of(arbiter).run(sources, {"out": total}, stalls=stalls, **options)
     came = [[] for _ in sent]
     order = []
     for packet, sources in zip(seen.packets["out"], seen.sides["out"], strict=True):
@@ -73,8 +78,9 @@ def some(count, bus_bytes, seed, sizes=(1, 2, 5)):
 def test_packets_stay_whole_under_any_stall(bus_bytes, inputs):
     plan = build_plan(lay_out(TYPE), bus_bytes=bus_bytes)
     sent = [random_packets(plan, 2, seed) + some(9, bus_bytes, seed) for seed in range(inputs)]
+    arbiter = PacketArbiter(bus_bytes, inputs)
     for stalls in (None, Stalls(0.3, max_cycles=7), {"out": Stalls(0.7, max_cycles=3)}):
-        run(PacketArbiter(bus_bytes, inputs), sent, stalls)
+        run(arbiter, sent, stalls)
 
 
 @pytest.mark.parametrize("inputs", [1, 2, 3, 5])

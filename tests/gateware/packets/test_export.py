@@ -46,7 +46,9 @@ def usual(names, *thorough):
     return [pytest.param(name, marks=[mark] if name in thorough else []) for name in names]
 
 
-@pytest.mark.parametrize("part", usual([*PARTS], "gate", "arbiter_of_one", "same"))
+@pytest.mark.parametrize(
+    "part", usual([*PARTS], "gate", "fifo_drop", "arbiter_of_one", "same", "down")
+)
 def test_the_verilog_compiles(part, tmp_path):
     text = verilog.convert(PARTS[part](), name=part, emit_src=False)
     (tmp_path / "part.v").write_text(text)
@@ -74,7 +76,7 @@ def meaningful_steps(steps):
     return steps
 
 
-@pytest.mark.parametrize("part", usual(one_clock, "gate_drop"))
+@pytest.mark.parametrize("part", usual(one_clock, "gate_drop", "arbiter_of_one", "same"))
 def test_vhdl_in_ghdl_equals_the_part_in_python(part, tmp_path):
     need("ghdl", GHDL)
     vhdl, component = convert(PARTS[part](), name="dut"), PARTS[part]()

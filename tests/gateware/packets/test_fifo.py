@@ -17,9 +17,9 @@ from firm_hdl.plan import build_plan
 from firm_hdl.sim import DeadlineError, Stalls
 from firm_hdl.sim.payloads import beats_of
 from firm_hdl.wire import lay_out
+from tests.depth import by_depth
 from tests.gateware.packets.bench import PacketBench, beats, with_side
-from tests.gateware.test_parser import has_path
-from tests.gateware.traffic import random_packets
+from tests.gateware.traffic import has_path, random_packets
 from tests.strategies import BUS_WIDTHS
 
 LATENCY = 4
@@ -143,7 +143,7 @@ def test_aborted_packets_cost_their_beats_and_no_more():
     assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
 
 
-@pytest.mark.parametrize("bus_bytes", [1, 2, 8, 64])
+@pytest.mark.parametrize("bus_bytes", by_depth([1, 64], [1, 2, 8, 64]))
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
 def test_a_packet_as_large_as_the_memory_passes_and_a_larger_one_does_not(bus_bytes, when_full):
     whole = bytes(range(64)) * bus_bytes

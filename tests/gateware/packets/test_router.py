@@ -14,7 +14,7 @@ from firm_hdl.sim import Stalls
 from firm_hdl.sim.payloads import beats_of
 from tests.gateware.packets.bench import PacketBench, beats, with_side
 from tests.gateware.packets.test_arbiter import some
-from tests.gateware.test_parser import has_path
+from tests.gateware.traffic import has_path
 
 
 def run(router, packets, topics, stalls=None, **options):

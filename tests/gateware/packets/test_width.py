@@ -17,8 +17,7 @@ from firm_hdl.sim.payloads import beats_of
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.gateware.packets.bench import PacketBench, beats
-from tests.gateware.test_parser import has_path
-from tests.gateware.traffic import random_packets
+from tests.gateware.traffic import has_path, random_packets
 from tests.strategies import BUS_WIDTHS
 
 TYPE = load_message(by_depth("std_msgs/msg/Header", "sensor_msgs/msg/Imu"))

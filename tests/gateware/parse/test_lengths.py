@@ -147,7 +147,7 @@ def compare(plan, tamper=lambda name, value: value):
     ("name", "bus_bytes"),
     # 16 lanes take most of the time; those of 8 have the same logic.
     [
-        pytest.param(name, bus, marks=[pytest.mark.thorough] if bus == 16 and name != "cdr" else [])
+        pytest.param(name, bus, marks=[pytest.mark.thorough] if bus == 16 else [])
         for name in MESSAGES
         for bus in (1, 2, 4, 8, 16)
     ],
