@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -53,6 +54,7 @@ def message_of(name: str):
     return SMALL if name == "small" else load_message(name)
 
 
+@cache
 def packets_of(name: str, bus_bytes: int) -> list[bytes]:
     """Return packets of a type, some of them damaged."""
     good = encode(message_of(name), values(name), bus_bytes=bus_bytes).packets
