@@ -27,6 +27,12 @@ def quick(monkeypatch):
 
 
 @pytest.fixture
+def without_vhdl(monkeypatch):
+    """Leave the VHDL out of builds, which takes more than half of their time."""
+    monkeypatch.setattr(Vhdl, "write", quick_vhdl)
+
+
+@pytest.fixture
 def hollow(monkeypatch):
     """Build converters without their insides."""
     hollow_converters(monkeypatch)

@@ -373,7 +373,7 @@ def test_output_is_the_same_everywhere(tmp_path):
         assert str(tmp_path).encode() not in text
 
 
-@pytest.mark.usefixtures(*by_depth(["hollow"], []))
+@pytest.mark.usefixtures(by_depth("hollow", "tmp_path"))
 def test_several_processes_write_the_same_files(tmp_path):
     types = ["std_msgs/msg/Empty", *by_depth([], ["std_msgs/msg/String"]), "std_msgs/msg/Bool"]
     reported = []

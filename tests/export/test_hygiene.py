@@ -36,8 +36,10 @@ def folders(tmp_path_factory) -> list[Path]:
     # On a narrow bus, a string needs no alignment, but a sequence does.
     for bus_bytes in by_depth((4,), (1, 4)):
         options = Options(bus_bytes=bus_bytes)
-        types = by_depth((), ("std_msgs/msg/String",))
-        made += build((*types, "sensor_msgs/msg/Joy"), out, options=options)
+        types = by_depth(
+            ["sensor_msgs/msg/ChannelFloat32"], ["std_msgs/msg/String", "sensor_msgs/msg/Joy"]
+        )
+        made += build(types, out, options=options)
     return [each.folder for each in made]
 
 

@@ -119,7 +119,7 @@ endmodule
 """
 
 
-@pytest.mark.usefixtures("iverilog")
+@pytest.mark.usefixtures("iverilog", "without_vhdl")
 def test_changing_one_line_sends_one_field(tmp_path):
     (built,) = build(["std_msgs/msg/Header"], tmp_path, library=Library())
     module = module_name(built.folder.name, "serializer")
