@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import pytest
+from amaranth.hdl import Module
 
+from firm_hdl import Deserializer, Serializer
 from firm_hdl.export.backend import Converters, Output
 from firm_hdl.export.top import DIRECTIONS
 from firm_hdl.export.vhdl.backend import Vhdl
-from tests.export.hollow import hollow_converters
 
 
 def quick_vhdl(self: Vhdl, converters: Converters) -> Output:
@@ -30,6 +31,15 @@ def quick(monkeypatch):
 def without_vhdl(monkeypatch):
     """Leave the VHDL out of builds, which takes more than half of their time."""
     monkeypatch.setattr(Vhdl, "write", quick_vhdl)
+
+
+def hollow_converters(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Elaborate converters to nothing, because their insides take nine tenths of a build's time.
+
+    Their ports, the layers with records, packages, benches and manifests are those of a build.
+    """
+    for converter in (Deserializer, Serializer):
+        monkeypatch.setattr(converter, "elaborate", lambda self, platform: Module())
 
 
 @pytest.fixture

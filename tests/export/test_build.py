@@ -20,7 +20,7 @@ from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, from_yaml
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
-from tests.export.hollow import hollow_converters
+from tests.export.conftest import hollow_converters
 from tests.export.test_sample import SAMPLE, files
 
 # The package's face has a function of this name.

@@ -24,7 +24,7 @@ from firm_hdl.plan import Plan, build_plan
 from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
-from tests.export.hollow import hollow_converters
+from tests.export.conftest import hollow_converters
 
 NASTY = """\
 # Keywords, doubles, outer underscores, case.
