@@ -8,6 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library, interfaces
 from firm_hdl.model import PRIMITIVES, Array, Constant, Field, Message, Sequence, String
+from tests.depth import by_depth
 from tests.steps import calls_at_most
 from tests.strategies import definitions
 
@@ -144,14 +145,16 @@ def test_mistakes_in_a_lattice_are_reported_once(tmp_path):
 
 
 def test_depth_is_not_limited_by_recursion(tmp_path):
-    files = {f"p/T{i}": f"T{i + 1} a\n" for i in range(3000)} | {"p/T3000": "Nothing x"}
+    depth = by_depth(1500, 3000)
+    last = {f"p/T{depth}": "Nothing x"}
+    files = {f"p/T{i}": f"T{i + 1} a\n" for i in range(depth)} | last
     with pytest.raises(DefinitionError) as error:
         library(tmp_path, files).message("p/T0")
     assert errors_of(error.value, tmp_path) == (
-        "p/msg/T3000.msg:1:1: error: type 'Nothing' is not defined in package 'p'\n"
+        f"p/msg/T{depth}.msg:1:1: error: type 'Nothing' is not defined in package 'p'\n"
         "Nothing x\n^^^^^^^"
     )
-    make_files(tmp_path, {"p/msg/T3000.msg": "int8 x"})
+    make_files(tmp_path, {f"p/msg/T{depth}.msg": "int8 x"})
     assert Library("lyrical", [tmp_path]).message("p/T0").name == "p/msg/T0"
 
 

@@ -16,6 +16,7 @@ from firm_hdl.frontend import interfaces, parse
 from firm_hdl.frontend.idl import read_idl
 from tests import fuzz_frontend
 from tests.damage import TOKEN, WORDS, mutate
+from tests.depth import by_depth
 from tests.fuzz_frontend import Finding, Fuzzer, main, seeds
 from tests.steps import calls_at_most
 
@@ -33,12 +34,12 @@ def test_damaged_files_end_in_a_model_or_an_error():
     folder = Path(os.environ.get("FIRM_HDL_CORPUS") or FOLDER)
     seed = random.SystemRandom().randrange(10**6)
     print(f"--seed {seed}")
-    counts, findings = Fuzzer(folder, seed).run(range(300))
+    counts, findings = Fuzzer(folder, seed).run(range(by_depth(150, 300)))
     assert findings == []
     assert counts["model"] and counts["error"]
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=by_depth(100, 200), deadline=None)
 @given(st.integers(0, 2**32))
 def test_damaged_idl_gives_messages_and_diagnostics(number):
     rng = random.Random(number)

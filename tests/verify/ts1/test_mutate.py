@@ -12,6 +12,7 @@ from firm_hdl.verify.ts1 import mutate as rules
 from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.mutate import mutation
 from firm_hdl.verify.ts1.run import Ts1Run
+from tests.depth import by_depth
 from tests.frontend.workspace import make_files
 from tests.verify.ts1.conftest import judged_by, need
 
@@ -37,9 +38,9 @@ ROS2 = {
 @pytest.mark.parametrize(
     ("distro", "oracle", "count"),
     [
-        ("noetic", "genmsg", 250),
-        ("lyrical", "rosidl_adapter", 250),
-        ("lyrical", "rosidl_parser", 100),
+        ("noetic", "genmsg", by_depth(120, 250)),
+        ("lyrical", "rosidl_adapter", by_depth(120, 250)),
+        ("lyrical", "rosidl_parser", by_depth(60, 100)),
     ],
 )
 def test_oracles_and_we_agree_on_mistakes(tmp_path, distro, oracle, count):
