@@ -36,6 +36,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items[:] = [item for item in items if item not in left_out]
 
 
+def pytest_collection_finish() -> None:
+    """Keep Python from searching the modules and items, which live to the end, for cycles."""
+    gc.freeze()
+
+
 @pytest.fixture(scope="session")
 def corpus() -> Path:
     """Definitions of real ROS packages, where ``FIRM_HDL_CORPUS`` names a folder of them.
