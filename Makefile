@@ -35,7 +35,7 @@ test: $(VENV)/.installed-dev ## linters, types and all tests
 pytest: $(VENV)/.compiled tools ## tests only; PYTEST_ARGS=tests/export takes some
 	$(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
-test-thorough: $(VENV)/.compiled tools ## all tests in full depth (half an hour); PYTEST_ARGS=-mthorough takes some
+test-thorough: $(VENV)/.compiled tools ## all tests in full depth (an hour or more); PYTEST_ARGS=-mthorough takes some
 	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
 test-live: $(VENV)/.installed-dev $(LIVE_PEERS) verilog ros1 ## our nodes and the bridge with rclpy, rospy and Cyclone DDS, in a network of their own (25 minutes at first)
