@@ -51,6 +51,7 @@ PACKET = bytes.fromhex(
 # Types with few leaves, whose circuits are built sooner.
 TEXT = make("ros2", {"a": "uint8", "s": "string"}, "Text")
 TEXT_PACKET = b"\0\1\0\0\7\0\0\0\3\0\0\0hi\0"
+SHORT, SHORT_PACKET = by_depth((TEXT, TEXT_PACKET), (IMAGE, PACKET))
 POINT = make(
     "ros2", {"positions": "float64[]", "accelerations": "float64[]", "sec": "int32"}, "Point"
 )
@@ -86,8 +87,8 @@ WAY = {
 
 
 def test_loopback_unpacks_as_packets_and_statuses():
-    packets, statuses = loopback(TEXT, [TEXT_PACKET, TEXT_PACKET])
-    assert packets == [TEXT_PACKET, TEXT_PACKET]
+    packets, statuses = loopback(SHORT, [SHORT_PACKET, SHORT_PACKET])
+    assert packets == [SHORT_PACKET, SHORT_PACKET]
     assert statuses == [Status.OK, Status.OK]
 
 
@@ -150,9 +151,9 @@ def test_loopback_has_the_limit_that_is_asked_for():
 
 
 def test_loopback_has_the_deadline_that_is_asked_for():
-    assert loopback(TEXT, [TEXT_PACKET], deadline=20).packets == [TEXT_PACKET]
+    assert loopback(SHORT, [SHORT_PACKET], deadline=20).packets == [SHORT_PACKET]
     with pytest.raises(DeadlineError, match=r"^No transfer in 3 cycles up to cycle"):
-        loopback(TEXT, [TEXT_PACKET], deadline=2)
+        loopback(SHORT, [SHORT_PACKET], deadline=2)
 
 
 def test_runs_of_a_harness_do_not_depend_on_each_other():
@@ -223,14 +224,14 @@ def test_missing_transfers_hit_the_deadline_with_names():
 def test_limit_ends_a_run_without_an_end():
     message = r"^No end after 20 cycles; outstanding: status \(\d of 19\)"
     with pytest.raises(DeadlineError, match=message):
-        loopback(TEXT, [TEXT_PACKET] * 19, limit=20)
+        loopback(SHORT, [SHORT_PACKET] * 19, limit=20)
 
 
 def test_leaf_stalls_need_gates():
-    harness = Harness(Deserializer(TEXT), Serializer(TEXT))
+    harness = Harness(Deserializer(SHORT), Serializer(SHORT))
     name = leaf_name(harness.plan, 0)
     with pytest.raises(ValueError, match=rf"^Stream '{name}' can be stalled in a gated harness"):
-        harness.run_packets([TEXT_PACKET], RunOptions(stalls={name: Stalls.bits("01")}))
+        harness.run_packets([SHORT_PACKET], RunOptions(stalls={name: Stalls.bits("01")}))
 
 
 def test_harness_needs_a_converter():
@@ -240,23 +241,23 @@ def test_harness_needs_a_converter():
 
 def test_harness_has_the_input_of_its_first_converter():
     with pytest.raises(ValueError, match=r"^Packets need a harness with a deserializer$"):
-        Harness(None, Serializer(TEXT)).run_packets([TEXT_PACKET])
-    for serializer in (None, Serializer(TEXT)):
-        harness = Harness(Deserializer(TEXT), serializer)
+        Harness(None, Serializer(SHORT)).run_packets([SHORT_PACKET])
+    for serializer in (None, Serializer(SHORT)):
+        harness = Harness(Deserializer(SHORT), serializer)
         with pytest.raises(ValueError, match=r"^Messages need a harness without a deserializer$"):
             harness.run_messages([])
 
 
 def test_no_packets_are_no_packets():
-    nothing = loopback(TEXT, [])
+    nothing = loopback(SHORT, [])
     assert tuple(nothing) == ([], [])
     assert nothing.cycles == 0
 
 
 def test_waveform_is_written(tmp_path):
     path = tmp_path / "loopback.vcd"
-    packets, _ = loopback(TEXT, [TEXT_PACKET], vcd=path)
-    assert packets == [TEXT_PACKET]
+    packets, _ = loopback(SHORT, [SHORT_PACKET], vcd=path)
+    assert packets == [SHORT_PACKET]
     assert "$enddefinitions" in path.read_text()
 
 
@@ -280,10 +281,10 @@ def test_deadline_of_a_decoder_names_the_leaves_that_are_missing():
     ],
 )
 def test_faults_are_found_by_name(fault, error):
-    harness = Harness(Deserializer(TEXT), Faulty(fault, TEXT))
+    harness = Harness(Deserializer(SHORT), Faulty(fault, SHORT))
     with pytest.raises(AssertionError, match=error):
         harness.run_packets(
-            [TEXT_PACKET], RunOptions(stalls={"packets_out": Stalls.bits("001")}, deadline=60)
+            [SHORT_PACKET], RunOptions(stalls={"packets_out": Stalls.bits("001")}, deadline=60)
         )
 
 

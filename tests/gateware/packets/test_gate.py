@@ -319,12 +319,14 @@ class _LosesStatuses(_Verdicts):
 
 
 def check_text_gate():
-    good, count = b"\2\0\0\0ab", by_depth(12, 20)
-    message = make("ros1", {"s": "string"}, "Text")
-    packets = [good, good[:-1]] * count
-    gate = PacketGate(message, bus_bytes=4, memory_bytes=64)
+    message, bus, good, cut, count = by_depth(
+        (make("ros1", {"s": "string"}, "Text"), 4, b"\2\0\0\0ab", 5, 12),
+        (load_message(HEADER), 8, bytes.fromhex(GOOD), 11, 20),
+    )
+    packets = [good, good[:cut]] * count
+    gate = PacketGate(message, bus_bytes=bus, memory_bytes=64)
     run = GateRun(gate, packets, stalls={"status": Stalls.bits("0" * by_depth(60, 150) + "1" * 3)})
-    assert run.statuses == expected_statuses(message, packets, 4)
+    assert run.statuses == expected_statuses(message, packets, bus)
 
 
 @pytest.fixture(scope="module")

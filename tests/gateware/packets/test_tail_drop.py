@@ -54,7 +54,8 @@ def strings(bus_bytes, count):
     Eight bytes are two empty strings: the parser takes at least two cycles per beat.
     """
     head = bytes.fromhex(BOMB_HEAD[:-8])
-    long = head + (150).to_bytes(4, "little") + bytes(150 * 8)
+    elements, size = by_depth((150, 8), (60, 20))
+    long = head + elements.to_bytes(4, "little") + bytes(elements * size)
     cut = GateStatus.TRUNCATED
     verdicts = {BOMB: cut, NO_BOMB: OK, long: OK, long[:-30]: cut}
     rng = random.Random(bus_bytes)
