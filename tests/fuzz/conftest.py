@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import tempfile
-from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -26,13 +25,7 @@ def fast_compiler():
 
 
 @functools.cache
-def joined_runtime(
-    verilator: str,
-    compiler: tuple[str, ...],
-    options: tuple[str, ...],
-    own: tuple[Path, ...],
-    parts: tuple[str, ...],
-) -> Runtime:
+def joined_runtime(verilator, compiler, options, own, parts):
     """Join the sources of a runtime: most of the time of a compiler goes into common headers."""
     headers = [f"-I{each}" for each in {path.parent for path in own}]
     half = len(own) // 2
@@ -46,5 +39,5 @@ def joined_runtime(
     return made
 
 
-def included(sources: Sequence[Path | str]) -> str:
+def included(sources):
     return "".join(f'#include "{source}"\n' for source in sources)

@@ -73,8 +73,6 @@ def older_objects():
     """Leave objects of earlier tests out of each collection, which would take most of the time."""
     gc.collect()
     gc.freeze()
-    yield
-    gc.unfreeze()
 
 
 @pytest.fixture
