@@ -143,7 +143,7 @@ def texts(rng, number):
     return packet[: rng.choice([18, 18, 18, 17, 3])]
 
 
-@pytest.mark.parametrize("seed", [pytest.param(0, marks=pytest.mark.thorough), 2])
+@pytest.mark.parametrize("seed", [0, 2])
 def test_statuses_are_in_the_order_of_packets_however_late_they_are_taken(monkeypatch, seed):
     monkeypatch.setattr("firm_hdl.gateware.packets.gate.BACKLOG_BEATS", 5)
     rng = random.Random(seed)
