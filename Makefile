@@ -27,8 +27,8 @@ demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
 LIVE_PEERS := $(patsubst tests/live/peers/%.txt,$(VENV)/live/%/.installed,\
   $(wildcard tests/live/peers/*.txt))
 
-# The linters take one processor; what tests need is prepared beside them, rclpy for one test included.
-test: $(VENV)/.installed-dev ## linters, types and all tests
+# pip and the linters take one processor; what tests need is prepared beside them, rclpy included.
+test: ## linters, types and all tests
 	@$(MAKE) --no-print-directory -j $(JOBS) lint $(VENV)/.compiled oracles-ros2 $(VENV)/live/kilted/.installed
 	@$(MAKE) --no-print-directory pytest
 
