@@ -63,7 +63,9 @@ publish:
 """
 
 
-@pytest.mark.parametrize("stalls", [simulated._STALLS, ()])
+@pytest.mark.parametrize(
+    "stalls", [simulated._STALLS, pytest.param((), marks=pytest.mark.thorough)]
+)
 def test_many_short_parts_do_not_overrun_a_gate(stalls, monkeypatch, tmp_path):
     """Each beat has two names, and a parser takes one per cycle. The twin's link is full."""
     monkeypatch.setattr(simulated, "_STALLS", stalls)

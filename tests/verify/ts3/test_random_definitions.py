@@ -17,6 +17,9 @@ from tests.verify.judged import NAN_KEY, TIME_KEY, assert_passed
 MOST_WORK = by_depth(300, 5_000)
 """Limit on beats times leaves of the smallest packet; larger examples may take minutes."""
 
+MOST_WIDE_WORK = by_depth(400, 64 * MOST_WORK)
+"""Limit on the same times the bytes of the bus: 20 leaves on 64 bytes take 18 s to elaborate."""
+
 MOST_CASES = by_depth(4, 8)
 
 
@@ -36,7 +39,8 @@ MOST_CASES = by_depth(4, 8)
 def test_random_types_pass(wire, definition, bus_bytes, seed):
     message = definition.message
     layout = lay_out(message, wire)
-    assume(work_of(build_plan(layout, bus_bytes=bus_bytes), layout.min_bytes) <= MOST_WORK)
+    work = work_of(build_plan(layout, bus_bytes=bus_bytes), layout.min_bytes)
+    assume(work <= MOST_WORK and work * bus_bytes <= MOST_WIDE_WORK)
     options = Options(bus_bytes=bus_bytes, wire=wire, seed=seed, most_cases=MOST_CASES)
     result = Result(distro="", name=message.name)
     oracle = RosbagsOracle(definition.store(), message.dialect)
