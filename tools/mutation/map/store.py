@@ -23,6 +23,7 @@ from statistics import mean
 from typing import Any
 
 from coverage import CoverageData
+from coverage.exceptions import DataError
 
 from tools.mutation.map import trace
 from tools.mutation.map.coverage_map import SHARED, CoverageMap, Part, Test
@@ -245,9 +246,13 @@ def _part(root: Path, given: Mapping[str, Any], folder: Path) -> Part:
     saved: Counter[str] = Counter()
     here = os.path.realpath(root)
     for file in sorted(folder.glob("data.*")):
-        saved[file.name.split(".")[1]] += 1
         data = CoverageData(str(file))
-        data.read()
+        try:
+            data.read()
+        except DataError:
+            # Its process was killed while it wrote, so it counts as one that wrote nothing.
+            continue
+        saved[file.name.split(".")[1]] += 1
         for path in data.measured_files():
             masks = lines.setdefault(os.path.relpath(os.path.realpath(path), here), {})
             for line, contexts in data.contexts_by_lineno(path).items():
