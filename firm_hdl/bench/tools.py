@@ -81,7 +81,7 @@ def _tool(found: programs.Program) -> Tool:
 
 @cache
 def find_yosys() -> Tool:
-    """Find Yosys: the package of YoWASP, which is the same everywhere, or that on the PATH.
+    """Find Yosys: the package of YoWASP, which is the same everywhere, or another one.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def find_yosys() -> Tool:
         If Yosys is installed and does not run.
     """
     try:
-        return _tool(programs.find_yosys(f": {PIP}"))
+        return _tool(programs.find_yosys(f": {PIP}", is_measured=True))
     except ToolError as error:
         raise BenchError(f"Yosys failed: {_error_in(str(error), lines=2)}") from None
 

