@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from firm_hdl.equivalence import ProofError
@@ -51,6 +53,12 @@ def test_modules_and_instances_are_read() -> None:
     assert module.own.inputs == {"o": Net(7, 4)}
     assert [instance.kind for instance in module.instances][-2:] == ["$idff", "$isignal"]
     assert module.instances[2].parameters == (5,)
+
+
+def test_a_width_may_be_behind_the_brace() -> None:
+    text = re.sub(r"\{n(\d+)w(\d+)\}", r"{n\1}:\2", DUMP)
+    assert text != DUMP
+    assert parse_dump(text) == parse_dump(DUMP)
 
 
 def test_registers_are_cut_out_with_their_initial_values() -> None:
