@@ -177,10 +177,6 @@ ros1:
 	  /usr/bin/python3 -c 'import rosmaster; import rospy; import sensor_msgs.msg; \
 	  import std_srvs.srv' 2>/dev/null)
 
-# Each further environment uses the pip of .venv: a pip of its own takes 5 s. Releases of pip before
-# 22.3 have no option for this.
-PIP_OF_OURS = $(@D)/bin/python "$$($(BIN)/python -c 'import pip; print(*pip.__path__)')"
-
 # Newer ones than Debian's, from PyPI, each release in an environment of its own: 9 s of processor
 # time and 106 MB. There are wheels for Linux on x86-64, CPython 3.10 to 3.13.
 ROS2_WHEELS := $(patsubst firm_hdl/verify/ros2_wheels/%.txt,$(VENV)/ros2/%/.installed,\
@@ -189,8 +185,8 @@ oracles-ros2: $(ROS2_WHEELS)
 
 $(VENV)/ros2/%/.installed: firm_hdl/verify/ros2_wheels/%.txt | $(VENV)/.created
 	@echo "Installing rosidl and Fast CDR of ROS 2 $* ..."
-	@{ $(BIN)/python -m venv --clear --without-pip $(@D) \
-	  && $(PIP_OF_OURS) install --quiet --disable-pip-version-check --no-deps --requirement $< \
+	@{ $(BIN)/python -m venv --clear $(@D) \
+	  && $(@D)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --requirement $< \
 	  && touch $@; } >$(VENV)/ros2-$*.log 2>&1 \
 	  || echo "Failed: see $(VENV)/ros2-$*.log; going on without." >&2
 
@@ -198,8 +194,8 @@ $(VENV)/ros2/%/.installed: firm_hdl/verify/ros2_wheels/%.txt | $(VENV)/.created
 $(VENV)/live/%/.installed: tests/live/peers/%.txt | $(VENV)/.created
 	@echo "Installing the peer $* ..."
 	@mkdir -p $(VENV)/live
-	@{ $(BIN)/python -m venv --clear --without-pip $(@D) \
-	  && $(PIP_OF_OURS) install --quiet --disable-pip-version-check --requirement $< \
+	@{ $(BIN)/python -m venv --clear $(@D) \
+	  && $(@D)/bin/python -m pip install --quiet --disable-pip-version-check --requirement $< \
 	  && touch $@; } >$(VENV)/live-$*.log 2>&1 \
 	  || echo "Failed: see $(VENV)/live-$*.log; going on without." >&2
 
