@@ -22,7 +22,7 @@ def tools() -> None:
 
 @pytest.mark.usefixtures("tools")
 def test_all_circuits_of_a_string_keep_all_rules():
-    # Other tests compile the deserializer alone. Both gates have the same parts.
+    # Others compile the deserializer alone. A gate that drops has more parts than one that waits.
     circuits = by_depth(("loop", "gate-drop"), CIRCUITS)
     outcome = run(STRING, *circuits, packets=by_depth(4000, 100_000))
     assert outcome.failures == ()
