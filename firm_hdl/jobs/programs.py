@@ -9,7 +9,7 @@ import shlex
 import shutil
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from firm_hdl.errors import UserError
@@ -214,6 +214,9 @@ def find_yosys(install: str, *, is_measured: bool = False) -> Program:
     if found is None or _number(found.version) < OLDEST_YOSYS:
         wanted = ".".join(map(str, OLDEST_YOSYS))
         raise ProgramMissingError(f"Yosys {wanted} or newer is not installed{install}")
+    if found.command == _NATIVE_YOSYS:
+        # Figures of this build must not be taken for those of YoWASP.
+        return replace(found, version=f"{found.version}+pyosys")
     return found
 
 

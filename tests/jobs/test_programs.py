@@ -217,7 +217,10 @@ def test_figures_have_the_yosys_of_yowasp_and_all_else_the_fast_one(
         programs.importlib.util, "find_spec", lambda name: name in installed or None
     )
     monkeypatch.setattr(programs, "run_tool", lambda command, folder, timeout: "Yosys 0.70 (git)")
-    assert chosen in find_yosys("", is_measured=is_measured).command[-1]
+    found = find_yosys("", is_measured=is_measured)
+    assert chosen in found.command[-1]
+    # Both are of one version, and figures are kept by version.
+    assert found.version == ("0.70+pyosys" if chosen == "native_yosys" else "0.70")
 
 
 @pytest.mark.parametrize("is_measured", [False, True])
