@@ -229,7 +229,7 @@ class Resolver:
 
     def _finish(self, entry: _Entry) -> None:
         entry.is_done = True
-        entry.diagnostics.sort(key=lambda d: -1 if d.span is None else d.span.start)
+        entry.diagnostics.sort(key=lambda d: _place(d, entry.syntax.source))
         if entry.diagnostics or entry.failed_needs:
             return
         syntax, package = entry.syntax, entry.name.package
@@ -315,6 +315,14 @@ def _value(syntax: ValueSyntax | ListSyntax) -> Value:
     if isinstance(syntax, ListSyntax):
         return tuple(item.value for item in syntax.items)
     return syntax.value
+
+
+def _place(diagnostic: Diagnostic, source: Source) -> tuple[int, int]:
+    """Return where an error is listed: included files first, then the text, then notes on it."""
+    span = diagnostic.span
+    if span is None:
+        return 2, 0
+    return int(span.source.name == source.name), span.start
 
 
 def _cycle(path: list[TypeName], name: TypeName, span: Span) -> Diagnostic:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from hypothesis import HealthCheck, given, settings
 
@@ -276,6 +278,19 @@ def test_mistakes_of_a_file_with_several_messages_are_reported_once(tmp_path):
     with pytest.raises(DefinitionError) as error:
         Library("lyrical", [tmp_path]).message("p/T")
     assert [each.span.line for each in error.value.diagnostics] == [1, 3]
+
+
+def test_mistakes_of_a_type_come_in_the_order_of_its_files(tmp_path):
+    """What an included file says comes first; that errors are left out comes last."""
+    wrong = "".join(f"any a{i}; " for i in range(1000))
+    text = f"module p {{ module msg {{ struct T {{ long ok; Late late; {wrong} }}; }}; }};"
+    late = "module p { module msg {" + " " * 5000 + "typedef Nope Late; }; };"
+    make_files(tmp_path, {"p/msg/T.idl": f'#include "C.idl"\n{text}', "p/msg/C.idl": late})
+    with pytest.raises(DefinitionError) as error:
+        Library("lyrical", [tmp_path]).message("p/T")
+    first, second, *_, last = error.value.diagnostics
+    assert [Path(each.span.source.name).name for each in (first, second)] == ["C.idl", "T.idl"]
+    assert last.message == "too many errors; the others are not listed"
 
 
 def test_mistakes_in_dependencies_come_in_the_order_of_the_fields(tmp_path):
