@@ -70,6 +70,8 @@ def test_many_short_parts_do_not_overrun_a_gate(stalls, monkeypatch, tmp_path):
     """Each beat has two names, and a parser takes one per cycle. The twin's link is full."""
     monkeypatch.setattr(simulated, "_STALLS", stalls)
     monkeypatch.setattr(session, "ROUND_SECONDS", 0.1)
+    # A small backlog for the parser, which a short message overruns.
+    monkeypatch.setattr("firm_hdl.gateware.packets.gate.BACKLOG_BEATS", 65)
     definition = tmp_path / "own_msgs" / "msg" / "Names.msg"
     definition.parent.mkdir(parents=True)
     definition.write_text("string[] names\n")
@@ -78,7 +80,7 @@ def test_many_short_parts_do_not_overrun_a_gate(stalls, monkeypatch, tmp_path):
     graph = FakeGraph()
     board = SimulatedBoard(description, engine="amaranth")
     made, said = bridge_of(board, graph, description)
-    count = 1100
+    count = 300
     packet = struct.pack("<I", count) + bytes(4 * count)
     try:
         assert run_until(made, lambda: graph.opened, 60), said
