@@ -141,6 +141,17 @@ class CountsTooManyBytes(LoopNode):
         super().count(topic, name, by + (name == "bytes_low" and self.heard == 3))
 
 
+class CountsALoss(LoopNode):
+    """It counts a packet as lost on the way back, and sends it all the same."""
+
+    cause: str
+
+    def count(self, topic, name, by=1):
+        super().count(topic, name, by)
+        if topic in self.loops.values() and self.heard == 3:
+            self.counters[topic, self.cause] = 1
+
+
 class Restarts(LoopNode):
     """It starts again after some packets."""
 
@@ -221,6 +232,15 @@ def test_each_fault_of_a_board_is_found(fault, capsys):
     printed = capsys.readouterr().out
     assert f"FAIL {STRING} (lyrical)\n    {verdict.failures[0]}"[:400] in printed
     assert "firm-hdl verify --board fake --silent-seconds 0.2 --distro lyrical" in printed
+
+
+@pytest.mark.parametrize("cause", ["aborted", "full", "large"])
+def test_a_board_that_counts_a_loss_on_the_way_back_fails(monkeypatch, cause):
+    monkeypatch.setattr(CountsALoss, "cause", cause, raising=False)
+    verdict = verdicts(CountsALoss(ONE), ONE)[STRING]
+    assert isinstance(verdict, Failed)
+    (failure,) = verdict.failures
+    assert f"'{cause}' of /loopback/out/std_msgs/String counts 1 instead of 0" in failure
 
 
 def test_a_board_that_is_gone_fails_what_is_left_at_once():
