@@ -32,6 +32,14 @@ def test_tool_that_fails_is_an_error_with_its_output(tmp_path):
         run_tool(["sh", "-c", "exit 3"], tmp_path)
 
 
+def test_tool_that_was_killed_is_an_error(tmp_path):
+    """What it has written so far is no result."""
+    with pytest.raises(ToolError, match=r"^exit status -9$"):
+        run_tool(["sh", "-c", "kill -9 $$"], tmp_path)
+    with pytest.raises(ToolError, match=r"^half a result$"):
+        run_tool(["sh", "-c", "echo half a result; kill -11 $$"], tmp_path)
+
+
 def test_standard_error_can_be_left_out_of_the_result(tmp_path):
     script = "echo warning >&2; echo result"
     assert run_tool(["sh", "-c", script], tmp_path, with_errors=False) == "result\n"
