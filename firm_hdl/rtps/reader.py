@@ -165,8 +165,8 @@ class Reader:
         proxy.heartbeat_count = heartbeat.count
         if heartbeat.first > proxy.next:
             self._give_up(proxy, heartbeat.first)
-        if not proxy.synced:
-            proxy.synced, proxy.ask_at = True, float("inf")
+        # What was asked before is answered; what is missing now is asked for below.
+        proxy.synced, proxy.ask_at = True, float("inf")
         proxy.last = max(proxy.last, heartbeat.last)
         proxy.repeats = 0
         self._progress(proxy, now)

@@ -183,6 +183,16 @@ def test_the_first_of_two_gaps_says_when_to_ask(sent):
     assert reader.tick(1.02) == float("inf") and not sent
 
 
+def test_a_heartbeat_ends_what_was_asked_before_it(sent):
+    """A sample that comes early afterwards is given its whole time to be in order."""
+    reader = Listener(sent)
+    assert asked(reader, sent, 2, 2, now=1.0) == NumberSet.of(1, [1, 2])
+    reader.take(1, 2, now=1.05)
+    reader.on_heartbeat(HERE, heartbeat(1, 2, count=3), 1.06)
+    reader.take(4, now=1.09)
+    assert reader.tick(1.1) == pytest.approx(1.11)
+
+
 def test_no_more_is_asked_for_at_once_than_a_set_can_name(sent):
     reader = Listener(sent)
     reader.on_data_frag(HERE, part(257, 1), None, 1.0)
