@@ -72,8 +72,12 @@ def test_values_are_the_same():
 def test_lost_statement_is_noticed(monkeypatch):
     chain = Chain()
     rows = run(chain, chain.top())
-    kept = levels._driving
-    monkeypatch.setattr(levels, "_driving", lambda *given: list(kept(*given))[:-1])
+    kept = levels._by_part
+
+    def lossy(statements, place):
+        return kept(list(statements)[:-1], place)
+
+    monkeypatch.setattr(levels, "_by_part", lossy)
     assert run(chain, divided(chain.top())) != rows
 
 
