@@ -135,8 +135,9 @@ def declare(
         elif wire not in declared:
             requests.append(_request(graph, wire, owner, driver))
     for (chunk, *_), _value in graph.aliases:
-        if isinstance(chunk, Slice):
-            requests.append(_Request(wire=chunk.wire, name=chunk.wire, role="alias"))
+        # Only wires are connected.
+        assert isinstance(chunk, Slice)
+        requests.append(_Request(wire=chunk.wire, name=chunk.wire, role="alias"))
     signals += _signals(graph, requests, scope)
     instances = [cell.name for cell in graph.cells if graph.is_instance(cell)]
     return Names(

@@ -159,6 +159,14 @@ ITEM = CDR + b"\1\0\0\0" + bytes(4) + bytes(8) + b"\7"
             "ros2",
             [(7 + 8) // 8, (7 + 17 + 3 + 7) // 8],
         ),
+        # 4 items and a number of 4 bytes, with padding of at most 3 bytes.
+        (
+            {"a": "uint8[]", "b": "uint32"},
+            CDR + b"\4\0\0\0" + bytes(8),
+            8,
+            "ros2",
+            [(7 + 8) // 8, (7 + 8 + 3 + 7) // 8],
+        ),
         # Items after padding of at most 3 bytes; an empty sequence has none.
         ({"a": "float64[]", "d": "uint8"}, ITEM, 8, "ros2", [(7 + 8 + 3) // 8, (7 + 9 + 7) // 8]),
         ({"a": "float64[]", "d": "uint8"}, CDR + bytes(4) + b"\7", 8, "ros2", [1, 1]),
