@@ -11,6 +11,8 @@ BIN    := $(VENV)/bin
 JOBS   ?= 2
 # Python compiles the modules that are imported, which are few; pip would compile all of them.
 INSTALL := -m pip install --quiet --disable-pip-version-check --no-compile
+# In the environment of the target, which has no pip of its own.
+INSTALL_IN = -m pip --python $(@D)/bin/python $(wordlist 3,9,$(INSTALL))
 # What `make verify` runs; `VERIFY_ARGS='--bus-bytes 1 sensor_msgs/msg/Imu'` runs one type.
 VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 
@@ -187,8 +189,8 @@ oracles-ros2: $(ROS2_WHEELS)
 
 $(VENV)/ros2/%/.installed: firm_hdl/verify/ros2_wheels/%.txt | $(VENV)/.created
 	@echo "Installing rosidl and Fast CDR of ROS 2 $* ..."
-	@{ $(BIN)/python -m venv --clear $(@D) \
-	  && $(@D)/bin/python $(INSTALL) --no-deps --requirement $< \
+	@{ $(BIN)/python -m venv --without-pip --clear $(@D) \
+	  && $(BIN)/python $(INSTALL_IN) --no-deps --requirement $< \
 	  && touch $@; } >$(VENV)/ros2-$*.log 2>&1 \
 	  || echo "Failed: see $(VENV)/ros2-$*.log; going on without." >&2
 
@@ -196,8 +198,8 @@ $(VENV)/ros2/%/.installed: firm_hdl/verify/ros2_wheels/%.txt | $(VENV)/.created
 $(VENV)/live/%/.installed: tests/live/peers/%.txt | $(VENV)/.created
 	@echo "Installing the peer $* ..."
 	@mkdir -p $(VENV)/live
-	@{ $(BIN)/python -m venv --clear $(@D) \
-	  && $(@D)/bin/python $(INSTALL) --requirement $< \
+	@{ $(BIN)/python -m venv --without-pip --clear $(@D) \
+	  && $(BIN)/python $(INSTALL_IN) --requirement $< \
 	  && touch $@; } >$(VENV)/live-$*.log 2>&1 \
 	  || echo "Failed: see $(VENV)/live-$*.log; going on without." >&2
 
