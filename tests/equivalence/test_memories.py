@@ -275,6 +275,14 @@ def test_memories_that_amaranth_never_prints_are_refused(what: str, tools: Tools
         prove(_replace_nth(text, old, new, number), vhdl, tools=tools)
 
 
+def test_contents_that_come_twice_are_refused(tools: Tools) -> None:
+    text, vhdl = _full_design()
+    (cell,) = re.findall(r"^ *cell \$meminit_v2 .*?^ *end\n", text, re.MULTILINE | re.DOTALL)
+    again = re.sub(r"(cell \S+ )\S+", r"\1\\again", cell, count=1)
+    with pytest.raises(ProofError, match=r"^memory mem has contents in parts, which a proof"):
+        prove(text.replace(cell, cell + again), vhdl, tools=tools)
+
+
 def test_ports_wider_than_their_memory_are_refused() -> None:
     memory = MemoryCircuit("mem", 4, 2, lambda width: tuple(range(2, 2 + width)))
     port = {"type": "$memrd_v2", "parameters": {"WIDTH": "1000"}, "connections": {}}

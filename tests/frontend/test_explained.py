@@ -114,6 +114,7 @@ ROS2 = [
     ("bool[] a [true, «maybe»]", "'maybe' is not a boolean: true, false, 1 or 0"),
     ('string a «"a"b"»', '"a"b" is not a string: a quote inside it needs a backslash'),
     ('string A=«"a"=b"»', '"a"=b" is not a string: a quote inside it needs a backslash'),
+    ("string[] a [«\"'b''\"»]", "'b'' is not a string: a quote inside it needs a backslash"),
     ("string a b«=c»", "a default cannot contain '='"),
     ('string a «"b=c"»', "a default cannot contain '='"),
     ("string<=«x» a", f"'x' {NUMBER}"),

@@ -137,6 +137,14 @@ def test_requests_at_the_board_are_limited(timed):
     timed.bridge.step()
     assert timed.dropped == {("/cal", "queue full"): 1} and timed.graph.abandoned == [2]
     assert timed.bridge.counters.to_board["/cal"] == 2
+    # Messages are sent all the same.
+    timed.graph.say(HEARD, b"")
+    timed.now += 0.001
+    timed.bridge.step()
+    assert (
+        timed.bridge.counters.to_board["/heard"] == 1
+        and ("/heard", "queue full") not in timed.dropped
+    )
 
 
 def test_the_bridge_is_woken_once_by_what_comes(timed):

@@ -107,6 +107,13 @@ def talk():
         yield found
 
 
+def test_what_is_no_frame_is_no_restart(talk):
+    """It may have the bit of a first frame by chance."""
+    talk._keep(bytes([0xFF, FLAG_START]) * HEADER_BYTES)
+    assert talk.losses() == {"malformed": 1}
+    assert talk.read([1]) == {1: ONE.fingerprint & 0xFFFF_FFFF}
+
+
 def test_a_talk_closes_its_board():
     board = FakeBoard(LoopNode(ONE))
     closed = []
