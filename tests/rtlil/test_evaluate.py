@@ -184,6 +184,11 @@ def test_far_shifts_of_constants(by):
     assert right == Bits("1".rjust(by + 1, "0").ljust(60, "0")[:60])
 
 
+def test_the_farthest_shift_takes_no_more_bits_than_its_operand():
+    (right,) = evaluate(a_cell("$shr", 8, False, A=(Slice("a", 0, 8),), B=(Bits("1" * 62),)))
+    assert right == Bits("0" * 8)
+
+
 def test_multiplexers():
     for width in WIDTHS:
         for a, b in product(forms(A, width), forms(B, width)):

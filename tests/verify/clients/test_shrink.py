@@ -91,6 +91,12 @@ def shrink(make_message, shows, text=TEXT, value=VALUE):
         (lambda all_, _: "y" in all_, ["int8 y"], {"y": 0}),
         (lambda all_, _: all_.get("z") == 6, ["int8 z"], {"z": 6}),
         (lambda all_, _: all_.get("x") == 6, ["uint32 x"], {"x": 6}),
+        # A text in an element gets shorter as well, if it must not be empty.
+        (
+            lambda all_, value: "many" in value and b"i" in all_.get("name", b""),
+            ["p/B[] many", "=" * 80, "MSG: p/B", "string name"],
+            {"many": [{"name": b"i"}]},
+        ),
         # Two fields are needed.
         (
             lambda all_, _: all_.get("a") == 3 and all_.get("t") is True,

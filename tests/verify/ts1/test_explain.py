@@ -207,7 +207,8 @@ def test_an_oracle_that_does_not_judge_the_changed_text_explains_nothing(judged)
 def test_a_text_that_no_other_text_replaces_is_not_judged(judged):
     here = rule("here", unavoidable=lambda case: "x-y" in case.text)
     there = rule("there", unavoidable=lambda case: "absent" in case.text)
-    assert judged(BAD, [there, here], {BAD: X}).verdict == NotJudged("here: here")
+    found = judged(BAD, [there, here], {BAD: X})
+    assert (found.verdict, found.is_refused) == (NotJudged("here: here"), False)
     assert isinstance(judged(BAD, [there], {BAD: X}).verdict, Failed)
     # It excuses only a refusal of ours.
     assert judged(TEXT, [rule("any", unavoidable=lambda case: True)], {TEXT: X}).verdict == Passed(
