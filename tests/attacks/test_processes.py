@@ -180,7 +180,14 @@ def test_used_memory_shows_in_the_measurement(tmp_path):
     assert little < 200 * 1024 < much
 
 
-@pytest.mark.parametrize("form", ["mcap of zstd", "mcap of many chunks", "compressed database"])
+@pytest.mark.parametrize(
+    "form",
+    [
+        pytest.param("mcap of zstd", marks=pytest.mark.thorough),
+        "mcap of many chunks",
+        "compressed database",
+    ],
+)
 def test_recordings_that_expand_are_refused_in_little_memory_and_on_little_disk(tmp_path, form):
     bomb = BOMBS[form](tmp_path, 1 << 30)
     done = run("list", "--bag", str(bomb), memory=1 << 30, cwd=tmp_path)

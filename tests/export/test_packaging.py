@@ -271,6 +271,7 @@ def fusesoc() -> list[str]:
     return [sys.executable, "-m", "fusesoc.main", "--cores-root", "."]
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("ghdl")
 def test_fusesoc_runs_the_benches(folders, tmp_path):
     command = fusesoc()

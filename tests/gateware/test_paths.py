@@ -167,14 +167,12 @@ CASES = [
 LARGE = CASES[2:4]
 
 
-# On a narrow bus, one type with a string is enough.
 @pytest.mark.parametrize(
     ("name", "distro", "bus_bytes"),
     [
         *((*each, 8) for each in CASES if each not in LARGE),
-        (*CASES[0], 2),
         *(pytest.param(*each, 8, marks=pytest.mark.thorough) for each in LARGE),
-        *(pytest.param(*each, 2, marks=pytest.mark.thorough) for each in CASES[1:]),
+        *(pytest.param(*each, 2, marks=pytest.mark.thorough) for each in CASES),
     ],
 )
 def test_paths_are_those_of_the_interface_page(name, distro, bus_bytes):

@@ -125,7 +125,7 @@ def repeated(transfers):
 RIGHT = ([GOOD] * 2, [False] * 2, [Status.OK] * 2, b"")
 
 
-@pytest.mark.parametrize("bus_bytes", [4, 16])
+@pytest.mark.parametrize("bus_bytes", by_depth([4], [4, 16]))
 def test_deserializer_forgets_the_packet_under_way(bus_bytes):
     bench = Bench(Deserializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=400), GOOD)
     right = repeated(transfers_of_good(bus_bytes))
@@ -182,7 +182,7 @@ def after_reset_of_writer(bench, transfers, after, at, until, offers):
     return out.packets, marked, statuses, out.partial
 
 
-@pytest.mark.parametrize("bus_bytes", [4, 16])
+@pytest.mark.parametrize("bus_bytes", by_depth([16], [4, 16]))
 def test_serializer_forgets_the_message_under_way(bus_bytes):
     bench = Bench(Serializer(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=400), GOOD)
     good = transfers_of_good(bus_bytes)

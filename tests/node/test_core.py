@@ -212,7 +212,7 @@ def test_a_host_reads_all_registers(bus_bytes):
     description = read(bus_bytes=str(bus_bytes))
     bench, names = CoreBench(description, _Counted(description)), registers(description)
     # Identity, the counters of the link and of the first topic, and some of the others.
-    names = by_depth(names[:15] + names[18:28] + names[28::12], names)
+    names = by_depth(names[:15] + names[18:28] + names[28::24], names)
     # A request has 16 bytes and takes about 15 cycles and as many as its answer has beats.
     pause = Stalls.bits("1" + "0" * (24 * bus_bytes // 16))
     twists = packets_of(description.topics[0].stores[0][1].message, 5)

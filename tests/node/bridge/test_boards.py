@@ -230,7 +230,7 @@ def test_flipped_bits_of_a_serial_line_lose_messages_and_change_none(serial):
     node = serve(flips=0.01)
     texts = [b"%d." % n for n in range(300)]
     # Not all come back.
-    made, got, _ = exchange(board_of(name, ECHO), texts, seconds=2)
+    made, got, _ = exchange(board_of(name, ECHO), texts, seconds=0.7)
     made.close()
     assert node.flipped > 100 and 30 < len(got) < 300
     # In order, each at most once, and none that was not sent.

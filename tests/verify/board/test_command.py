@@ -108,10 +108,10 @@ def test_a_board_behind_a_serial_line(capsys):
 
 def test_a_board_that_is_not_there_fails(tmp_path, capsys):
     path = tmp_path / "r.jsonl"
-    arguments = ["--silent-seconds", "0.3", "--results", str(path), *FEW, BOOL]
+    arguments = ["--silent-seconds", "0.1", "--results", str(path), *FEW, BOOL]
     # Port 9 discards what comes, if anyone listens there.
     assert main(["verify", "--board", "udp://127.0.0.1:9", *arguments]) == 1
-    assert "udp://127.0.0.1:9: the board does not answer for 0.3 s" in capsys.readouterr().out
+    assert "udp://127.0.0.1:9: the board does not answer for 0.1 s" in capsys.readouterr().out
     (record,) = read_results(path).records.values()
     assert isinstance(record.verdict, Failed)
     assert main(["verify", "--board", "serial:///dev/no-such-tty", *FEW, BOOL]) == 1

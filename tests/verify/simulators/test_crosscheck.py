@@ -104,7 +104,7 @@ OWN_TYPES = [
     pytest.param("own_msgs/msg/Deep", 8, marks=pytest.mark.thorough),
     ("own_msgs/msg/Runs", 4),
     pytest.param("own_msgs/srv/Ask_Request", 8, marks=pytest.mark.thorough),
-    ("own_msgs/srv/Ask_Response", 8),
+    pytest.param("own_msgs/srv/Ask_Response", 8, marks=pytest.mark.thorough),
 ]
 
 

@@ -45,7 +45,7 @@ KNOWN = {("sensor_msgs/Joy", 16): (NAN_KEY, TIME_KEY)}
         ("noetic", "sensor_msgs/Joy"),
     ],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 def test_types_pass(distro, name, bus_bytes):
     result = accept(distro, name, Options(bus_bytes=bus_bytes))
     known = KNOWN.get((name, bus_bytes), ())
