@@ -152,7 +152,7 @@ def explode(place, source, name, commands, before=""):
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
-@pytest.mark.parametrize("source", ["--path", "--bag"])
+@pytest.mark.parametrize("source", ["--path", pytest.param("--bag", marks=pytest.mark.thorough)])
 def test_exploding_types_are_refused_with_count_and_limit_in_little_memory(tmp_path, source):
     texts = exploding()
     if source == "--path":

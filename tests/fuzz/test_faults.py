@@ -10,7 +10,6 @@ import pytest
 from firm_hdl.fuzz.circuits import circuits_of
 from firm_hdl.fuzz.table import table_of
 from firm_hdl.fuzz.types import message_of
-from tests.depth import by_depth
 from tests.fuzz.faults import FAULTS
 from tests.fuzz.samples import STRING, found, need_tools, run
 
@@ -22,7 +21,8 @@ def tools() -> None:
     need_tools()
 
 
-@pytest.mark.parametrize("fault", by_depth(FAULTS[3:4], FAULTS), ids=lambda fault: fault.name)
+@pytest.mark.thorough
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.name)
 def test_a_fault_in_the_circuit_is_found(fault):
     outcome = run(STRING, fault.circuit, alter=fault.alter)
     failure = found(outcome)

@@ -149,6 +149,7 @@ class TestDask:
                 os.kill(local_cluster.workers[0].pid, signal.SIGKILL)
         assert found == SQUARES
 
+    @pytest.mark.thorough
     def test_lost_cluster_is_an_error_that_keeps_earlier_results(self, cluster, monkeypatch):
         local_cluster, executor = cluster
         monkeypatch.setattr(executors, "CHECK_SECONDS", 0.5)

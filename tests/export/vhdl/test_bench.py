@@ -58,10 +58,11 @@ def test_passes(ghdl, tmp_path, name, distro, bus_bytes):
     assert (folder / "work" / "transfers.txt").read_text().count("\n") >= len(packets)
 
 
-# Other tests have the circuits on a bus of eight bytes, too.
-@pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 8]))
+# Other tests have the circuits on a bus of eight bytes, too; test_records.py has such names.
+@pytest.mark.thorough
+@pytest.mark.parametrize("bus_bytes", [1, 8])
 def test_nasty_names_pass(ghdl, tmp_path, bus_bytes):
-    message = nasty(is_short=by_depth(True, False))
+    message = nasty()
     packets = stimuli(message, plan_of(message, bus_bytes))
     assert packets
     write(tmp_path / "vhdl", vhdl_of(message, bus_bytes, packets)[0].files)

@@ -111,9 +111,11 @@ def check(ghdl: str, folder: Path, message: Message, bus_bytes: int) -> None:
     ("name", "distro", "bus_bytes"),
     [
         ("geometry_msgs/msg/Twist", "lyrical", 8),
-        ("shape_msgs/Plane", "noetic", 2),
         ("std_msgs/msg/Bool", "lyrical", 1),
-        *by_depth([], [("geometry_msgs/PoseWithCovariance", "noetic", 8)]),
+        *by_depth(
+            [],
+            [("shape_msgs/Plane", "noetic", 2), ("geometry_msgs/PoseWithCovariance", "noetic", 8)],
+        ),
     ],
 )
 def test_whole_messages_come_back(ghdl, tmp_path, name, distro, bus_bytes):

@@ -42,7 +42,7 @@ KNOWN = {("sensor_msgs/Joy", 16): (NAN_KEY, TIME_KEY)}
         ("lyrical", "diagnostic_msgs/msg/DiagnosticArray"),
         ("noetic", "std_msgs/Header"),
         ("noetic", "std_msgs/Empty"),
-        ("noetic", "sensor_msgs/Joy"),
+        pytest.param("noetic", "sensor_msgs/Joy", marks=pytest.mark.thorough),
     ],
 )
 @pytest.mark.sampled(3)

@@ -26,7 +26,7 @@ MOST_CASES = by_depth(4, 8)
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 # Shrinking would simulate for many minutes; the failure message has the command to repeat it.
 @settings(
-    max_examples=by_depth(3, 40),
+    max_examples=by_depth(2, 40),
     deadline=None,
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=list(HealthCheck),
