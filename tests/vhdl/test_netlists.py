@@ -329,3 +329,26 @@ def test_an_operator_that_only_resets_is_a_signal() -> None:
     (name,) = re.findall(r"process \(clk, (\w+)\)", body)
     assert f"  {name} <= a(0) and s(0);" in body
     assert f"if {name} = '1' then" in body
+
+
+def test_each_part_of_a_target_has_its_part_of_the_value() -> None:
+    chosen = r"""
+  wire width 2 $5
+  cell $mux $6
+    parameter \WIDTH 2
+    connect \A \a [1:0]
+    connect \B \a [3:2]
+    connect \S \s [0]
+    connect \Y $5
+  end
+"""
+    split = NEXT.replace(
+        r"assign $1 [3:0] \a [3:0]", r"assign { $1 [3:2] $1 [1:0] } { \a [1:0] $5 [1:0] }"
+    )
+    body = body_of(chosen, split, r"connect \o \q [3:0]")
+    lines = [line.strip() for line in body.splitlines() if "downto" in line]
+    assert lines == [
+        "q(1 downto 0) <= unsigned(a(3 downto 2));",
+        "q(1 downto 0) <= unsigned(a(1 downto 0));",
+        "q(3 downto 2) <= unsigned(a(1 downto 0));",
+    ]
