@@ -10,9 +10,10 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 JOBS   ?= 2
 # Python compiles the modules that are imported, which are few; pip would compile all of them.
-INSTALL := -m pip install --quiet --disable-pip-version-check --no-compile
+PIP := install --quiet --disable-pip-version-check --no-compile
+INSTALL := -m pip $(PIP)
 # In the environment of the target, which has no pip of its own.
-INSTALL_IN = -m pip --python $(@D)/bin/python $(wordlist 3,9,$(INSTALL))
+INSTALL_IN = -m pip --python $(@D)/bin/python $(PIP)
 # What `make verify` runs; `VERIFY_ARGS='--bus-bytes 1 sensor_msgs/msg/Imu'` runs one type.
 VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 
