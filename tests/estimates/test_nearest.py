@@ -74,7 +74,7 @@ def test_the_nearest_is_taken() -> None:
     assert estimates_of(plan_of(POSE), both)["deserializer"].type == "b/msg/B"
 
 
-def far(**factors: int) -> dict[str, Any]:
+def far(**factors: float) -> dict[str, Any]:
     """Return features of `POSE` that are further away by these factors."""
     own = features_of(plan_of(POSE))
     return {name: (1 + own[name]) * factor - 1 for name, factor in factors.items()}
@@ -88,6 +88,8 @@ def far(**factors: int) -> dict[str, Any]:
         (far(bits=2), far(steps=4)),
         (far(steps=2), far(lengths=4)),
         (far(lengths=2), far(bits=4)),
+        # More of one does not make up for less of another.
+        (far(bits=2), far(bits=4, steps=1 / 4)),
         (far(bits=4), far(bits=2, steps=2, lengths=2)),
         (far(steps=4), far(bits=2, steps=2, lengths=2)),
         # Fewer bits are as far away as more of them.

@@ -11,6 +11,7 @@ from firm_hdl.formal.bugs import Bug, seeded
 from firm_hdl.gateware.packets.arbiter import PacketArbiter
 from firm_hdl.gateware.packets.crossing import PacketCrossing
 from firm_hdl.gateware.packets.fifo import PacketFifo
+from firm_hdl.gateware.packets.reader import PacketReader
 from firm_hdl.gateware.packets.router import PacketRouter
 from firm_hdl.gateware.packets.slice import StreamSlice
 from tests.formal.play import play
@@ -122,3 +123,14 @@ def test_the_size_of_a_packet_is_right_with_each_beat(lengths, wrong, claim):
     assert not any(play(build, steps)[0].values())
     with seeded([Bug(_FIFO, _SIZE, f"self.size.eq(reader.size + ({wrong}))")]):
         assert play(build, steps)[0][claim]
+
+
+def test_a_packet_that_leaves_a_gate_has_all_its_bytes():
+    build = STUDIES["gate-drop"].build
+    beats = [{"i_valid": 1, "i_choice": 1 << 8 | last << 9} for last in (0, 1)]
+    steps = [{**each, "o_ready": 1, "status_ready": 1} for each in (*beats, *[{}] * 40)]
+    assert not any(play(build, steps)[0].values())
+    word = "packets.payload.eq(self.word"
+    with seeded([Bug(PacketReader.elaborate, word, f"{word}.as_value() ^ self.word.last << 8")]):
+        # The number of bytes is beside those of the data, and is 0 with the last one.
+        assert play(build, steps)[0]["nothing extra"]

@@ -20,6 +20,7 @@ from tests.depth import by_depth
 LONG = ("slice/order", "crossing/nothing-extra")
 FAST = [
     *("arbiter/turns", "router/counters", "claims-noetic/pending"),
+    *("gate-bool/statuses", "serializer-joyfeedback-noetic-2/wire-order"),
     # About 2 s each. tests/formal/test_liveness.py breaks what moves, in short runs.
     *by_depth(
         (),

@@ -9,12 +9,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from firm_hdl.rtps import Durability, Qos
+from firm_hdl.rtps import Durability, Qos, SampleIdentity
 from firm_hdl.rtps.core import Core
 from firm_hdl.rtps.wire import message, submessages
+from firm_hdl.rtps.wire.guid import Guid
 from firm_hdl.rtps.wire.numbers import NumberSet
+from firm_hdl.rtps.wire.parameters import ParameterList, Pid
 from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat
-from firm_hdl.rtps.wire.samples import DataFrag
+from firm_hdl.rtps.wire.samples import Data, DataFrag
 from tests.depth import by_depth
 from tests.rtps.captures import CAPTURES, SEDP_CYCLONE, SEDP_FAST_DDS
 from tests.rtps.network import Network
@@ -104,6 +106,26 @@ def test_what_is_wrong_is_counted():
     twice = bytes.fromhex("8001040000000000") * 2
     station.core.receive(message.write(bytes(12), []) + twice, 0.0)
     assert station.core.counters == {"received": 5, "malformed": 3, "unknown": 2}
+
+
+def test_a_sample_whose_inline_qos_is_damaged_arrives_without_it():
+    network = Network()
+    one, two, writer = pair(network)
+    one.write(writer, b"good")
+    network.run(1)
+    for number, identity in enumerate((bytes(20), bytes(24)), 2):
+        data = Data(
+            reader=0,
+            writer=writer.guid.entity,
+            sequence_number=number,
+            payload=bytes([number]) * 4,
+            inline=ParameterList(((Pid.RELATED_SAMPLE_IDENTITY, identity),)),
+        )
+        two.core.receive(message.write(writer.guid.prefix, [data]), network.now)
+    network.run(1)
+    whole = SampleIdentity(Guid(bytes(12), 0), 0)
+    assert [each.related for each in two.samples] == [None, None, whole]
+    assert two.core.counters["malformed"] == 1
 
 
 def test_a_huge_sample_takes_the_memory_of_what_came():

@@ -131,7 +131,7 @@ class CobsDecoder(wiring.Component):
         with m.If(moves):
             m.d.sync += inside.eq(~is_end)
             with m.If(is_end):
-                m.d.sync += [left.eq(0), zero.eq(0)]
+                m.d.sync += left.eq(0)
             with m.Elif(is_code):
                 m.d.sync += [left.eq(byte - 1), zero.eq(byte != MOST_IN_BLOCK + 1)]
             with m.Else():

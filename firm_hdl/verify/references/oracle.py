@@ -182,7 +182,7 @@ class _Walk:
             return int(struct.unpack("<I", struct.pack("<f", value))[0])
         if name == "float64":
             return int(struct.unpack("<Q", struct.pack("<d", value))[0])
-        return self.number(int(value) & ((1 << 8 * SIZES[name]) - 1), name)
+        return self.number(value & ((1 << 8 * SIZES[name]) - 1), name)
 
     def number(self, bits: int, name: str) -> int:
         signed = name.startswith("int") or (name == "byte" and self.oracle.dialect == "ros1")

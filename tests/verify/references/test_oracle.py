@@ -178,16 +178,21 @@ STRUCTURES = [
 
 
 def test_a_structure_is_all_that_determines_the_bytes():
-    def structure(text, inner="uint8 x\n", dialect="ros2"):
+    def structure(text, inner="uint8 x\n", dialect="ros2", innermost="uint8 x\n"):
         store = get_typestore(Stores.EMPTY)
-        for name, each in (("A", text), ("B", inner), ("C", inner)):
+        for name, each in (("A", text), ("B", inner), ("C", inner), ("D", innermost)):
             store.register(get_types_from_msg(each, f"p/msg/{name}"))
         return RosbagsOracle(store, dialect).structure("p/msg/A")
 
     first = structure(STRUCTURES[0])
     assert first == structure(STRUCTURES[0].replace("\n", "  # A comment\n"))
-    others = [structure(STRUCTURES[0], "int8 x\n"), structure(STRUCTURES[0], dialect="ros1")]
-    assert len({*map(structure, STRUCTURES), *others}) == len(STRUCTURES) + 2
+    others = [
+        structure(STRUCTURES[0], "int8 x\n"),
+        structure(STRUCTURES[0], dialect="ros1"),
+        structure(STRUCTURES[0], "p/D x\n"),
+        structure(STRUCTURES[0], "p/D x\n", innermost="int8 x\n"),
+    ]
+    assert len({*map(structure, STRUCTURES), *others}) == len(STRUCTURES) + len(others)
 
 
 def test_builtin_times_of_ros1_are_no_types_of_their_own():

@@ -90,6 +90,8 @@ def test_a_box_has_its_quartiles_at_their_places_on_the_axis():
     assert float(rect[1]["x"]) == x(box.q1)
     assert float(rect[1]["width"]) == pytest.approx(x(box.q3) - x(box.q1))
     assert float(rect[1]["height"]) == 16
+    # The box covers the line between its ends.
+    assert text.index("whisker c1") < text.index("box c1")
     assert rect[2] == (
         "generation: median 300 ms, quartiles 200 ms and 400 ms, "
         f"95 % within {seconds(box.p95)}, from 100 ms to 10 s"
