@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import socket
 import threading
 import time
 from concurrent.futures import Future
@@ -228,6 +229,15 @@ def test_a_fault_of_ours_does_not_end_the_participant(pair, caplog, monkeypatch)
     assert two._core.receive == receive
     assert two.counters["failed"] == 1
     assert "a fault of firm-hdl, with the datagram 52545053" in caplog.text
+
+
+def test_all_datagrams_that_wait_are_received(pair):
+    _, two = pair
+    before = two.counters["malformed"]
+    with two._lock, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as peer:
+        for _ in range(8):
+            peer.sendto(b"RTPS", two._transport.user)
+    assert wait(lambda: two.counters["malformed"] == before + 8)
 
 
 def test_an_address_of_another_host():

@@ -145,6 +145,8 @@ def test_latency_is_from_the_last_in_to_the_last_out():
     found = run.finish()
     assert (found.latency, found.end_cycle) == (5, 12)
     assert RunResult().latency == RunResult(last_cycle_in=3).latency == 0
+    # The first cycle is a cycle, too.
+    assert RunResult(last_cycle_in=2, last_cycle=0).latency == -2
     assert RunResult().end_cycle == -1
     assert RunResult(last_cycle=7, last_status_cycle=5).end_cycle == 7
 

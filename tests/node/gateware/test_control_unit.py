@@ -6,7 +6,7 @@ from __future__ import annotations
 import struct
 
 import pytest
-from amaranth.hdl import Cat, Const, Module, Value
+from amaranth.hdl import Cat, Const, Module, ResetInserter, Signal, Value
 from amaranth.sim import Simulator
 
 from firm_hdl.node.gateware.control_unit import ControlUnit
@@ -144,6 +144,31 @@ def test_four_requests_wait_and_more_are_dropped():
     assert [struct.unpack_from("<I", each, 4)[0] for each, _ in found] == VALUES[:5]
     assert [tag for _, (tag,) in found] == [0xF000_0000 + number for number in range(5)]
     assert counters_of(bench.bench) == {"control": 5, "control_full": 5}
+
+
+def test_a_reset_ends_a_response():
+    unit, clear, seen = ControlUnit(16, FIRST, FROM, COUNTERS), Signal(), []
+    simulator = Simulator(ResetInserter(clear)(unit))
+
+    async def use(ctx):
+        payload = unit.packets_in.payload
+        ctx.set(Value.cast(payload.data), int.from_bytes(request(READ, 1), "little"))
+        ctx.set(payload.count, 16)
+        ctx.set(payload.last, 1)
+        # One response waits until the reset; the request after the reset has the next one.
+        for reset, ready in ((0, 0), (1, 0), (0, 1)):
+            for cycle in range(20):
+                ctx.set(clear, reset and cycle == 0)
+                ctx.set(unit.packets_in.valid, not reset and cycle == 0)
+                ctx.set(unit.packets_out.ready, ready)
+                seen.append(ctx.get(unit.packets_out.valid))
+                await ctx.tick()
+
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(use)
+    simulator.run()
+    waits, after, sent = seen[:20], seen[20:40], seen[40:]
+    assert waits[-1] and not any(after[1:]) and sum(sent) == 1
 
 
 @pytest.mark.parametrize(("count", "cycles"), [(1, 3), (2, 3), (16, 3), (17, 4), (32, 4), (33, 5)])

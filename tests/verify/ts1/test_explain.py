@@ -63,6 +63,12 @@ SIZES = "structure/p/A/fields/x/type: firm-hdl 'int8'; oracle 'int16'"
 TEXT, EVEN, ZERO, BOTH = (f"int8 x # {words}\n" for words in ("odd one", "even one", "odd 0", "0"))
 
 
+def test_who_says_nothing_of_a_definition_refuses_nothing(judged):
+    found = judged(TEXT, [], {TEXT: Accepted({})})
+    why = "the oracle takes the definition, and says nothing of it"
+    assert (found.verdict, found.is_refused) == (NotJudged(why), False)
+
+
 def test_of_two_rules_that_explain_the_same_one_is_named(judged):
     rules = [rule("first", "odd", "even"), rule("second", "one", "0")]
     wide = Accepted(fields("int16 x"))
