@@ -44,6 +44,7 @@ def compared(
     answer: Answer,
     alike: Mapping[str, str],
     show: Callable[[], str],
+    hashed: Interface | Exception | None = None,
 ) -> Compared:
     """Compare our reading with the answer of an oracle, which must not be `NotJudged`.
 
@@ -55,6 +56,8 @@ def compared(
         As for `structure`.
     show : callable
         Returns the definition as ``firm-hdl show`` prints it.
+    hashed : Message, Service, Action or None
+        The model whose type hashes are compared; `None`: `ours`.
     """
     match ours, answer:
         case DefinitionError(), Refused():
@@ -68,7 +71,8 @@ def compared(
             return _verdicts("accepts", _answer_text(answer))
         case _, Accepted(facts):
             assert not isinstance(ours, Exception)
-            found = differences(_facts(ours, facts, alike, show), facts)
+            assert not isinstance(hashed, Exception)
+            found = differences(_facts(ours, facts, alike, show, hashed or ours), facts)
             return Compared(differences=tuple(found), cases=count_facts(facts))
         case _:
             raise TypeError(f"An oracle must accept, refuse or not judge, not {answer!r}")
@@ -83,7 +87,11 @@ def _answer_text(answer: Answer) -> str:
 
 
 def _facts(
-    ours: Interface, theirs: Facts, alike: Mapping[str, str], show: Callable[[], str]
+    ours: Interface,
+    theirs: Facts,
+    alike: Mapping[str, str],
+    show: Callable[[], str],
+    hashed: Interface,
 ) -> Facts:
     """Return the same facts about our model as those that the oracle gives."""
     makers: dict[str, Callable[[], Any]] = {
@@ -91,7 +99,7 @@ def _facts(
         "names": lambda: [ours.name],
         "show": show,
         "md5": lambda: _md5(ours),
-        "hash": lambda: _hashes(ours),
+        "hash": lambda: _hashes(hashed),
         "proto": lambda: proto(ours),
     }
     return {key: _made(makers[key]) for key in theirs}

@@ -125,20 +125,20 @@ class Explainer:
         ours, case = self._read_again(lambda case: change(case, True))
         if isinstance(answer, NotJudged):
             return Compared(cases=0), []
-        alike = dict(self._oracle.alike(self._case))
+        hashed = ours
         for entry in entries:
-            if entry.key in touched:
-                alike |= entry.alike
-                if entry.ours is not None and not isinstance(ours, Exception):
-                    ours = entry.ours(ours)
             if entry.theirs is not None and isinstance(answer, Accepted):
-                mended = entry.theirs(answer.facts, self._case)
+                # Members have the names of the text that we have read.
+                mended = entry.theirs(answer.facts, case)
                 if repr(mended) != repr(answer.facts):
                     touched[entry.key] = entry
                 answer = Accepted(mended)
+            if entry.key in touched and entry.hashed and not isinstance(hashed, Exception):
+                hashed = entry.hashed(hashed)
         if not touched:
             return self._plain, []
-        found = compared(ours, answer, alike, lambda: self._show(case))
+        alike = self._oracle.alike(self._case)
+        found = compared(ours, answer, alike, lambda: self._show(case), hashed)
         if found.is_refused and any(entry.is_mistake for entry in touched.values()):
             # The mistake was removed so that the rest can be compared, but both refuse the rest.
             found = Compared(cases=0)
@@ -176,6 +176,9 @@ class Explainer:
                 ):
                     yield f"{entry.key}: {entry.text}"
         for need in self._needs():
+            if self._is_refused_unread(need):
+                why = "which firm-hdl refuses and the oracle does not read"
+                yield f"it needs {need.full_name}, {why}"
             keys = self._known_of(need)
             if keys:
                 yield f"it needs {need.full_name}, a known difference: {', '.join(keys)}"
@@ -196,9 +199,19 @@ class Explainer:
                 if need is not None:
                     yield need
 
+    def _is_refused_unread(self, case: DefinitionCase) -> bool:
+        """Whether all that we refuse is in a definition whose language the oracle does not read."""
+        if not isinstance(self._ours, DefinitionError) or self._reads(case):
+            return False
+        spans = [each.span for each in self._ours.diagnostics]
+        return all(span is not None and span.source.text == case.text for span in spans)
+
+    def _reads(self, case: DefinitionCase) -> bool:
+        return case.language in self._oracle.languages.get(case.dialect, ())
+
     def _known_of(self, case: DefinitionCase) -> tuple[str, ...]:
         universe = self._universe
-        if universe is None or case.language not in self._oracle.languages.get(case.dialect, ()):
+        if universe is None or not self._reads(case):
             return ()
         (answer,) = self._oracle.judge([case])
         if isinstance(answer, NotJudged):

@@ -10,9 +10,10 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from firm_hdl.model import Field, Message, Sequence, String
 from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.known.idl_text import (
@@ -23,7 +24,7 @@ from firm_hdl.verify.ts1.known.idl_text import (
     modules_of,
 )
 from firm_hdl.verify.ts1.known.idl_values import integer_of, integers_of
-from firm_hdl.verify.ts1.known.rule import Rules, mend_members, without_hash
+from firm_hdl.verify.ts1.known.rule import Rules, mend_members, rebuild
 from firm_hdl.verify.ts1.known.texts import limits
 
 __all__ = ["RULES"]
@@ -253,11 +254,24 @@ def _lists_of_one(case: DefinitionCase) -> str:
 _WIDE = re.compile(r"\bsequence\s*<\s*wstring\s*<[^<>]*>\s*>\s+(\w+)|\bwstring<=\d+\[\] +(\w+)")
 
 
+def _bounded_by_texts(message: Message) -> Message:
+    """Give sequences of wstring without a bound that of their texts."""
+
+    def bounded(item: Field) -> Field:
+        match item.type:
+            case Sequence(element=String(wide=True, bound=bound), bound=None) if bound is not None:
+                return replace(item, type=replace(item.type, bound=bound))
+        return item
+
+    return replace(message, fields=tuple(map(bounded, message.fields)))
+
+
 @RULES.facts(
     "ros2-wstring-sequences",
     "rosidl_parser takes the bound of the texts in a sequence of wstring for the sequence's.",
     language=None,
     dialect="ros2",
+    hashed=rebuild(_bounded_by_texts),
 )
 def _own_bounds(facts: Facts, case: DefinitionCase) -> Facts:
     """Remove the bound of the texts from a sequence that has no bound itself."""
@@ -269,8 +283,4 @@ def _own_bounds(facts: Facts, case: DefinitionCase) -> Facts:
         is_one = match is not None and field["name"] in names
         return {**field, "type": f"{match[1]}[]"} if match is not None and is_one else field
 
-    mended = mend_members("fields", own)(facts, case)
-    if mended == facts:
-        return facts
-    # The hash is that of the type with the wrong bound.
-    return without_hash(mended)
+    return mend_members("fields", own)(facts, case)

@@ -127,7 +127,7 @@ _LARGEST = 2**32 - 1
 @MISTAKES.text(
     "sizes-of-32-bits",
     "Every wire format counts elements in 32 bits, and so do we.",
-    oracles="genmsg rosidl_adapter rosidl_parser",
+    oracles="genmsg rosidl_adapter rosidl_parser rosbags",
 )
 def _sizes(case: DefinitionCase) -> str:
     """Replace sizes and bounds of more than 32 bits by the largest number of 32 bits."""

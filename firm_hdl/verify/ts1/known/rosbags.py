@@ -7,27 +7,24 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any
 
 from firm_hdl.model import (
     Array,
-    Constant,
     Field,
-    Interface,
     Message,
     Sequence,
     String,
-    rebuilt,
 )
 from firm_hdl.verify.ts1.case import DefinitionCase
-from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.known.rule import (
     Line,
     Rules,
     mend_constants,
     mend_members,
+    rebuild,
+    types_back,
     whole_bool,
-    without_hash,
 )
 from firm_hdl.verify.ts1.known.texts import (
     FLOATS,
@@ -43,8 +40,6 @@ from firm_hdl.verify.ts1.known.texts import (
 
 __all__ = ["RULES"]
 
-Member = TypeVar("Member", Field, Constant)
-
 RULES = Rules("rosbags")
 """Definitions that rosbags refuses or reads differently."""
 
@@ -57,10 +52,8 @@ def _line_ends(case: DefinitionCase) -> str:
 # wstring.
 
 
-def _narrow(interface: Interface) -> Interface:
-    assert isinstance(interface, Message)
-
-    def narrow(item: Member) -> Member:
+def _narrow(message: Message) -> Message:
+    def narrow(item: Field) -> Field:
         kind: Any = item.type
         match kind:
             case String():
@@ -69,17 +62,16 @@ def _narrow(interface: Interface) -> Interface:
                 kind = replace(kind, element=replace(text, wide=False))
         return replace(item, type=kind)
 
-    return rebuilt(
-        interface,
-        lambda message: replace(
-            message,
-            fields=tuple(map(narrow, message.fields)),
-            constants=tuple(map(narrow, message.constants)),
-        ),
-    )
+    return replace(message, fields=tuple(map(narrow, message.fields)))
 
 
-@RULES.lines("rosbags-wstring", "rosbags does not know wstring.", dialect="ros2", ours=_narrow)
+@RULES.lines(
+    "rosbags-wstring",
+    "rosbags does not know wstring.",
+    dialect="ros2",
+    theirs=types_back("wstring", "string"),
+    hashed=rebuild(_narrow),
+)
 def _narrow_lines(line: Line, case: DefinitionCase) -> Line:
     return replace(line, type=line.type[1:]) if line.base == "wstring" else line
 
@@ -121,20 +113,23 @@ def _upper_lines(line: Line, case: DefinitionCase) -> Line:
 _PLACEHOLDER, _STAND_IN = "structure_needs_at_least_one_member", "structure_has_one_more_member"
 
 
-def _placeholders_back(facts: Facts, case: DefinitionCase) -> Facts:
-    def back(field: dict[str, Any]) -> dict[str, Any]:
-        return {**field, "name": _PLACEHOLDER} if field["name"] == _STAND_IN else field
+def _placeholder_back(field: dict[str, Any]) -> dict[str, Any]:
+    return {**field, "name": _PLACEHOLDER} if field["name"] == _STAND_IN else field
 
-    facts = mend_members("fields", back)(facts, case)
-    # The hash is that of a message with the other name.
-    is_named = _PLACEHOLDER in (case.text if case.before is None else case.before)
-    return without_hash(facts) if is_named else facts
+
+def _with_stand_in(message: Message) -> Message:
+    fields = (
+        replace(item, name=_STAND_IN) if item.name == _PLACEHOLDER else item
+        for item in message.fields
+    )
+    return replace(message, fields=tuple(fields))
 
 
 @RULES.lines(
     "rosbags-placeholders",
     "rosbags takes a field of this name for the one that messages without fields get.",
-    theirs=_placeholders_back,
+    theirs=mend_members("fields", _placeholder_back),
+    hashed=rebuild(_with_stand_in),
 )
 def _plain_placeholders(line: Line, case: DefinitionCase) -> Line:
     is_one = line.name == _PLACEHOLDER and not line.equals
@@ -230,7 +225,7 @@ def _fraction_lines(line: Line, case: DefinitionCase) -> Line:
     "rosbags-char-hash",
     "rosbags hashes char of a .msg as a character, and rosidl as a uint8.",
     dialect="ros2",
-    alike={"char": "uint8"},
+    theirs=types_back("char", "uint8"),
 )
 def _uint8_lines(line: Line, case: DefinitionCase) -> Line:
     return replace(line, type=f"uint8{line.type[4:]}") if line.base == "char" else line

@@ -8,12 +8,12 @@ difference hides no other difference.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias, TypeVar
 
 from firm_hdl.frontend.sources import Language
-from firm_hdl.model import Dialect, Interface
+from firm_hdl.model import Dialect, Interface, Message, Service, rebuilt
 from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 
@@ -23,10 +23,13 @@ __all__ = [
     "Rules",
     "by_lines",
     "each_line",
+    "lines_of",
     "mend_constants",
     "mend_members",
     "mend_messages",
     "mend_values",
+    "rebuild",
+    "types_back",
     "whole_bool",
     "without_hash",
 ]
@@ -62,11 +65,9 @@ class KnownRule:
     theirs : callable or None
         Returns the oracle's facts without the difference. Names and values that `rewrite` has
         replaced are restored.
-    ours : callable or None
-        Returns our model without the difference. It is needed if the text of `rewrite` means
-        something else.
-    alike : mapping of str to str
-        Primitives that `rewrite` replaces: their names, and those of the replacements.
+    hashed : callable or None
+        Returns our model with the difference. Only type hashes are computed from the result. It is
+        needed if the text of `rewrite` has another hash, or the oracle hashes another type.
     unavoidable : callable or None
         Whether a definition has the difference, if no text can avoid it. If we refuse such a
         definition and the oracle accepts it, it is not judged.
@@ -81,8 +82,7 @@ class KnownRule:
     rewrite: _Rewrite | None = None
     is_mistake: bool = False
     theirs: Mend | None = None
-    ours: Callable[[Interface], Interface] | None = None
-    alike: Mapping[str, str] = field(default_factory=dict)
+    hashed: Callable[[Interface], Interface] | None = None
     unavoidable: Callable[[DefinitionCase], bool] | None = None
 
     def is_about(self, oracle: str, release: str, case: DefinitionCase) -> bool:
@@ -214,15 +214,25 @@ def by_lines(change: Callable[[Line, DefinitionCase], Line]) -> _Rewrite:
 
     def rewrite(case: DefinitionCase) -> str:
         def line(text: str) -> str:
-            match = _LINE.fullmatch(text)
-            if match is None:
-                return text
-            parts = {name: part or "" for name, part in match.groupdict().items()}
-            return str(change(Line(**parts), case))
+            found = _line_of(text)
+            return text if found is None else str(change(found, case))
 
         return each_line(case.text, line)
 
     return rewrite
+
+
+def lines_of(text: str) -> list[Line]:
+    """Return the lines of a ``.msg``, ``.srv`` or ``.action`` that declare something."""
+    found = map(_line_of, re.split(r"\r\n|\r|\n", text))
+    return [line for line in found if line is not None]
+
+
+def _line_of(text: str) -> Line | None:
+    match = _LINE.fullmatch(text)
+    if match is None:
+        return None
+    return Line(**{name: part or "" for name, part in match.groupdict().items()})
 
 
 def each_line(text: str, change: Callable[[str], str]) -> str:
@@ -258,6 +268,66 @@ def mend_members(part: str, change: Callable[[dict[str, Any]], dict[str, Any]]) 
 def mend_constants(change: Callable[[dict[str, Any]], dict[str, Any]]) -> Mend:
     """Return a function of facts that changes each constant."""
     return mend_members("constants", change)
+
+
+def types_back(old: str, new: str) -> Mend:
+    """Return a function of facts that restores a primitive that a rule has replaced.
+
+    Only members whose line in a ``.msg`` has the primitive get it back.
+
+    Parameters
+    ----------
+    old, new : str
+        Names of the primitive, and of the other one in the rewritten text.
+    """
+
+    def mend(facts: Facts, case: DefinitionCase) -> Facts:
+        lines = [line for line in lines_of(case.text) if line.base == old]
+        for part, is_constant in (("fields", False), ("constants", True)):
+            names = {line.name for line in lines if bool(line.equals) is is_constant}
+
+            def back(member: dict[str, Any], names: set[str] = names) -> dict[str, Any]:
+                base = re.split(r"[\[<]", member["type"], maxsplit=1)[0]
+                if base != new or member["name"] not in names:
+                    return member
+                return {**member, "type": old + member["type"].removeprefix(new)}
+
+            facts = mend_members(part, back)(facts, case)
+        return facts
+
+    return mend
+
+
+def rebuild(change: Callable[[Message], Message]) -> Callable[[Interface], Interface]:
+    """Return a function of a model that changes each message, as for `KnownRule.hashed`."""
+
+    def of_message(message: Message) -> Message:
+        return rebuilt(message, change)
+
+    def of_service(service: Service) -> Service:
+        return replace(
+            service,
+            request=of_message(service.request),
+            response=of_message(service.response),
+            event=None if service.event is None else of_message(service.event),
+        )
+
+    def of_model(interface: Interface) -> Interface:
+        match interface:
+            case Message():
+                return of_message(interface)
+            case Service():
+                return of_service(interface)
+        return replace(
+            interface,
+            goal=of_message(interface.goal),
+            result=of_message(interface.result),
+            feedback=of_message(interface.feedback),
+            services=tuple(map(of_service, interface.services)),
+            wrappers=tuple(map(of_message, interface.wrappers)),
+        )
+
+    return of_model
 
 
 def mend_values(change: Callable[[str, Any], Any]) -> Mend:

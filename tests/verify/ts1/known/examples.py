@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.model import Message, Service
+from firm_hdl.model import PRIMITIVES, Message, Service, String
 
 __all__ = ["EXAMPLES", "Example", "drop_last", "refuse"]
 
@@ -163,10 +163,16 @@ _B = {
     "typedef sequence<long> L; typedef wstring T; struct B { long x; }; }; };"
 }
 
+_WIDE, _CHAR, _UINT8 = String(wide=True), PRIMITIVES["ros2"]["char"], PRIMITIVES["ros2"]["uint8"]
+
 EXAMPLES: tuple[Example, ...] = (
     # Definitions that rosbags refuses, or reads differently.
     _ros2("rosbags-crlf", "rosbags", "int8 X=1\r\nint8 a\r\n", _constant(value=2)),
     _ros2("rosbags-wstring", "rosbags", "wstring<=4[] a\n", _field(0, name="b")),
+    # The same primitive beside it, or where it is, is another difference.
+    _ros2("rosbags-wstring", "rosbags", "wstring w\nstring s\n", _field(1, type=_WIDE)),
+    _ros2("rosbags-wstring", "rosbags", "wstring w\nstring s\n", _field(0, type=String())),
+    _ros2("rosbags-wstring", "rosbags", "wstring w\nstring S=x\n", _constant(type=_WIDE)),
     _ros2(
         "rosbags-special-types",
         "rosbags",
@@ -194,6 +200,8 @@ EXAMPLES: tuple[Example, ...] = (
     _ros1("rosbags-floats", "rosbags", "float32 LOW = 0\n", _constant(value=-0.0)),
     _ros2("rosbags-floats", "rosbags", "float64 X=-inf # low\n", _constant(value=float("inf"))),
     _ros2("rosbags-char-hash", "rosbags", "char c\n", _field(0, name="d")),
+    _ros2("rosbags-char-hash", "rosbags", "char c\nuint8 u\n", _field(1, type=_CHAR)),
+    _ros2("rosbags-char-hash", "rosbags", "char c\nuint8 u\n", _field(0, type=_UINT8)),
     # Definitions that rosbags accepts.
     _ros2("rosbags-names", "rosbags", "int32 Bad\n", drop_last),
     _ros2(
@@ -221,6 +229,8 @@ EXAMPLES: tuple[Example, ...] = (
     _ros1("ros1-64-bit-limits", "genmsg", "int64 X=9223372036854775808\n", drop_last),
     _ros1("ascii-only", "genmsg", "int8 größe\n", drop_last),
     _ros1("sizes-of-32-bits", "genmsg", "int8[4294967296] x\n", drop_last),
+    _ros1("sizes-of-32-bits", "rosbags", "int8[4294967296] x\n", drop_last),
+    _ros2("sizes-of-32-bits", "rosbags", "int8[<=4294967296] x\n", drop_last),
     # rosidl.
     _ros2("ascii-only", "rosidl_adapter", "int8 X=\uff11\n", _constant(value=2)),
     _ros2("ascii-only", "rosidl_parser", "int8 X=\uff11\n", _constant(value=2)),

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
-from firm_hdl.model import Array, Field, Message, Sequence, String
+from firm_hdl.model import Action, Array, Field, Message, Sequence, Service, String
 from tests.verify.ts1.known.rewriting import BY_KEY, case_of, hidden, numbered
 
 
@@ -122,24 +123,15 @@ def test_names_of_constants_are_put_back(key):
     ]
 
 
-@pytest.mark.parametrize("is_changed", [False, True])
-def test_placeholders_are_put_back_and_their_hash_is_none(is_changed):
-    text = "uint8 structure_needs_at_least_one_member"
-    more = {"text": "uint8 x", "before": text} if is_changed else {"text": text}
-    given = facts_of([{"name": "structure_has_one_more_member"}, {"name": "b"}], hash="x", md5="y")
-    found = corrected("rosbags-placeholders", given, **more)
-    names = [{"name": "structure_needs_at_least_one_member"}, {"name": "b"}]
-    assert found == facts_of(names, md5="y")
-
-
-@pytest.mark.parametrize("before", [None, "uint8 y"])
-def test_hash_stays_where_no_placeholder_is(before):
-    # Only the text before a change counts.
-    text = "uint8 structure_needs_at_least_one_member" if before else "uint8 y"
-    found = corrected(
-        "rosbags-placeholders", facts_of([{"name": "b"}], hash="x"), text, before=before
-    )
-    assert found == facts_of([{"name": "b"}], hash="x")
+def test_placeholders_are_put_back_and_hashed_by_their_other_name():
+    other, own = "structure_has_one_more_member", "structure_needs_at_least_one_member"
+    given = facts_of([{"name": other}, {"name": "b"}], hash="x", md5="y")
+    found = corrected("rosbags-placeholders", given, f"uint8 {own}")
+    assert found == facts_of([{"name": own}, {"name": "b"}], hash="x", md5="y")
+    inner = message_of("p/msg/I", field_of(own, String()), field_of("b", String()))
+    hashed = BY_KEY["rosbags-placeholders"].hashed(message_of("p/msg/A", field_of("i", inner)))
+    assert [each.name for each in hashed.fields[0].type.fields] == [other, "b"]
+    assert [each.name for each in hashed.fields] == ["i"]
 
 
 @pytest.mark.parametrize(
@@ -218,8 +210,8 @@ def test_wide_texts_are_narrow_to_rosbags_wherever_they_are():
         "again": Array(element=inner, count=3),
     }
     fields = [field_of(name, kind) for name, kind in kinds.items()]
-    ours = BY_KEY["rosbags-wstring"].ours
-    found = ours(message_of("p/msg/A", *fields))
+    hashed = BY_KEY["rosbags-wstring"].hashed
+    found = hashed(message_of("p/msg/A", *fields))
     types = {each.name: each.type for each in found.fields}
     assert types["plain"] == String(bound=3)
     assert types["narrow"] == String()
@@ -299,7 +291,37 @@ def test_the_bound_of_texts_is_not_the_list_s(text, language):
         text,
         language=language,
     )
-    assert found == facts_of([{"name": "a", "type": "wstring<=3[]"}, *others], names=["y"])
+    own = {"name": "a", "type": "wstring<=3[]"}
+    assert found == facts_of([own, *others], hash="x", names=["y"])
+
+
+def test_a_list_of_texts_is_hashed_with_their_bound():
+    kinds = {
+        "texts": Sequence(element=String(wide=True, bound=3)),
+        "own": Sequence(element=String(wide=True, bound=3), bound=4),
+        "narrow": Sequence(element=String(bound=3)),
+        "none": Sequence(element=String(wide=True)),
+    }
+    message = message_of("p/srv/S_Request", *(field_of(*each) for each in kinds.items()))
+    after = replace(message.fields[0], type=replace(kinds["texts"], bound=3))
+    other = replace(message, fields=(after, *message.fields[1:]))
+    hashed = BY_KEY["ros2-wstring-sequences"].hashed
+    assert hashed(message) == other
+    # Wherever a message is in a service or an action.
+    plain = message_of("p/srv/S_Response")
+    service = Service(name="p/srv/S", dialect="ros2", request=message, response=plain)
+    with_event = replace(service, response=message, event=message_of("E", field_of("r", message)))
+    assert hashed(service) == replace(service, request=other)
+    assert hashed(with_event) == replace(
+        with_event, request=other, response=other, event=message_of("E", field_of("r", other))
+    )
+    parts = {"name": "p/action/A", "dialect": "ros2"}
+    given, wanted = (
+        Action(**parts, goal=m, result=plain, feedback=m, services=(s,), wrappers=(m, plain))
+        for m, s in ((message, service), (other, hashed(service)))
+    )
+    assert hashed(given) == wanted
+    assert hashed(replace(given, result=message)).result == other
 
 
 @pytest.mark.parametrize(

@@ -11,12 +11,13 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged
+from firm_hdl.verify.ts1 import comparison
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.known import KNOWN
 from firm_hdl.verify.ts1.known.texts import hidden, renamed, renamed_back, shown
 from tests.verify.judged import assert_known, assert_passed
-from tests.verify.ts1.known.examples import EXAMPLES, drop_last, refuse
+from tests.verify.ts1.known.examples import EXAMPLES, Example, drop_last, refuse
 
 ERRATA = Path(__file__).parents[4] / "docs" / "errata.md"
 
@@ -61,6 +62,55 @@ def test_an_unjudgeable_text_excuses_no_other_fault(court, name, monkeypatch):
     assert_passed(outcome(here, example, monkeypatch))
     for fault in (example.fault, refuse, drop_last):
         assert isinstance(outcome(here, example, monkeypatch, fault).verdict, Failed)
+
+
+WITH_HASH = [
+    name for name, each in BY_NAME.items() if (each.oracle, each.distro) == ("rosbags", "lyrical")
+]
+NEW_PARSER = Example(
+    key="ros2-wstring-sequences",
+    oracle="rosidl_parser-4.9",
+    text="wstring<=4[] x\nuint16 last\n",
+    fault=drop_last,
+)
+
+
+@pytest.mark.parametrize("name", [*WITH_HASH, "rosidl_parser-4.9"])
+def test_a_known_difference_hides_no_wrong_hash(court, name, monkeypatch):
+    example = BY_NAME.get(name, NEW_PARSER)
+    here = court(example.distro, example.files)
+    found = outcome(here, example, monkeypatch)
+    assert_known(found, example.key)
+    monkeypatch.setattr(comparison, "type_hash", lambda interface: "RIHS01_0")
+    with_fault = outcome(here, example, monkeypatch)
+    if found.is_refused:
+        assert with_fault.verdict == found.verdict
+    else:
+        assert any("hash" in text for text in with_fault.verdict.details), with_fault.verdict
+        assert isinstance(with_fault.verdict, Failed)
+
+
+def test_a_comment_about_a_placeholder_hides_nothing(court, monkeypatch):
+    text = "# structure_needs_at_least_one_member\nint8 a\nuint16 last\n"
+    here = court("lyrical", {"p/msg/A.msg": text})
+    assert_passed(here.outcome("rosbags", "p/msg/A"))
+    monkeypatch.setattr(comparison, "type_hash", lambda interface: "RIHS01_0")
+    assert isinstance(here.outcome("rosbags", "p/msg/A").verdict, Failed)
+
+
+@pytest.mark.parametrize("members", ["long x; long x;", "@optional long x;"])
+@pytest.mark.parametrize("oracle", ["rosidl_adapter", "rosidl_adapter-4.9"])
+def test_who_does_not_read_idl_does_not_judge_who_needs_what_we_refuse(court, oracle, members):
+    idl = f"module p {{ module msg {{ struct I {{ {members} }}; }}; }};"
+    files = {"p/msg/I.idl": idl, "p/msg/A.msg": "I i\n", "p/srv/S.srv": "I i\n---\n"}
+    here = court("lyrical", files)
+    why = NotJudged("it needs p/msg/I, which firm-hdl refuses and the oracle does not read")
+    assert here.outcome(oracle, "p/msg/A").verdict == why
+    assert here.outcome(oracle, "p/srv/S").verdict == why
+    # A mistake of the definition itself is one.
+    other = court("lyrical", {**files, "p/msg/A.msg": "I i\nint8 X=1\nint8 Y\nint8 a=5\n"})
+    found = other.outcome(oracle, "p/msg/A").verdict
+    assert not isinstance(found, NotJudged)
 
 
 def test_every_entry_has_an_example_with_a_twin_and_stands_in_the_errata():

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import pytest
 
-from firm_hdl.model import Constant, Message, String
 from firm_hdl.verify.ts1.known.idl_values import integer_of
 from firm_hdl.verify.ts1.known.rule import KnownRule, Line, by_lines, each_line
 from firm_hdl.verify.ts1.known.texts import hidden, renamed, renamed_back, shown
@@ -124,16 +123,22 @@ def test_every_ascii_character_can_be_hidden():
     assert shown("\ue080\udfffé") == "\ue080\udfffé"
 
 
-def test_constants_of_wide_text_are_narrow_to_rosbags():
-    constants = tuple(
-        Constant(name=name, type=String(wide=wide, bound=bound), value="x", text="x")
-        for name, wide, bound in (("A", True, None), ("B", False, 3), ("C", True, 4))
-    )
-    message = Message(name="p/msg/A", dialect="ros2", fields=(), constants=constants)
-    found = BY_KEY["rosbags-wstring"].ours(message)
-    kinds = [each.type for each in found.constants]
-    assert kinds == [String(), String(bound=3), String(bound=4)]
-    assert [each.name for each in found.constants] == ["A", "B", "C"]
+def test_only_members_that_were_rewritten_get_their_primitive_back():
+    def facts(fields, constants=()):
+        members = [[{"name": n, "type": t} for n, t in each] for each in (fields, constants)]
+        return {"structure": {"p/A": dict(zip(("fields", "constants"), members, strict=True))}}
+
+    text = "wstring<=2[] a\nstring b\nwstring C=x\nstring D=y\nwstring e x\nint8 f # wstring g\n"
+    read = [(name, "string") for name in ("b", "C", "e", "g")]
+    given = facts([("a", "string<=2[]"), *read], [(name, "string") for name in "CDa"])
+    back = BY_KEY["rosbags-wstring"].theirs(given, case_of(text))
+    after = [("b", "string"), ("C", "string"), ("e", "wstring"), ("g", "string")]
+    constants = [("C", "wstring"), ("D", "string"), ("a", "string")]
+    assert back == facts([("a", "wstring<=2[]"), *after], constants)
+    # Another primitive is another difference.
+    other = facts([("c", "uint8[3]"), ("d", "uint16")])
+    mended = BY_KEY["rosbags-char-hash"].theirs(other, case_of("char[3] c\nchar d\n"))
+    assert mended == facts([("c", "char[3]"), ("d", "uint16")])
 
 
 RULE = KnownRule(key="k", oracles=frozenset({"a"}), text="")
