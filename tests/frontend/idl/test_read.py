@@ -105,9 +105,10 @@ def test_constants_are_looked_up_from_the_inside_to_the_outside():
     assert read(text)[1] == []
 
 
-def test_constants_of_other_modules_need_their_scope():
-    text = """module a { module b { const long N = 3; }; };
-      module p { module msg { struct T { long x[N]; long y[a::b::N]; }; }; };"""
+@pytest.mark.parametrize("module", ["b", "bits", "B_constants"])
+def test_constants_of_other_modules_need_their_scope(module):
+    text = f"""module a {{ module {module} {{ const long N = 3; }}; }};
+      module p {{ module msg {{ struct T {{ long x[N]; long y[a::{module}::N]; }}; }}; }};"""
     (wrong,) = read(text)[1]
     assert wrong.message == "constant 'N' is not declared above"
 
