@@ -1,8 +1,8 @@
 """A known difference between an oracle and firm-hdl.
 
 A rule removes one difference, and nothing else. It changes the text that the oracle reads, the text
-that both read, the facts of the oracle, or our model. Everything else is then compared. So a known
-difference hides no other difference.
+that both read, the facts of the oracle, or the model that we hash. Everything else is compared.
+So a known difference hides no other difference.
 """
 
 from __future__ import annotations
