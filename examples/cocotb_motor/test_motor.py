@@ -6,7 +6,7 @@ import struct
 import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, FallingEdge, ValueChange
-from cocotbext.axi import AxiStreamBus, AxiStreamSource
+from cocotbext.axi import AxiStreamBus, AxiStreamFrame, AxiStreamSource
 from rosbags.typesys import Stores, get_typestore
 
 STORE = get_typestore(Stores.ROS2_LYRICAL)
@@ -17,6 +17,12 @@ def packet(speed):
     """Serialize a Twist."""
     message = TWIST(linear=VECTOR(x=speed, y=0.5, z=-1.0), angular=VECTOR(x=2.0, y=0.0, z=3.0))
     return bytes(STORE.serialize_cdr(message, "geometry_msgs/msg/Twist"))
+
+
+def frame(data, lanes):
+    """Return a frame; the lanes that are left in its last beat are not kept, and have any bytes."""
+    left = -len(data) % lanes
+    return AxiStreamFrame(data + random.randbytes(left), tkeep=[1] * len(data) + [0] * left)
 
 
 def pauses(seed):
@@ -49,8 +55,8 @@ async def only_good_packets_move_the_motor(dut):
     damaged = [bad[:-1], bad[:5], bad + bytes(8), b"\0\2" + bad[2:]]
     good = [1.0, 0.75, -2.5, 1e300]
     for speed, harm in zip(good, damaged, strict=True):
-        await source.send(harm)
-        await source.send(packet(speed))
+        await source.send(frame(harm, source.byte_lanes))
+        await source.send(frame(packet(speed), source.byte_lanes))
     await source.wait()
     await ClockCycles(dut.aclk, 10)
     assert seen == good

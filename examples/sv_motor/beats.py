@@ -6,6 +6,7 @@ rosbags serializes the messages. Some packets are damaged; the motor must never 
 
 from __future__ import annotations
 
+import random
 import struct
 import sys
 from collections.abc import Iterator
@@ -25,11 +26,15 @@ def packet(speed: float) -> bytes:
 
 
 def beats(data: bytes) -> Iterator[str]:
-    """Yield `tdata` in hexadecimal, first byte lowest, and `tkeep` and `tlast` in binary."""
+    """Yield `tdata` in hexadecimal, first byte lowest, and `tkeep` and `tlast` in binary.
+
+    Lanes that are not kept have random bytes, which the motor has to ignore.
+    """
     for place in range(0, len(data), BUS_BYTES):
         part = data[place : place + BUS_BYTES]
         is_last = place + BUS_BYTES >= len(data)
-        yield f"{int.from_bytes(part, 'little'):08x} {(1 << len(part)) - 1:04b} {is_last:b}\n"
+        lanes = int.from_bytes(part + random.randbytes(BUS_BYTES - len(part)), "little")
+        yield f"{lanes:08x} {(1 << len(part)) - 1:04b} {is_last:b}\n"
 
 
 def main(folder: Path) -> None:

@@ -159,8 +159,8 @@ READ_PLAIN = [
 
 
 def stalls_on(bus_bytes):
-    """Return the stalls for runs on a bus: of two buses, one has none, and one has them."""
-    return by_depth(STALLS[bus_bytes > 4 :][:1], STALLS)
+    """Return the stalls for runs on a bus: every second bus width has none."""
+    return by_depth(STALLS[BUS_WIDTHS.index(bus_bytes) % 2 :][:1], STALLS)
 
 
 def check_reading(message, table, bus_bytes, plans=STALLS, **options):
@@ -177,12 +177,12 @@ def check_reading(message, table, bus_bytes, plans=STALLS, **options):
             assert (reported.name, from_transfers(rx.plan, message, got)) == (status, value), text
 
 
-@pytest.mark.parametrize("bus_bytes", by_depth([4, 16], BUS_WIDTHS))
+@every_bus
 def test_first_error_of_a_packet_in_wire_order_is_reported(bus_bytes):
     check_reading(MESSAGE, READ, bus_bytes, stalls_on(bus_bytes))
 
 
-@some_buses
+@every_bus
 def test_string_at_the_end_of_a_message_is_checked_before_trailing_bytes(bus_bytes):
     check_reading(LAST, READ_LAST, bus_bytes, stalls_on(bus_bytes))
 
@@ -287,7 +287,7 @@ def lanes_of(items, lanes, last, noise):
     return found
 
 
-@pytest.mark.parametrize("bus_bytes", by_depth([2, 16], BUS_WIDTHS))
+@every_bus
 def test_first_error_of_a_message_is_reported_and_marks_its_packet(bus_bytes):
     tx = Serializer(SENT, bus_bytes=bus_bytes)
     leaves = {str(leaf): number for number, leaf in enumerate(tx.plan.leaves)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -44,23 +45,26 @@ def unpacked(records: bytes, size: int) -> list[Transfer]:
     ]
 
 
-def packed_packets(packets: Iterable[bytes], bus_bytes: int) -> bytes:
+def packed_packets(packets: Iterable[bytes], bus_bytes: int, *, counts: bool = False) -> bytes:
     """Return the beats of packets, as bytes of the protocol.
 
     The payload of a beat has `bus_bytes` bytes of data, then a byte: `count` in its lowest bits,
-    and `last` above. Lanes that are not valid are 0.
+    and `last` above. Lanes that are not valid have random bytes, and with `counts` so has `count`
+    in beats that are not the last. Noise depends on the packet alone, so runs can be repeated.
     """
-    return b"".join(_beats(packet, bus_bytes) for packet in packets)
+    return b"".join(_beats(packet, bus_bytes, counts) for packet in packets)
 
 
-def _beats(packet: bytes, bus_bytes: int) -> bytes:
-    count = max(1, -(-len(packet) // bus_bytes))
-    beats = np.zeros((count, bus_bytes + 1), np.uint8)
-    padded = packet.ljust(count * bus_bytes, b"\0")
-    beats[:, :bus_bytes] = np.frombuffer(padded, np.uint8).reshape(count, bus_bytes)
-    beats[:, bus_bytes] = bus_bytes
-    beats[-1, bus_bytes] = len(packet) - (count - 1) * bus_bytes | 1 << bus_bytes.bit_length()
-    return beats.tobytes()
+def _beats(packet: bytes, bus_bytes: int, counts: bool) -> bytes:
+    noise = random.Random(packet)
+    beats = max(1, -(-len(packet) // bus_bytes))
+    padding = noise.randbytes(beats * bus_bytes - len(packet))
+    rows = np.full((beats, bus_bytes + 1), bus_bytes, np.uint8)
+    rows[:, :bus_bytes] = np.frombuffer(packet + padding, np.uint8).reshape(beats, bus_bytes)
+    if counts:
+        rows[:, bus_bytes] = [noise.randint(0, bus_bytes) for _ in range(beats)]
+    rows[-1, bus_bytes] = bus_bytes - len(padding) | 1 << bus_bytes.bit_length()
+    return rows.tobytes()
 
 
 @dataclass(slots=True)

@@ -159,10 +159,13 @@ class FastSimulation:
         else:
             self._send(port, packed(map(port.bits, payloads), port.bytes))
 
-    def send_packets(self, name: str, packets: Iterable[bytes]) -> None:
-        """Put packets into the queue of a packet stream, back to back."""
+    def send_packets(self, name: str, packets: Iterable[bytes], *, counts: bool = False) -> None:
+        """Put packets into the queue of a packet stream, back to back.
+
+        Lanes that are not valid are random; with `counts`, what a deserializer ignores is, too.
+        """
         port = self.ports.stream(name, is_input=True, is_packets=True)
-        self._send(port, packed_packets(packets, port.bus_bytes))
+        self._send(port, packed_packets(packets, port.bus_bytes, counts=counts))
 
     def set(self, name: str, value: object) -> None:
         """Set a plain input, from the current cycle on."""

@@ -12,13 +12,21 @@ from pathlib import Path
 import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, RisingEdge, with_timeout
-from cocotbext.axi import AxiStreamBus, AxiStreamSink, AxiStreamSource
+from cocotbext.axi import AxiStreamBus, AxiStreamFrame, AxiStreamSink, AxiStreamSource
 
 
 def pauses(seed):
     chosen = random.Random(seed)
     while True:
         yield chosen.random() < 0.4
+
+
+def noisy(packet, lanes, noise):
+    """Return a frame with random bytes in lanes that are not kept, and random `tkeep` before."""
+    ignored = (len(packet) - 1) // lanes * lanes
+    keep = [noise.getrandbits(1) for _ in range(ignored)] + [1] * (len(packet) - ignored)
+    unkept = noise.randbytes(-len(packet) % lanes)
+    return AxiStreamFrame(packet + unkept, tkeep=keep + [0] * len(unkept))
 
 
 @cocotb.test()
@@ -41,8 +49,9 @@ async def packets_come_back(dut):
     await ClockCycles(dut.aclk, 2)
     dut.aresetn.value = 1
     await RisingEdge(dut.aclk)
+    noise = random.Random(3)
     for packet in packets:
-        await source.send(packet)
+        await source.send(noisy(packet, source.byte_lanes, noise))
     for packet in packets:
         frame = await with_timeout(sink.recv(), 200, "us")
         assert bytes(frame.tdata) == packet

@@ -112,3 +112,26 @@ def test_process_that_waits_for_its_first_change_fails(folder, tmp_path):
     output = run_bench(folder, tmp_path, changed)
     assert "0 failed" not in output, output
     assert "Failed 1 of 1 tests" in output
+
+
+# What the bench has to put where it does not count, in beats that are taken.
+NOISE = {
+    "bytes in lanes that are not kept": "s_axis_tlast && |(s_axis_tdata & ~{kept})",
+    "tkeep in beats that are not the last": "!s_axis_tlast && !(&s_axis_tkeep)",
+}
+
+
+@pytest.mark.parametrize("noise", NOISE)
+@pytest.mark.usefixtures("iverilog")
+def test_deserializer_that_does_not_ignore_noise_fails(folder, tmp_path, noise):
+    manifest = json.loads((folder / "manifest.json").read_text())
+    text = (folder / manifest["converters"]["deserializer"]["verilog"]).read_text()
+    kept = ", ".join(f"{{8{{s_axis_tkeep[{lane}]}}}}" for lane in reversed(range(8)))
+    seen = NOISE[noise].replace("{kept}", f"{{{kept}}}")
+    sees = f"""reg noisy = 0;
+    always @(posedge aclk) if (s_axis_tvalid && s_axis_tready && {seen}) noisy <= 1;
+    assign \\1 = \\2 | noisy;"""
+    changed, count = re.subn(r"assign (m_axis_status_tdata) = (.*);", sees, text)
+    assert count == 1
+    output = run_bench(folder, tmp_path, changed)
+    assert "Failed 1 of 1 tests" in output, output

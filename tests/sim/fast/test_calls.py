@@ -171,10 +171,27 @@ def test_what_is_sent_is_divided_between_payloads(channel, monkeypatch):
     channel.take()
     # A beat has five bytes here.
     design.send_packets("packets", [bytes(range(1, 11)), b"xyz!"])
-    beats = [b"\1\2\3\4\4", b"\5\6\7\x08\4", b"\x09\x0a\0\0\x0a", b"xyz!\x0c"]
-    parts = [b"".join(beats[:2]), b"".join(beats[2:])]
-    assert channel.take() == [(Order.SEND, b"\2\0" + part) for part in parts]
-    assert b"".join(beats) == packed_packets([bytes(range(1, 11)), b"xyz!"], 4)
+    (order, first), (same, second) = channel.take()
+    assert order == same == Order.SEND
+    assert first == b"\2\0" + b"\1\2\3\4\4" + b"\5\6\7\x08\4"
+    assert (second[:4], second[6:]) == (b"\2\0" + b"\x09\x0a", b"\x0a" + b"xyz!\x0c")
+    assert (first + second[2:])[2:] == packed_packets([bytes(range(1, 11)), b"xyz!"], 4)
+
+
+@pytest.mark.parametrize("counts", [False, True])
+def test_what_a_receiver_ignores_in_packets_is_noise(channel, counts):
+    design, packets = FastSimulation(Design()), [bytes([n]) * 9 for n in range(200)]
+    channel.take()
+    design.send_packets("packets", packets, counts=counts)
+    ((_, body),) = channel.take()
+    beats = np.frombuffer(body[2:], np.uint8).reshape(-1, 3, 5)
+    assert [each[:, :4].tobytes()[:9] for each in beats] == packets
+    for lane in (1, 2, 3):
+        assert len(set(beats[:, 2, lane])) > 64
+    assert {*beats[:, :2, 4].flat} == ({0, 1, 2, 3, 4} if counts else {4})
+    assert {*beats[:, 2, 4]} == {1 | 8}
+    # The same in each run.
+    assert body[2:] == packed_packets(packets, 4, counts=counts)
 
 
 def test_each_output_has_its_own_bytes_of_the_values(channel):

@@ -88,7 +88,7 @@ def run(design, engine, packets, stalls, cache: Path) -> tuple[list[Packet], lis
     options = ["-O0"]
     simulated = FastSimulation(design, engine=engine, stalls=stalls, cache=cache, options=options)
     with simulated as simulation:
-        simulation.send_packets("packets_in", packets)
+        simulation.send_packets("packets_in", packets, counts=True)
         simulation.run_until_idle(quiet=300)
         return simulation.packets("packets_out"), simulation.transfers("status")
 
