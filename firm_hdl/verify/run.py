@@ -123,6 +123,8 @@ def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWrit
         "paths": list(request.paths),
         "code": code_digest(),
         "inputs": inputs_digest(read),
+        "named": request.is_named,
+        "refused": bool(work.problems),
     }
     for system in systems:
         options |= system.options

@@ -133,6 +133,8 @@ def test_results_are_bound_to_all_options_and_inputs(tmp_path, fixed, capsys):
         "systems": ["ts3", "ts1"],
         "bus_bytes": [4, 8],
         "wire": "cdr",
+        "named": True,
+        "refused": False,
         "paths": [source],
         "of ts3": 1,
         "of ts1": 1,

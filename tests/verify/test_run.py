@@ -75,8 +75,14 @@ def test_a_file_of_results_has_the_options_of_all_systems(run_of, tmp_path):
     assert (options["ts1"], options["ts2"], options["wire"]) == ("chosen", "chosen", "cdr")
     assert [test.system for test in found.planned] == ["ts1", "ts2"]
     assert '"definitions that are refused": "2: p/A is bad"' in file.read_text()
+    # The types of a node are named.
+    assert (options["named"], options["refused"]) == (True, True)
     # The node is an input: another one makes another run.
     node.write_text("topics: {a: 1}\n")
     other = tmp_path / "other.jsonl"
     run_of(**{**asked, "results": str(other)})
     assert read_results(other).options["inputs"] != options["inputs"]
+    usual = tmp_path / "usual.jsonl"
+    run_of(results=str(usual))
+    options = read_results(usual).options
+    assert (options["named"], options["refused"]) == (False, False)

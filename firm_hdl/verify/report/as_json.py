@@ -19,7 +19,7 @@ def to_json(summary: Summary) -> str:
     """Write a report as JSON: the fields of `Summary`, and tests with their records."""
     # Each outcome is written once, below, because there may be a hundred thousand of them.
     content: dict[str, Any] = {"format": FORMAT, **asdict(replace(summary, outcomes=()))}
-    content["verdict"] = summary.counts.verdict
+    content["verdict"] = summary.verdict
     del content["outcomes"]
     for name in ("failed", "not_run", "not_judged", "uncovered", "slowest", "most_complex"):
         content[name] = [outcome.test.key for outcome in getattr(summary, name)]

@@ -31,14 +31,16 @@ _ORDER = (Failed.name, NotRun.name, NotJudged.name, KnownDifference.name, Passed
 def headline(summary: Summary) -> str:
     """Return the result in one line."""
     counts = summary.counts
-    if not counts.total:
+    if not counts.total and not summary.refused:
         return "? no tests"
     parts = [f"{number(counts.passed)} of {number(counts.total)} tests passed"]
     parts += [f"{number(counts.known)} with a known difference"] if counts.known else []
     parts += [f"{number(counts.failed)} failed"] if counts.failed else []
     parts += [f"{number(counts.not_run)} not run"] if counts.not_run else []
-    parts += [f"{number(counts.not_judged)} not judged"] if counts.not_judged else []
-    return f"{SIGNS[counts.verdict][0]} {', '.join(parts)}"
+    named = f", {number(counts.owed)} of them named" if counts.owed else ""
+    parts += [f"{number(counts.not_judged)} not judged{named}"] if counts.not_judged else []
+    parts += ["but definitions were refused"] if summary.refused else []
+    return f"{SIGNS[summary.verdict][0]} {', '.join(parts)}"
 
 
 def facts(summary: Summary) -> Iterator[tuple[str, str]]:

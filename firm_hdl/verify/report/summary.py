@@ -154,6 +154,8 @@ class Summary:
         The verdicts of the oracles of definitions.
     said : tuple of Remark
         Known differences from these oracles, and reasons why they did not judge.
+    refused : bool
+        Whether there were definitions with errors, of which no tests could be made.
     runs : tuple of RunSummary
     """
 
@@ -170,7 +172,13 @@ class Summary:
     coverage: tuple[CoverageSum, ...]
     oracles: tuple[OracleSum, ...]
     said: tuple[Remark, ...]
+    refused: bool
     runs: tuple[RunSummary, ...]
+
+    @property
+    def verdict(self) -> str:
+        """The worst outcome; ``failed``, too, if a definition was refused."""
+        return Failed.name if self.refused else self.counts.verdict
 
     @property
     def failed(self) -> list[Outcome]:
@@ -263,6 +271,7 @@ def summarise(files: Mapping[str, Results], title: str = "Verification of firm-h
         ),
         oracles=oracle_sums(outcomes),
         said=remarks_of(outcomes),
+        refused=any(results.options.get("refused") is True for results in files.values()),
         runs=tuple(_run(name, results) for name, results in files.items()),
     )
 

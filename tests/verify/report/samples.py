@@ -7,7 +7,7 @@ import random
 
 from firm_hdl.verify.results.file import Results
 from firm_hdl.verify.results.records import PlanCoverage, Record, Seconds, Test
-from firm_hdl.verify.results.verdict import Passed
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
 __all__ = ["a_record", "a_run", "a_test"]
 
@@ -70,3 +70,27 @@ def a_run(count=60, seed=1):
         records=records,
         sessions=({"started": "2026-01-01 00:00 UTC", "Python": "3.11.7"},),
     )
+
+
+VERDICTS = {
+    "passed": Passed(7),
+    "known": KnownDifference(("some-key",), 7),
+    "failed": Failed(("it is wrong",)),
+    "not_judged": NotJudged("nobody is here"),
+}
+
+
+def run_of(*records, planned=()):
+    tests = (*(record.test for record in records), *planned)
+    return Results(planned=tests, records={record.test.key: record for record in records})
+
+
+def mixed(**counts):
+    """Return a run with so many tests of each verdict; `not_run` tests are only planned."""
+    records = []
+    for name, verdict in VERDICTS.items():
+        for number in range(counts.get(name, 0)):
+            test = a_test(f"{name}_msgs/msg/T{number}")
+            records.append(a_record(test, verdict=verdict, seconds=Seconds(testing=1.0)))
+    planned = [a_test(f"not_run_msgs/msg/T{n}") for n in range(counts.get("not_run", 0))]
+    return run_of(*records, planned=planned)

@@ -101,11 +101,16 @@ def source(tmp_path):
 LINE = "not judged: p/msg/Wide (lyrical), ts3, 8-byte bus: it is wide\n"
 
 
-def test_named_type_that_is_not_judged_is_no_success(source, without_judge_of_wide, capsys):
+def test_named_type_that_is_not_judged_is_no_success(
+    source, without_judge_of_wide, tmp_path, capsys
+):
     call = ["verify", *FEW, "--path", source]
-    assert main([*call, "p/A", "p/Wide"]) == 1
+    page, results = tmp_path / "r.md", tmp_path / "r.jsonl"
+    report = ["--results", str(results), "--report", str(page)]
+    assert main([*call, *report, "p/A", "p/Wide"]) == 1
     output = capsys.readouterr().out
     assert LINE + "1 of 2 tests was not judged, although named, so the run fails\n" in output
+    assert "**- 1 of 2 tests passed, 1 not judged, 1 of them named**" in page.read_text()
     assert main([*call, "p/A"]) == 0
     assert "not judged" not in capsys.readouterr().out
 
