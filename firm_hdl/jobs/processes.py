@@ -138,8 +138,17 @@ def run_tool(
                 _running.discard(process)
     if process.returncode:
         said = (errors or "").strip() or output.strip()
-        raise ToolError(said or f"exit status {process.returncode}")
+        raise ToolError(_with_end(said, process.returncode))
     return output
+
+
+def _with_end(said: str, status: int) -> str:
+    """Return an output, with the end of its program if the output may not tell it."""
+    if status < 0:
+        # What a program has printed does not say that it crashed.
+        return f"{said}\nended by {signal.Signals(-status).name}".lstrip()
+    # A shell adds 128 to the signal that ended its last command.
+    return f"{said}\nexit status {status}".lstrip() if status > 128 or not said else said
 
 
 @contextmanager

@@ -23,6 +23,7 @@ __all__ = [
     "find_packaged",
     "find_program",
     "find_yosys",
+    "version_of",
 ]
 
 COMPILERS = ("g++", "c++", "clang++")
@@ -120,6 +121,15 @@ def find_compiler(user: str, *, with_zig: bool = False) -> tuple[str, ...]:
         f"{user} needs a C++ compiler, and none is installed "
         f"(Debian, Ubuntu: apt install g++{other})"
     )
+
+
+def version_of(path: str, option: str = "--version") -> str:
+    """Return what a program says of its version: three lines, or why it says nothing."""
+    try:
+        said = run_tool([path, option], Path.cwd())
+    except (ToolError, OSError) as error:
+        said = str(error)
+    return "; ".join(line.strip() for line in said.splitlines()[:3])
 
 
 def find_ghdl() -> str:

@@ -104,7 +104,8 @@ def cluster():
         n_workers=2,
         threads_per_worker=1,
         host="127.0.0.1",
-        dashboard_address=None,
+        # Any free port; `None` takes 8787, which may be in use.
+        dashboard_address="127.0.0.1:0",
         worker_dashboard_address=None,
         silence_logs=50,
     )

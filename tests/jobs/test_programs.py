@@ -239,3 +239,20 @@ def test_a_preferred_yosys_that_fails_is_an_error(monkeypatch, is_measured):
 def test_commands_of_this_test_are_all_there_are(install):
     """A twin: without the folder of the test, the shell would be found."""
     assert shutil.which("sh") is None
+
+
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        ("echo ' Tool 1.2'; echo '  of today'; echo; echo more", "Tool 1.2; of today; "),
+        ('test "$1" = -V && echo "Tool 3"', "Tool 3"),
+        ("", ""),
+        ("echo no memory; exit 1", "no memory"),
+    ],
+)
+def test_a_version_is_what_the_program_says(tmp_path, script, said):
+    tool = tmp_path / "tool"
+    tool.write_text(f"#!/bin/sh\n{script}\n")
+    tool.chmod(0o755)
+    assert programs.version_of(str(tool), "-V") == said
+    assert "No such file" in programs.version_of(str(tmp_path / "none"))

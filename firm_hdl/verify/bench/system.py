@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from firm_hdl.frontend import DISTROS
-from firm_hdl.jobs.programs import find_ghdl
+from firm_hdl.jobs.programs import find_ghdl, version_of
 from firm_hdl.verify.bench.run import run_bench
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
@@ -65,8 +65,8 @@ class Benches(TypesSystem):
 
     @property
     def options(self) -> Mapping[str, Any]:
-        """No options beside those of all systems."""
-        return {}
+        """What GHDL says of its version: results of another one are another run's."""
+        return {"ghdl": version_of(self._ghdl)}
 
     def run(self, recorder: Recorder) -> list[Judged]:
         """Run all benches, and print a table for each bus."""

@@ -34,9 +34,14 @@ class TextSimulator(Protocol):
     ----------
     title : str
         The name of the simulator in messages.
+    version : str
+        What the simulator says of its version.
     """
 
     title: str
+
+    @property
+    def version(self) -> str: ...
 
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
         """Run a trace; return rows of outputs as they are in `Trace.expected`.

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import made_by, run_tool
-from firm_hdl.jobs.programs import find_ghdl
+from firm_hdl.jobs.programs import find_ghdl, version_of
 from firm_hdl.verify.simulators.benches import RESULTS, STIMULI, written
 from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.vhdl.convert import convert
@@ -29,6 +29,10 @@ class Ghdl:
 
     def __init__(self) -> None:
         self.path = find_ghdl()
+
+    @property
+    def version(self) -> str:
+        return version_of(self.path)
 
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
         files: dict[str, str] = {}

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import made_by, run_tool
-from firm_hdl.jobs.programs import ProgramMissingError, find_program
+from firm_hdl.jobs.programs import ProgramMissingError, find_program, version_of
 from firm_hdl.verify.simulators.benches import RESULTS, written
 from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.verify.simulators.verilog import modules_of, write_inputs
@@ -44,6 +44,10 @@ class Icarus:
         if run is None:
             raise ProgramMissingError(f"{self.title} has no command vvp beside '{self.path}'")
         self.run_path = run
+
+    @property
+    def version(self) -> str:
+        return version_of(self.path, "-V")
 
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
         files = write_inputs(trace, tops(), folder)

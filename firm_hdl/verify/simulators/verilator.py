@@ -12,7 +12,7 @@ from pathlib import Path
 
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import made_by, run_tool
-from firm_hdl.jobs.programs import find_compiler
+from firm_hdl.jobs.programs import find_compiler, version_of
 from firm_hdl.verify.simulators.benches import RESULTS, written
 from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.verify.simulators.verilated import (
@@ -50,6 +50,10 @@ class Verilator:
     def __init__(self) -> None:
         self.path = find_verilator()
         self.compiler = find_compiler("Verilator")
+
+    @property
+    def version(self) -> str:
+        return version_of(self.path)
 
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
         files = write_inputs(trace, tops(), folder)

@@ -56,11 +56,13 @@ class Ts3(System):
 
     def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
         self._tasks, self._request, self._options = tasks, request, request.each_width
+        self._version = ""
 
     def __enter__(self) -> Ts3:
         request = self._request
         # Look for programs and libraries once, before the first type runs.
-        simulator(request.simulator)
+        if (other := simulator(request.simulator)) is not None:
+            self._version = other.version
         if not request.bags:
             wires = [wire_of(task.distro, request.wire) for task in self._tasks]
             for line in find_references(request.references, wires):
@@ -77,7 +79,7 @@ class Ts3(System):
         """The options that determine the cases, and how the cases are tested."""
         request = self._request
         return {
-            "simulator": request.simulator,
+            "simulator": f"{request.simulator} {self._version}".strip(),
             "seed": request.seed,
             "cases": request.most_cases,
             "stalls": request.stalled,

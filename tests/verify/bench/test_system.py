@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import firm_hdl.verify.bench.run as benches
@@ -202,11 +204,12 @@ def test_each_bus_is_run_by_itself_with_the_options_of_the_user(monkeypatch, cap
             yield [(test, record, lines_of(record))]
 
     monkeypatch.setattr(system, "find_ghdl", lambda: "own-ghdl")
+    monkeypatch.setattr(system, "version_of", lambda path: f"the version of {path}")
     monkeypatch.setattr(system, "run_tests", run_tests)
     task = TypeUnderTest(distro="jazzy", name="p/A", same=("humble", "jazzy"))
     request = Request(widths=(2, 8), jobs=5)
     benches = Benches([task], request)
-    assert not benches.options
+    assert benches.options == {"ghdl": "the version of own-ghdl"}
     found = benches.run(Recorder())
     assert asked == [((request, "own-ghdl"), [n, n], {"jobs": 5}) for n in (2, 8)]
     assert [(each.what, each.verdict.name) for each in found] == [
@@ -253,3 +256,10 @@ def test_results_are_kept_and_not_repeated(ghdl, tmp_path, monkeypatch, capsys):
     verdicts = {r.test.type: r.verdict.name for r in read_results(file).records.values()}
     assert verdicts == dict(zip(names, ("failed", "passed"), strict=True))
     assert "1 of 2 types" in capsys.readouterr().out
+    # The verdicts of this GHDL are not those of another one.
+    other = tmp_path / "other-ghdl"
+    other.write_text(f'#!/bin/sh\n[ "$1" = --version ] && exec echo other\nexec {ghdl} "$@"\n')
+    other.chmod(0o755)
+    monkeypatch.setenv("GHDL", str(other))
+    assert main(call) == 1
+    assert re.search(r'ghdl was "GHDL \d.*", and is "other"', capsys.readouterr().err)

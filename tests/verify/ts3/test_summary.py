@@ -187,6 +187,14 @@ def test_results_are_bound_to_the_options_of_the_cases():
     assert usual["references"] is None and usual["share_circuits"] is True
 
 
+def test_results_of_another_version_of_a_simulator_are_those_of_another_run(monkeypatch):
+    tool = SimpleNamespace(version="GHDL 7")
+    monkeypatch.setattr(system, "simulator", {"ghdl": tool, "python": None}.get)
+    for name, text in (("ghdl", "ghdl GHDL 7"), ("python", "python")):
+        with system.Ts3([], Request(simulator=name)) as entered:
+            assert entered.options["simulator"] == text
+
+
 def test_each_type_is_a_test_on_each_bus():
     tasks = [TypeUnderTest(distro="lyrical", name=n, same=("lyrical",)) for n in ("p/A", "p/B")]
     tests = system.Ts3(tasks, Request(widths=(2, 4))).tests
