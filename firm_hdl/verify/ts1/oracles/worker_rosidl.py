@@ -54,7 +54,9 @@ class _Rosidl:
 
     def parser(self, request):
         content = self.content(request)
-        parsed = _parsed(content, has_events=request["has_events"])
+        # rosidl_adapter changes comments, so of its IDL they are not those of the definition.
+        remarks = _idl_remarks if request["file"].endswith(".idl") else _no_remarks
+        parsed = _parsed(content, request["has_events"], remarks)
         facts = {"structure": self._without_placeholders(parsed, request)}
         # A type whose bound is the name of a constant has no hash, because a number is missing.
         is_numbered = not _has_named_bounds(facts["structure"])
@@ -216,8 +218,19 @@ def _element(content):
     return element
 
 
-def _parsed(content, has_events=False):
-    """Describe rosidl_parser's reading of a file."""
+def _no_remarks(annotated):
+    return {}
+
+
+def _idl_remarks(annotated):
+    """Return the comment and the unit of a member or of a constant."""
+    units = [each for each in annotated.get_annotation_values("unit") if isinstance(each, dict)]
+    unit = units[0].get("value") if units else None
+    return {"comment": "\n".join(annotated.get_comment_lines()), "unit": unit}
+
+
+def _parsed(content, has_events=False, remarks=_no_remarks):
+    """Describe rosidl_parser's reading of a file; `remarks` returns more about a member."""
     element = _element(content)
     messages = []
     if hasattr(element, "structure"):
@@ -229,7 +242,11 @@ def _parsed(content, has_events=False):
         for service in (element.send_goal_service, element.get_result_service):
             messages += _messages_of_service(service, has_events)
         messages.append(element.feedback_message)
-    return {_type(each.structure.namespaced_type): _parsed_message(each) for each in messages}
+    found = {_type(m.structure.namespaced_type): _parsed_message(m, remarks) for m in messages}
+    if hasattr(element, "structure") and "comment" in (said := remarks(element.structure)):
+        # Parts of services and actions have no comments in rosidl_parser.
+        found[_type(element.structure.namespaced_type)]["comment"] = said["comment"]
+    return found
 
 
 def _has_named_bounds(messages):
@@ -243,9 +260,9 @@ def _messages_of_service(service, has_events):
     return [service.request_message, service.response_message, *events]
 
 
-def _parsed_message(message):
+def _parsed_message(message, remarks=_no_remarks):
     members = [
-        {"name": each.name, "type": _type(each.type), "default": _default(each)}
+        {"name": each.name, "type": _type(each.type), "default": _default(each), **remarks(each)}
         for each in message.structure.members
     ]
     constants = []
@@ -253,7 +270,8 @@ def _parsed_message(message):
         kind = type(each.type).__name__
         # The type of a string constant has its own length as a bound.
         name = {"BoundedString": "string", "BoundedWString": "wstring"}.get(kind)
-        constants.append({"name": each.name, "type": name or _type(each.type), "value": each.value})
+        kind = name or _type(each.type)
+        constants.append({"name": each.name, "type": kind, "value": each.value, **remarks(each)})
     return {"fields": members, "constants": constants}
 
 
