@@ -61,6 +61,9 @@ def integer_of(expression: str, names: Mapping[str, int], modules: set[str]) -> 
     text = re.sub(r"(?:::)?\b(?:\w+::)+(?=\w)", "", expression.strip())
     text = re.sub(r"(?<![\w.])0(?=[0-7]+\b)", "0o", text)
     text = _ESCAPE.sub(lambda match: str(_character(match)), text)
+    if "#" in text:
+        # Python would read a comment.
+        return None
     try:
         return _worked_out(ast.parse(text, mode="eval").body, names)
     except (SyntaxError, ValueError, KeyError, OverflowError, MemoryError, RecursionError):

@@ -108,9 +108,12 @@ def test_a_file_s_own_constants_come_before_those_that_it_includes():
         ("-7 / 2", -3),
         ("1" + " + 1" * 20_000, None),
         ("9" * 5000, None),
+        # A comment in Python, not in IDL.
+        ("1048#576", None),
+        ("'#' + 1", 36),
     ],
 )
-def test_large_and_negative_values_of_expressions(expression, value):
+def test_large_negative_and_odd_values_of_expressions(expression, value):
     assert integer_of(expression, {}, set()) == value
 
 
