@@ -83,6 +83,30 @@ _DECLARED = re.compile(r"\bconst\s+[\w :<>,]*?\b(\w+)\s*=\s*([^;]*);")
 
 
 @RULES.text(
+    "idl-unseen-bounds",
+    "rosidl_parser takes a wstring whose bound is no constant that its struct sees.",
+    is_mistake=True,
+)
+def _bounds_that_are_seen(case: DefinitionCase) -> str:
+    """Write 1 for a bound that nothing declares, or only a module that is not for constants."""
+    code = blanked(case.text)
+    texts = (code, *map(blanked, case.included))
+    declared = {name for text in texts for name, _ in _DECLARED.findall(text)}
+    beside: set[str] = set()
+    for begin, end in _scopes(code):
+        module = re.search(r"\bmodule\s+(\w+)\s*$", code[:begin])
+        if module and not module[1].endswith("_Constants"):
+            beside |= {name for name, _ in _DECLARED.findall(code, begin, end)}
+
+    def bound(match: re.Match[str]) -> str:
+        scope, _, name = match[2].rpartition("::")
+        is_seen = name in declared and (scope or name not in beside)
+        return match[0] if is_seen else f"{match[1]}1"
+
+    return in_code(case.text, r"(\bwstring\s*<\s*)([A-Za-z_][\w:]*)", bound)
+
+
+@RULES.text(
     "idl-bounds-by-name",
     "rosidl_parser keeps the name of a constant that bounds a wstring; we have its value.",
 )

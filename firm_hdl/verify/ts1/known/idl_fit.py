@@ -99,6 +99,9 @@ _MEMBER = re.compile(
 _DEFAULT = re.compile(r"@\s*default\s*\(\s*value\s*=(?P<value>(?:[^()]|\([^()]*\))*)\)")
 
 
+_NO_VALUE = re.compile(r"@\s*default\b(?!\s*\()")
+
+
 @dataclass(frozen=True, slots=True)
 class _Default:
     """A default, and its place in the text: from `start` up to `end`."""
@@ -121,9 +124,14 @@ def _members(case: DefinitionCase) -> Iterator[tuple[re.Match[str], list[_Defaul
 
 @RULES.text("idl-defaults", "rosidl_parser takes several defaults of a member.", is_mistake=True)
 def _one_default(case: DefinitionCase) -> str:
-    """Remove all defaults of a member except the first."""
-    further = [each for _, defaults in _members(case) for each in defaults[1:]]
-    return changed(case.text, [(each.start, each.end, "") for each in further])
+    """Remove all defaults of a member except the first that has a value."""
+    code = blanked(case.text)
+    changes = []
+    for member, defaults in _members(case):
+        bare = _NO_VALUE.finditer(code, *member.span("notes")) if defaults else ()
+        changes += [(*match.span(), "") for match in bare]
+        changes += [(each.start, each.end, "") for each in defaults[1:]]
+    return changed(case.text, changes)
 
 
 @dataclass(frozen=True, slots=True)

@@ -274,6 +274,8 @@ EXAMPLES: tuple[Example, ...] = (
     _idl("idl-type-scopes", "sequence<a::X> x; p::T y;", drop_last, before="typedef long T;"),
     _idl("idl-file-names", "long x;", drop_last, name="B"),
     _idl("idl-bounds-by-name", "sequence<wstring<N>, 2> x;", _constant(value=4), before=_N),
+    _idl("idl-unseen-bounds", "wstring<NONE> x; long y;", drop_last),
+    _idl("idl-unseen-bounds", "wstring<N> x; long y;", drop_last, before=_N.replace("_Const", "_const")),
     _idl(
         "idl-whole-numbers",
         '@default(value=3) double x; @default(value="(1, 2)") double y[2];',
@@ -326,6 +328,7 @@ EXAMPLES: tuple[Example, ...] = (
         include='#include "p/msg/B.idl"\n',
     ),
     _idl("idl-defaults", '@default(value=1) @unit(value="m") @default(value=2) long x;', drop_last),
+    _idl("idl-defaults", "@default @default(value=2) long x;", drop_last),
     _idl(
         "idl-values",
         '@default(value=300) uint8 a; @default(value="(1, 2, 3)") long b[2]; '

@@ -97,6 +97,22 @@ def test_a_file_s_own_constants_come_before_those_that_it_includes():
     assert found == text.replace(" N * 200", "0")
 
 
+def test_bounds_that_no_constant_has_in_sight_are_replaced():
+    text = (
+        "module q { const long Q = 1; }; module A_Constants { const long N = 3; }; struct A { "
+        "wstring<N> a; wstring< q::Q > b; wstring<{}> c; sequence<wstring<{}>, 4> d; "
+        "wstring<E> e; string<{}> f; wstring<7> g; }; // wstring<NONE>"
+    )
+
+    def named(*names):
+        left = iter(names)
+        return re.sub("{}", lambda _: next(left), text)
+
+    more = {"language": "idl", "included": ("const long E = 3;",)}
+    found = rewritten("idl-unseen-bounds", named("Q", "NONE", "NONE"), **more)
+    assert found == named("1", "1", "NONE")
+
+
 @pytest.mark.parametrize(
     ("expression", "value"),
     [
