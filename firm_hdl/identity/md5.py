@@ -51,5 +51,5 @@ def _text(message: Message, sums: dict[str, str]) -> str:
         # The builtin types `time` and `duration` have no package, and are written by name.
         is_nested = isinstance(kind, Message) and kind.package != ""
         lines.append(f"{sums[str(kind)] if is_nested else field.type_text} {field.name}")
-    # As in genmsg. This changes the sum if the last line is a string constant that ends in blanks.
+    # As in genmsg. Only a string constant that was not read from a text can end in blanks.
     return "\n".join(lines).strip()

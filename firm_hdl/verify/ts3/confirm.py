@@ -86,12 +86,13 @@ def confirm(
 
 
 def _sample(cases: Sequence[Case]) -> list[Case]:
+    """Return the first case, and each further one that `MOST_BYTES` have room for."""
     found: list[Case] = []
     size = 0
     for case in cases:
-        size += len(case.packet)
-        if not found or size <= MOST_BYTES:
+        if not found or size + len(case.packet) <= MOST_BYTES:
             found.append(case)
+            size += len(case.packet)
     return found
 
 

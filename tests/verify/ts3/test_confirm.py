@@ -163,9 +163,14 @@ def test_missing_references_are_reported_or_an_error(capsys, monkeypatch):
 def test_the_first_case_is_written_however_large_it_is(monkeypatch):
     cases = cases_of("lyrical", "std_msgs/msg/String")
     sizes = [len(case.packet) for case in cases]
-    for most, count in ((0, 1), (sizes[0], 1), (sum(sizes[:3]), 3), (1 << 30, len(cases))):
+    for most, count in ((0, 1), (sizes[0], 1), (1 << 30, len(cases))):
         monkeypatch.setattr(references, "MOST_BYTES", most)
         assert references._sample(cases) == cases[:count]
+    # A packet that is too large leaves room for later ones.
+    small, large = SimpleNamespace(packet=b"1234"), SimpleNamespace(packet=bytes(9))
+    monkeypatch.setattr(references, "MOST_BYTES", 8)
+    assert references._sample([small, large, small, small]) == [small, small]
+    assert references._sample([large, small]) == [large]
 
 
 def test_a_known_difference_hides_no_other_packet(monkeypatch):

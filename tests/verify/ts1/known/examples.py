@@ -275,7 +275,7 @@ EXAMPLES: tuple[Example, ...] = (
     _idl("idl-file-names", "long x;", drop_last, name="B"),
     _idl("idl-bounds-by-name", "sequence<wstring<N>, 2> x;", _constant(value=4), before=_N),
     _idl("idl-unseen-bounds", "wstring<NONE> x; long y;", drop_last),
-    _idl("idl-unseen-bounds", "wstring<N> x; long y;", drop_last, before=_N.replace("_Const", "_const")),
+    _idl("idl-unseen-bounds", "wstring<N> x; long y;", drop_last, before=_N.replace("A_", "")),
     _idl(
         "idl-whole-numbers",
         '@default(value=3) double x; @default(value="(1, 2)") double y[2];',
