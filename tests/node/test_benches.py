@@ -145,6 +145,36 @@ def test_each_fault_is_found(fault, folders, ghdl, iverilog, tmp_path):
         assert re.search(FAULTS[fault], output), output
 
 
+# Say that a lane that is not kept is not 0.
+SPIES = {
+    "relay_tb.v": """  integer spy;
+  always @(posedge aclk) if (i_valid) for (spy = 0; spy < WORD_BYTES; spy = spy + 1)
+    if (!i_keep[spy] && i_data[8 * spy +: 8] != 0) $display("noise");
+  // Sends""",
+    "vhdl/relay_tb.vhd": """spy : process
+  begin
+    wait until rising_edge(aclk) and i_valid = '1';
+    for lane in i_keep'range loop
+      if i_keep(lane) = '0' and i_data(8 * lane + 7 downto 8 * lane) /= x"00" then
+        report "noise";
+      end if;
+    end loop;
+  end process;
+  sending :""",
+}
+
+
+def test_lanes_that_are_not_kept_have_noise(folders, ghdl, iverilog, tmp_path):
+    folder = shutil.copytree(folders("stream"), tmp_path / "relay")
+    for name, spy in SPIES.items():
+        text, place = (folder / name).read_text(), spy.splitlines()[-1].strip()
+        assert text.count(place) == 1
+        (folder / name).write_text(text.replace(place, spy.strip()))
+    for tool, command in ((in_ghdl, ghdl), (in_icarus, iverilog)):
+        status, output = tool(folder, command, tmp_path / tool.__name__)
+        assert status == 0 and output.count("noise") > 10, output
+
+
 @pytest.mark.thorough
 def test_an_accelerator_with_a_fault_fails(folders, ghdl, iverilog, tmp_path):
     """What the bench puts between subscription and publication changes a bit."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import SimpleNamespace
@@ -25,8 +26,10 @@ def with_side(port, side):
 def beats(packets, bus_bytes, sides=None, *, noise=None):
     """Yield the beats of packets, with a value beside each of them.
 
-    `sides` has a value for each packet, or a function from `last` to it.
+    `sides` has a value for each packet, or a function from `last` to it. Lanes that are not valid
+    have random bytes.
     """
+    noise = noise or random.Random(bus_bytes)
     side_at = 8 * bus_bytes + bus_bytes.bit_length() + 1
     for number, packet in enumerate(packets):
         for beat in packet_beats(packet, bus_bytes, noise):
