@@ -31,6 +31,9 @@ def run(width, packets, stalls=None, **options):
     source = beats(packets, width.in_bytes, noise=random.Random(1))
     seen = bench.run({"in": source}, {"out": len(packets)}, stalls=stalls, **options)
     assert seen.packets["out"] == packets
+    # An empty packet is one beat, too.
+    sent = sum(beats_of(len(packet), width.out_bytes) for packet in packets)
+    assert len(seen.times["out"]) == sent
     return seen
 
 
