@@ -33,7 +33,9 @@ from firm_hdl.verify.ts1.run import each_distro
 from firm_hdl.verify.ts2.system import Ts2
 from firm_hdl.verify.ts3.system import Ts3
 
-__all__ = ["SYSTEMS", "concluded", "run_workload", "succeeded"]
+__all__ = ["SYSTEMS", "concluded", "failure", "run_workload"]
+
+_FAILS = ", so the run fails"
 
 
 def run_workload(work: Workload) -> int:
@@ -66,22 +68,34 @@ def run_workload(work: Workload) -> int:
         return 1
     for problem in work.problems:
         print(problem, file=sys.stderr)
-    return 0 if succeeded(found, is_named=request.is_named) and not work.problems else 1
+    return 1 if failure(found, is_named=request.is_named, refused=len(work.problems)) else 0
 
 
-def succeeded(found: Sequence[Judged], *, is_named: bool) -> bool:
-    """Return whether a run is a success: no test failed, and enough was judged.
+def failure(found: Sequence[Judged], *, is_named: bool, refused: int = 0) -> str:
+    """Return why a run is no success; empty if no test failed, and enough was judged.
 
     Parameters
     ----------
     is_named : bool
-        Whether the user named the types. Then every test has to be judged; otherwise, one.
+        Whether the user named the types. Then every test has to be judged, except mutations;
+        otherwise, one.
+    refused : int
+        Definitions with errors.
     """
-    verdicts = [each.verdict for each in found]
-    if any(isinstance(verdict, Failed) for verdict in verdicts):
-        return False
-    not_judged = sum(isinstance(verdict, NotJudged) for verdict in verdicts)
-    return not_judged < len(verdicts) and not (is_named and not_judged)
+    failed = [each.what for each in found if isinstance(each.verdict, Failed)]
+    reasons = [f"{len(failed)} of {len(found)} tests failed, such as {failed[0]}"] if failed else []
+    if _is_unjudged(found, is_named):
+        reasons.append(concluded(found, is_named=is_named)[-1].removesuffix(_FAILS))
+    if refused:
+        wrong = "definition is" if refused == 1 else "definitions are"
+        reasons.append(f"{refused} {wrong} refused")
+    return "; ".join(reasons)
+
+
+def _is_unjudged(found: Sequence[Judged], is_named: bool) -> bool:
+    """Whether a run fails because of what was not judged."""
+    silent = [each for each in found if isinstance(each.verdict, NotJudged)]
+    return len(silent) == len(found) or (is_named and any(each.has_name for each in silent))
 
 
 def concluded(found: Sequence[Judged], *, is_named: bool) -> list[str]:
@@ -91,10 +105,11 @@ def concluded(found: Sequence[Judged], *, is_named: bool) -> list[str]:
     ]
     lines = [f"not judged: {what}: {verdict.reason}" for what, verdict in not_judged]
     if len(not_judged) == len(found):
-        return [*lines, "no test was judged, so the run fails"]
+        return [*lines, f"no test was judged{_FAILS}"]
     if not_judged:
         were = "was" if len(not_judged) == 1 else "were"
-        meaning = ", although named, so the run fails" if is_named else ""
+        is_wrong = _is_unjudged(found, is_named)
+        meaning = f", although named{_FAILS}" if is_wrong else ""
         lines.append(f"{len(not_judged)} of {len(found)} tests {were} not judged{meaning}")
     return lines
 
@@ -109,7 +124,11 @@ def _run_systems(work: Workload) -> list[Judged]:
         if work.request.results is not None:
             writer = stack.enter_context(_writer(work, work.request.results, systems))
         # All systems run, even if an earlier one has failures.
-        return [each for system in systems for each in system.run(Recorder(writer))]
+        found = [each for system in systems for each in system.run(Recorder(writer))]
+        if writer is not None:
+            named, refused = work.request.is_named, len(work.problems)
+            writer.conclude(failure(found, is_named=named, refused=refused))
+        return found
 
 
 def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWriter:
@@ -123,8 +142,6 @@ def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWrit
         "paths": list(request.paths),
         "code": code_digest(),
         "inputs": inputs_digest(read),
-        "named": request.is_named,
-        "refused": bool(work.problems),
     }
     for system in systems:
         options |= system.options

@@ -133,8 +133,6 @@ def test_results_are_bound_to_all_options_and_inputs(tmp_path, fixed, capsys):
         "systems": ["ts3", "ts1"],
         "bus_bytes": [4, 8],
         "wire": "cdr",
-        "named": True,
-        "refused": False,
         "paths": [source],
         "of ts3": 1,
         "of ts1": 1,
@@ -179,13 +177,13 @@ def test_a_run_without_a_judged_test_is_no_success():
     silent = [Judged(what=name, verdict=NotJudged("no")) for name in "bc"]
     for is_named in (False, True):
         for found in ([], silent):
-            assert not run.succeeded(found, is_named=is_named)
+            assert run.failure(found, is_named=is_named)
             lines = [f"not judged: {each.what}: no" for each in found]
             end = "no test was judged, so the run fails"
             assert run.concluded(found, is_named=is_named) == [*lines, end]
-        assert run.succeeded([passed], is_named=is_named)
+        assert not run.failure([passed], is_named=is_named)
         assert run.concluded([passed], is_named=is_named) == []
-    assert run.succeeded([*silent, passed], is_named=False)
+    assert not run.failure([*silent, passed], is_named=False)
     assert run.concluded([*silent, passed], is_named=False)[-1] == "2 of 3 tests were not judged"
 
 

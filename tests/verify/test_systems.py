@@ -118,6 +118,23 @@ def test_definitions_that_are_refused_are_tests_of_ts1_and_named(tmp_path, capsy
     assert "definitions that are refused: 1: " in page.read_text()
 
 
+def test_an_oracle_that_was_asked_for_and_is_missing_fails_the_run(tmp_path, monkeypatch):
+    monkeypatch.setattr(ORACLES["ros2"], "missing", lambda self: "nobody installed it")
+    path, page = tmp_path / "r.jsonl", tmp_path / "r.md"
+    command = ["--systems", "ts1", "--results", path, "--report", page]
+    assert verify(*command, "--oracle", "rosbags", "--oracle", "ros2", "std_msgs/msg/Bool") == 1
+    why = "1 of 2 tests failed, such as oracle ros2"
+    assert f"**✗ 1 of 1 tests passed; the run failed: {why}**" in page.read_text()
+    assert f"failed: {why}" in page.read_text()
+
+
+def test_a_named_type_has_to_be_judged_beside_mutations(tmp_path, capsys):
+    make_files(tmp_path, {"src/p/msg/A.msg": "wstring w\n", "src/p/msg/B.msg": "int8 x\n"})
+    command = ["--path", tmp_path / "src", "--reference", "none", "--cases", "1", "--no-stalls"]
+    assert verify("--systems", "ts1,ts3", *command, "--mutations", "2", "p/msg/A", "p/msg/B") == 1
+    assert "although named, so the run fails" in capsys.readouterr().out
+
+
 def misread(monkeypatch):
     refuse = lambda self, cases: [Refused("I do not like it")] * len(cases)  # noqa: E731
     monkeypatch.setattr(ORACLES["rosbags"], "judge", refuse)

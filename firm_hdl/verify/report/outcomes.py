@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 from firm_hdl.verify.results.file import Results
@@ -46,34 +46,23 @@ class Outcome:
     record : Record or None
     circuit_of : str
         Name of the type whose equal circuit was simulated instead of the circuit of this type.
-    is_named : bool
-        Whether the user named the type, so that it has to be judged.
     """
 
     test: Test
     verdict: Verdict | NotRun
     record: Record | None
     circuit_of: str = ""
-    is_named: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Counts:
-    """The number of tests of each outcome. Tests with a known difference do not count as passed.
-
-    Attributes
-    ----------
-    passed, known, failed, not_judged, not_run : int
-    owed : int
-        Those tests not judged whose types were named.
-    """
+    """The number of tests of each outcome. Tests with a known difference do not count as passed."""
 
     passed: int = 0
     known: int = 0
     failed: int = 0
     not_judged: int = 0
     not_run: int = 0
-    owed: int = 0
 
     @property
     def total(self) -> int:
@@ -82,16 +71,11 @@ class Counts:
 
     @property
     def verdict(self) -> str:
-        """The worst outcome, one of `VERDICTS`.
-
-        ``not judged`` only if nothing was judged, or a type that was named was not.
-        """
+        """The worst outcome, one of `VERDICTS`; ``not judged`` only if nothing was judged."""
         if self.failed:
             return Failed.name
         if self.not_run or not self.total:
             return NotRun.name
-        if self.owed:
-            return NotJudged.name
         if self.passed:
             return Passed.name
         return KnownDifference.name if self.known else NotJudged.name
@@ -99,15 +83,13 @@ class Counts:
 
 def count(outcomes: Iterable[Outcome]) -> Counts:
     """Count outcomes."""
-    given = list(outcomes)
-    found = Counter(outcome.verdict.name for outcome in given)
+    found = Counter(outcome.verdict.name for outcome in outcomes)
     return Counts(
         passed=found[Passed.name],
         known=found[KnownDifference.name],
         failed=found[Failed.name],
         not_judged=found[NotJudged.name],
         not_run=found[NotRun.name],
-        owed=sum(each.is_named and isinstance(each.verdict, NotJudged) for each in given),
     )
 
 
@@ -123,17 +105,13 @@ def outcomes_of(files: Sequence[Results]) -> list[Outcome]:
     """
     tests: dict[str, Test] = {}
     records: dict[str, Record] = {}
-    named: set[str] = set()
     for file in files:
-        if file.options.get("named") is True:
-            named.update(test.key for test in file.planned)
         tests.update((test.key, test) for test in file.planned)
         for key, record in file.records.items():
             tests.setdefault(key, record.test)
             if key not in records or not isinstance(records[key].verdict, Failed):
                 records[key] = record
-    found = (_outcome(tests[key], records.get(key), records) for key in sorted(tests))
-    return [replace(each, is_named=each.test.key in named) for each in found]
+    return [_outcome(tests[key], records.get(key), records) for key in sorted(tests)]
 
 
 def _outcome(test: Test, record: Record | None, records: Mapping[str, Record]) -> Outcome:

@@ -31,16 +31,17 @@ _ORDER = (Failed.name, NotRun.name, NotJudged.name, KnownDifference.name, Passed
 def headline(summary: Summary) -> str:
     """Return the result in one line."""
     counts = summary.counts
-    if not counts.total and not summary.refused:
+    if not counts.total and not summary.failures:
         return "? no tests"
     parts = [f"{number(counts.passed)} of {number(counts.total)} tests passed"]
     parts += [f"{number(counts.known)} with a known difference"] if counts.known else []
     parts += [f"{number(counts.failed)} failed"] if counts.failed else []
     parts += [f"{number(counts.not_run)} not run"] if counts.not_run else []
-    named = f", {number(counts.owed)} of them named" if counts.owed else ""
-    parts += [f"{number(counts.not_judged)} not judged{named}"] if counts.not_judged else []
-    parts += ["but definitions were refused"] if summary.refused else []
-    return f"{SIGNS[summary.verdict][0]} {', '.join(parts)}"
+    parts += [f"{number(counts.not_judged)} not judged"] if counts.not_judged else []
+    line = f"{SIGNS[summary.verdict][0]} {', '.join(parts)}"
+    if summary.failures and not counts.failed:
+        line += f"; the run failed: {summary.failures[0]}"
+    return line
 
 
 def facts(summary: Summary) -> Iterator[tuple[str, str]]:
@@ -157,6 +158,7 @@ def sources(summary: Summary) -> Iterator[tuple[str, list[str]]]:
     """Yield the files of a report, with the options and environments of their runs."""
     for run in summary.runs:
         lines = [f"{run.recorded} of {run.planned} planned tests have a record"]
+        lines += [f"failed: {run.failure}"] if run.failure else []
         lines += [f"{name}: {_plain(value)}" for name, value in run.options.items()]
         before = None
         for index, session in enumerate(run.sessions, 1):

@@ -123,6 +123,8 @@ class RunSummary:
     options : mapping of str to object
     sessions : tuple of mapping of str to str
     planned, recorded : int
+    failure : str
+        Why the run failed; empty if it did not.
     """
 
     name: str
@@ -130,6 +132,7 @@ class RunSummary:
     sessions: tuple[Mapping[str, str], ...]
     planned: int
     recorded: int
+    failure: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -154,8 +157,6 @@ class Summary:
         The verdicts of the oracles of definitions.
     said : tuple of Remark
         Known differences from these oracles, and reasons why they did not judge.
-    refused : bool
-        Whether there were definitions with errors, of which no tests could be made.
     runs : tuple of RunSummary
     """
 
@@ -172,13 +173,17 @@ class Summary:
     coverage: tuple[CoverageSum, ...]
     oracles: tuple[OracleSum, ...]
     said: tuple[Remark, ...]
-    refused: bool
     runs: tuple[RunSummary, ...]
 
     @property
+    def failures(self) -> list[str]:
+        """Why runs failed, if they did."""
+        return [run.failure for run in self.runs if run.failure]
+
+    @property
     def verdict(self) -> str:
-        """The worst outcome; ``failed``, too, if a definition was refused."""
-        return Failed.name if self.refused else self.counts.verdict
+        """The worst outcome; ``failed``, too, if a run failed for another reason than a test."""
+        return Failed.name if self.failures else self.counts.verdict
 
     @property
     def failed(self) -> list[Outcome]:
@@ -271,7 +276,6 @@ def summarise(files: Mapping[str, Results], title: str = "Verification of firm-h
         ),
         oracles=oracle_sums(outcomes),
         said=remarks_of(outcomes),
-        refused=any(results.options.get("refused") is True for results in files.values()),
         runs=tuple(_run(name, results) for name, results in files.items()),
     )
 
@@ -377,4 +381,5 @@ def _run(name: str, results: Results) -> RunSummary:
         sessions=results.sessions,
         planned=len(results.planned),
         recorded=len(results.records),
+        failure=results.failure,
     )

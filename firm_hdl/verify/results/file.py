@@ -1,10 +1,10 @@
 """Results of a run as JSON lines, so that they survive the end of the process.
 
-The first line has the options of the run and its planned tests. Each other line is a record or the
-environment of a session. A record is on the disk before it is counted. A run that was stopped can
-be continued with the same file, and does not repeat the tests in the file. A last line without a
-line end is dropped, because its writer was killed. Only a run with the same options and the same
-tests can continue a file. Otherwise, the figures of the file would mean nothing.
+The first line has the options of the run and its planned tests. Each other line is a record, or the
+environment or the end of a session. A record is on the disk before it is counted. A run that was
+stopped can be continued with the same file, and does not repeat the tests in the file. A last line
+without a line end is dropped, because its writer was killed. Only a run with the same options and
+the same tests can continue a file. Otherwise, the figures of the file would mean nothing.
 """
 
 from __future__ import annotations
@@ -50,12 +50,15 @@ class Results:
         Records by key. The last of several records with the same key counts.
     sessions : tuple of mapping of str to str
         The environment of each session.
+    failure : str
+        Why the last session failed; empty if it did not, or has not ended.
     """
 
     options: Mapping[str, Any] = field(default_factory=dict)
     planned: tuple[Test, ...] = ()
     records: Mapping[str, Record] = field(default_factory=dict)
     sessions: tuple[Mapping[str, str], ...] = ()
+    failure: str = ""
 
     @property
     def missing(self) -> tuple[Test, ...]:
@@ -87,11 +90,15 @@ def _read(path: Path) -> tuple[Results, int]:
     options, planned = _header(path, lines[0])
     records: dict[str, Record] = {}
     sessions: list[Mapping[str, str]] = []
+    failure = ""
     for number, line in enumerate(lines[1:], 2):
         try:
             given = _value(line)
             if "session" in given:
                 sessions.append(_session(given["session"]))
+                failure = ""
+            elif "failure" in given:
+                failure = _failure(given["failure"])
             else:
                 record = from_json(Record, given["record"])
                 records[record.test.key] = record
@@ -100,7 +107,13 @@ def _read(path: Path) -> tuple[Results, int]:
             is_ours = isinstance(error, ValueError | TypeError) and " must be " in str(error)
             reason = str(error) if is_ours and str(error)[0].isupper() else "it is damaged"
             raise ResultsError(f"'{path}', line {number}: {reason}") from None
-    found = Results(options=options, planned=planned, records=records, sessions=tuple(sessions))
+    found = Results(
+        options=options,
+        planned=planned,
+        records=records,
+        sessions=tuple(sessions),
+        failure=failure,
+    )
     return found, whole
 
 
@@ -129,6 +142,12 @@ def _value(line: bytes) -> Any:
 def _session(given: object) -> Mapping[str, str]:
     if not isinstance(given, dict) or not all(isinstance(each, str) for each in given.values()):
         raise ValueError("A session must be an object of texts")
+    return given
+
+
+def _failure(given: object) -> str:
+    if not isinstance(given, str):
+        raise ValueError("A failure must be a text")
     return given
 
 
@@ -200,6 +219,10 @@ class ResultsWriter:
     def add(self, *records: Record) -> None:
         """Add records; they are on the disk when this returns."""
         self._write(*({"record": to_json(record)} for record in records))
+
+    def conclude(self, failure: str) -> None:
+        """Add the end of the session: why it failed, or an empty text."""
+        self._write({"failure": failure})
 
     def _write(self, *lines: Mapping[str, Any]) -> None:
         text = "".join(f"{json.dumps(line, allow_nan=False)}\n" for line in lines)

@@ -127,9 +127,8 @@ class Request(Options):
 
     @property
     def is_named(self) -> bool:
-        """Whether the user named what is tested. Mutations have no names."""
-        # The types of a description are named, too.
-        return bool(self.types or self.node) and not self.mutations
+        """Whether the user named what is tested. The types of a description are named, too."""
+        return bool(self.types or self.node)
 
     @property
     def names_wires(self) -> bool:

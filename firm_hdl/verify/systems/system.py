@@ -60,10 +60,13 @@ class Judged:
     what : str
         The name of the test for people: the type, its distributions, and how it was tested.
     verdict : Verdict
+    has_name : bool
+        False for a mutation: the user named the definition that it was made of.
     """
 
     what: str
     verdict: Verdict
+    has_name: bool = True
 
 
 def judged(records: Iterable[Record]) -> list[Judged]:

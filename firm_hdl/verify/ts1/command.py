@@ -150,8 +150,12 @@ class Ts1(System):
         seconds = time.perf_counter() - began
         print(f"{run.total} {what}, {seconds:.0f} s, {tally.differences} differences")
         asked = run.missing.items() if run.request.oracles else ()
+        named = not run.request.mutations
         return [
-            *(Judged(what=each.test.title, verdict=each.verdict) for each in records.values()),
+            *(
+                Judged(what=each.test.title, verdict=each.verdict, has_name=named)
+                for each in records.values()
+            ),
             *(
                 Judged(what=f"oracle {n}", verdict=Failed((f"is not available: {w}",)))
                 for n, w in asked

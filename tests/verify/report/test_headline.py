@@ -9,9 +9,7 @@ from firm_hdl.verify.report.command import FORMATS
 from firm_hdl.verify.report.prose import headline
 from firm_hdl.verify.report.summary import summarise
 from firm_hdl.verify.report.tables import SIGNS
-from tests.verify.report.samples import VERDICTS, a_record, a_test, mixed, run_of
-
-NAMED = {"named": True}
+from tests.verify.report.samples import a_record, a_test, mixed, run_of
 
 
 def first_line(*runs):
@@ -26,27 +24,21 @@ def first_line(*runs):
     return line
 
 
-def test_no_check_mark_if_a_named_type_was_not_judged():
+def test_no_check_mark_if_a_run_failed():
     run = mixed(passed=2, not_judged=2)
     assert first_line(run) == "✓ 2 of 4 tests passed, 2 not judged"
-    named = replace(run, options=NAMED)
-    assert first_line(named) == "- 2 of 4 tests passed, 2 not judged, 2 of them named"
-    assert first_line(replace(mixed(passed=2), options=NAMED)) == "✓ 2 of 2 tests passed"
-    # Only the types of the run with names are named.
-    other = run_of(a_record(a_test("other/msg/T"), verdict=VERDICTS["not_judged"]))
-    assert first_line(named, other) == "- 2 of 5 tests passed, 3 not judged, 2 of them named"
-    # What is worse decides.
-    failed = replace(mixed(passed=1, failed=1, not_judged=1), options=NAMED)
-    assert first_line(failed).startswith("✗ 1 of 3 tests passed, 1 failed, 1 not judged")
-    missing = replace(mixed(passed=1, not_run=1, not_judged=1), options=NAMED)
-    assert first_line(missing).startswith("? 1 of 3 tests passed, 1 not run, 1 not judged")
-
-
-def test_no_check_mark_if_definitions_were_refused():
-    refused = {"refused": True}
-    run = replace(mixed(passed=2), options=refused)
-    assert first_line(run) == "✗ 2 of 2 tests passed, but definitions were refused"
-    assert first_line(mixed(passed=2), run)[0] == "✗"
-    assert first_line(replace(mixed(passed=2), options={"refused": False}))[0] == "✓"
-    nothing = replace(run_of(), options=refused)
-    assert first_line(nothing) == "✗ 0 of 0 tests passed, but definitions were refused"
+    failed = replace(run, failure="something was named")
+    line = "✗ 2 of 4 tests passed, 2 not judged; the run failed: something was named"
+    assert first_line(failed) == line
+    # The first reason of several runs.
+    other = run_of(a_record(a_test("other/msg/T")))
+    assert first_line(other, failed) == line.replace("2 of 4", "3 of 5")
+    wrong = replace(other, failure="another reason")
+    assert first_line(failed, wrong) == line.replace("2 of 4", "3 of 5")
+    # A failed test is a reason already.
+    tests = replace(mixed(passed=1, failed=1), failure="1 of 2 tests failed")
+    assert first_line(tests) == "✗ 1 of 2 tests passed, 1 failed"
+    missing = replace(mixed(passed=1, not_run=1), failure="it was named")
+    assert first_line(missing) == "✗ 1 of 2 tests passed, 1 not run; the run failed: it was named"
+    nothing = replace(run_of(), failure="there is nothing")
+    assert first_line(nothing) == "✗ 0 of 0 tests passed; the run failed: there is nothing"

@@ -40,6 +40,17 @@ def test_records_are_read_as_they_were_written(tmp_path):
     assert found.sessions == ({"Python": "3"},)
 
 
+def test_the_failure_of_the_last_session_counts(tmp_path):
+    path = tmp_path / "r.jsonl"
+    more = {"options": OPTIONS, "planned": (HEADER, BOOL), "session": {"a": "b"}}
+    for failure in ("it is wrong", "", "again"):
+        with ResultsWriter(path, **more) as writer:
+            # A session that has not ended has not failed.
+            assert read_results(path).failure == ""
+            writer.conclude(failure)
+        assert read_results(path).failure == failure
+
+
 def test_last_of_two_records_of_a_test_counts(tmp_path):
     path = written(tmp_path / "r.jsonl", a_record(), a_record(verdict=Failed(("later",))))
     assert read_results(path).records[HEADER.key].verdict == Failed(("later",))
@@ -278,6 +289,7 @@ def test_workers_end_with_a_run_that_was_killed(tmp_path):
         ('{"session": 1e999}', "it is damaged"),
         ('{"session": 7}', "A session must be an object of texts"),
         ('{"session": {"started": 7}}', "A session must be an object of texts"),
+        ('{"failure": 7}', "A failure must be a text"),
     ],
 )
 def test_an_invalid_line_is_reported_with_the_reason(tmp_path, line, reason):

@@ -19,7 +19,7 @@ from firm_hdl.verify.results.verdict import (
     NotJudgedError,
     Passed,
 )
-from firm_hdl.verify.run import concluded, succeeded
+from firm_hdl.verify.run import concluded, failure
 from firm_hdl.verify.systems import system
 from firm_hdl.verify.systems.system import Judged, run_shares
 from tests.frontend.workspace import make_files
@@ -48,8 +48,26 @@ def found(*verdicts):
     ],
 )
 def test_success_needs_a_judgement_of_each_named_type(verdicts, of_all, named):
-    assert succeeded(found(*verdicts), is_named=False) is of_all
-    assert succeeded(found(*verdicts), is_named=True) is named
+    assert (not failure(found(*verdicts), is_named=False)) is of_all
+    assert (not failure(found(*verdicts), is_named=True)) is named
+
+
+def test_a_failure_has_its_reasons():
+    of = {"is_named": True}
+    both = found(PASSED, FAILED, FAILED)
+    assert failure(both, **of) == "2 of 3 tests failed, such as p/msg/T1 (lyrical), ts3"
+    assert failure(found(PASSED), **of, refused=1) == "1 definition is refused"
+    assert failure(found(SILENT), **of, refused=2) == (
+        "no test was judged; 2 definitions are refused"
+    )
+
+
+def test_mutations_of_a_named_type_need_no_judgement():
+    mutation = Judged(what="p/msg/T (lyrical), ts1", verdict=SILENT, has_name=False)
+    assert not failure([*found(PASSED), mutation], is_named=True)
+    # In contrast to other tests of the same run.
+    assert failure([*found(PASSED, SILENT), mutation], is_named=True)
+    assert failure([mutation], is_named=True)
 
 
 def test_end_lists_unjudged_types_by_name_and_reason():
@@ -110,7 +128,9 @@ def test_named_type_that_is_not_judged_is_no_success(
     assert main([*call, *report, "p/A", "p/Wide"]) == 1
     output = capsys.readouterr().out
     assert LINE + "1 of 2 tests was not judged, although named, so the run fails\n" in output
-    assert "**- 1 of 2 tests passed, 1 not judged, 1 of them named**" in page.read_text()
+    why = "1 of 2 tests was not judged, although named"
+    assert read_results(results).failure == why
+    assert f"**✗ 1 of 2 tests passed, 1 not judged; the run failed: {why}**" in page.read_text()
     assert main([*call, "p/A"]) == 0
     assert "not judged" not in capsys.readouterr().out
 

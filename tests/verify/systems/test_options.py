@@ -28,7 +28,7 @@ def test_ts1_alone_looks_up_its_types(given, alone):
         ({}, False, True),
         ({"types": ("p/A",)}, True, False),
         ({"node": "node.yaml"}, True, True),
-        ({"types": ("p/A",), "mutations": 9}, False, False),
+        ({"types": ("p/A",), "mutations": 9}, True, False),
         ({"bags": ("run.bag",)}, False, False),
         ({"share_circuits": False}, False, False),
         ({"types": ("p/A",), "share_circuits": True}, True, True),
