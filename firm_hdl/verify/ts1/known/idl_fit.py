@@ -84,6 +84,19 @@ def _without_includes(case: DefinitionCase) -> str:
     return changed(case.text, [(*match.span(), meaning(match)) for match in words])
 
 
+# Annotations.
+
+
+@RULES.text(
+    "idl-short-annotations",
+    "rosidl_parser does not understand an annotation whose only argument has no name.",
+)
+def _with_argument_names(case: DefinitionCase) -> str:
+    """Write the name of the argument of ``@default`` and ``@unit``."""
+    begins = re.finditer(r"@\s*(?:default|unit)\s*\((?!\s*\w+\s*=)", blanked(case.text))
+    return changed(case.text, [(match.end(), match.end(), "value=") for match in begins])
+
+
 # Values that do not fit.
 
 

@@ -223,10 +223,15 @@ def _no_remarks(annotated):
 
 
 def _idl_remarks(annotated):
-    """Return the comment and the unit of a member or of a constant."""
+    """Return the comment and the unit of a member or of a constant, as far as they are texts."""
     units = [each for each in annotated.get_annotation_values("unit") if isinstance(each, dict)]
     unit = units[0].get("value") if units else None
-    return {"comment": "\n".join(annotated.get_comment_lines()), "unit": unit}
+    found = {"unit": unit} if unit is None or isinstance(unit, str) else {}
+    try:
+        return {**found, "comment": "\n".join(annotated.get_comment_lines())}
+    except (AttributeError, TypeError):
+        # rosidl_parser reads a ``@verbatim`` without texts, and fails at the question.
+        return found
 
 
 def _parsed(content, has_events=False, remarks=_no_remarks):

@@ -328,6 +328,7 @@ EXAMPLES: tuple[Example, ...] = (
         include='#include "p/msg/B.idl"\n',
     ),
     _idl("idl-defaults", '@default(value=1) @unit(value="m") @default(value=2) long x;', drop_last),
+    _idl("idl-short-annotations", '@default(3) long x; @unit("m") long y;', _field(0, default=4)),
     _idl("idl-defaults", "@default @default(value=2) long x;", drop_last),
     _idl(
         "idl-values",

@@ -23,6 +23,10 @@ def case_of(text, *, dialect="ros2", language="msg", kind=None, name="A", before
     )
 
 
+APART = {"idl-includes", "idl-short-annotations", "idl-unseen-bounds", "idl-values"}
+"""Keys of rewritings that have tests of their own."""
+
+
 def rewritten(key, text, **more):
     rewrite = BY_KEY[key].rewrite
     assert rewrite is not None

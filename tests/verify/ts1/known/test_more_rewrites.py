@@ -97,6 +97,18 @@ def test_a_file_s_own_constants_come_before_those_that_it_includes():
     assert found == text.replace(" N * 200", "0")
 
 
+def test_only_arguments_without_a_name_get_one():
+    text = (
+        '@default(VALUE 3) @unit (VALUE"m") long a; '
+        '@default( value = 3) @unit(value="n = m") long b; '
+        "@key @range(1) @default (VALUE(A)) long c; // @default(3)\n"
+        '@verbatim(language="comment", text="@default(3)") @default(VALUETRUE) boolean d;'
+    )
+    before = text.replace("VALUE", "")
+    after = text.replace("VALUE", "value=")
+    assert rewritten("idl-short-annotations", before, language="idl") == after
+
+
 def test_bounds_that_no_constant_has_in_sight_are_replaced():
     text = (
         "module q { const long Q = 1; }; module A_Constants { const long N = 3; }; struct A { "
