@@ -17,6 +17,7 @@ from rosbags.typesys import Stores, get_typestore
 STORE = get_typestore(Stores.ROS2_LYRICAL)
 TWIST, VECTOR = (STORE.types[f"geometry_msgs/msg/{name}"] for name in ("Twist", "Vector3"))
 BUS_BYTES = 4
+NOISE = random.Random(1)
 
 
 def packet(speed: float) -> bytes:
@@ -33,7 +34,7 @@ def beats(data: bytes) -> Iterator[str]:
     for place in range(0, len(data), BUS_BYTES):
         part = data[place : place + BUS_BYTES]
         is_last = place + BUS_BYTES >= len(data)
-        lanes = int.from_bytes(part + random.randbytes(BUS_BYTES - len(part)), "little")
+        lanes = int.from_bytes(part + NOISE.randbytes(BUS_BYTES - len(part)), "little")
         yield f"{lanes:08x} {(1 << len(part)) - 1:04b} {is_last:b}\n"
 
 

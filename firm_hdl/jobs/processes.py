@@ -31,6 +31,7 @@ __all__ = [
     "made_by",
     "run_tool",
     "unwound_when_terminated",
+    "with_end",
     "worker_pool",
 ]
 
@@ -138,11 +139,11 @@ def run_tool(
                 _running.discard(process)
     if process.returncode:
         said = (errors or "").strip() or output.strip()
-        raise ToolError(_with_end(said, process.returncode))
+        raise ToolError(with_end(said, process.returncode))
     return output
 
 
-def _with_end(said: str, status: int) -> str:
+def with_end(said: str, status: int) -> str:
     """Return an output, with the end of its program if the output may not tell it."""
     if status < 0:
         # What a program has printed does not say that it crashed.

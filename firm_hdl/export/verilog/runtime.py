@@ -18,7 +18,7 @@ from tempfile import TemporaryDirectory, TemporaryFile
 from threading import Lock
 from typing import Any
 
-from firm_hdl.jobs.processes import hang_up
+from firm_hdl.jobs.processes import hang_up, with_end
 
 __all__ = ["YosysError", "run_yosys"]
 
@@ -102,7 +102,8 @@ class _Process:
                 self._errors.seek(0)
                 said = self._errors.read().decode("utf-8", "replace")
                 self.close()
-                raise YosysError(f"the process with Yosys died; {said}") from None
+                said = f"the process with Yosys died; {said}".rstrip("; ")
+                raise YosysError(with_end(said, self._process.poll() or 0)) from None
             except BaseException:
                 self.close()
                 raise

@@ -87,6 +87,7 @@ class Boards(System):
         request = self._request
         return {
             "board": request.board,
+            "engine": request.engine,
             "node": request.node,
             "fingerprint": f"{self._description.fingerprint:016x}",
             "seed": request.seed,

@@ -44,10 +44,12 @@ class Icarus:
         if run is None:
             raise ProgramMissingError(f"{self.title} has no command vvp beside '{self.path}'")
         self.run_path = run
+        self._paths = self.path, run
 
     @property
     def version(self) -> str:
-        return version_of(self.path, "-V")
+        # What the compiler writes runs in vvp.
+        return "; ".join(version_of(path, "-V").partition("; ")[0] for path in self._paths)
 
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
         files = write_inputs(trace, tops(), folder)

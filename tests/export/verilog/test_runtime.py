@@ -90,7 +90,7 @@ def test_a_process_that_died_is_an_error_and_the_next_run_starts_another():
     dead = process()
     os.kill(dead, signal.SIGSTOP)
     ends = subprocess.Popen(["sh", "-c", f"sleep 0.3; kill -9 {dead}"])
-    with pytest.raises(YosysError, match=r"^the process with Yosys died"):
+    with pytest.raises(YosysError, match=r"^the process with Yosys died\nended by SIGKILL$"):
         run_yosys("write_rtlil")
     ends.wait()
     assert process() != dead

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import random
 import re
 import resource
 import subprocess
@@ -84,11 +85,11 @@ def bench_of(plan: Plan, packets: list[bytes]) -> str:
     leaves = [port for port in ports_of(plan, "deserializer") if port.leaf is not None]
     wires = "".join(f"  wire [{port.width - 1}:0] {port.name};\n" for port in leaves)
     links = "".join(f", .{port.name}({port.name})" for port in leaves)
-    sends = ""
+    sends, noise = "", random.Random(bus)
     for packet in packets:
         for at in range(0, len(packet), bus):
             part = packet[at : at + bus]
-            data = int.from_bytes(part, "little")
+            data = int.from_bytes(part + noise.randbytes(bus - len(part)), "little")
             last = int(at + bus >= len(packet))
             sends += f"    send({8 * bus}'h{data:x}, {(1 << len(part)) - 1}, {last});\n"
     return f"""

@@ -32,6 +32,7 @@ def test_results_are_not_continued_with_another_node(tmp_path):
     ("given", "key"),
     [
         ({"board": "other"}, "board"),
+        ({"engine": "amaranth"}, "engine"),
         ({"node": "node.yaml"}, "node"),
         ({"seed": 1}, "seed"),
         ({"most_cases": 5}, "cases"),
@@ -41,7 +42,6 @@ def test_results_are_not_continued_with_another_node(tmp_path):
         # They determine no case.
         ({"silent_seconds": 1.0}, None),
         ({"jobs": 3}, None),
-        ({"engine": "amaranth"}, None),
     ],
 )
 def test_results_are_continued_with_the_same_cases_only(given, key):
