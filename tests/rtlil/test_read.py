@@ -125,6 +125,7 @@ def test_reads_what_amaranth_prints_of_an_instance() -> None:
         ("cell $not", r"^RTLIL line 6: malformed cell 'cell \$not'$"),
         ("memory width 4 \\m", r"^RTLIL line 6: malformed memory 'memory width 4 \\\\m'$"),
         ("attribute \\init", r"^RTLIL line 6: malformed 'attribute \\\\init'$"),
+        ('attribute \\init 0"', r"^RTLIL line 6: malformed constant '0\"'$"),
         ("attribute \\init 2'011", r'^RTLIL line 6: malformed constant "2\'011"$'),
         ("process $2\nswitch \\a\nassign \\a \\b", r"^RTLIL line 8: expected a case, not 'assign"),
         ("process $2\nswitch \\a\ncase 5'00001\nend\nend", r"^RTLIL line 8: pattern .* does not"),

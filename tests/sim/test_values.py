@@ -158,6 +158,12 @@ REFUSED = [
     ({"x": "float32"}, {"x": 1e39}, ValueError, "x is too large for a float32: 1e+39"),
     ({"x": "string"}, {"x": 5}, TypeError, "x must be a string, not 5"),
     ({"x": "wstring"}, {"x": b"a"}, TypeError, "x must be a wstring, not b'a'"),
+    (
+        {"x": "wstring"},
+        {"x": [1 << 32]},
+        ValueError,
+        "x[0] must be from 0 to 4294967295, not 4294967296",
+    ),
     ({"x": "uint8[3]"}, {"x": [1, 2]}, ValueError, "x must have 3 elements, not 2"),
     ({"x": "uint8[<=1]"}, {"x": [1, 2]}, ValueError, "x must have at most 1 elements, not 2"),
     ({"x": "string<=1"}, {"x": "é"}, ValueError, "x must have at most 1 elements, not 2"),
