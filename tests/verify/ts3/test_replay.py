@@ -245,7 +245,7 @@ def test_results_are_kept_with_the_recording(capsys, tmp_path):
     bag = strings(tmp_path, TEXT)
     kept = ["--results", tmp_path / "r.jsonl", "--report", tmp_path / "r.md"]
     assert run(capsys, "--bag", bag, *kept)[0] == 0
-    record = json.loads((tmp_path / "r.jsonl").read_text().splitlines()[-1])["record"]
+    record = json.loads((tmp_path / "r.jsonl").read_text().splitlines()[-2])["record"]
     assert f"bag={bag}" in record["test"]["options"]
     assert record["note"] == "1 of 1 messages of 1 topic replayed"
     assert record["command"].startswith(f"firm-hdl verify --distro lyrical --bag {bag} ")
