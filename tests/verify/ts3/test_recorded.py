@@ -131,7 +131,7 @@ def test_waveforms_are_written(tmp_path, request, more):
     if more:
         request.getfixturevalue("iverilog")
     folder = tmp_path / "waves"
-    assert verify("--vcd", str(folder), *more, "std_msgs/Bool") == 0
+    assert verify("--vcd", str(folder), "--cases", "2", *more, "std_msgs/Bool") == 0
     names = sorted(path.name for path in folder.iterdir())
     assert names == [f"std_msgs_msg_Bool_cdr_8_run{number}.vcd" for number in (1, 2, 3)]
     assert "packets" in (folder / names[0]).read_text()
