@@ -38,6 +38,8 @@ def test_tool_that_was_killed_is_an_error(tmp_path):
         run_tool(["sh", "-c", "kill -9 $$"], tmp_path)
     with pytest.raises(ToolError, match=r"^half a result\nended by SIGSEGV$"):
         run_tool(["sh", "-c", "echo half a result; kill -11 $$"], tmp_path)
+    with pytest.raises(ToolError, match=r"^ended by signal 35$"):
+        run_tool(["sh", "-c", "kill -35 $$"], tmp_path)
     # A shell script that ran the program.
     with pytest.raises(ToolError, match=r"^half a result\n(Killed\n)?exit status 137$"):
         run_tool(["sh", "-c", "echo half a result; sh -c 'kill -9 $$'; exit $?"], tmp_path)

@@ -44,12 +44,12 @@ class Icarus:
         if run is None:
             raise ProgramMissingError(f"{self.title} has no command vvp beside '{self.path}'")
         self.run_path = run
-        self._paths = self.path, run
 
     @property
     def version(self) -> str:
         # What the compiler writes runs in vvp.
-        return "; ".join(version_of(path, "-V").partition("; ")[0] for path in self._paths)
+        said = (version_of(path, "-V") for path in (self.path, self.run_path))
+        return "; ".join(each.partition("; ")[0] for each in said)
 
     def replay(self, trace: Trace, tops: Callable[[], list[Top]], folder: Path) -> list[str]:
         files = write_inputs(trace, tops(), folder)
