@@ -146,7 +146,7 @@ def run_tool(
 def with_end(said: str, status: int) -> str:
     """Return an output, with the end of its program if the output may not tell it."""
     if status < 0:
-        # What a program has printed does not say that it crashed. Signals of real time have no names.
+        # What a program has printed does not say that it crashed. Some signals have no names.
         names = {each.value: each.name for each in signal.Signals}
         return f"{said}\nended by {names.get(-status, f'signal {-status}')}".lstrip()
     # A shell adds 128 to the signal that ended its last command.
