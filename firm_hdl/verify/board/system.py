@@ -7,11 +7,12 @@ answer fails all that are left at once, with the same text.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 from firm_hdl.errors import DefinitionError, UserError, described
 from firm_hdl.node import Description, Topic
 from firm_hdl.node.boards import Board, board_of
+from firm_hdl.sim.fast.engines import EngineName, expected_engine
 from firm_hdl.verify.board.description import chosen_loops
 from firm_hdl.verify.board.judge import judge_loop
 from firm_hdl.verify.board.talk import SILENT_SECONDS, Talk, TalkError
@@ -77,6 +78,13 @@ class Boards(System):
         return self
 
     @property
+    def _engine(self) -> str:
+        """The engine that simulates the board, if that is what it is."""
+        if self._request.board != "sim":
+            return ""
+        return expected_engine(cast(EngineName, self._request.engine))[0]
+
+    @property
     def tests(self) -> Sequence[Test]:
         """A test for each type that the node loops."""
         return [self._test(loop) for loop in self._loops]
@@ -87,7 +95,7 @@ class Boards(System):
         request = self._request
         return {
             "board": request.board,
-            "engine": request.engine,
+            "engine": self._engine,
             "node": request.node,
             "fingerprint": f"{self._description.fingerprint:016x}",
             "seed": request.seed,

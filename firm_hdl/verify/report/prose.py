@@ -31,7 +31,7 @@ _ORDER = (Failed.name, NotRun.name, NotJudged.name, KnownDifference.name, Passed
 def headline(summary: Summary) -> str:
     """Return the result in one line."""
     counts = summary.counts
-    if not counts.total and not summary.failures:
+    if not counts.total and summary.has_ended and not summary.failures:
         return "? no tests"
     parts = [f"{number(counts.passed)} of {number(counts.total)} tests passed"]
     parts += [f"{number(counts.known)} with a known difference"] if counts.known else []
@@ -41,7 +41,7 @@ def headline(summary: Summary) -> str:
     line = f"{SIGNS[summary.verdict][0]} {', '.join(parts)}"
     if summary.failures and not counts.failed:
         line += f"; the run failed: {summary.failures[0]}"
-    return line
+    return line if summary.has_ended else f"{line}; a run has not ended"
 
 
 def facts(summary: Summary) -> Iterator[tuple[str, str]]:
@@ -158,6 +158,7 @@ def sources(summary: Summary) -> Iterator[tuple[str, list[str]]]:
     """Yield the files of a report, with the options and environments of their runs."""
     for run in summary.runs:
         lines = [f"{run.recorded} of {run.planned} planned tests have a record"]
+        lines += ["the last session has not ended"] if run.failure is None else []
         lines += [f"failed: {run.failure}"] if run.failure else []
         lines += [f"{name}: {_plain(value)}" for name, value in run.options.items()]
         before = None

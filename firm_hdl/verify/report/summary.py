@@ -123,8 +123,8 @@ class RunSummary:
     options : mapping of str to object
     sessions : tuple of mapping of str to str
     planned, recorded : int
-    failure : str
-        Why the run failed; empty if it did not.
+    failure : str or None
+        Why the run failed; empty if it did not, `None` if it has not ended.
     """
 
     name: str
@@ -132,7 +132,7 @@ class RunSummary:
     sessions: tuple[Mapping[str, str], ...]
     planned: int
     recorded: int
-    failure: str
+    failure: str | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -182,8 +182,15 @@ class Summary:
 
     @property
     def verdict(self) -> str:
-        """The worst outcome; ``failed``, too, if a run failed for another reason than a test."""
-        return Failed.name if self.failures else self.counts.verdict
+        """The worst outcome of the tests and of the runs."""
+        if self.failures or self.counts.failed:
+            return Failed.name
+        return self.counts.verdict if self.has_ended else NotRun.name
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether all runs have ended, and not only their tests."""
+        return all(run.failure is not None for run in self.runs)
 
     @property
     def failed(self) -> list[Outcome]:

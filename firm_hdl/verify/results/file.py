@@ -50,15 +50,15 @@ class Results:
         Records by key. The last of several records with the same key counts.
     sessions : tuple of mapping of str to str
         The environment of each session.
-    failure : str
-        Why the last session failed; empty if it did not, or has not ended.
+    failure : str or None
+        Why the last session failed; empty if it did not, `None` if it has not ended.
     """
 
     options: Mapping[str, Any] = field(default_factory=dict)
     planned: tuple[Test, ...] = ()
     records: Mapping[str, Record] = field(default_factory=dict)
     sessions: tuple[Mapping[str, str], ...] = ()
-    failure: str = ""
+    failure: str | None = ""
 
     @property
     def missing(self) -> tuple[Test, ...]:
@@ -86,17 +86,17 @@ def _read(path: Path) -> tuple[Results, int]:
     if not lines:
         if data and not f'{{"format": "{FORMAT}"'.encode().startswith(data[:20]):
             raise ResultsError(f"'{path}' has no results of firm-hdl verify")
-        return Results(), 0
+        return Results(failure=None), 0
     options, planned = _header(path, lines[0])
     records: dict[str, Record] = {}
     sessions: list[Mapping[str, str]] = []
-    failure = ""
+    failure: str | None = None
     for number, line in enumerate(lines[1:], 2):
         try:
             given = _value(line)
             if "session" in given:
                 sessions.append(_session(given["session"]))
-                failure = ""
+                failure = None
             elif "failure" in given:
                 failure = _failure(given["failure"])
             else:

@@ -7,6 +7,7 @@ import pytest
 
 from firm_hdl import Parser
 from tests.gateware.test_parser import run
+from tests.gateware.test_status_table import every_bus
 from tests.strategies import make
 
 MOST = 1024
@@ -25,7 +26,8 @@ def packet(text, end, size, items):
 
 
 @pytest.mark.parametrize("between", BETWEEN)
-def test_a_missing_nul_is_reported_and_not_the_claim_after_it(between):
+@every_bus
+def test_a_missing_nul_is_reported_and_not_the_claim_after_it(bus_bytes, between):
     fields, size = BETWEEN[between]
     element = make("ros2", {"s": "string", **fields, "q": "uint8[]"}, "Element")
     message = make("ros2", {"e": (element, "[]")})
@@ -37,6 +39,6 @@ def test_a_missing_nul_is_reported_and_not_the_claim_after_it(between):
             (packet(text, b"x", size, 1), "STRING"),
             (packet(text, b"\0", size, 1), "TRUNCATED"),
         ]
-    parser = Parser(message, bus_bytes=8, max_message_bytes=MOST)
+    parser = Parser(message, bus_bytes=bus_bytes, max_message_bytes=MOST)
     seen = run(parser, [each for each, _ in rows])
     assert [status.name for status in seen.statuses] == [status for _, status in rows]

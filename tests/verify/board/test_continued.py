@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.systems.options import Request
 from tests.node.bridge.fakes import FakeBoard
@@ -32,7 +33,8 @@ def test_results_are_not_continued_with_another_node(tmp_path):
     ("given", "key"),
     [
         ({"board": "other"}, "board"),
-        ({"engine": "amaranth"}, "engine"),
+        # Of a board that is simulated, see below.
+        ({"engine": "amaranth"}, None),
         ({"node": "node.yaml"}, "node"),
         ({"seed": 1}, "seed"),
         ({"most_cases": 5}, "cases"),
@@ -49,3 +51,15 @@ def test_results_are_continued_with_the_same_cases_only(given, key):
     usual, other = options_of(description), options_of(description, **given)
     assert [each for each in usual if usual[each] != other[each]] == ([key] if key else [])
     assert usual.keys() == other.keys()
+
+
+def test_results_of_a_simulation_are_continued_with_the_same_engine_only(monkeypatch):
+    description, engines = described(STRING), ["auto", "cxxrtl", "amaranth"]
+    with_compiler = [options_of(description, board="sim", engine=each) for each in engines]
+    assert [each["engine"] for each in with_compiler] == ["cxxrtl", "cxxrtl", "amaranth"]
+
+    def find_compiler(*_, **more):
+        raise ProgramMissingError("there is none")
+
+    monkeypatch.setattr("firm_hdl.sim.fast.engines.find_compiler", find_compiler)
+    assert options_of(description, board="sim", engine="auto")["engine"] == "amaranth"

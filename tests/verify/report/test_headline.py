@@ -40,5 +40,12 @@ def test_no_check_mark_if_a_run_failed():
     assert first_line(tests) == "✗ 1 of 2 tests passed, 1 failed"
     missing = replace(mixed(passed=1, not_run=1), failure="it was named")
     assert first_line(missing) == "✗ 1 of 2 tests passed, 1 not run; the run failed: it was named"
+    # A run that was killed is no success, whatever its earlier sessions were.
+    killed = replace(mixed(passed=2), failure=None)
+    assert first_line(killed) == "? 2 of 2 tests passed; a run has not ended"
+    assert first_line(mixed(passed=1), killed)[0] == "?"
+    both = "✗ 2 of 2 tests passed; the run failed: it was named; a run has not ended"
+    assert first_line(replace(mixed(passed=2), failure="it was named"), killed) == both
+    assert first_line(replace(mixed(passed=1, failed=1), failure=None))[0] == "✗"
     nothing = replace(run_of(), failure="there is nothing")
     assert first_line(nothing) == "✗ 0 of 0 tests passed; the run failed: there is nothing"

@@ -45,8 +45,8 @@ def test_the_failure_of_the_last_session_counts(tmp_path):
     more = {"options": OPTIONS, "planned": (HEADER, BOOL), "session": {"a": "b"}}
     for failure in ("it is wrong", "", "again"):
         with ResultsWriter(path, **more) as writer:
-            # A session that has not ended has not failed.
-            assert read_results(path).failure == ""
+            # A session that has not ended is neither a failure nor a success.
+            assert read_results(path).failure is None
             writer.conclude(failure)
         assert read_results(path).failure == failure
 

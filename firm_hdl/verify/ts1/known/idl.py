@@ -82,28 +82,53 @@ def _called_as_file(case: DefinitionCase) -> str:
 _DECLARED = re.compile(r"\bconst\s+[\w :<>,]*?\b(\w+)\s*=\s*([^;]*);")
 
 
+_NAMED_BOUND = re.compile(r"\bwstring\s*<\s*(?P<name>[A-Za-z_][\w:]*)")
+
+
+def _scopes(text: str) -> Iterator[tuple[int, int]]:
+    """Yield the innermost pairs of braces."""
+    for match in re.finditer(r"\{[^{}]*\}", text):
+        yield match.span()
+
+
+def _declared(code: str) -> Iterator[tuple[str, str, str]]:
+    """Yield constants: module, name and value. A module with other braces in it has no name."""
+    modules = {}
+    for begin, end in _scopes(code):
+        if module := re.search(r"\bmodule\s+(\w+)\s*$", code[:begin]):
+            modules[begin, end] = module[1]
+    for match in _DECLARED.finditer(code):
+        inner = [name for (begin, end), name in modules.items() if begin < match.start() < end]
+        yield "".join(inner), match[1], match[2].strip()
+
+
+def _named_bounds(case: DefinitionCase) -> Iterator[tuple[re.Match[str], str | None]]:
+    """Yield bounds of wstrings that are names, with the values of their constants.
+
+    The value is `None` if the struct sees no such constant: neither in the modules around the
+    struct nor in those of constants, of which its own comes first.
+    """
+    code = blanked(case.text)
+    declared = [each for text in case.included for each in _declared(blanked(text))]
+    declared += _declared(code)
+    for match in _NAMED_BOUND.finditer(code):
+        scope, _, name = match["name"].rpartition("::")
+        found = {module: value for module, each, value in declared if each == name}
+        own = "".join(re.findall(r"\bstruct\s+(\w+)", code[: match.start()])[-1:])
+        others = [module for module in found if module.endswith("_Constants")]
+        order = [scope.rpartition("::")[2], ""] if scope else ["", f"{own}_Constants", *others]
+        yield match, next((found[module] for module in order if module in found), None)
+
+
 @RULES.text(
     "idl-unseen-bounds",
     "rosidl_parser takes a wstring whose bound is no constant that its struct sees.",
     is_mistake=True,
 )
 def _bounds_that_are_seen(case: DefinitionCase) -> str:
-    """Write 1 for a bound that nothing declares, or only a module that is not for constants."""
-    code = blanked(case.text)
-    texts = (code, *map(blanked, case.included))
-    declared = {name for text in texts for name, _ in _DECLARED.findall(text)}
-    beside: set[str] = set()
-    for begin, end in _scopes(code):
-        module = re.search(r"\bmodule\s+(\w+)\s*$", code[:begin])
-        if module and not module[1].endswith("_Constants"):
-            beside |= {name for name, _ in _DECLARED.findall(code, begin, end)}
-
-    def bound(match: re.Match[str]) -> str:
-        scope, _, name = match[2].rpartition("::")
-        is_seen = name in declared and (scope or name not in beside)
-        return match[0] if is_seen else f"{match[1]}1"
-
-    return in_code(case.text, r"(\bwstring\s*<\s*)([A-Za-z_][\w:]*)", bound)
+    """Write 1 for a bound that is the name of no constant in sight."""
+    unseen = [match.span("name") for match, value in _named_bounds(case) if value is None]
+    return changed(case.text, [(*span, "1") for span in unseen])
 
 
 @RULES.text(
@@ -112,13 +137,8 @@ def _bounds_that_are_seen(case: DefinitionCase) -> str:
 )
 def _bounds_by_value(case: DefinitionCase) -> str:
     """Write the value of a constant that bounds a wstring in place of its name."""
-    values = dict(_DECLARED.findall(blanked(case.text)))
-
-    def bound(match: re.Match[str]) -> str:
-        value = values.get(match[2].rpartition("::")[2], "").strip()
-        return f"{match[1]}{value}" if value.isdecimal() else match[0]
-
-    return in_code(case.text, r"(\bwstring\s*<\s*)([A-Za-z_][\w:]*)", bound)
+    found = [(match.span("name"), value) for match, value in _named_bounds(case)]
+    return changed(case.text, [(*at, value) for at, value in found if value and value.isdecimal()])
 
 
 def _as_float(kind: str, value: Any) -> Any:
@@ -149,12 +169,6 @@ def _without_long_double_hash(facts: Facts, case: DefinitionCase) -> Facts:
 
 
 # Names that C++ would declare twice.
-
-
-def _scopes(text: str) -> Iterator[tuple[int, int]]:
-    """Yield the innermost pairs of braces."""
-    for match in re.finditer(r"\{[^{}]*\}", text):
-        yield match.span()
 
 
 _NAMES = re.compile(

@@ -109,7 +109,7 @@ _MEMBER = re.compile(
 )
 
 
-_DEFAULT = re.compile(r"@\s*default\s*\(\s*value\s*=(?P<value>(?:[^()]|\([^()]*\))*)\)")
+_DEFAULT = re.compile(r"@\s*default\s*\((?:\s*value\s*=)?(?P<value>(?:[^()]|\([^()]*\))*)\)")
 
 
 _NO_VALUE = re.compile(r"@\s*default\b(?!\s*\()")

@@ -274,6 +274,13 @@ EXAMPLES: tuple[Example, ...] = (
     _idl("idl-type-scopes", "sequence<a::X> x; p::T y;", drop_last, before="typedef long T;"),
     _idl("idl-file-names", "long x;", drop_last, name="B"),
     _idl("idl-bounds-by-name", "sequence<wstring<N>, 2> x;", _constant(value=4), before=_N),
+    # Another constant of the same name, behind: its value is none of the bound's.
+    _idl(
+        "idl-bounds-by-name",
+        "wstring<N> x;",
+        _field(0, type=String(wide=True, bound=4)),
+        before=_N + "module B_Constants { const long N = 4; }; module q { const long N = 4; };",
+    ),
     _idl("idl-unseen-bounds", "wstring<NONE> x; long y;", drop_last),
     _idl("idl-unseen-bounds", "wstring<N> x; long y;", drop_last, before=_N.replace("A_", "")),
     _idl(

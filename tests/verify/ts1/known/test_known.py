@@ -299,3 +299,20 @@ def test_placeholders_can_be_replaced_back(text):
     assert shown([hidden(text, "a"), 1]) == [text, 1]
     name = {"name": text or "x"}
     assert renamed_back({"name": renamed(name["name"])}) == name
+
+
+@pytest.mark.parametrize(
+    "members",
+    [
+        "@default(1) @default(value=2) long x;",
+        "@default(1) @default(2) long x;",
+        "@default @default(2) long x;",
+        "@default(300) octet x;",
+        '@default(-1) octet x; @default("x") long y;',
+    ],
+)
+def test_the_short_form_of_an_annotation_has_the_mistakes_of_the_long_one(court, members):
+    text = f"module p {{ module msg {{ struct A {{ {members} }}; }}; }};"
+    verdict = court("lyrical", {"p/msg/A.idl": text}).outcome("rosidl_parser", "p/A").verdict
+    assert isinstance(verdict, KnownDifference)
+    assert {"idl-defaults", "idl-values"} & {*verdict.keys}
