@@ -116,6 +116,8 @@ def _named_bounds(case: DefinitionCase) -> Iterator[tuple[re.Match[str], str | N
         found = {module: value for module, each, value in declared if each == name}
         own = "".join(re.findall(r"\bstruct\s+(\w+)", code[: match.start()])[-1:])
         others = [module for module in found if module.endswith("_Constants")]
+        # Of several others, none is meant.
+        others = others if len(others) == 1 else []
         order = [scope.rpartition("::")[2], ""] if scope else ["", f"{own}_Constants", *others]
         yield match, next((found[module] for module in order if module in found), None)
 

@@ -282,6 +282,12 @@ EXAMPLES: tuple[Example, ...] = (
         before=_N + "module B_Constants { const long N = 4; }; module q { const long N = 4; };",
     ),
     _idl("idl-unseen-bounds", "wstring<NONE> x; long y;", drop_last),
+    _idl(
+        "idl-unseen-bounds",
+        "wstring<N> x; long y;",
+        drop_last,
+        before=_N.replace("A_", "B_") + _N.replace("A_", "C_"),
+    ),
     _idl("idl-unseen-bounds", "wstring<N> x; long y;", drop_last, before=_N.replace("A_", "")),
     _idl(
         "idl-whole-numbers",
