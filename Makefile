@@ -47,10 +47,10 @@ pytest: $(COMPILED) tools ## tests only; PYTEST_ARGS=tests/export takes some
 	$(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
 test-thorough: $(COMPILED) tools ## all tests in full depth (an hour or more); PYTEST_ARGS=-mthorough takes some
-	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
+	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest --timeout 3600 -n $(JOBS) $(PYTEST_ARGS)
 
 test-live: $(VENV)/.installed-dev $(LIVE_PEERS) verilog ros1 ## our nodes and the bridge with rclpy, rospy and Cyclone DDS, in a network of their own (25 minutes at first)
-	FIRM_HDL_LIVE=1 $(BIN)/python -m pytest -n $(JOBS) $(or $(PYTEST_ARGS),tests/live)
+	FIRM_HDL_LIVE=1 $(BIN)/python -m pytest --timeout 3600 -n $(JOBS) $(or $(PYTEST_ARGS),tests/live)
 
 lint: $(VENV)/.installed-dev ## ruff and mypy only
 	$(BIN)/ruff check .
