@@ -6,7 +6,6 @@ that they always fit each other; another Yosys on the PATH is ignored.
 
 from __future__ import annotations
 
-import sys
 from importlib import resources
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from amaranth.back import rtlil
 from amaranth.hdl import Fragment
 
 from firm_hdl.jobs import made_by, run_tool
+from firm_hdl.jobs.programs import python_command
 from firm_hdl.sim.fast.top import Top, check_domains
 
 __all__ = ["HEADERS", "SERVER", "CxxrtlSource", "cxxrtl_source", "translate"]
@@ -89,7 +89,8 @@ def translate(source: CxxrtlSource, folder: Path) -> Path:
     """
     (folder / _NETLIST).write_text(source.netlist, encoding="utf-8")
     (folder / _SCRIPT).write_text(source.script, encoding="utf-8")
-    run_tool([sys.executable, "-m", _PACKAGE, "-q", _SCRIPT], folder)
+    yosys = python_command(f"import runpy; runpy.run_module('{_PACKAGE}', None, '__main__', True)")
+    run_tool([*yosys, "-q", _SCRIPT], folder)
     made_by("Yosys", folder / _DESIGN)
     (folder / SERVER.name).write_bytes(SERVER.read_bytes())
     main = folder / "main.cc"
