@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +37,9 @@ _OTHERS = tuple(
     f"{folder}/" for folder in (Path(amaranth.__file__).parent, Path(__file__).parents[1])
 )
 """The folders of code that is not the user's."""
+
+_imported: dict[str, str] = {}
+"""Modules that came from a folder of a description, with the folder."""
 
 OF_THE_NODE = ("subscribe", "publish", "serve", "time")
 
@@ -69,14 +74,23 @@ def load_accelerator(description: Description) -> Any:
         or its ports do not match. A :class:`UserError` of the class gives its own text as reason.
     """
     module, _, path = description.accelerator.partition(":")
+    # Python remembers what it found in a folder by its name, and "." is another one later.
+    folder = os.path.abspath(description.folder)
     try:
-        with _searched_first(description.folder):
+        with _searched_first(folder):
             found: Any = importlib.import_module(module)
     except ImportError as error:
         hint = f"; write '{module[:-3]}:{path}'" if module.endswith(".py") else ""
         raise _refused(description, f"cannot import '{module}': {error}{hint}") from None
     except (Exception, SystemExit) as error:
         raise _refused(description, f"'{module}' {_raised(error)}") from None
+    top = module.partition(".")[0]
+    there = PathFinder.find_spec(top, [folder])
+    if top != "firm_hdl" and there and there.origin:
+        file = getattr(sys.modules[top], "__file__", None) or ""
+        if not (os.path.exists(file) and os.path.samefile(file, there.origin)):
+            other = f"another module, {file or 'of Python itself'}"
+            raise _refused(description, f"'{top}' is the name of {other}, too; rename yours")
     for name in path.split("."):
         if not hasattr(found, name):
             raise _refused(description, f"'{module}' has no '{path}'")
@@ -183,14 +197,21 @@ def other_members(accelerator: Any) -> dict[str, wiring.Member]:
 
 @contextmanager
 def _searched_first(folder: str) -> Iterator[None]:
-    before = list(sys.path)
-    # Python remembers what it found in a folder by its name, and "." is another one later.
-    sys.path.insert(0, str(Path(folder).absolute()))
+    """Search a folder for modules first, and none in the folders of other descriptions."""
+    for name in [name for name, where in _imported.items() if where != folder]:
+        del _imported[name]
+        sys.modules.pop(name, None)
+    before, known = list(sys.path), set(sys.modules)
+    sys.path.insert(0, folder)
     importlib.invalidate_caches()
     try:
         yield
     finally:
         sys.path[:] = before
+        for name in set(sys.modules) - known:
+            file = getattr(sys.modules[name], "__file__", None)
+            if file and Path(file).is_relative_to(folder):
+                _imported[name] = folder
 
 
 def _raised(error: BaseException) -> str:

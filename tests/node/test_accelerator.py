@@ -104,6 +104,28 @@ def test_a_mistake_is_an_error_at_the_name(folder, capsys, action, mistake):
     )
 
 
+def test_each_description_has_the_module_of_its_own_folder(tmp_path):
+    """Also if that of another folder has the same name, and one beside it."""
+    for name in ("a", "b", "a"):
+        (tmp_path / name).mkdir(exist_ok=True)
+        (tmp_path / name / "beside.py").write_text(f"here = '{name}'\n")
+        (tmp_path / name / f"{NAME}.py").write_text(f"from beside import here\n{double()}")
+        (tmp_path / name / "double.yaml").write_text(TEXT)
+        accelerator = Node(read_description(tmp_path / name / "double.yaml")).accelerator
+        module = sys.modules[type(accelerator).__module__]
+        assert module.here == name
+    sys.modules.pop(NAME)
+
+
+@pytest.mark.parametrize("taken", ["sys", "json", "amaranth"])
+def test_a_module_whose_name_is_taken_is_an_error_at_the_name(folder, capsys, taken):
+    (folder / "double.yaml").write_text(TEXT.replace(NAME, taken))
+    (folder / f"{taken}.py").write_text(double())
+    assert run("build", "double.yaml") == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f"double.yaml:3:14: error: '{taken}' is the name of another module, ")
+
+
 def test_a_clock_of_its_own_is_no_mistake(folder):
     """The accelerator has the domain, and drives its clock."""
     text = double().replace("import Module\n", "import ClockDomain, Module, Signal\n")
