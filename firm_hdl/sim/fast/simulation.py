@@ -61,7 +61,8 @@ class FastSimulation:
     options : sequence of str
         Options of the compiler. ``["-O1"]`` compiles in less time.
     cache : Path or None
-        Folder of compiled programs; `None`: the user's cache.
+        Folder of compiled programs, which are run. Other users must not be able to write it.
+        `None`: the user's cache.
     ignored : collection of str
         Output streams whose transfers are not kept. A stream that is not received in a live
         simulation would take more and more memory.
