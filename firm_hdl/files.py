@@ -93,7 +93,8 @@ def write_file(path: str | os.PathLike[str], text: str) -> None:
     target = os.path.realpath(path)
     temporary = os.path.join(os.path.dirname(target), f".firm-hdl-{secrets.token_hex(8)}.part")
     try:
-        os.makedirs(os.path.dirname(target), exist_ok=True)
+        with suppress(FileExistsError):
+            os.makedirs(os.path.dirname(target))
         write_new(temporary, data)
         if status is not None:
             # A file that may not be written may be replaced nevertheless.

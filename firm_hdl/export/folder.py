@@ -228,7 +228,8 @@ def _opened(out: Path, folder: Path, *, make: bool = False) -> Iterator[int]:
     """Open a folder below a path of the user's."""
     if make:
         # If the path is a link to nothing, what it leads to is made.
-        os.makedirs(os.path.realpath(out), exist_ok=True)
+        with suppress(FileExistsError):
+            os.makedirs(os.path.realpath(out))
     with ExitStack() as stack:
         root = os.open(out, os.O_RDONLY | os.O_DIRECTORY)
         stack.callback(os.close, root)

@@ -48,6 +48,16 @@ def build(folder: Path, version: int) -> None:
     write(folder, texts(version), version=version)
 
 
+def left_when_outdated(folder: Path, copy: Path) -> set[str]:
+    """Return the files of a built folder that a build without any file would leave."""
+    listed = json.loads((folder / MANIFEST).read_text())["files"]
+    for name in (*listed, MANIFEST):
+        (copy / name).parent.mkdir(parents=True, exist_ok=True)
+        (copy / name).write_bytes((folder / name).read_bytes())
+    write(copy, {})
+    return {*tree(copy)} - {MANIFEST}
+
+
 def tree(root: Path) -> dict[str, str]:
     return {
         path.relative_to(root).as_posix(): path.read_text()
