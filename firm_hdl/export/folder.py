@@ -219,7 +219,8 @@ def _reported(folder: Path) -> Iterator[None]:
         yield
     except OSError as error:
         name = error.filename
-        what = "" if name is None or _TEMPORARY.fullmatch(name) else f" ('{name}')"
+        is_named = isinstance(name, str) and not _TEMPORARY.fullmatch(name)
+        what = f" ('{name}')" if is_named else ""
         raise BuildError(f"'{folder}' cannot be written: {error.strerror}{what}") from None
 
 
@@ -270,8 +271,8 @@ def _enter(above: int, name: str, *, make: bool) -> int:
 
 def _mount(file: int) -> str:
     """Return the mount of an open file; a bind mount has the device of another one."""
-    with suppress(OSError), open(f"/proc/self/fdinfo/{file}", encoding="ascii") as lines:
-        return next(line for line in lines if line.startswith("mnt_id:"))
+    with suppress(OSError, StopIteration), open(f"/proc/self/fdinfo/{file}", "rb") as lines:
+        return str(next(line for line in lines if line.startswith(b"mnt_id:")))
     return str(os.fstat(file).st_dev)
 
 
