@@ -1,16 +1,20 @@
-"""Read files from unknown sources: only regular files of limited size.
+"""Read files from unknown sources: only regular files of limited size. Write files as a whole.
 
 Reading a FIFO or a terminal may block, a device may never end, and a sparse file of a gigabyte is
-cheap to create and expensive to read.
+cheap to create and expensive to read. A file that is written is either the old or the new one at
+any time, also if the disk is full, or the process is killed.
 """
 
 from __future__ import annotations
 
 import errno
 import os
+import secrets
 import stat
+import sys
+from contextlib import suppress
 
-__all__ = ["check_file", "read_file"]
+__all__ = ["check_file", "read_file", "write_file", "write_new"]
 
 _KINDS = (
     (stat.S_ISDIR, "a folder"),
@@ -64,3 +68,76 @@ def _check(status: os.stat_result, path: str | os.PathLike[str], max_bytes: int 
 def _too_large(path: str | os.PathLike[str], size: str, max_bytes: int) -> OSError:
     reason = f"it has {size} bytes, and at most {max_bytes} are read"
     return OSError(errno.EFBIG, reason, os.fspath(path))
+
+
+def write_file(path: str | os.PathLike[str], text: str) -> None:
+    """Write a text, as UTF-8, to a path that the user named. Missing folders are made.
+
+    A link stays, and the file that it leads to is replaced. A device, a FIFO and standard output
+    are written to. Bytes of a file's name that are not UTF-8 are written as in JSON, ``\\udcff``.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written. A regular file is then unchanged.
+    """
+    data = text.encode("utf-8", "backslashreplace")
+    status = os.stat(path) if os.path.exists(path) else None
+    if status is not None and _is_standard_output(status):
+        sys.stdout.write(data.decode())
+        return
+    if status is not None and not stat.S_ISREG(status.st_mode):
+        with open(path, "wb") as file:
+            file.write(data)
+        return
+    target = os.path.realpath(path)
+    temporary = os.path.join(os.path.dirname(target), f".firm-hdl-{secrets.token_hex(8)}.part")
+    try:
+        with suppress(FileExistsError):
+            os.makedirs(os.path.dirname(target))
+        write_new(temporary, data)
+        if status is not None:
+            # A file that may not be written may be replaced nevertheless.
+            os.close(os.open(target, os.O_WRONLY))
+            os.chmod(temporary, stat.S_IMODE(status.st_mode))
+        os.replace(temporary, target)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, os.fspath(path)) from None
+    finally:
+        with suppress(OSError):
+            os.unlink(temporary)
+
+
+def write_new(
+    path: str | os.PathLike[str], data: bytes, mode: int = 0o666, *, folder: int | None = None
+) -> None:
+    """Write a file that does not exist yet.
+
+    Parameters
+    ----------
+    mode : int
+        Rights, before the process's mask.
+    folder : int or None
+        Descriptor of the folder that a relative path is in; `None`: the current folder.
+
+    Raises
+    ------
+    OSError
+        If something exists at the path, a link included, or the file cannot be written. There is
+        no new file.
+    """
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+    number = os.open(path, flags, mode, dir_fd=folder)
+    try:
+        with open(number, "wb") as file:
+            file.write(data)
+    except BaseException:
+        os.unlink(path, dir_fd=folder)
+        raise
+
+
+def _is_standard_output(status: os.stat_result) -> bool:
+    # What else is printed comes before and after it, also if `/dev/stdout` is a regular file.
+    with suppress(OSError, ValueError):
+        return os.path.samestat(status, os.fstat(sys.stdout.fileno()))
+    return False

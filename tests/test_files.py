@@ -1,16 +1,19 @@
-"""Input files: regular ones up to their limit are read, and no others."""
+"""Input files: regular ones up to their limit are read. Output files are whole, old or new."""
 
 from __future__ import annotations
 
 import errno
 import os
+import resource
 import socket
 import stat
+import subprocess
+import sys
 from types import SimpleNamespace
 
 import pytest
 
-from firm_hdl.files import check_file, read_file
+from firm_hdl.files import check_file, read_file, write_file, write_new
 
 
 @pytest.fixture
@@ -101,3 +104,92 @@ def test_a_file_that_becomes_a_fifo_meanwhile_is_not_waited_for(file, monkeypatc
     os.mkfifo(file)
     with pytest.raises(OSError, match="it is a FIFO"):
         read_file(file, 10)
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_file_is_replaced_by_a_whole_one(file, tmp_path):
+    file.chmod(0o640)
+    with file.open() as old:
+        write_file(file, "new\n\udcff")
+        assert old.read() == "12345"
+    assert file.read_bytes() == b"new\n\\udcff"
+    assert stat.S_IMODE(file.stat().st_mode) == 0o640
+    write_file(tmp_path / "a" / "b", "new")
+    assert names(tmp_path) == ["a", "file"] and names(tmp_path / "a") == ["b"]
+
+
+def test_without_room_a_file_stays_as_it_was(file, tmp_path):
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, limits[1]))
+    try:
+        for path in (file, tmp_path / "new"):
+            with pytest.raises(OSError, match="File too large") as error:
+                write_file(path, "x" * (2 << 20))
+            assert error.value.filename == os.fspath(path)
+        with pytest.raises(OSError, match="File too large"):
+            write_new(tmp_path / "new", b"x" * (2 << 20))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert names(tmp_path) == ["file"] and file.read_bytes() == b"12345"
+
+
+@pytest.mark.parametrize("target", ["file", "none"])
+def test_a_link_stays_and_its_file_is_written(file, tmp_path, target):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "link").symlink_to(f"../{target}")
+    write_file(tmp_path / "folder" / "link", "new")
+    assert (tmp_path / "folder" / "link").is_symlink() and names(tmp_path / "folder") == ["link"]
+    assert (tmp_path / target).read_text() == "new"
+
+
+def test_nothing_that_is_no_file_is_replaced(tmp_path):
+    os.mkfifo(tmp_path / "fifo")
+    reader = os.open(tmp_path / "fifo", os.O_RDONLY | os.O_NONBLOCK)
+    write_file(tmp_path / "fifo", "new")
+    assert os.read(reader, 9) == b"new"
+    os.close(reader)
+    assert stat.S_ISFIFO((tmp_path / "fifo").lstat().st_mode)
+    write_file(os.devnull, "new")
+    with pytest.raises(IsADirectoryError):
+        write_file(tmp_path, "new")
+    with pytest.raises(NotADirectoryError):
+        write_file("/dev/null/file", "new")
+    assert names(tmp_path) == ["fifo"]
+
+
+def test_standard_output_is_written_in_order_be_it_a_file_or_a_pipe(tmp_path):
+    code = (
+        "from firm_hdl.files import write_file\n"
+        "print('before')\nwrite_file('/dev/stdout', 'text\\n')\nprint('after')"
+    )
+    command = [sys.executable, "-c", code]
+    with (tmp_path / "out").open("w") as out:
+        subprocess.run(command, stdout=out, check=True, timeout=60)
+    assert (tmp_path / "out").read_text() == "before\ntext\nafter\n"
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60)
+    assert done.stdout == "before\ntext\nafter\n"
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_file_without_rights_stays_as_it_was(file, tmp_path):
+    file.chmod(0o444)
+    with pytest.raises(PermissionError) as error:
+        write_file(file, "new")
+    assert error.value.filename == os.fspath(file)
+    file.chmod(0o644)
+    tmp_path.chmod(0o555)
+    with pytest.raises(PermissionError):
+        write_file(file, "new")
+    tmp_path.chmod(0o755)
+    assert file.read_bytes() == b"12345" and names(tmp_path) == ["file"]
+
+
+def test_a_new_file_replaces_nothing(file, tmp_path):
+    (tmp_path / "link").symlink_to("none")
+    for path in (file, tmp_path / "link"):
+        with pytest.raises(FileExistsError):
+            write_new(path, b"new")
+    assert names(tmp_path) == ["file", "link"] and file.read_bytes() == b"12345"

@@ -50,6 +50,7 @@ from firm_hdl.bench.standard import (
 )
 from firm_hdl.bench.tables import row
 from firm_hdl.bench.tools import BenchError, versions
+from firm_hdl.files import write_file
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.plan import DIRECTIONS
 from firm_hdl.terminal import printable_streams
@@ -134,7 +135,7 @@ def _measure_all(given: argparse.Namespace) -> int:
     _write_parts(Path(given.page), results, sets, _compare_all(software))
     if parts:
         write_page(Path(given.page), {"parts": part_table(parts)})
-        (figures / KEPT_PARTS).write_text(parts_text(parts), encoding="utf-8")
+        write_file(figures / KEPT_PARTS, parts_text(parts))
     if results:
         covering = results.pop("covering", [])
         measured = [each for found in results.values() for each in found]
@@ -194,7 +195,6 @@ def _type_of(what: Converted) -> tuple[str, str]:
 def _write_plots(
     folder: Path, results: Mapping[str, list[Result]], sets: Mapping[str, list[Result]]
 ) -> None:
-    folder.mkdir(parents=True, exist_ok=True)
     plots = {}
     if "figures" in results:
         plots["clock"] = clock_plot(results["figures"])
@@ -202,7 +202,7 @@ def _write_plots(
     if sets:
         plots["beats"] = beats_plot(sets)
     for name, text in plots.items():
-        (folder / f"bench_{name}.svg").write_text(text, encoding="utf-8")
+        write_file(folder / f"bench_{name}.svg", text)
 
 
 def _write_parts(
@@ -241,7 +241,7 @@ def _keep(file: Path, results: list[Result]) -> list[Result]:
     if same:
         print(compared(same, results, 0.02)[0])
     everything = [*(result for result in old if result.key not in new), *results]
-    file.write_text(results_text(everything), encoding="utf-8")
+    write_file(file, results_text(everything))
     return everything
 
 
@@ -250,7 +250,7 @@ def _write_estimates(file: Path, results: list[Result]) -> None:
     first: dict[tuple[str, ...], Result] = {}
     for result in results:
         first.setdefault(result.key, result)
-    file.write_text(estimates_json(first[key] for key in sorted(first)), encoding="utf-8")
+    write_file(file, estimates_json(first[key] for key in sorted(first)))
 
 
 if __name__ == "__main__":

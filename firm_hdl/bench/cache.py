@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -13,6 +12,7 @@ from firm_hdl.bench.devices import Device
 from firm_hdl.bench.flow import PREPARATIONS, Measured, measure
 from firm_hdl.bench.results import measured_from_json, measured_to_json
 from firm_hdl.bench.tools import versions
+from firm_hdl.files import write_file
 
 __all__ = ["measure_once"]
 
@@ -44,9 +44,6 @@ def measure_once(
         return measured_from_json(json.loads(file.read_text(encoding="utf-8")))
     found = measure(rtlil, device, seeds, mapping=mapping)
     if not found.problem:
-        folder.mkdir(parents=True, exist_ok=True)
-        # Write to a temporary file, because another process may write or read the same file.
-        part = folder / f"{key}.{os.getpid()}.part"
-        part.write_text(json.dumps(measured_to_json(found)), encoding="utf-8")
-        part.replace(file)
+        # Another process may write or read the same file.
+        write_file(file, json.dumps(measured_to_json(found)))
     return found

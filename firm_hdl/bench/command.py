@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 from tqdm import tqdm
 
@@ -25,6 +24,7 @@ from firm_hdl.bench.run import BenchTask, run_tasks
 from firm_hdl.bench.software import CLOCK_MHZ, compare_software, machine, software_rows
 from firm_hdl.bench.tables import head, row, summary
 from firm_hdl.bench.tools import versions
+from firm_hdl.files import write_file
 from firm_hdl.frontend import all_names, load_all, open_library
 from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, DIRECTIONS
 
@@ -148,7 +148,7 @@ def run_bench(given: argparse.Namespace) -> int:
             progress.update()
     print(summary(results, tasks[0].stated if tasks else None))
     if given.json is not None:
-        Path(given.json).write_text(results_text(results), encoding="utf-8")
+        write_file(given.json, results_text(results))
     is_fine = bool(results) and not any(result.problem for result in results)
     if old is not None:
         text, is_no_worse = compared(old, results, given.threshold / 100)

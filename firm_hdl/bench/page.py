@@ -10,6 +10,7 @@ from statistics import median
 from firm_hdl.bench.results import Result
 from firm_hdl.bench.tables import LINE_RATE_MHZ, beats_per_cycle, geometric_mean
 from firm_hdl.bench.tools import BenchError
+from firm_hdl.files import write_file
 
 __all__ = [
     "area_table",
@@ -38,7 +39,7 @@ def write_page(page: Path, parts: Mapping[str, str]) -> None:
         if len(whole.findall(text)) != 1:
             raise BenchError(f"'{page}' has not one part '{name}'")
         text = whole.sub(lambda _, new=f"{begin}\n{part}\n{end}": new, text)  # type: ignore[misc]
-    page.write_text(text, encoding="utf-8")
+    write_file(page, text)
 
 
 def converter_table(results: Iterable[Result]) -> str:

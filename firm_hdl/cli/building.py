@@ -63,8 +63,8 @@ def _build(args: argparse.Namespace) -> None:
     def report(built: Built) -> None:
         state = "current" if built.was_current else "wrote"
         print(f"{state:8}{built.folder}{os.sep}", flush=True)
-        for old, new in sorted(built.renamed.items()):
-            print(f"        your file {old} is now {new}", flush=True)
+        for name in built.kept:
+            print(f"kept    {built.folder / name}, which you changed", flush=True)
 
     done = build(
         args.types,

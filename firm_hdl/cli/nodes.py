@@ -101,6 +101,6 @@ def _act(args: argparse.Namespace, description: Description) -> None:
 
         built = build_node(description, args.out, force=args.force, stimuli=_stimuli)
         print(f"{'current' if built.was_current else 'wrote':8}{built.folder}", flush=True)
-        for old, new in sorted(built.renamed.items()):
-            print(f"        your file {old} is now {new}", flush=True)
+        for name in built.kept:
+            print(f"kept    {built.folder / name}, which you changed", flush=True)
     print(summary(description))

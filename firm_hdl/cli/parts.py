@@ -111,5 +111,5 @@ def _part(args: argparse.Namespace) -> None:
     part = make_part(args.kind, message=message, name=args.name, **given)
     built = build_part(part, args.out, force=args.force)
     print(f"{'current' if built.was_current else 'wrote':8}{built.folder}{os.sep}", flush=True)
-    for old, new in sorted(built.renamed.items()):
-        print(f"        your file {old} is now {new}", flush=True)
+    for name in built.kept:
+        print(f"kept    {built.folder / name}, which you changed", flush=True)

@@ -13,7 +13,7 @@ from tqdm import tqdm
 from firm_hdl.covering.choose import FAMILIES, all_features, choose, cost
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
-from firm_hdl.files import read_file
+from firm_hdl.files import read_file, write_file
 from firm_hdl.frontend import Library, all_names, load_all, open_library
 from firm_hdl.model import Message
 from firm_hdl.plan.shape import shape
@@ -99,8 +99,7 @@ def run_cover(given: argparse.Namespace) -> int:
         where = "the folders" if given.path else "the recordings" if given.bag else library.distro
         head = _HEAD.format(where=where, bus_bytes=given.bus_bytes)
         text = head + "".join(f"{name}\n" for name in sorted(names))
-        Path(given.out).parent.mkdir(parents=True, exist_ok=True)
-        Path(given.out).write_text(text, encoding="utf-8", newline="\n")
+        write_file(given.out, text)
     print(f"{_share(types, names)}; {len(shapes)} different circuits", file=sys.stderr)
     return 0
 

@@ -1,7 +1,7 @@
 """Build folders of files from names of types.
 
-All errors in definitions and options are found before the first file is written. A folder is
-created or replaced as a whole; a folder that is current stays unchanged.
+All errors in definitions and options are found before the first file is written. A folder that is
+current stays unchanged.
 """
 
 from __future__ import annotations
@@ -9,15 +9,16 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from firm_hdl.export.backend import BackEnd, BuildError, Converters, Options
 from firm_hdl.export.documents import Documents
-from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
-from firm_hdl.export.manifest import MANIFEST, inputs_of, make_manifest, to_json
+from firm_hdl.export.folder import build_folder, check_folder
+from firm_hdl.export.manifest import inputs_of, make_manifest
 from firm_hdl.export.systemverilog import SystemVerilog
 from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, ports_of
 from firm_hdl.export.verilog import Verilog
@@ -52,15 +53,15 @@ class Built:
         The folder was current, and nothing was written.
     description : str
         Size and timing of the converters, as text; see :func:`firm_hdl.plan.timing.describe`.
-    renamed : mapping of str to str
-        New names of user files that had the name of a generated file, by their old names.
+    kept : tuple of str
+        Outdated files that the user changed, and that stay; paths in the folder.
     """
 
     name: str
     folder: Path
     was_current: bool
     description: str
-    renamed: Mapping[str, str] = field(default_factory=dict)
+    kept: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,6 +73,11 @@ class _Task:
     def name(self) -> str:
         """Name of the message type."""
         return self.converters.message.name
+
+    @property
+    def out(self) -> Path:
+        """The path that the user named."""
+        return self.folder.parents[1]
 
 
 def build(
@@ -113,8 +119,8 @@ def build(
     DefinitionError
         With all errors in the definitions. Nothing was written.
     BuildError
-        If a type cannot be built with these options; nothing was written. Also if writing fails;
-        every folder is then complete, either the old or the new one.
+        If a type cannot be built with these options; nothing was written. Also if something of the
+        user's is in the place of a file, or writing fails; the next build completes the folder.
     """
     library = Library() if library is None else library
     options = Options() if options is None else options
@@ -214,41 +220,29 @@ def _check_folders(tasks: list[_Task]) -> None:
         other = owners.setdefault(str(task.folder).lower(), task.name)
         if other != task.name:
             raise BuildError(f"{task.name}: its folder '{task.folder}' is also that of {other}")
-        found = read_manifest(task.folder)
-        if found is not None:
-            other = str(found["inputs"].get("message"))
-            if other != task.name:
-                raise BuildError(f"{task.name}: '{task.folder}' is the folder of {other}")
-        elif task.folder.exists() and not is_empty(task.folder):
-            raise BuildError(f"'{task.folder}' is not a folder that firm-hdl made; move it away")
+        found = check_folder(task.out, task.folder)
+        if found and found["inputs"].get("message") != task.name:
+            other = found["inputs"].get("message")
+            raise BuildError(f"{task.name}: '{task.folder}' is the folder of {other}")
 
 
 def _build_one(task: _Task, force: bool) -> Built:
-    figures = timing(task.converters.plan)
-    try:
-        return _write_folder(task, figures, force)
-    except OSError as error:
-        where = error.filename or task.folder
-        raise BuildError(f"'{where}' cannot be written: {error.strerror}") from None
-
-
-def _write_folder(task: _Task, figures: Timing, force: bool) -> Built:
-    clear_up(task.folder)
     converters = task.converters
-    built = Built(
+    figures = timing(converters.plan)
+    kept = build_folder(
+        task.out, task.folder, converters.inputs, lambda: _files(converters, figures), force=force
+    )
+    return Built(
         name=task.name,
         folder=task.folder,
-        was_current=not force and is_current(task.folder, converters.inputs),
+        was_current=kept is None,
         description=describe(task.name, converters.plan, figures),
+        kept=kept or (),
     )
-    if not built.was_current:
-        files = _files(converters, figures)
-        built = dataclasses.replace(built, renamed=replace(task.folder, files))
-    return built
 
 
-def _files(converters: Converters, figures: Timing) -> dict[str, str]:
-    """Write all files of a folder."""
+def _files(converters: Converters, figures: Timing) -> tuple[dict[str, str], dict[str, Any]]:
+    """Write all files of a folder; return them and the manifest."""
     converters = dataclasses.replace(converters, circuits=converters.make_circuits())
     outputs = [each.write(converters) for each in BACK_ENDS]
     files = {name: text for output in outputs for name, text in output.files.items()}
@@ -260,4 +254,4 @@ def _files(converters: Converters, figures: Timing) -> dict[str, str]:
         files=files,
         sections={key: value for output in outputs for key, value in output.manifest.items()},
     )
-    return {**files, MANIFEST: to_json(manifest)}
+    return files, manifest

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -13,9 +13,8 @@ from typing import Any
 import yaml
 
 import firm_hdl
-from firm_hdl.errors import UserError
-from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
-from firm_hdl.export.manifest import FORMAT, MANIFEST, digest, to_json
+from firm_hdl.export.folder import build_folder, check_folder
+from firm_hdl.export.manifest import FORMAT, digest
 from firm_hdl.export.verilog.yosys import to_verilog
 
 __all__ = [
@@ -39,13 +38,13 @@ class BuiltDesign:
     folder : Path
     was_current : bool
         The folder was current, and nothing was written.
-    renamed : mapping of str to str
-        New names of user files that had the name of a generated file, by their old names.
+    kept : tuple of str
+        Outdated files that the user changed, and that stay; paths in the folder.
     """
 
     folder: Path
     was_current: bool
-    renamed: Mapping[str, str] = field(default_factory=dict)
+    kept: tuple[str, ...] = ()
 
 
 def design_folder(out: str | os.PathLike[str], name: str) -> Path:
@@ -57,8 +56,7 @@ def design_folder(out: str | os.PathLike[str], name: str) -> Path:
         If there is such a folder, and firm-hdl did not make it.
     """
     folder = Path(out, name)
-    if read_manifest(folder) is None and folder.exists() and not is_empty(folder):
-        raise UserError(f"'{folder}' is not a folder that firm-hdl made; move it away")
+    check_folder(folder.parent, folder)
     return folder
 
 
@@ -184,18 +182,15 @@ def write_design(
     Raises
     ------
     UserError
-        If the folder cannot be written.
+        If something of the user's is in the place of a file, or the folder cannot be written.
     """
-    try:
-        clear_up(folder)
-        if not force and is_current(folder, inputs):
-            return BuiltDesign(folder=folder, was_current=True)
-        files = dict(make_files())
-        files[MANIFEST] = _manifest(folder.name, inputs, facts, ports, files)
-        return BuiltDesign(folder=folder, was_current=False, renamed=replace(folder, files))
-    except OSError as error:
-        where = error.filename or folder
-        raise UserError(f"'{where}' cannot be written: {error.strerror}") from None
+
+    def make() -> tuple[Mapping[str, str], dict[str, Any]]:
+        files = make_files()
+        return files, _manifest(folder.name, inputs, facts, ports, files)
+
+    kept = build_folder(folder.parent, folder, inputs, make, force=force)
+    return BuiltDesign(folder=folder, was_current=kept is None, kept=kept or ())
 
 
 def _manifest(
@@ -204,18 +199,16 @@ def _manifest(
     facts: Mapping[str, Any],
     ports: Sequence[Mapping[str, Any]],
     files: Mapping[str, str],
-) -> str:
-    """Write the manifest: what tools have to know, and what a folder needs to be replaced."""
+) -> dict[str, Any]:
+    """Make the manifest: what tools have to know, and what a folder needs to be written again."""
     module = verilog_module(name)
-    return to_json(
-        {
-            "format": FORMAT,
-            **facts,
-            "verilog": {"module": module, "file": f"{module}.v"},
-            "vhdl": {"entity": name, "files": "vhdl/files.txt"},
-            "ports": list(ports),
-            "inputs_sha256": digest(json.dumps(inputs, sort_keys=True)),
-            "inputs": dict(inputs),
-            "files": {file: digest(text) for file, text in files.items()},
-        }
-    )
+    return {
+        "format": FORMAT,
+        **facts,
+        "verilog": {"module": module, "file": f"{module}.v"},
+        "vhdl": {"entity": name, "files": "vhdl/files.txt"},
+        "ports": list(ports),
+        "inputs_sha256": digest(json.dumps(inputs, sort_keys=True)),
+        "inputs": dict(inputs),
+        "files": {file: digest(text) for file, text in files.items()},
+    }

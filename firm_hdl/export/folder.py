@@ -1,342 +1,349 @@
-"""Replace a type's folder as a whole, and keep the user files in it.
+"""Write the files of a design into its folder, one by one, and lose nothing of the user's.
 
-A new folder is staged beside the old one, under a unique name. Then the two are exchanged in one
-step. So other processes see either the old or the new folder, and a killed build leaves one of them
-in place. The next build deletes other leftovers of a killed build, under a lock.
-
-Only files that firm-hdl wrote are deleted; the manifest lists them. All other files are user files.
-They are put into the new folder before the old one is deleted: as hard links if possible, else as
-copies. User files that are written to the old folder after that are moved to the new one.
+1. A file is ours if the manifest lists it, and it has the SHA-256 of the manifest. All else is the
+   user's, each link too. It is never replaced, moved or deleted. Where it is in the place of a file
+   of ours, the build is refused before it changes anything.
+2. All texts are on the disk, in temporary files, before the first file is replaced: a full disk
+   changes nothing. Then come a manifest with the key ``unfinished``, the files, the deletion of
+   outdated files, and the manifest without that key. So a folder is complete if its manifest has no
+   such key, and its files have the sums of the manifest.
+3. ``unfinished`` has the sums of our files from before. So the next build after a kill knows all
+   our files, old or new, and completes the folder.
+4. Only the path that the user named may have links. Below, each folder is opened in the one above
+   it, without following links, and a design's subfolders have to be on the mount of its folder.
+5. A manifest may come from anyone: it deletes no file whose name is not like those of firm-hdl.
+6. One build at a time writes. The lock is on the folder itself: it leaves no file, and ends with
+   its process. Folders are never replaced, so programs in them can stay there.
 """
 
 from __future__ import annotations
 
 import errno
-import filecmp
 import hashlib
 import json
 import os
+import re
 import secrets
-import shutil
 import stat
-from collections.abc import Iterator, Mapping
-from contextlib import suppress
-from itertools import count
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from fcntl import LOCK_EX, LOCK_NB, flock
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.export.exchange import exchange, locked
-from firm_hdl.export.manifest import MANIFEST
-from firm_hdl.files import read_file
+from firm_hdl.export.backend import BuildError
+from firm_hdl.export.manifest import MANIFEST, to_json
+from firm_hdl.files import write_new
 
-__all__ = ["clear_up", "is_current", "is_empty", "read_manifest", "replace"]
+__all__ = ["build_folder", "check_folder", "read_manifest"]
 
+LOCK_SECONDS = 60.0
+"""Longest wait for another build that writes the folder. Writing takes less than a second."""
+
+_UNFINISHED = "unfinished"
+_TEMPORARY = re.compile(r"\.firm-hdl-[0-9a-f]{16}\.tmp")
 _MOST_BYTES = 1 << 28
-"""Files over this size are not read; firm-hdl writes no such files."""
 
-_NEW, _OLD = "new", "old"
+_OURS = (
+    r"((vhdl|systemverilog)/)?(Makefile|((tb_)?DESIGN\w*|firm_hdl_\w+|\w+_(cdr|ros1)_\d+\w*_pkg|"
+    r"bench_files|files|layout|link|plan|run_ghdl|run_iverilog|stimuli|summary|vivado|vunit_run|"
+    r"waivers)\.(core|f|py|sh|sv|svg|tcl|txt|v|veo|vhd|vlt|yaml))"
+)
+"""Names of the files that firm-hdl writes, and deletes if they are outdated."""
+
+
+def build_folder(
+    out: Path,
+    folder: Path,
+    inputs: Mapping[str, Any],
+    make: Callable[[], tuple[Mapping[str, str], Mapping[str, Any]]],
+    *,
+    force: bool = False,
+) -> tuple[str, ...] | None:
+    """Write a folder of files, unless it is current.
+
+    Parameters
+    ----------
+    out, folder : Path
+        The path that the user named, and the folder below it.
+    inputs : mapping
+        What the files depend on, as the manifest has it.
+    make : callable
+        Returns texts by paths in the folder, and the manifest, which has their sums as ``files``.
+    force : bool
+        Write the folder even if it is current.
+
+    Returns
+    -------
+    tuple of str or None
+        Outdated files that are the user's by now, and stay; `None` if the folder was current.
+
+    Raises
+    ------
+    BuildError
+        If something of the user's is in the way, or the folder cannot be written.
+    """
+    if not force and _is_current(out, folder, inputs):
+        return None
+    files, manifest = make()
+    with _reported(folder):
+        return _write(out, folder, files, manifest)
+
+
+def check_folder(out: Path, folder: Path) -> dict[str, Any]:
+    """Return the manifest of a folder that can be written; an empty mapping if it is new.
+
+    Raises
+    ------
+    BuildError
+        If firm-hdl did not make the folder, or it cannot be read.
+    """
+    with _reported(folder), suppress(FileNotFoundError), _opened(out, folder) as root:
+        return _manifest_to_replace(root, folder)
+    return {}
 
 
 def read_manifest(folder: Path) -> dict[str, Any] | None:
     """Return a folder's manifest; `None` if firm-hdl did not make the folder."""
+    with suppress(OSError), _opened(folder, folder) as root:
+        return _manifest(root)
+    return None
+
+
+def _is_current(out: Path, folder: Path, inputs: Mapping[str, Any]) -> bool:
+    """Return whether a folder is complete, and made from these inputs."""
+    # The names in a manifest may be no names of files.
+    with suppress(OSError, ValueError), _opened(out, folder) as root:
+        _lock(root)
+        found = _manifest(root)
+        return (
+            found is not None
+            and found["inputs"] == inputs
+            and _UNFINISHED not in found
+            and all(_sum(root, name) == value for name, value in found["files"].items())
+        )
+    return False
+
+
+def _write(
+    out: Path, folder: Path, files: Mapping[str, str], manifest: Mapping[str, Any]
+) -> tuple[str, ...]:
+    new: Mapping[str, str] = manifest["files"]
+    with _opened(out, folder, make=True) as root, ExitStack() as stack:
+        _lock(root)
+        known = _known(_manifest_to_replace(root, folder), new, folder.name)
+        found: dict[str, str | None] = {}
+        in_the_way: set[str] = set()
+        kept: set[str] = set()
+        for name in sorted({*known, *new}):
+            place = name
+            try:
+                found[name] = _sum(root, name)
+            except _InTheWayError as other:
+                found[name], place = "", other.filename
+            if found[name] not in {None, new.get(name), *known.get(name, ())}:
+                (in_the_way if name in new else kept).add(place)
+        if in_the_way:
+            raise BuildError(
+                f"'{folder}' has files of yours, or changed ones, where firm-hdl writes its own; "
+                f"move them away, or delete them: {_listed(in_the_way)}"
+            )
+        changed = [name for name in new if found[name] != new[name]]
+        outdated = [name for name in known if name not in new and found[name] in known[name]]
+        for name in [*changed, *outdated]:
+            with suppress(FileNotFoundError), _subfolder(root, name) as (where, _):
+                if not os.access(".", os.W_OK | os.X_OK, dir_fd=where):
+                    raise PermissionError(errno.EACCES, "its folder is read-only", name)
+
+        def stage(name: str, text: str) -> str:
+            temporary = f".firm-hdl-{secrets.token_hex(8)}.tmp"
+            stack.callback(_discard, root, temporary)
+            mode = 0o777 if name.endswith(".sh") else 0o666
+            write_new(temporary, text.encode(), mode, folder=root)
+            return temporary
+
+        before = {n: s if (s := found[n]) in known[n] else min(known[n]) for n in known}
+        staged = {name: stage(name, files[name]) for name in changed}
+        first = stage(MANIFEST, to_json({_UNFINISHED: before, **manifest}))
+        last = stage(MANIFEST, to_json(manifest))
+        # From here on, there are only renames and deletions.
+        if changed or outdated:
+            os.replace(first, MANIFEST, src_dir_fd=root, dst_dir_fd=root)
+        for name in [*changed, *outdated]:
+            if _sum(root, name) != found[name]:
+                raise OSError(errno.EBUSY, "it was changed during the build", name)
+            with _subfolder(root, name, make=True) as (where, own):
+                if name in new:
+                    os.replace(staged[name], own, src_dir_fd=root, dst_dir_fd=where)
+                else:
+                    os.unlink(own, dir_fd=where)
+        for subfolder in {os.path.dirname(n) for n in known} - {os.path.dirname(n) for n in new}:
+            with suppress(OSError):
+                os.rmdir(subfolder, dir_fd=root)
+        os.replace(last, MANIFEST, src_dir_fd=root, dst_dir_fd=root)
+    return tuple(sorted(kept))
+
+
+def _known(old: Mapping[str, Any], new: Mapping[str, str], design: str) -> dict[str, set[str]]:
+    """Return the files that are replaced or deleted, if they have one of the sums here."""
+    ours = re.compile(_OURS.replace("DESIGN", re.escape(design)), re.ASCII | re.IGNORECASE)
+    # Some file systems do not distinguish upper and lower case.
+    folded = {name.casefold() for name in new}
+    known: dict[str, set[str]] = {}
+    for key in ("files", _UNFINISHED):
+        for name, value in old.get(key, {}).items():
+            if name in new or (ours.fullmatch(name) and name.casefold() not in folded):
+                known.setdefault(name, set()).add(value)
+    return known
+
+
+def _listed(names: set[str]) -> str:
+    first, rest = sorted(names)[:10], len(names) - 10
+    return ", ".join(first) + (f" and {rest} more" if rest > 0 else "")
+
+
+# A folder, its lock, and its manifest.
+
+
+class _InTheWayError(OSError):
+    """A link, a mount, or another kind of file is in the place of a file or folder of ours."""
+
+    def __init__(self, place: str):
+        super().__init__(errno.EEXIST, "something of yours is in the way", place)
+
+
+@contextmanager
+def _reported(folder: Path) -> Iterator[None]:
     try:
-        found = json.loads(read_file(folder / MANIFEST, _MOST_BYTES))
+        yield
+    except OSError as error:
+        name = error.filename
+        is_named = isinstance(name, str) and not _TEMPORARY.fullmatch(name)
+        what = f" ('{name}')" if is_named else ""
+        raise BuildError(f"'{folder}' cannot be written: {error.strerror}{what}") from None
+
+
+@contextmanager
+def _opened(out: Path, folder: Path, *, make: bool = False) -> Iterator[int]:
+    """Open a folder below a path of the user's."""
+    if make:
+        # If the path is a link to nothing, what it leads to is made.
+        with suppress(FileExistsError):
+            os.makedirs(os.path.realpath(out))
+    with ExitStack() as stack:
+        root = os.open(out, os.O_RDONLY | os.O_DIRECTORY)
+        stack.callback(os.close, root)
+        for part in folder.relative_to(out).parts:
+            root = _enter(root, part, make=make)
+            stack.callback(os.close, root)
+        yield root
+
+
+@contextmanager
+def _subfolder(root: int, name: str, *, make: bool = False) -> Iterator[tuple[int, str]]:
+    """Open the subfolder of a file; yield it, and the file's own name."""
+    *folders, own = name.split("/")
+    with ExitStack() as stack:
+        where = root
+        for depth, part in enumerate(folders, 1):
+            try:
+                where = _enter(where, part, make=make)
+            except NotADirectoryError:
+                raise _InTheWayError("/".join(folders[:depth])) from None
+            stack.callback(os.close, where)
+            if _mount(where) != _mount(root):
+                raise _InTheWayError("/".join(folders[:depth]))
+        yield where, own
+
+
+def _enter(above: int, name: str, *, make: bool) -> int:
+    if make:
+        with suppress(FileExistsError):
+            os.mkdir(name, dir_fd=above)
+    try:
+        return os.open(name, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW, dir_fd=above)
+    except OSError as error:
+        if error.errno not in (errno.ELOOP, errno.ENOTDIR):
+            raise
+        raise NotADirectoryError(errno.ENOTDIR, "a link, or not a folder", name) from None
+
+
+def _mount(file: int) -> str:
+    """Return the mount of an open file; a bind mount has the device of another one."""
+    with suppress(OSError, StopIteration), open(f"/proc/self/fdinfo/{file}", "rb") as lines:
+        return str(next(line for line in lines if line.startswith(b"mnt_id:")))
+    return str(os.fstat(file).st_dev)
+
+
+def _lock(root: int) -> None:
+    """Wait for the lock of a folder; delete temporary files that a killed build left."""
+    end = time.monotonic() + LOCK_SECONDS
+    while True:
+        try:
+            flock(root, LOCK_EX | LOCK_NB)
+            break
+        except BlockingIOError:
+            if time.monotonic() > end:
+                reason = "another process has been writing there for a minute"
+                raise OSError(errno.EBUSY, reason) from None
+            time.sleep(0.02)
+        except OSError:
+            # A file system without locks. The temporary files may be those of another build.
+            return
+    for name in filter(_TEMPORARY.fullmatch, os.listdir(root)):
+        _discard(root, name)
+
+
+def _discard(root: int, temporary: str) -> None:
+    with suppress(OSError):
+        if stat.S_ISREG(os.stat(temporary, dir_fd=root, follow_symlinks=False).st_mode):
+            os.unlink(temporary, dir_fd=root)
+
+
+def _manifest(root: int) -> dict[str, Any] | None:
+    try:
+        found = json.loads(_read(root, MANIFEST) or b"")
     except (OSError, ValueError, RecursionError):
         return None
-    needs = {"inputs_sha256": str, "inputs": dict, "files": dict}
-    if not isinstance(found, dict):
+    if not isinstance(found, dict) or not isinstance(found.get("inputs"), dict):
         return None
-    return found if all(isinstance(found.get(key), needs[key]) for key in needs) else None
+    for sums in (found.get("files"), found.get(_UNFINISHED, {})):
+        if not isinstance(sums, dict) or not all(isinstance(each, str) for each in sums.values()):
+            return None
+    return found if isinstance(found.get("inputs_sha256"), str) else None
 
 
-def is_empty(folder: Path) -> bool:
-    """Return whether a path is an empty folder."""
-    return folder.is_dir() and next(folder.iterdir(), None) is None
+def _manifest_to_replace(root: int, folder: Path) -> dict[str, Any]:
+    # Another build may be writing. Its manifest comes first, so it is looked for last.
+    is_new = all(_TEMPORARY.fullmatch(name) for name in os.listdir(root))
+    found = _manifest(root)
+    if found is None and not is_new:
+        raise BuildError(f"'{folder}' is not a folder that firm-hdl made; move it away")
+    return found or {}
 
 
-def is_current(folder: Path, inputs: Mapping[str, Any]) -> bool:
-    """Return whether a folder was made from these inputs and its files are unchanged."""
-    found = read_manifest(folder)
-    if found is None or found["inputs"] != inputs:
-        return False
+# Its files.
+
+
+def _read(root: int, name: str) -> bytes | None:
+    """Return the content of a file, or `None` if nothing is in its place."""
     try:
-        return all(
-            hashlib.sha256(read_file(folder / name, _MOST_BYTES)).hexdigest() == digest
-            for name, digest in found["files"].items()
-        )
-    except (OSError, ValueError):
-        return False
+        with _subfolder(root, name) as (where, own):
+            status = os.stat(own, dir_fd=where, follow_symlinks=False)
+            if not stat.S_ISREG(status.st_mode) or status.st_size > _MOST_BYTES:
+                raise _InTheWayError(name)
+            flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK
+            with open(os.open(own, flags, dir_fd=where), "rb") as file:
+                if _mount(file.fileno()) != _mount(where):
+                    raise _InTheWayError(name)
+                return file.read(_MOST_BYTES)
+    except FileNotFoundError:
+        return None
+    except PermissionError:
+        raise _InTheWayError(name) from None
 
 
-def replace(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
-    """Replace the generated files of a folder, and keep the user files in it.
-
-    Returns
-    -------
-    dict of str to str
-        New names of user files by their old names. The files are those that had the name of a
-        generated file, and those that were written while the folder was replaced.
-
-    Raises
-    ------
-    OSError
-        If the folder cannot be replaced. It is unchanged.
-    """
-    folder = _resolve_link(folder)
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with locked(folder.parent) as alone:
-        made: list[Path] = []
-        renamed: dict[str, str] = {}
-        if alone:
-            _clear_up(folder, _leftovers(folder))
-        try:
-            staging = _make(folder, _NEW, made)
-            _write_files(staging, files)
-            if os.path.lexists(folder):
-                renamed = _keep_user_files(folder, staging, files)
-                _swap(folder, staging, made)
-            else:
-                staging.rename(folder)
-        finally:
-            # After an exchange, the old folder is at the path of the staging folder.
-            late = _clear_up(folder, _leftovers(folder) if alone else made)
-    return renamed | late
-
-
-def clear_up(folder: Path) -> None:
-    """Delete the leftovers of a killed build; put the old folder back if there is no folder."""
-    folder = _resolve_link(folder)
-    if folder.parent.is_dir() and _leftovers(folder):
-        with locked(folder.parent) as alone:
-            if alone:
-                _clear_up(folder, _leftovers(folder))
-
-
-def _resolve_link(folder: Path) -> Path:
-    """Return the folder that a symbolic link leads to, so that the link stays in place."""
-    return Path(os.path.realpath(folder)) if folder.is_symlink() else folder
-
-
-def _prefix(folder: Path) -> str:
-    # Use a hash, because the folder's own name may already have the maximum length.
-    return f".firm-hdl.{hashlib.sha256(os.fsencode(folder.name)).hexdigest()[:16]}."
-
-
-def _make(folder: Path, what: str, made: list[Path]) -> Path:
-    """Make a folder with a new name beside a folder; append it to `made`."""
-    while True:
-        path = folder.with_name(f"{_prefix(folder)}{secrets.token_hex(8)}.{what}")
-        with suppress(FileExistsError):
-            made.append(path)
-            path.mkdir()
-            return path
-
-
-def _leftovers(folder: Path) -> list[Path]:
-    prefix = _prefix(folder)
-    endings = f".{_OLD}", f".{_NEW}"
-    names = [n for n in os.listdir(folder.parent) if n.startswith(prefix) and n.endswith(endings)]
-    # Old folders come first: one of them may be put back before user files are moved into it.
-    return [folder.with_name(name) for name in sorted(names, key=lambda n: n.endswith(_NEW))]
-
-
-def _write_files(staging: Path, files: Mapping[str, str]) -> None:
-    """Write the files, the manifest first: if the build is killed, it lists the files to delete."""
-    for name in sorted(files, key=lambda name: name != MANIFEST):
-        (staging / name).parent.mkdir(exist_ok=True)
-        (staging / name).write_text(files[name], encoding="utf-8", newline="\n")
-        if name.endswith(".sh"):
-            (staging / name).chmod(0o755)
-
-
-def _swap(folder: Path, staging: Path, made: list[Path]) -> None:
-    """Put the new folder in the place of the old one."""
-    if exchange(staging, folder):
-        return
-    old = _make(folder, _OLD, made)
-    # Between these two calls there is no folder. If the build is killed here, `_clear_up` puts the
-    # old one back.
-    folder.rename(old)
-    staging.rename(folder)
-
-
-# User files.
-
-
-def _walk(root: Path) -> list[tuple[str, bool]]:
-    """List the relative paths of all files and folders in a folder, and whether each is a folder.
-
-    The content of a folder comes before the folder itself.
-    """
-    found: list[tuple[str, bool]] = []
-    pending = [""]
-    while pending:
-        below = pending.pop()
-        with os.scandir(root / below) as entries:
-            for entry in sorted(entries, key=lambda entry: entry.name):
-                is_folder = entry.is_dir(follow_symlinks=False)
-                found.append((f"{below}{entry.name}", is_folder))
-                if is_folder:
-                    pending.append(f"{below}{entry.name}/")
-    return found[::-1]
-
-
-def _generated_files(folder: Path) -> set[str]:
-    """Return the files of a folder that firm-hdl wrote or was about to write."""
-    found = read_manifest(folder)
-    return {MANIFEST, *(found["files"] if found is not None else ())}
-
-
-def _keep_user_files(folder: Path, staging: Path, files: Mapping[str, str]) -> dict[str, str]:
-    """Put all user files of the old folder into the new one.
-
-    Returns the new names of renamed files by their old names.
-    """
-    renamed: dict[str, str] = {}
-    ours = _generated_files(folder)
-    folders = {os.path.dirname(name) for name in ours}
-    copies: dict[Path, Path] = {}
-    for name, is_folder in _walk(folder):
-        if name in (folders if is_folder else ours):
-            continue
-        kept = staging / _free_name(name, files)
-        if is_folder:
-            kept.mkdir(parents=True, exist_ok=True)
-            copies[folder / name] = kept
-            continue
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        for target in _candidate_paths(kept):
-            if not os.path.lexists(target):
-                _link(folder / name, target)
-                if target != staging / name:
-                    renamed[name] = target.relative_to(staging).as_posix()
-                break
-    for source, target in copies.items():
-        shutil.copystat(source, target)
-    return renamed
-
-
-def _free_name(name: str, files: Mapping[str, str]) -> str:
-    """Return the name for a user file or folder, in a folder that no generated file replaces."""
-    path = ""
-    for part in name.split("/"):
-        path += part
-        if path in files:
-            path += ".kept"
-        path += "/"
-    return path.removesuffix("/")
-
-
-def _candidate_paths(path: Path) -> Iterator[Path]:
-    """Yield a path, then alternative names in case it is taken."""
-    name = path.name.removesuffix(".kept")
-    yield path
-    yield path.with_name(f"{name}.kept")
-    for number in count(2):
-        yield path.with_name(f"{name}.kept{number}")
-
-
-def _link(source: Path, target: Path) -> None:
-    try:
-        os.link(source, target, follow_symlinks=False)
-    except FileExistsError:
-        raise
-    except OSError:
-        # No hard link is possible here: copy. A file that cannot be read makes the build fail.
-        if os.path.lexists(target):
-            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target)) from None
-        shutil.copy2(source, target, follow_symlinks=False)
-
-
-# Leftovers of a build.
-
-
-def _clear_up(folder: Path, leftovers: list[Path]) -> dict[str, str]:
-    """Delete leftovers but keep user files; return new names of user files by their old names."""
-    renamed: dict[str, str] = {}
-    for leftover in leftovers:
-        is_missing = leftover.name.endswith(_OLD) and not os.path.lexists(folder)
-        if is_missing and read_manifest(leftover) is not None:
-            leftover.rename(folder)
-        else:
-            # Leave what cannot be deleted to the next build. The folder in use is complete.
-            with suppress(OSError):
-                _discard(leftover, folder, renamed)
-    return renamed
-
-
-def _discard(leftover: Path, folder: Path, renamed: dict[str, str]) -> None:
-    """Delete a leftover folder; move user files that exist only in it to the folder in use."""
-    ours = _generated_files(leftover)
-    linked = {_identity(folder / name) for name, _ in _walk(folder)} if folder.is_dir() else set()
-    _permit(leftover)
-    for name, is_folder in _walk(leftover):
-        entry = leftover / name
-        if is_folder:
-            # A folder is not empty, and stays, if a file in it was not moved.
-            with suppress(OSError):
-                entry.rmdir()
-        elif name == MANIFEST:
-            continue  # The manifest is deleted last, because it lists our files.
-        elif name in ours or _identity(entry) in linked or _is_copied(leftover, folder, name):
-            entry.unlink()
-        elif folder.is_dir():
-            place = _move(entry, folder, name).relative_to(folder).as_posix()
-            if place != name:
-                renamed[name] = place
-    rest = os.listdir(leftover)
-    if rest == [MANIFEST]:
-        (leftover / MANIFEST).unlink()
-    if rest in ([], [MANIFEST]):
-        leftover.rmdir()
-
-
-def _permit(root: Path) -> None:
-    """Make read-only folders writable, so that their content can be deleted."""
-    for name, is_folder in [("", True), *_walk(root)]:
-        mode = (root / name).lstat().st_mode
-        if is_folder and mode & stat.S_IRWXU != stat.S_IRWXU:
-            (root / name).chmod(stat.S_IMODE(mode) | stat.S_IRWXU)
-
-
-def _identity(path: Path) -> tuple[int, int]:
-    status = path.lstat()
-    return status.st_dev, status.st_ino
-
-
-def _is_copied(leftover: Path, folder: Path, name: str) -> bool:
-    """Return whether the folder has a copy of a file, under its new or its original name."""
-    names = name, name.removesuffix(".kept")
-    return any(_is_same(leftover / name, folder / other) for other in names)
-
-
-def _is_same(one: Path, other: Path) -> bool:
-    """Return whether two files have the same content."""
-    try:
-        a, b = one.lstat(), other.lstat()
-        if os.path.samestat(a, b):
-            return True
-        if stat.S_ISLNK(a.st_mode) and stat.S_ISLNK(b.st_mode):
-            return os.readlink(one) == os.readlink(other)
-        if not (stat.S_ISREG(a.st_mode) and stat.S_ISREG(b.st_mode)):
-            return False
-        return filecmp.cmp(one, other, shallow=False)
-    except OSError:
-        return False
-
-
-def _move(entry: Path, folder: Path, name: str) -> Path:
-    """Move a user file without overwriting anything; return its new path."""
-    place = target = folder / name
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-    except (FileExistsError, NotADirectoryError):
-        target = folder / name.replace("/", "_")
-    for place in _candidate_paths(target):
-        # Unlike `rename`, a link never replaces anything.
-        with suppress(FileExistsError):
-            if not _is_same(entry, place):
-                _link(entry, place)
-            break
-    entry.unlink()
-    return place
+def _sum(root: int, name: str) -> str | None:
+    data = _read(root, name)
+    return None if data is None else hashlib.sha256(data).hexdigest()

@@ -33,8 +33,8 @@ FILES = {
 }
 BUILD = importlib.import_module("firm_hdl.export.build")
 # Files of a user that made way for two generated ones, not in the order of their names.
-RENAMED = {"z.v": "z.v.kept", "a.v": "a.v.kept"}
-TOLD = "        your file a.v is now a.v.kept\n        your file z.v is now z.v.kept\n"
+KEPT = ("a.v", "vhdl/z.vhd")
+TOLD = "".join(f"kept    there{os.sep}{name}, which you changed\n" for name in KEPT)
 
 
 @pytest.fixture
@@ -112,7 +112,7 @@ def test_a_part_is_built_with_its_options_and_told(tmp_path, monkeypatch, capsys
 
     def build_part(part, out, *, force):
         asked.append((part, out, force))
-        return BuiltDesign(folder=Path("there"), was_current=force, renamed=RENAMED)
+        return BuiltDesign(folder=Path("there"), was_current=force, kept=KEPT)
 
     monkeypatch.setattr("firm_hdl.export.parts.build_part", build_part)
     assert main(["part", "width", "--in-bytes", "1", "--out-bytes", "2"]) == 0
@@ -176,7 +176,7 @@ def test_a_node_is_built_with_its_options_and_summed_up(monkeypatch, capsys):
     def build_node(description, out, *, force, stimuli):
         asked.append((description, out, force))
         packets.extend(stimuli(message, plan))
-        return BuiltDesign(folder=Path("there"), was_current=force, renamed=RENAMED)
+        return BuiltDesign(folder=Path("there"), was_current=force, kept=KEPT)
 
     message, packets = Library("lyrical", []).message("std_msgs/msg/Bool"), []
     plan = build_plan(lay_out(message))
@@ -204,15 +204,16 @@ def test_folders_are_told_as_they_are_built_and_described_in_the_end(workdir, mo
             folder=Path(name),
             was_current=is_current,
             description=f"{name}: figures",
-            renamed={} if is_current else RENAMED,
+            kept=() if is_current else KEPT,
         )
         for name, is_current in (("one", False), ("two", True))
     ]
     packets, given = [], []
     monkeypatch.setattr(BUILD, "build", build)
     assert main(["build", "p/C", "--path", "src", "--jobs", "3"]) == 0
+    told = TOLD.replace("there", "one")
     assert capsys.readouterr().out == (
-        f"wrote   one{os.sep}\n{TOLD}current two{os.sep}\none: figures\ntwo: figures\n"
+        f"wrote   one{os.sep}\n{told}current two{os.sep}\none: figures\ntwo: figures\n"
     )
     message = Library("lyrical", ["src"]).message("p/msg/C")
     assert packets == stimuli(message, build_plan(lay_out(message))) and given == [3]

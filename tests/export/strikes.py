@@ -1,88 +1,64 @@
-"""Crash injection for `firm_hdl.export.folder`: end a build before each system call in turn.
+"""Kill builds, and look what is left: before each system call in turn, at random, and in parallel.
 
-This is a program, so that it may fork. Each crash ends a process of its own as SIGKILL would,
-without any ``finally``. The folder is checked after the crash, and again after another build. The
-program prints the number of crashes and the problems.
-
-The program can also poll: before each system call, it reads the manifest as another program would.
+This is a program, so that it may fork. It prints what was wrong, as JSON.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import random
+import signal
 import sys
 import tempfile
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 from firm_hdl.export import folder as module
+from firm_hdl.export.manifest import MANIFEST, digest
 
-OLD = {name: f"old {name}\n" for name in ("a.v", "vhdl/b.vhd", "gone.txt")}
-NEW = {name: f"new {name}\n" for name in ("a.v", "vhdl/b.vhd", "vhdl/c.sh", "mine.txt")}
-# One file has the name of a file that is new in the new version.
-USERS = {
-    "notes": "ten years",
-    "mine.txt": "a file of mine",
-    "vhdl/mine.vhd": "entity",
-    "sim/deep/run.do": "run",
-}
-EVENTS = ("os.", "open", "shutil.")
-MOST_STRIKES = 400
+VERSIONS = (
+    ("T_verilog.v", "plan.yaml", "vhdl/T.vhd", "vhdl/T_old.vhd", "systemverilog/T_sv.sv"),
+    ("T_verilog.v", "plan.yaml", "vhdl/T.vhd", "vhdl/run_ghdl.sh", "waivers.vlt"),
+    ("T_verilog.v", "plan.yaml", "vhdl/T.vhd", "waivers.vlt"),
+)
+USERS = {"notes.txt": "ten years", "vhdl/mine.vhd": "entity", "sim/deep/run.do": "run"}
 
 
-def with_manifest(files: dict[str, str]) -> dict[str, str]:
-    made = {"inputs_sha256": "0", "inputs": {}, "files": dict.fromkeys(files, "0")}
-    return {**files, "manifest.json": json.dumps(made)}
+def texts(version: int) -> dict[str, str]:
+    """Return the files of a version; the plan is the same in all."""
+    return {name: f"{name != 'plan.yaml' and version} {name}\n" * 99 for name in VERSIONS[version]}
 
 
-def is_change(event: str, arguments: tuple[Any, ...]) -> bool:
-    """Return whether a system call changes a file or folder."""
-    if event == "open":
-        return bool(arguments[2] & (os.O_WRONLY | os.O_RDWR))
-    return event.startswith(EVENTS) and event not in ("os.listdir", "os.scandir", "os.fork")
+def manifest(files: dict[str, str], **inputs: Any) -> dict[str, Any]:
+    sums = {name: digest(text) for name, text in files.items()}
+    return {"inputs": inputs, "inputs_sha256": "", "files": sums}
 
 
-def strike_before(number: int) -> None:
-    """End this process before a system call, or in the middle of writing a file."""
-    left = number
-
-    def look(event: str, arguments: tuple[Any, ...]) -> None:
-        nonlocal left
-        if is_change(event, arguments):
-            left -= 1
-            if left < 0:
-                os._exit(137)
-
-    sys.addaudithook(look)
-    original = Path.write_text
-
-    def write_text(self: Path, text: str, **options: Any) -> int:
-        nonlocal left
-        left -= 1
-        if left < 0:
-            self.write_bytes(text.encode()[: len(text) // 2])
-            os._exit(137)
-        return original(self, text, **options)
-
-    Path.write_text = write_text  # type: ignore[method-assign, assignment]
+def write(folder: Path, files: dict[str, str], **inputs: Any) -> tuple[str, ...] | None:
+    """Build a folder of files."""
+    return module.build_folder(
+        folder.parent, folder, inputs, lambda: (files, manifest(files, **inputs))
+    )
 
 
-def set_up(root: Path) -> Path:
-    target = root / "lyrical" / "type"
-    module.replace(target, with_manifest(OLD))
-    for name, text in USERS.items():
-        (target / name).parent.mkdir(parents=True, exist_ok=True)
-        (target / name).write_text(text)
-    # A folder that another program left under the name of an ended process.
-    other = root / "lyrical" / f".type.{os.getpid() + 1}.old"
-    other.mkdir()
-    (other / "thesis.tex").write_text("mine")
-    return target
+def build(folder: Path, version: int) -> None:
+    write(folder, texts(version), version=version)
 
 
-def texts(root: Path) -> dict[str, str]:
+def left_when_outdated(folder: Path, copy: Path) -> set[str]:
+    """Return the files of a built folder that a build without any file would leave."""
+    listed = json.loads((folder / MANIFEST).read_text())["files"]
+    for name in (*listed, MANIFEST):
+        (copy / name).parent.mkdir(parents=True, exist_ok=True)
+        (copy / name).write_bytes((folder / name).read_bytes())
+    write(copy, {})
+    return {*tree(copy)} - {MANIFEST}
+
+
+def tree(root: Path) -> dict[str, str]:
     return {
         path.relative_to(root).as_posix(): path.read_text()
         for path in sorted(root.rglob("*"))
@@ -90,98 +66,152 @@ def texts(root: Path) -> dict[str, str]:
     }
 
 
-def problems(target: Path, *, has_exchange: bool) -> Iterator[str]:
-    """Yield what is wrong right after a crash."""
-    everything = set(texts(target.parent).values())
-    for name, text in {**USERS, "another program's": "mine"}.items():
-        if text not in everything:
-            yield f"{name} is lost"
-    if not target.is_dir():
-        if has_exchange:
-            yield "there is no folder"
-        return
-    found = texts(target)
-    if "manifest.json" not in found:
-        yield "there is no manifest"
-        return
-    files = json.loads(found["manifest.json"])["files"]
-    want = OLD if files.keys() == OLD.keys() else NEW
-    yield from (f"{name} is not whole" for name in want if found.get(name) != want[name])
-    if has_exchange:
-        here = set(found.values())
-        yield from (f"{name} is not in place" for name, text in USERS.items() if text not in here)
+def problems(folder: Path, *, is_done: bool) -> Iterator[str]:
+    """Yield what is wrong with a folder, after a build or after a kill."""
+    found = {name: text for name, text in tree(folder).items() if name not in USERS}
+    if {name: text for name, text in tree(folder).items() if name in USERS} != USERS:
+        yield "a user's file is lost"
+    made = json.loads(found.pop(MANIFEST))
+    if "unfinished" not in made:
+        right = texts(made["inputs"]["version"])
+        left = found.keys() - right
+        if any(found.get(name) != right[name] for name in right):
+            yield "the folder is not complete, and its manifest does not say so"
+        if is_done and left:
+            yield f"there are {sorted(left)}"
+    elif is_done:
+        yield "the folder is not complete"
+    for name, text in found.items():
+        known = [texts(version).get(name) for version in range(3)]
+        if not name.startswith(".firm-hdl-") and text not in known:
+            yield f"{name} is not whole"
 
 
-def problems_after(target: Path) -> Iterator[str]:
-    """Yield what is wrong after the next build."""
-    found = texts(target)
-    want = {**with_manifest(NEW), **USERS, "mine.txt": NEW["mine.txt"]}
-    want["mine.txt.kept"] = USERS["mine.txt"]
-    if found != want:
-        yield f"the next build made {sorted(found)}"
-    rest = sorted(path.name for path in target.parent.iterdir())
-    if len(rest) != 2:
-        yield f"the next build left {rest}"
+def killed(folder: Path, run: Callable[[], None], seconds: float | None = None) -> bool:
+    """Run a build in a process, which may be killed; return whether it was."""
+    child = os.fork()
+    if child == 0:
+        run()
+        os._exit(0)
+    if seconds is not None:
+        time.sleep(seconds)
+        os.kill(child, signal.SIGKILL)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) != 0
 
 
-def look_on() -> None:
-    """Count the system calls before which the manifest is incomplete; print the count."""
-    manifests = {with_manifest(files)["manifest.json"] for files in (OLD, NEW)}
-    looks, misses, looking = 0, 0, False
+def strike_before(number: int) -> None:
+    """End this process before a system call, or in the middle of writing a file."""
+    left, original = number, module.write_new
 
-    with tempfile.TemporaryDirectory() as root:
-        target = set_up(Path(root))
+    def count() -> bool:
+        nonlocal left
+        left -= 1
+        return left < 0
 
-        def look(event: str, arguments: tuple[Any, ...]) -> None:
-            nonlocal looks, misses, looking
-            if looking or not is_change(event, arguments):
-                return
-            looking = True  # Reading is a system call, too.
-            looks += 1
-            try:
-                misses += (target / "manifest.json").read_text() not in manifests
-            except OSError:
-                misses += 1
-            looking = False
+    def look(event: str, arguments: tuple[Any, ...]) -> None:
+        is_write = event == "open" and arguments[2] & os.O_WRONLY
+        if (is_write or event in ("os.rename", "os.remove", "os.mkdir", "os.rmdir")) and count():
+            os._exit(137)
 
-        sys.addaudithook(look)
-        for files in (NEW, OLD):
-            module.replace(target, with_manifest(files))
-        looking = True
-    print(json.dumps({"looks": looks, "misses": misses}))
+    def write_half(path: str, data: bytes, mode: int, *, folder: int) -> None:
+        if count():
+            original(path, data[: len(data) // 2], mode, folder=folder)
+            os._exit(137)
+        original(path, data, mode, folder=folder)
+
+    module.write_new = write_half  # type: ignore[assignment]
+    sys.addaudithook(look)
 
 
-def strike(has_exchange: bool) -> None:
-    """End builds before each system call in turn; print the problems."""
-    wrong: list[str] = []
-    for number in range(MOST_STRIKES):
+def set_up(root: str) -> Path:
+    folder = Path(root, "lyrical", "T")
+    build(folder, 0)
+    for name, text in USERS.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    return folder
+
+
+def everywhere() -> Iterator[str]:
+    """Kill a build before each system call; another build, killed as well, and a third follow."""
+
+    def run(folder: Path, number: int, version: int) -> bool:
+        def struck() -> None:
+            strike_before(number)
+            build(folder, version)
+
+        return killed(folder, struck)
+
+    for number in range(400):
         with tempfile.TemporaryDirectory() as root:
-            target = set_up(Path(root))
-            child = os.fork()
-            if child == 0:
+            folder = set_up(root)
+            was_killed = run(folder, number, 1)
+            found = [*problems(folder, is_done=False)]
+            run(folder, number * 7 % 31, 2)
+            found += problems(folder, is_done=False)
+            build(folder, number % 3)
+            found += problems(folder, is_done=True)
+            yield from (f"strike {number}: {problem}" for problem in found)
+        if not was_killed:
+            break
+    if not 30 < number < 399:
+        yield f"the build has {number} system calls"
+
+
+def first_builds() -> Iterator[str]:
+    """Kill the first build of a folder before each system call."""
+    for number in range(400):
+        with tempfile.TemporaryDirectory() as root:
+            folder = Path(root, "T")
+
+            def struck(folder: Path = folder, number: int = number) -> None:
                 strike_before(number)
-                module.replace(target, with_manifest(NEW))
+                build(folder, 1)
+
+            was_killed = killed(folder, struck)
+            build(folder, 0)
+            if sorted(tree(folder)) != sorted([*VERSIONS[0], MANIFEST]):
+                yield f"strike {number}: the folder has {sorted(tree(folder))}"
+        if not was_killed:
+            return
+
+
+def at_random(kills: int) -> Iterator[str]:
+    """Kill processes that build one folder again and again."""
+    with tempfile.TemporaryDirectory() as root:
+        folder = set_up(root)
+
+        def run() -> None:
+            while True:
+                build(folder, random.randrange(3))
+
+        for number in range(kills):
+            killed(folder, run, random.uniform(0, 0.03))
+            found = [*problems(folder, is_done=False)]
+            if number % 2:
+                build(folder, number // 2 % 3)
+                found += problems(folder, is_done=True)
+            yield from (f"kill {number}: {problem}" for problem in found)
+
+
+def in_parallel() -> Iterator[str]:
+    """Build one folder eight times at once."""
+    with tempfile.TemporaryDirectory() as root:
+        folder = Path(root, "T")
+        children = []
+        for number in range(8):
+            children.append(os.fork())
+            if children[-1] == 0:
+                for turn in range(9):
+                    build(folder, (number + turn) % 2)
                 os._exit(0)
-            status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-            found = [*problems(target, has_exchange=has_exchange)]
-            module.replace(target, with_manifest(NEW))
-            found += problems_after(target)
-            wrong += [f"strike {number}: {problem}" for problem in found]
-            if status == 0:
-                break
-    else:
-        wrong.append("the build never came through")
-    print(json.dumps({"strikes": number, "wrong": wrong}))
-
-
-def main(has_exchange: str, does: str = "strike") -> None:
-    if has_exchange == "fallback":
-        module.exchange = lambda one, other: False  # type: ignore[attr-defined]
-    if does == "look":
-        look_on()
-    else:
-        strike(has_exchange == "exchange")
+        if any(os.waitpid(child, 0)[1] for child in children):
+            yield "a build failed"
+        version = json.loads((folder / MANIFEST).read_text())["inputs"]["version"]
+        if sorted(tree(folder)) != sorted([*VERSIONS[version], MANIFEST]):
+            yield f"the folder has {sorted(tree(folder))}"
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    found = [*everywhere(), *first_builds(), *at_random(int(sys.argv[1])), *in_parallel()]
+    print(json.dumps(found))

@@ -1,241 +1,153 @@
-"""Replacing a folder while others read it or write to it, or while the build is killed."""
+"""Folders of generated files: what is the user's stays, and a folder is complete or says so."""
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
+import resource
+import shutil
 import subprocess
 import sys
-import threading
-from collections.abc import Callable
+import textwrap
 from pathlib import Path
 
 import pytest
 
 import firm_hdl
-from firm_hdl.cli import main
 from firm_hdl.export import folder as module
-from firm_hdl.export.build import Built
-from firm_hdl.export.exchange import exchange, locked
-from tests.export import strikes
-from tests.export.strikes import NEW, OLD, texts, with_manifest
+from firm_hdl.export.backend import BuildError
+from firm_hdl.export.folder import build_folder, check_folder, read_manifest
+from firm_hdl.export.manifest import digest
+from tests.depth import by_depth
+from tests.export.strikes import VERSIONS, build, manifest, texts, tree, write
 
 ROOT = Path(firm_hdl.__file__).parent.parent
 
 
 @pytest.fixture
-def target(tmp_path):
-    made = tmp_path / "out" / "type"
-    module.replace(made, with_manifest(OLD))
+def folder(tmp_path):
+    made = tmp_path / "out" / "T"
+    build(made, 0)
     return made
 
 
-@pytest.fixture
-def has_exchange(tmp_path):
-    (tmp_path / "a").mkdir()
-    (tmp_path / "b").mkdir()
-    if not exchange(tmp_path / "a", tmp_path / "b"):
-        pytest.skip("this file system cannot exchange folders")
+def run(*words: str) -> str:
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
-def strike(*arguments: str) -> dict[str, object]:
-    done = subprocess.run(
-        [sys.executable, "-m", "tests.export.strikes", *arguments],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=True,
-    )
-    found: dict[str, object] = json.loads(done.stdout)
-    return found
+def state(root: Path) -> dict[Path, tuple[int, ...]]:
+    found = {path: path.lstat() for path in (root, *root.rglob("*"))}
+    return {path: (each.st_ino, each.st_mode, each.st_mtime_ns) for path, each in found.items()}
 
 
-@pytest.mark.usefixtures("has_exchange")
-def test_a_build_killed_anywhere_leaves_a_whole_folder_and_all_that_is_a_users():
-    found = strike("exchange")
-    assert found["wrong"] == []
-    assert found["strikes"] > 30
-
-
-def test_without_an_exchange_the_next_build_puts_everything_back():
-    found = strike("fallback")
-    assert found["wrong"] == []
-    assert found["strikes"] > 30
-
-
-def test_the_crash_check_finds_lost_files(target):
-    # Must-fail twin: a folder as a careless build would leave it.
-    for name in ("notes", "a.v"):
-        (target / name).unlink(missing_ok=True)
-    found = [*strikes.problems(target, has_exchange=True)]
-    assert "notes is lost" in found
-    assert "a.v is not whole" in found
-    assert [*strikes.problems(target.parent / "none", has_exchange=True)][-1] == (
-        "there is no folder"
+def test_no_kill_and_no_other_build_costs_a_users_file_or_leaves_half_a_folder():
+    assert (
+        json.loads(run(sys.executable, "-m", "tests.export.strikes", by_depth("20", "200"))) == []
     )
 
 
-@pytest.mark.usefixtures("has_exchange")
-def test_a_reader_that_polls_always_sees_a_whole_manifest(target):
-    misses, looks, done = 0, 0, threading.Event()
-    manifests = {with_manifest(files)["manifest.json"] for files in (OLD, NEW)}
-
-    def poll() -> None:
-        nonlocal misses, looks
-        while not done.is_set() or not looks:
-            looks += 1
-            try:
-                misses += (target / "manifest.json").read_text() not in manifests
-            except OSError:
-                misses += 1
-
-    reader = threading.Thread(target=poll)
-    reader.start()
-    try:
-        for _ in range(30):
-            module.replace(target, with_manifest(NEW))
-            module.replace(target, with_manifest(OLD))
-    finally:
-        done.set()
-        reader.join()
-    assert (misses, looks > 0) == (0, True)
+def test_a_folder_is_current_while_its_inputs_and_files_are_the_same(folder):
+    assert write(folder, texts(0), version=0) is None
+    (folder / "mine").write_text("x")
+    assert write(folder, texts(0), version=0) is None
+    assert write(folder, texts(0), version=0, more=1) == ()
+    (folder / "plan.yaml").unlink()
+    assert write(folder, texts(0), version=0, more=1) == ()
+    assert tree(folder).keys() == {*VERSIONS[0], "manifest.json", "mine"}
 
 
-@pytest.mark.usefixtures("has_exchange")
-def test_before_each_call_to_the_system_a_reader_sees_a_whole_manifest():
-    found = strike("exchange", "look")
-    assert found["misses"] == 0
-    assert found["looks"] > 30
-
-
-def test_a_reader_finds_the_gap_between_two_renames():
-    # Must-fail twin: if folders cannot be exchanged, there is no folder for a moment.
-    found = strike("fallback", "look")
-    assert found["misses"] > 0
-
-
-def test_scripts_can_be_run_and_other_files_cannot(tmp_path):
-    texts = {"a.sh": "#!/bin/sh\nexit 7\n", "vhdl/run.sh": "#!/bin/sh\n", "vhdl/a.vhd": "--\n"}
-    for _ in range(2):
-        module.replace(tmp_path / "type", with_manifest(texts))
-        modes = {name: os.access(tmp_path / "type" / name, os.X_OK) for name in texts}
-        assert modes == {"a.sh": True, "vhdl/run.sh": True, "vhdl/a.vhd": False}
-    assert subprocess.run([tmp_path / "type/a.sh"], timeout=60, check=False).returncode == 7
-
-
-def test_folders_of_others_are_not_taken_for_leftovers(target):
-    # Names of another program, or of an older build with the same process id.
-    for name in (f".type.{os.getpid()}.new", f".type.{os.getpid()}.old", ".type.old", "type.new"):
-        (target.parent / name).mkdir()
-        (target.parent / name / "thesis.tex").write_text("ten years")
-    before = {path.name for path in target.parent.iterdir()}
-    module.replace(target, with_manifest(NEW))
-    assert texts(target) == with_manifest(NEW)
-    assert {path.name for path in target.parent.iterdir()} == before
-    assert len([*target.parent.glob("*/thesis.tex")]) == len(before) - 1 == 4
-
-
-def test_users_files_are_the_same_files_after_a_build(target):
-    kept = target / "results.csv"
-    kept.write_text("1\n")
-    with kept.open("a") as log:
-        module.replace(target, with_manifest(NEW))
-        log.write("2\n")
-    assert kept.read_text() == "1\n2\n"
-
-
-def test_files_written_to_the_old_folder_meanwhile_are_moved(target, monkeypatch):
-    original = module._swap
-
-    def swap(folder: Path, *rest: object) -> None:
-        (folder / "late.txt").write_text("late")
-        (folder / "notes").unlink()
-        (folder / "notes").write_text("changed")
-        original(folder, *rest)
-
-    (target / "notes").write_text("first")
-    monkeypatch.setattr(module, "_swap", swap)
-    module.replace(target, with_manifest(NEW))
-    found = texts(target)
-    assert found["late.txt"] == "late"
-    assert {found["notes"], found["notes.kept"]} == {"first", "changed"}
-    assert sorted(path.name for path in target.parent.iterdir()) == ["type"]
-
-
-def test_renamed_files_are_reported(target):
-    new = "mine.txt"
-    (target / "notes").write_text("mine")
-    for number in ("1", "2", "3"):
-        (target / new).write_text(number)
-        renamed = module.replace(target, with_manifest(NEW))
-        assert list(renamed) == [new]
-        assert (target / renamed[new]).read_text() == number
-        assert (target / new).read_text() == NEW[new]
-        # As if another version had not written the file.
-        module.replace(target, with_manifest(OLD))
-        assert not (target / new).exists()
-    kept = {each.name: each.read_text() for each in target.glob(f"{new}.kept*")}
-    assert kept == {f"{new}.kept": "1", f"{new}.kept2": "2", f"{new}.kept3": "3"}
-    assert (target / "notes").read_text() == "mine"
-    assert module.replace(target, with_manifest(OLD)) == {}
-
-
-def test_the_command_prints_renamed_files(monkeypatch, capsys):
-    def build(
-        *arguments: object, report: Callable[[Built], None], **options: object
-    ) -> list[Built]:
-        renamed = {"mine.txt": "mine.txt.kept", "a": "a.kept"}
-        made = Built(
-            name="T", folder=Path("out"), was_current=False, description="", renamed=renamed
-        )
-        report(made)
-        return [made]
-
-    monkeypatch.setattr(sys.modules["firm_hdl.export.build"], "build", build)
-    main(["build", "std_msgs/msg/Bool"])
-    assert capsys.readouterr().out.splitlines()[1:3] == [
-        "        your file a is now a.kept",
-        "        your file mine.txt is now mine.txt.kept",
+def test_files_are_replaced_in_place(folder):
+    """A shell, an editor or a simulator in the folder goes on, and so does a written log."""
+    before = {path: path.stat().st_ino for path in (folder, folder / "vhdl", folder / "plan.yaml")}
+    inside = os.open(folder / "vhdl", os.O_RDONLY)
+    with (folder / "log.txt").open("w") as log:
+        build(folder, 1)
+        log.write("written")
+    assert "run_ghdl.sh" in os.listdir(inside)
+    os.close(inside)
+    assert before == {path: path.stat().st_ino for path in before}
+    assert tree(folder).keys() == {*VERSIONS[1], "manifest.json", "log.txt"}
+    assert tree(folder)["log.txt"] == "written"
+    # The last outdated file of a subfolder takes it along.
+    assert not (folder / "systemverilog").exists()
+    assert [os.access(folder / name, os.X_OK) for name in ("vhdl/run_ghdl.sh", "plan.yaml")] == [
+        True,
+        False,
     ]
 
 
-@pytest.mark.parametrize("kind", ["fifo", "link", "dangling", "socket_name", "read_only"])
-def test_special_files_of_users_stay(target, kind):
-    special = target / "odd"
-    if kind == "fifo":
-        os.mkfifo(special)
-    elif kind == "link":
-        special.symlink_to(target.parent)
-    elif kind == "dangling":
-        special.symlink_to("nowhere")
-    elif kind == "read_only":
-        special.mkdir()
-        (special / "file").write_text("mine")
-        special.chmod(0o555)
+@pytest.mark.parametrize(
+    "name", ["plan.yaml", "vhdl/T.vhd", "waivers.vlt", "vhdl", "vhdl/run_ghdl.sh"]
+)
+@pytest.mark.parametrize("what", ["file", "link", "same", "dangling", "folder", "fifo"])
+def test_what_is_in_the_way_is_named_and_nothing_changes(folder, tmp_path, name, what):
+    place, right = folder / name, tmp_path / "right"
+    build(right, 1)
+    shutil.rmtree(place) if place.is_dir() else place.unlink(missing_ok=True)
+    if what == "file":
+        place.write_text("changed")
+    elif what == "folder":
+        place.mkdir()
+        if name == "vhdl":
+            name = "vhdl/T.vhd"
+            (folder / name).mkdir()
+    elif what == "fifo":
+        os.mkfifo(place)
     else:
-        special.mkdir()
-    before = special.lstat().st_mode
-    module.replace(target, with_manifest(NEW))
-    assert special.lstat().st_mode == before
-    assert sorted(path.name for path in target.parent.iterdir()) == ["type"]
+        # A link is in the way even if the right file, or a right folder, is behind it.
+        (tmp_path / "other").write_text("mine")
+        targets = {"link": tmp_path / "other", "same": right / name, "dangling": "nowhere"}
+        place.symlink_to(targets[what])
+    before = state(tmp_path)
+    for force in (False, True):
+        with pytest.raises(BuildError, match=f"has files of yours, .*delete them: {name}$"):
+            build_folder(
+                folder.parent, folder, {}, lambda: (texts(1), manifest(texts(1))), force=force
+            )
+    assert state(tmp_path) == before
 
 
-def test_a_link_to_a_folder_stays_a_link(target):
-    link = target.parent / "link"
-    link.symlink_to(target)
-    module.replace(link, with_manifest(NEW))
-    assert link.is_symlink()
-    assert texts(target) == with_manifest(NEW)
+def test_many_files_in_the_way_are_counted(folder):
+    files = {f"T_{number:02}.v": "" for number in range(12)}
+    for name in files:
+        (folder / name).write_text("mine")
+    with pytest.raises(BuildError, match=r": T_00\.v, .*, T_09\.v and 2 more$"):
+        write(folder, files)
 
 
-def test_a_manifest_deletes_nothing_outside_of_its_folder(target):
-    (target.parent / "thesis").write_text("mine")
-    made = json.loads((target / "manifest.json").read_text())
-    made["files"] |= {"../thesis": "0", str(target.parent / "thesis"): "0"}
-    (target / "manifest.json").write_text(json.dumps(made))
-    module.replace(target, with_manifest(NEW))
-    assert (target.parent / "thesis").read_text() == "mine"
+def test_outdated_files_that_the_user_changed_stay_and_are_named(folder, tmp_path):
+    (tmp_path / "mine").write_text("mine")
+    (folder / "vhdl" / "T_old.vhd").write_text("mine")
+    (folder / "systemverilog" / "T_sv.sv").unlink()
+    (folder / "systemverilog" / "T_sv.sv").symlink_to(tmp_path / "mine")
+    kept = ("systemverilog/T_sv.sv", "vhdl/T_old.vhd")
+    assert write(folder, texts(1)) == kept
+    assert [(folder / name).read_text() for name in kept] == ["mine", "mine"]
+    assert write(folder, texts(1), more=1) == ()
+
+
+def test_a_folder_of_others_is_refused(tmp_path):
+    for name, make in (
+        ("full", lambda path: (path.mkdir(), (path / "thesis.tex").write_text("mine"))),
+        ("file", lambda path: path.write_text("mine")),
+        ("fifo", os.mkfifo),
+    ):
+        make(tmp_path / name)
+        before = tmp_path.joinpath(name).lstat()
+        for refused in (check_folder, lambda out, folder: build(folder, 0)):
+            with pytest.raises(BuildError, match=rf"{name}' (is not a folder that|cannot be wr)"):
+                refused(tmp_path, tmp_path / name)
+        assert tmp_path.joinpath(name).lstat() == before
+    (tmp_path / "empty").mkdir()
+    # A build was killed before it wrote the manifest.
+    (tmp_path / "empty" / f".firm-hdl-{'0' * 16}.tmp").write_text("half")
+    assert (
+        check_folder(tmp_path, tmp_path / "empty") == check_folder(tmp_path, tmp_path / "no") == {}
+    )
+    build(tmp_path / "empty", 0)
 
 
 @pytest.mark.parametrize(
@@ -247,30 +159,189 @@ def test_a_manifest_deletes_nothing_outside_of_its_folder(target):
         b'{"inputs_sha256": ""}',
         b'{"inputs_sha256": "", "inputs": [], "files": {}}',
         b'{"inputs_sha256": "", "inputs": {}, "files": []}',
+        b'{"inputs_sha256": "", "inputs": {}, "files": {"plan.yaml": []}}',
+        b'{"inputs_sha256": "", "inputs": {}, "files": {}, "unfinished": {"plan.yaml": {}}}',
+        b'{"inputs_sha256": "", "inputs": {}, "files": {}, "unfinished": null}',
         b"[" * 100_000,
-        None,
+        b"9" * 100_000,
+        "link",
+        "fifo",
+        "huge",
     ],
 )
-def test_damaged_manifests_are_ignored(target, text):
-    (target / "manifest.json").unlink()
-    if text is None:
-        os.mkfifo(target / "manifest.json")
+def test_a_folder_with_a_manifest_that_is_none_is_the_users(folder, tmp_path, text):
+    place = folder / "manifest.json"
+    place.rename(tmp_path / "manifest.json")
+    if text == "link":
+        place.symlink_to(tmp_path / "manifest.json")
+    elif text == "fifo":
+        os.mkfifo(place)
+    elif text == "huge":
+        place.touch()
+        os.truncate(place, 1 << 40)
     else:
-        (target / "manifest.json").write_bytes(text)
-    assert module.read_manifest(target) is None
-    assert not module.is_current(target, {})
+        place.write_bytes(text)
+    assert read_manifest(folder) is None
+    with pytest.raises(BuildError, match="is not a folder that firm-hdl made; move it away"):
+        build(folder, 0)
 
 
-def test_a_file_that_became_a_fifo_is_not_waited_for(target):
-    (target / "a.v").unlink()
-    os.mkfifo(target / "a.v")
-    assert not module.is_current(target, {})
+def test_a_manifest_of_others_deletes_only_what_firm_hdl_could_have_written(folder):
+    """Each of these files has the sum that the manifest says."""
+    outside = folder.parent / "thesis.tex"
+    outside.write_text("mine")
+    names = ["thesis.tex", "vhdl/thesis.tex", "notes.txt", "vhdl/mine.vhd", "src/T.v", "a/b/T.v"]
+    names += ["T.v/x", "T.c", ".T.v", "vhdl/.git", "xT.v"]
+    for name in names:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text("mine")
+    (folder / "loop").symlink_to(folder.parent)
+    names += ["../thesis.tex", str(outside), "vhdl/../../thesis.tex", "loop/thesis.tex"]
+    names += ["vhdl//T.vhd", "./plan.yaml", "..", ".", "", "/", "T\0.v", "T\ud800.v", "T" * 300]
+    made = json.loads((folder / "manifest.json").read_text())
+    made["files"] |= dict.fromkeys(names, digest("mine"))
+    (folder / "manifest.json").write_text(json.dumps(made))
+    before = {name: text for name, text in tree(folder.parent).items() if text == "mine"}
+    assert write(folder, texts(0), version=0) == ()
+    assert {name: text for name, text in tree(folder.parent).items() if text == "mine"} == before
+    assert len(before) == 12
 
 
-def test_only_one_build_at_a_time_writes(target, monkeypatch):
-    monkeypatch.setattr("firm_hdl.export.exchange.LOCK_SECONDS", 0.0)
-    with locked(target.parent) as alone:
-        assert alone
-        with pytest.raises(OSError, match="another process has been writing there"):
-            module.replace(target, with_manifest(NEW))
-    assert texts(target) == with_manifest(OLD)
+def test_links_are_followed_only_where_the_user_named_them(tmp_path):
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "out").symlink_to("disk")
+    (tmp_path / "later").symlink_to("disk/made")
+    for out in ("out", "later"):
+        build(tmp_path / out / "T", 0)
+        assert (tmp_path / out).is_symlink()
+    assert (tmp_path / "disk" / "made" / "T" / "plan.yaml").exists()
+    (tmp_path / "out" / "L").symlink_to("T")
+    (tmp_path / "out" / "lyrical").symlink_to("made")
+    before = tree(tmp_path)
+    for folder in (Path("L"), Path("lyrical", "T")):
+        for what in (
+            check_folder,
+            lambda *given: build_folder(*given, {}, lambda: ({}, {"files": {}})),
+        ):
+            with pytest.raises(
+                BuildError, match=f"written: a link, .* folder .'{folder.parts[0]}'"
+            ):
+                what(tmp_path / "out", tmp_path / "out" / folder)
+    assert tree(tmp_path) == before
+
+
+def test_mounts_in_a_folder_are_not_entered(folder, tmp_path):
+    """Bind mounts have the same device; nothing is lost if it has the files of the folder, too."""
+    script = """
+        mount --bind {other} {folder}/vhdl
+        mount --bind {other}/../plan.yaml {folder}/plan.yaml
+        mount -t tmpfs none {folder}/systemverilog
+        exec {python} -c "
+        from pathlib import Path
+        from tests.export.strikes import build, write
+        for files in {{'vhdl/T.vhd': ''}}, {{'plan.yaml': ''}}, {{'systemverilog/T_sv.sv': ''}}:
+            try:
+                write(Path('{folder}'), files)
+            except Exception as error:
+                print(str(error).rpartition(' ')[2])
+        print(write(Path('{folder}'), {{}}))
+        "
+    """
+    other = tmp_path / "other"
+    shutil.copytree(folder / "vhdl", other)
+    shutil.copy(folder / "plan.yaml", tmp_path)
+    text = textwrap.dedent(script).format(folder=folder, other=other, python=sys.executable)
+    unshare = shutil.which("unshare")
+    if unshare is None or subprocess.run([unshare, "-rm", "true"], check=False).returncode:
+        pytest.skip("nothing can be mounted here")
+    *named, kept = run(unshare, "-rm", "sh", "-ec", text).splitlines()
+    assert named == ["vhdl", "plan.yaml", "systemverilog"]
+    assert kept == "('plan.yaml', 'systemverilog', 'vhdl')"
+    assert tree(other) == {"T.vhd": texts(0)["vhdl/T.vhd"], "T_old.vhd": texts(0)["vhdl/T_old.vhd"]}
+
+
+def test_temporary_files_of_killed_builds_go_and_nothing_else_of_such_a_name(folder):
+    hexadecimal = "0123456789abcdef"
+    left = folder / f".firm-hdl-{hexadecimal}.tmp"
+    left.write_text("half")
+    others = [folder / f".firm-hdl-{hexadecimal[::-1]}.tmp", folder / ".firm-hdl-x.tmp"]
+    others[0].symlink_to(folder / "plan.yaml")
+    others[1].write_text("mine")
+    others += [folder / f".firm-hdl-{'0' * 16}.tmp", folder / "vhdl" / left.name]
+    others[2].mkdir()
+    others[3].write_text("mine")
+    others += [folder.parent / left.name]
+    others[4].write_text("mine")
+    # The folder is current.
+    assert write(folder, texts(0), version=0) is None
+    assert not left.exists() and all(os.path.lexists(each) for each in others)
+
+
+def test_without_room_nothing_changes(folder, tmp_path):
+    before = tree(folder)
+    with pytest.raises(BuildError, match="T' cannot be written: File too large"):
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, limits[1]))
+        try:
+            write(folder, {**texts(1), "vhdl/T_large.vhd": "x" * (2 << 20)}, version=1)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert tree(folder) == before
+    assert write(folder, texts(0), version=0) is None
+
+
+@pytest.mark.parametrize("name", ["T" * 300 + ".v", "T" * 300 + "/a.v"])
+def test_a_name_that_is_too_long_changes_nothing(folder, name):
+    before = tree(folder)
+    with pytest.raises(BuildError, match="T' cannot be written: File name too long"):
+        write(folder, {**texts(1), name: ""})
+    assert tree(folder) == before
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+@pytest.mark.parametrize("place", [".", "vhdl"])
+def test_a_folder_without_rights_is_one_error_and_read_only_files_are_none(folder, place):
+    before = tree(folder)
+    for path in folder.rglob("*.vhd"):
+        path.chmod(0o444)
+    (folder / place).chmod(0o555)
+    with pytest.raises(BuildError, match="T' cannot be written: "):
+        build(folder, 1)
+    assert tree(folder) == before
+    (folder / place).chmod(0o755)
+    build(folder, 1)
+
+
+def test_a_file_that_is_changed_during_the_build_stays(folder, monkeypatch):
+    original = module.write_new
+
+    def write_new(*given: object, **options: object) -> None:
+        (folder / "vhdl" / "T.vhd").write_text("saved by an editor")
+        original(*given, **options)
+
+    monkeypatch.setattr(module, "write_new", write_new)
+    with pytest.raises(BuildError, match=r"it was changed during the build \('vhdl/T.vhd'\)"):
+        build(folder, 1)
+    assert (folder / "vhdl" / "T.vhd").read_text() == "saved by an editor"
+
+
+def test_only_one_build_at_a_time_writes(folder, monkeypatch):
+    monkeypatch.setattr(module, "LOCK_SECONDS", 0.0)
+    before = tree(folder)
+    number = os.open(folder, os.O_RDONLY)
+    fcntl.flock(number, fcntl.LOCK_EX)
+    with pytest.raises(BuildError, match="another process has been writing there for a minute"):
+        build(folder, 1)
+    os.close(number)
+    assert tree(folder) == before
+
+
+def test_without_locks_temporary_files_may_be_those_of_another_build(folder, monkeypatch):
+    def flock(*given: object) -> None:
+        raise OSError(9, "Bad file descriptor")
+
+    monkeypatch.setattr(module, "flock", flock)
+    other = folder / f".firm-hdl-{'0' * 16}.tmp"
+    other.write_text("half")
+    build(folder, 1)
+    assert tree(folder).keys() == {*VERSIONS[1], "manifest.json", other.name}

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.cli import main
+from tests.export.strikes import left_when_outdated
 
 ROOT = Path(__file__).parents[2]
 SAMPLE = ROOT / "vhdl_out" / "lyrical" / "geometry_msgs_msg_Twist_cdr_8"
@@ -51,6 +52,11 @@ def test_sample_of_another_version_is_skipped_at_home_and_fails_in_ci(monkeypatc
         monkeypatch.setenv("CI", "true")
         with pytest.raises(pytest.fail.Exception, match="and here is "):
             need_same(newer, kept)
+
+
+def test_each_of_its_files_goes_when_it_is_outdated(tmp_path):
+    """Their names are like those of firm-hdl, which alone are deleted."""
+    assert left_when_outdated(SAMPLE, tmp_path / SAMPLE.name) == set()
 
 
 @pytest.mark.snapshot

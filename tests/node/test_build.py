@@ -19,6 +19,7 @@ from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodeTop, node_ports
 from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.vhdl.convert import Vhdl
+from tests.export.strikes import left_when_outdated
 from tests.node.samples import PACKAGES, WHEELS, read
 from tests.node.traffic import frames_of
 from tests.tools import need
@@ -103,6 +104,10 @@ def test_a_folder_that_is_current_stays(built):
     before = (built / "relay_verilog.v").stat().st_mtime_ns
     again = build_node(read(RELAY), built.parent, stimuli=stimuli)
     assert again.was_current and (built / "relay_verilog.v").stat().st_mtime_ns == before
+
+
+def test_each_file_goes_when_it_is_outdated(built, tmp_path):
+    assert left_when_outdated(built, tmp_path / built.name) == set()
 
 
 @pytest.mark.thorough

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from urllib.parse import SplitResult, parse_qsl, urlsplit
 
 from firm_hdl.errors import UserError
+from firm_hdl.files import write_new
 from firm_hdl.frontend import open_library
 from firm_hdl.node import Description, Topic, read_description, read_description_text
 from firm_hdl.node.link_reading import NODE_BUS_BYTES
@@ -106,8 +107,7 @@ def write_description(request: Request, names: Iterable[str], path: str) -> None
     # What cannot be built should not be written.
     read_description_text(text, name=path, folder=os.path.dirname(path) or ".")
     try:
-        with open(path, "x", encoding="utf-8") as file:
-            file.write(text)
+        write_new(path, text.encode())
     except FileExistsError:
         raise UserError(f"'{path}' exists already, and may have changes of yours") from None
     except OSError as error:

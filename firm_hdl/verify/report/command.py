@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from firm_hdl.export.build import BuildError
+from firm_hdl.files import write_file
 from firm_hdl.verify.report.as_json import to_json
 from firm_hdl.verify.report.html import to_html
 from firm_hdl.verify.report.markdown import to_markdown
@@ -77,12 +78,7 @@ def write_report(
         ends = ", ".join(f".{name}" for name in FORMATS)
         raise BuildError(f"'{out}': the name of a report must end in {ends}, or give --format")
     text = _made(results, form, title)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    # Replace the file at the end, so that it is never incomplete. Names of files may have bytes
-    # that are not UTF-8. These are written as in JSON and in Python, "\udcff".
-    part = path.with_name(path.name + ".part")
-    part.write_text(text, encoding="utf-8", newline="\n", errors="backslashreplace")
-    part.replace(path)
+    write_file(path, text)
 
 
 def _made(results: Sequence[str | os.PathLike[str]], form: str, title: str) -> str:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
-from firm_hdl.files import read_file
+from firm_hdl.files import read_file, write_file
 from firm_hdl.frontend import DISTROS, Library, open_library
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
@@ -24,7 +24,15 @@ from firm_hdl.plan.compare import Change, compare
 from firm_hdl.verify.results.verdict import Failed, Passed, Verdict
 from firm_hdl.wire import lay_out
 
-__all__ = ["Checked", "Golden", "add", "check_golden", "read_golden", "summarise"]
+__all__ = [
+    "Checked",
+    "Golden",
+    "add",
+    "check_golden",
+    "read_golden",
+    "summarise",
+    "write_golden",
+]
 
 
 _MOST_BYTES = 1 << 26
@@ -147,9 +155,19 @@ def add(folder: str | os.PathLike[str], distro: str, message: Message, plan: Pla
     """Write a plan into a folder of golden plans, and return its file."""
     name = f"{identifier(message.name)}_{plan.wire}_{plan.bus_bytes}.yaml"
     path = Path(folder) / distro / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(to_yaml(plan), encoding="utf-8", newline="\n")
+    write_golden(path, to_yaml(plan))
     return path
+
+
+def write_golden(path: Path, text: str) -> None:
+    """Write a golden plan; raise a `BuildError` where that would follow a link in the folder.
+
+    The user named the folder, not the files in it, which may come from others.
+    """
+    for each in (path.parent, path):
+        if each.is_symlink():
+            raise BuildError(f"'{each}' is a link; golden plans are not written through links")
+    write_file(path, text)
 
 
 def summarise(results: Iterable[Checked]) -> dict[str, list[str]]:

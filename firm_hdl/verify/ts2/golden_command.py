@@ -9,7 +9,14 @@ from collections.abc import Sequence
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.frontend import load_all, open_library
 from firm_hdl.verify.results.verdict import Passed
-from firm_hdl.verify.ts2.golden import Checked, add, check_golden, read_golden, summarise
+from firm_hdl.verify.ts2.golden import (
+    Checked,
+    add,
+    check_golden,
+    read_golden,
+    summarise,
+    write_golden,
+)
 
 __all__ = ["add_golden_arguments", "run_golden"]
 
@@ -67,7 +74,7 @@ def _accept(differing: Sequence[Checked]) -> int:
             print(f"not accepted: {result.golden.path}", file=sys.stderr)
             refused += 1
         else:
-            result.golden.path.write_text(result.text, encoding="utf-8", newline="\n")
+            write_golden(result.golden.path, result.text)
             print(f"accepted {result.golden.path}")
     return 1 if refused else 0
 

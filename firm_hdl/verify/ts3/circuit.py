@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from contextlib import suppress
 
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
@@ -144,4 +145,8 @@ class Circuit:
         os.makedirs(self._options.vcd, exist_ok=True)
         plan = self._plan
         base = identifier(f"{self._message.name}_{plan.wire}_{plan.bus_bytes}")
-        return os.path.join(self._options.vcd, f"{base}_run{self._runs}.vcd")
+        file = os.path.join(self._options.vcd, f"{base}_run{self._runs}.vcd")
+        # A link is replaced, not followed: the user named the folder, not the files in it.
+        with suppress(FileNotFoundError):
+            os.unlink(file)
+        return file

@@ -16,6 +16,7 @@ from firm_hdl.errors import UserError
 from firm_hdl.export.parts import build_part, make_part
 from firm_hdl.export.parts.top import part_ports
 from firm_hdl.vhdl.convert import Vhdl
+from tests.export.strikes import left_when_outdated
 from tests.export.verilog.test_verilog import WAIVED
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL, analyse
@@ -66,6 +67,10 @@ def test_the_verilog_compiles_in_both_languages(built, tmp_path):
     file = built / f"{built.name}_verilog.v"
     for language in ("-g2005", "-g2012"):
         assert run([iverilog, language, "-Wall", "-o", "o", file], tmp_path) == (0, "")
+
+
+def test_each_file_goes_when_it_is_outdated(built, tmp_path):
+    assert left_when_outdated(built, tmp_path / built.name) == set()
 
 
 def test_verilator_finds_nothing(built, tmp_path):

@@ -53,6 +53,21 @@ def test_a_change_fails_until_it_is_accepted(folder, capsys):
     assert main(["golden", "check", str(folder)]) == 0
 
 
+@pytest.mark.parametrize("place", ["lyrical", "lyrical/std_msgs_msg_String_cdr_8.yaml"])
+def test_no_plan_is_written_through_a_link(folder, capsys, place):
+    """The user names the folder, and others may have filled it."""
+    (folder / "a").mkdir()
+    (folder / place).rename(folder / "a" / "b")
+    (folder / place).symlink_to(folder / "a" / "b")
+    for path in (folder / "lyrical").iterdir():
+        path.write_text(re.sub(r"limit: 1677\d+", "limit: 9", path.read_text()))
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    for does in ("accept", "add"):
+        assert main(["golden", does, str(folder), "std_msgs/msg/String"]) == 1
+        assert f"{place}' is a link; golden plans are not written" in capsys.readouterr().err
+    assert before == {path: path.read_bytes() for path in before}
+
+
 def test_a_removed_type_cannot_be_accepted(folder, capsys):
     path = sorted((folder / "lyrical").iterdir())[1]
     text = path.read_text().replace("std_msgs/msg/String", "std_msgs/msg/Strung")

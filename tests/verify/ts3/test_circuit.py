@@ -174,9 +174,11 @@ def test_each_run_has_a_waveform_of_its_own(make, tmp_path, simulator):
     folder = tmp_path / "new" / "waves"
     made, result, harnesses = make(simulator=simulator, vcd=str(folder))
     made.send("here", PACKETS, None)
+    (folder / "std_msgs_msg_Bool_cdr_4_run2.vcd").symlink_to(tmp_path / "thesis.tex")
     made.send("there", PACKETS, STALLS)
     files = [str(folder / f"std_msgs_msg_Bool_cdr_4_run{number}.vcd") for number in (1, 2)]
-    assert folder.is_dir()
+    # A link is not followed.
+    assert [*folder.iterdir()] == []
     # In a replay, runs keep the state of the run before, so waveforms are those of others.
     waves = harnesses[-1]
     assert len(harnesses) == (2 if simulator == "ghdl" else 1)
