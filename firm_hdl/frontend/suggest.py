@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from difflib import get_close_matches
 
 from firm_hdl.frontend.explain import clip
-from firm_hdl.frontend.names import KINDS, Kind
+from firm_hdl.frontend.names import KINDS, Kind, TypeName
 from firm_hdl.frontend.sources import Sources
 
 __all__ = ["did_you_mean", "similar_types", "unknown_type"]
@@ -22,16 +23,35 @@ _NOT_EMBEDDED = frozenset(
 )
 
 
-def unknown_type(sources: Sources, package: str, name: str) -> str:
-    """Give the message for a type that is not defined."""
-    if package in sources.types:
-        return f"type '{clip(name)}' is not defined in package '{clip(package)}'"
+def unknown_type(sources: Sources, names: Sequence[TypeName]) -> str:
+    """Give the message for a type that is not defined.
+
+    Parameters
+    ----------
+    names : sequence of TypeName
+        All types that the user may mean, with one package and one name.
+    """
+    package, name = names[0].package, names[0].name
+    place = sources.place(package)
+    if place is not None and place.wrong:
+        return place.wrong
+    if place is not None or package in sources.types:
+        message = f"type '{clip(name)}' is not defined in package '{clip(package)}'"
+        hidden = sources.hidden_place(names)
+        if place is not None and hidden is not None:
+            message += (
+                f", which is taken from '{place.where}' and hides that of '{hidden.where}', where "
+                "the type is; as in ROS, a package comes from one place as a whole"
+            )
+        return message
     message = f"package '{clip(package)}' is not found"
     if package in _NOT_EMBEDDED:
         message += (
             "; this ROS package does not come with firm-hdl: name a folder that has it with "
             "--path, or source the setup file of an installation that does"
         )
+    if sources.unreadable:
+        message += f"; '{sources.unreadable[0]}' cannot be read, and may have it"
     return message
 
 

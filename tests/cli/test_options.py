@@ -123,9 +123,14 @@ def test_prove_all_is_of_all_messages(workdir, monkeypatch, distro):
 
 
 def test_list_has_services_and_actions_and_paths_in_their_order(workdir, capsys):
-    make_files(workdir, {"one/q/msg/Q.msg": "int8 one", "two/q/msg/Q.msg": "int8 two"})
     assert main(["list", "--path", "."]) == 0
     assert capsys.readouterr().out.split() == Library("lyrical", ["."]).interfaces()
+    make_files(workdir, {"one/q/msg/Q.msg": "int8 one", "two/q/msg/Q.msg": "int8 two"})
+    # What cannot be used is told, too.
+    assert main(["list", "--path", "."]) == 1
+    out, err = capsys.readouterr()
+    assert out.split() == Library("lyrical", ["."]).interfaces()
+    assert "q/msg/Q" in out and "'./one/q', './two/q'" in err
     for paths, word in ((("one", "two"), "one"), (("two", "one"), "two")):
         words = [word for path in paths for word in ("--path", path)]
         assert main(["show", "q/Q", *words]) == 0
