@@ -12,6 +12,7 @@ from functools import cached_property
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
+from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.verify.results.records import OracleVerdict, Record, Test
 from firm_hdl.verify.results.verdict import Failed
@@ -43,6 +44,8 @@ def each_distro(request: Request) -> list[Request]:
     ------
     UnknownTypeError
         If no distribution has the types.
+    DefinitionError
+        If the active workspace has their packages without the types.
     """
     names = request.distros or (
         [DEFAULT_DISTRO] if request.paths else _distros_with_any_of(request.types)
@@ -59,6 +62,10 @@ def _distros_with_any_of(types: Sequence[str]) -> list[str]:
             continue
         found.append(distro)
     if not found:
+        packages = {name.partition("/")[0] for name in types}
+        for distro in DISTROS:
+            if workspace_folders(distro, packages):
+                Universe(distro).select(types)  # Raises an error that says what is wrong.
         raise UnknownTypeError(f"No distribution has {', '.join(types)}")
     return found
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
 from dataclasses import replace
@@ -176,6 +177,14 @@ def test_distributions_that_have_the_types_are_chosen():
 def test_a_type_that_no_distribution_has_is_named():
     with pytest.raises(UnknownTypeError, match=r"^No distribution has std_msgs/Header, p/None$"):
         each_distro(Request(types=("std_msgs/Header", "p/None")))
+
+
+def test_a_type_in_a_hidden_package_of_the_workspace_is_told(tmp_path, monkeypatch):
+    make_files(tmp_path, {"over/share/p/package.xml": "", "under/share/p/msg/A.msg": ""})
+    prefixes = os.pathsep.join(str(tmp_path / name) for name in ("over", "under"))
+    monkeypatch.setenv("AMENT_PREFIX_PATH", prefixes)
+    with pytest.raises(DefinitionError, match="over/share/p' and hides that of .*under/share/p'"):
+        each_distro(Request(types=("p/A",)))
 
 
 def test_all_that_was_asked_for_is_in_the_request_for_each_distribution():
