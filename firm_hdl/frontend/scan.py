@@ -29,6 +29,9 @@ MAX_FOLDERS = 100_000
 # Files that make colcon and catkin skip a folder.
 _IGNORE_MARKERS = frozenset({"AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"})
 
+# Folders in which ROS 2, up to foxy, installs other texts of the same types, for DDS.
+_OF_DDS = frozenset({"dds_connext", "dds_fastrtps", "dds_opensplice"})
+
 _Identity: TypeAlias = tuple[int, int]
 
 
@@ -66,7 +69,7 @@ class Scan:
     Attributes
     ----------
     unreadable : list of str
-        Folders that this user may not read. They may have packages.
+        Folders that this user may not read. They may have packages or definitions.
     """
 
     def __init__(self, root: str) -> None:
@@ -98,9 +101,8 @@ class Scan:
             is_package = "package.xml" in names
             found = PackageFolder(package=os.path.basename(path), path=path)
             self._add_files(found, names, is_package=is_package)
-            if is_package or found.files or found.wrong:
-                found.package, wrong = _package_name(path, is_package)
-                found.wrong = found.wrong or wrong
+            if is_package or found.files:
+                found.package, found.wrong = _package_name(path, is_package)
                 config = os.path.join(path, "cmake", f"{found.package}Config.cmake")
                 found.is_part = not is_package and os.path.isfile(config)
                 yield found
@@ -118,13 +120,10 @@ class Scan:
         """
         share = os.path.join(self._root, "share")
         index = os.path.join(share, "ament_index", "resource_index", "packages")
-        listed, names = ([*_listed(folder)] for folder in (index, share))
-        for package in sorted({*listed, *names}):
+        listed = set(_listed(index))
+        for package in sorted(listed.union(_listed(share))):
             found = PackageFolder(package=package, path=os.path.join(share, package))
-            try:
-                inside = self._names(found.path, set())
-            except OSError:
-                inside = []
+            inside = _listed(found.path)
             self._add_files(found, inside, is_package=True)
             if package in listed or "package.xml" in inside or found.files:
                 yield found
@@ -139,8 +138,8 @@ class Scan:
                 path = pending.pop()
                 try:
                     inside = self._names(path, seen)
-                except OSError as error:
-                    found.wrong = f"'{path}' cannot be read: {error.strerror}"
+                except OSError:
+                    self.unreadable.append(path)
                     continue
                 if path not in top and not {*_IGNORE_MARKERS, "package.xml"}.isdisjoint(inside):
                     continue
@@ -151,9 +150,8 @@ class Scan:
                         continue  # Such as ``._Name.msg`` of archivers, ``.#Name.msg`` of editors.
                     if ending in (f".{kind}", ".idl"):
                         found.files.setdefault((kind, stem), []).append(os.path.join(path, name))
-                    # In ``msg/dds_connext`` and the like, ROS 2 foxy installs texts for DDS.
-                    # In a folder that is no package, one called like a kind may group packages.
-                    elif not name.startswith("dds_") and (is_package or name not in KINDS):
+                    # A folder that is called like a kind may group packages, unless in a package.
+                    elif name not in _OF_DDS and (is_package or name not in KINDS):
                         others.append(name)
                 below = [each for each in _folders(path, others) if not _is_above(each, found.path)]
                 pending += reversed(below)

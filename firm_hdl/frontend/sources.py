@@ -135,7 +135,7 @@ class FolderOrigin:
     path : str
     packages : mapping of str to PackagePlace
     unreadable : list of str
-        Folders that this user may not read. They may have other packages.
+        Folders that this user may not read. They may have more packages or definitions.
 
     Raises
     ------

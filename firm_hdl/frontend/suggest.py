@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from difflib import get_close_matches
 
 from firm_hdl.frontend.explain import clip
 from firm_hdl.frontend.names import KINDS, Kind, TypeName
-from firm_hdl.frontend.sources import Sources
+from firm_hdl.frontend.sources import PackagePlace, Sources
 
 __all__ = ["did_you_mean", "similar_types", "unknown_type"]
 
@@ -43,16 +44,21 @@ def unknown_type(sources: Sources, names: Sequence[TypeName]) -> str:
                 f", which is taken from '{place.where}' and hides that of '{hidden.where}', where "
                 "the type is; as in ROS, a package comes from one place as a whole"
             )
-        return message
+        return message + _unread(sources, place)
     message = f"package '{clip(package)}' is not found"
     if package in _NOT_EMBEDDED:
         message += (
             "; this ROS package does not come with firm-hdl: name a folder that has it with "
             "--path, or source the setup file of an installation that does"
         )
-    if sources.unreadable:
-        message += f"; '{sources.unreadable[0]}' cannot be read, and may have it"
-    return message
+    return message + _unread(sources, None)
+
+
+def _unread(sources: Sources, place: PackagePlace | None) -> str:
+    """Name a folder that could not be read, of a package or anywhere, that may have the type."""
+    inside = "" if place is None else os.path.join(place.where, "")
+    found = [path for path in sources.unreadable if path.startswith(inside)]
+    return f"; '{found[0]}' cannot be read, and may have it" if found else ""
 
 
 def similar_types(

@@ -332,10 +332,16 @@ def test_search_goes_on_after_a_folder_that_cannot_be_read(tmp_path, monkeypatch
     with pytest.raises(DefinitionError) as error:
         FolderOrigin(tmp_path / "b")
     assert str(error.value) == f"error: '{tmp_path}/b' cannot be read: Permission denied"
-    hidden = "msg"
+    make_files(tmp_path, {"a/p/msg/x/D.msg": ""})
+    hidden = "x"
+    ours = Library("lyrical", [tmp_path])
+    assert ours.message("p/A").fields == ()
     with pytest.raises(DefinitionError) as error:
-        Library("lyrical", [tmp_path / "a"]).message("p/A")
-    assert str(error.value) == f"error: '{tmp_path}/a/p/msg' cannot be read: Permission denied"
+        ours.message("p/D")
+    assert str(error.value) == (
+        "error: type 'D' is not defined in package 'p'; "
+        f"'{tmp_path}/a/p/msg/x' cannot be read, and may have it"
+    )
 
 
 KLINGON = "<?xml version='1.0' encoding='klingon'?><package><name>p</name></package>"

@@ -183,7 +183,7 @@ def test_a_type_in_a_hidden_package_of_the_workspace_is_told(tmp_path, monkeypat
     make_files(tmp_path, {"over/share/p/package.xml": "", "under/share/p/msg/A.msg": ""})
     prefixes = os.pathsep.join(str(tmp_path / name) for name in ("over", "under"))
     monkeypatch.setenv("AMENT_PREFIX_PATH", prefixes)
-    with pytest.raises(DefinitionError, match="over/share/p' and hides that of .*under/share/p'"):
+    with pytest.raises(DefinitionError, match=r"over/share/p' and hides that of .*under/share/p'"):
         each_distro(Request(types=("p/A",)))
 
 
