@@ -25,6 +25,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 from tqdm import tqdm
 
@@ -89,6 +90,8 @@ def seeds(folder: Path) -> list[Seed]:
 
 class _InputOrigin:
     """An origin with the inputs that are being tried."""
+
+    packages: ClassVar = {}
 
     def __init__(self) -> None:
         self.definitions: dict[tuple[str, str, str], Definition] = {}

@@ -31,7 +31,7 @@ class BenchTask:
     Attributes
     ----------
     converter : Converted
-    paths, bags
+    paths, bags, depends
         As for `open_library`.
     device : str or None
         A name of `DEVICES`; `None`: cycles only.
@@ -48,6 +48,7 @@ class BenchTask:
     converter: Converted
     paths: tuple[str, ...] = ()
     bags: tuple[str, ...] = ()
+    depends: tuple[str, ...] = ()
     device: str | None = "ecp5"
     seeds: tuple[int, ...] = (1, 2, 3)
     mapping: str = ""
@@ -71,7 +72,8 @@ def run_task(task: BenchTask) -> Result:
     measured: Measured | None = None
     problem = ""
     try:
-        message = open_library(what.distro, task.paths, task.bags).message(what.type)
+        library = open_library(what.distro, task.paths, task.bags, depends=task.depends)
+        message = library.message(what.type)
         check_size(plan_of(message, what.wire, what.bus_bytes, what.max_message_bytes))
         if task.stated is not None:
             cycles = count_cycles(_converter(what, message), message, task.stated)

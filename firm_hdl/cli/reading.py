@@ -6,6 +6,7 @@ import argparse
 
 from firm_hdl.arguments import add_types_or_all, add_wire
 from firm_hdl.cli.types import library_of, names_of
+from firm_hdl.errors import DefinitionError
 
 __all__ = ["add_hash", "add_list", "add_md5", "add_metrics", "add_proto", "add_show"]
 
@@ -16,8 +17,9 @@ def add_list(command: argparse.ArgumentParser) -> None:
 
 
 def _list(args: argparse.Namespace) -> None:
-    for name in library_of(args).interfaces():
-        print(name)
+    library = library_of(args)
+    problems = library.problems()
+    _print_all(library.interfaces(), DefinitionError(problems) if problems else None)
 
 
 def add_show(command: argparse.ArgumentParser) -> None:
@@ -81,7 +83,7 @@ def add_metrics(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl metrics``."""
     from firm_hdl.metrics import FORMATS
 
-    add_types_or_all(command, "all types")
+    add_types_or_all(command)
     command.add_argument(
         "--format", choices=list(FORMATS), default="table", help="default: %(default)s"
     )
@@ -90,14 +92,9 @@ def add_metrics(command: argparse.ArgumentParser) -> None:
 
 
 def _metrics(args: argparse.Namespace) -> None:
-    from firm_hdl.frontend import open_library
     from firm_hdl.metrics.command import metrics_text
 
-    if args.all and not args.types:
-        # Include the distribution's types, so that users can compare their own types with them.
-        names = open_library(args.distro, args.path, args.bag).interfaces()
-    else:
-        names = names_of(args)
+    names = names_of(args)
     text, wrong = metrics_text(library_of(args), names, args.format, args.wire, bar=args.all)
     print(text, end="")
     if wrong is not None:
@@ -105,7 +102,7 @@ def _metrics(args: argparse.Namespace) -> None:
 
 
 def _print_all(lines: list[str], wrong: Exception | None) -> None:
-    """Print the lines of the types that could be loaded, then raise the errors of the others."""
+    """Print the lines of the types that can be used, then raise the errors of the others."""
     print("".join(f"{line}\n" for line in lines), end="")
     if wrong is not None:
         raise wrong

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from tqdm import tqdm
 
@@ -13,8 +13,9 @@ from firm_hdl.arguments import add_jobs, add_types_or_all, check_types_or_all, p
 from firm_hdl.equivalence.converters import Attempt, ProofTask, both_directions, run_tasks
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
 from firm_hdl.equivalence.tools import find_tools
+from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import plan_of
-from firm_hdl.frontend import load_all, open_library
+from firm_hdl.frontend import Library, all_names, load_all, open_library
 from firm_hdl.jobs import ProgramMissingError, ToolError
 
 __all__ = ["add_prove_arguments", "add_timeout", "run_proofs", "run_prove"]
@@ -48,11 +49,10 @@ def run_prove(given: argparse.Namespace) -> int:
     """
     check_types_or_all(given)
     library = open_library(given.distro, given.path, given.bag, depends=given.depends)
-    names = given.types
     if given.all:
-        names = library.names()
+        names = _all_messages(library, all_names(given.distro, given.path, given.bag))
     else:
-        messages = load_all(library, names)
+        messages = load_all(library, given.types)
         for message in messages:
             plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
         names = [message.name for message in messages]
@@ -62,8 +62,9 @@ def run_prove(given: argparse.Namespace) -> int:
         for task in both_directions(
             name,
             distro=library.distro,
-            paths=(*given.path, *given.depends),
+            paths=tuple(given.path),
             bags=tuple(given.bag),
+            depends=tuple(given.depends),
             wire=given.wire,
             bus_bytes=given.bus_bytes,
             max_message_bytes=given.max_message_bytes,
@@ -71,6 +72,17 @@ def run_prove(given: argparse.Namespace) -> int:
         )
     ]
     return run_proofs(tasks, given.jobs, bar=given.all)
+
+
+def _all_messages(library: Library, types: Iterable[str]) -> list[str]:
+    """List the messages of types, and the types with errors: their tasks tell what is wrong."""
+    names: dict[str, None] = {}
+    for name in types:
+        try:
+            names |= dict.fromkeys(each.name for each in library.interface(name).messages)
+        except DefinitionError:
+            names[name] = None
+    return list(names)
 
 
 def run_proofs(tasks: Sequence[ProofTask], jobs: int | None, *, bar: bool) -> int:

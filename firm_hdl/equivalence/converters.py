@@ -38,7 +38,7 @@ class ProofTask:
 
     Attributes
     ----------
-    distro, paths, bags
+    distro, paths, bags, depends
         As for `open_library`.
     name : str
         Name of the type.
@@ -54,6 +54,7 @@ class ProofTask:
     direction: Direction
     paths: tuple[str, ...] = ()
     bags: tuple[str, ...] = ()
+    depends: tuple[str, ...] = ()
     wire: Wire | None = None
     bus_bytes: int = 8
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
@@ -138,7 +139,8 @@ def prove_converter(
 def attempt(task: ProofTask) -> Attempt:
     """Run a task; errors become a result without a proof."""
     try:
-        message = open_library(task.distro, task.paths, task.bags).message(task.name)
+        library = open_library(task.distro, task.paths, task.bags, depends=task.depends)
+        message = library.message(task.name)
         return Attempt(
             proof=prove_converter(
                 message,

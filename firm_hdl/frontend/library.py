@@ -29,7 +29,8 @@ class Library:
     distro : str
         ROS distribution: a key of `DISTROS`. It decides the dialect and the embedded types.
     paths : iterable of str or path
-        Folders with ROS packages, searched in this order and before anything else.
+        Folders with ROS packages, searched in this order and before anything else. As in ROS, the
+        first copy of a package hides all others, also that of the distribution.
     origins : iterable of Origin or None
         Origins to search after the folders. By default, the distribution's own types.
 
@@ -90,6 +91,10 @@ class Library:
             short = str(full)
             names[short if short not in names else f"{package}/{kind}/{name}"] = full
         return sorted(names)
+
+    def problems(self) -> list[Diagnostic]:
+        """List why types cannot be used although they are listed: two files have them."""
+        return self._sources.problems
 
     def message(self, name: str) -> Message:
         """Give the model of a message.
@@ -230,10 +235,12 @@ class Library:
 
     def _unknown(self, names: list[TypeName]) -> DefinitionError:
         for each in names:
-            # For a recording, `find` may raise an error that says why there is no definition.
-            self._sources.find(each.package, each.kind, each.name)
+            # There may be a reason: a recording has no definition, or a file's name is not legal.
+            unit = self._resolver.unit(each)
+            if unit is not None and unit.diagnostics:
+                return DefinitionError(unit.diagnostics)
         name = names[0]
-        message = unknown_type(self._sources, name.package, name.name)
+        message = unknown_type(self._sources, names)
         similar = similar_types(self._sources, name.package, name.name)
         return self._error(did_you_mean(message, self._spell(similar)))
 

@@ -27,7 +27,7 @@ from firm_hdl.frontend.embedded import DISTROS
 from firm_hdl.frontend.expansion import Budget, bounded
 from firm_hdl.frontend.names import Kind
 from firm_hdl.frontend.recorded_idl import structs_of
-from firm_hdl.frontend.sources import Definition, Language
+from firm_hdl.frontend.sources import Definition, Language, PackagePlace
 from firm_hdl.model import Dialect
 
 __all__ = ["Reader", "RecordingOrigin", "use_recording"]
@@ -80,6 +80,8 @@ class RecordingOrigin:
         self.path = os.fspath(path)
         self.dialect: Dialect = _dialect(self.path)
         self.distro: str | None = None
+        # Parts of packages: their types hide no others.
+        self.packages: dict[str, PackagePlace] = {}
         self._definitions: dict[_Name, Definition] = {}
         self._missing: set[_Name] = set()
         # Messages without fields have definitions without text.

@@ -172,7 +172,7 @@ class Resolver:
 
     def _unknown(self, entry: _Entry, name: TypeName, span: Span) -> Diagnostic:
         """Make the diagnostic for the name of a type that is not defined."""
-        message = unknown_type(self._sources, name.package, name.name)
+        message = unknown_type(self._sources, [name])
         actions = self._sources.by_origin(owners(replace(name, kind="action")))
         if actions and self._dialect == "ros1":
             action = f"the action '{actions[0].name}'"

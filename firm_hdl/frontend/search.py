@@ -1,22 +1,20 @@
 """Search for definitions in the places that options of a command and the environment name.
 
 ROS's tools find packages by environment variables that a ROS setup file sets. The command reads the
-same variables, so that it finds the packages of the active workspace. In ROS, the first folder that
-has a package wins. Here, the first folder that has a type wins.
+same variables, so that it finds the packages of the active workspace. As in ROS, the first folder
+that has a package hides those in later ones.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Container, Iterable, Iterator, Mapping
-from pathlib import Path
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.library import Library
-from firm_hdl.frontend.names import KINDS
 from firm_hdl.frontend.recordings import RecordingOrigin
-from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Origin
+from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin
 from firm_hdl.model import Dialect, Message
 from firm_hdl.wire import refusals
 
@@ -92,15 +90,17 @@ def all_names(
     return open_library(distro, (), bags).interfaces()
 
 
-def environment_origins(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[Origin]:
-    """Give the package folders that the environment names; other entries are skipped."""
-    return map(FolderOrigin, _folders(dialect, environment))
+def environment_origins(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[FolderOrigin]:
+    """Give the folders that the environment names; as in ROS, unusable entries are skipped."""
+    for place in environment.get(ENVIRONMENT[dialect], "").split(os.pathsep):
+        if os.path.isdir(place) and os.access(place, os.R_OK | os.X_OK):
+            yield FolderOrigin(place, is_prefix=dialect == "ros2")
 
 
 def workspace_folders(
     distro: str, packages: Container[str], environment: Mapping[str, str] | None = None
 ) -> list[str]:
-    """List the folders that the environment names and that have one of the given packages.
+    """List folders with the given packages, as options for a command: those that count in ROS.
 
     Parameters
     ----------
@@ -108,25 +108,13 @@ def workspace_folders(
         Variables to read (by default those of the process).
     """
     variables = os.environ if environment is None else environment
-    return [
-        folder
-        for folder in _folders(DISTROS[distro].dialect, variables)
-        if any(package in packages for package, _, _ in FolderOrigin(folder).names())
-    ]
-
-
-def _folders(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[str]:
-    for place in environment.get(ENVIRONMENT[dialect], "").split(os.pathsep):
-        if not os.path.isdir(place):
-            continue  # ROS's tools skip such entries, too, and also empty ones.
-        if dialect == "ros1":
-            yield place
-        else:
-            # The prefix may be ``/usr``, so only folders of packages are searched.
-            share = Path(place, "share")
-            for package in sorted(share.iterdir()) if share.is_dir() else []:
-                if any((package / kind).is_dir() for kind in KINDS):
-                    yield str(package)
+    found: dict[str, str] = {}
+    for origin in environment_origins(DISTROS[distro].dialect, variables):
+        for package, place in origin.packages.items():
+            if package in packages:
+                # The folder itself would hide why the package cannot be used.
+                found.setdefault(package, origin.path if place.wrong else place.where)
+    return [folder for folder in dict.fromkeys(found.values()) if os.path.isdir(folder)]
 
 
 def _of_recordings(

@@ -1,35 +1,44 @@
-"""The origins of definitions, searched in order: the first one that has a type wins.
+"""The origins of definitions, searched in order: the first one that has a package hides others.
 
 An origin can list names and find a text. Origins are folders with ROS packages, the types of a
-distribution, and recordings. Each type is looked up by itself: a package in a folder adds types to
-the embedded package of that name, and overrides types of the same name.
+distribution, and recordings. Folders and distributions have whole packages. As in ROS, only the
+first copy of a package is used, even if it lacks a type that another copy has. A recording has
+single types, which hide no others.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Literal, Protocol, TypeAlias
-from xml.etree import ElementTree
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
 from firm_hdl.files import read_file
 from firm_hdl.frontend.embedded import embedded_names, embedded_source
-from firm_hdl.frontend.names import KINDS, Kind, TypeName
+from firm_hdl.frontend.names import KINDS, Kind, TypeName, owners
+from firm_hdl.frontend.scan import MAX_BYTES, PackageFolder, Scan
 
-__all__ = ["Definition", "EmbeddedOrigin", "FolderOrigin", "Language", "Origin", "Sources"]
+__all__ = [
+    "Definition",
+    "EmbeddedOrigin",
+    "FolderOrigin",
+    "Language",
+    "Origin",
+    "PackagePlace",
+    "Sources",
+]
 
 Language: TypeAlias = Literal["msg", "srv", "action", "idl"]
 """The language of a definition's text."""
 
-# Limit on a file: ten times the longest definition in a thousand packages.
-_MAX_BYTES = 1 << 22
+# A name of a type in some dialect.
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
-# Files that make colcon and catkin skip a folder.
-_IGNORE_MARKERS = frozenset({"AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"})
+# How many copies of a package or of a type an error lists.
+_MOST_PLACES = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,8 +49,28 @@ class Definition:
     language: Language
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PackagePlace:
+    """The place of a package.
+
+    Attributes
+    ----------
+    where : str
+        Its folder, or the distribution that it comes with.
+    wrong : str
+        The reason why the package cannot be used; empty if it can be used.
+    """
+
+    where: str
+    wrong: str = ""
+
+
 class Origin(Protocol):
     """A place from which definitions are read."""
+
+    @property
+    def packages(self) -> Mapping[str, PackagePlace]:
+        """The packages that are here as a whole, so that they hide those of later origins."""
 
     def names(self) -> Iterable[tuple[str, Kind, str]]:
         """List package, kind and name of everything that is defined here."""
@@ -68,6 +97,12 @@ class EmbeddedOrigin:
     def __init__(self, distro: str) -> None:
         self._distro = distro
 
+    @cached_property
+    def packages(self) -> Mapping[str, PackagePlace]:
+        """The packages of the distribution."""
+        place = PackagePlace(where=self._distro)
+        return {package: place for package, _ in embedded_names(self._distro)}
+
     def names(self) -> Iterator[tuple[str, Kind, str]]:
         """List every message type of the distribution."""
         for package, name in embedded_names(self._distro):
@@ -83,55 +118,91 @@ class FolderOrigin:
     """A folder that is a package, or contains packages at any depth.
 
     The folder is scanned once, for names only; a file is read when its type is needed. A package
-    has its files in ``msg/``, ``srv/`` and ``action/``, in source or in installed layout. An
-    installation has each type in ROS's own language and in IDL; the file in ROS's language is read.
+    has its files in ``msg/``, ``srv/`` and ``action/`` and in folders below, in source or in
+    installed layout. An installation has each type in ROS's own language and in IDL; the file in
+    ROS's language is read.
 
     Parameters
     ----------
     path : str or path
+        It is scanned even if it has a file such as ``COLCON_IGNORE``.
+    is_prefix : bool
+        Whether the folder is an installation of ROS 2: packages are the folders in ``share/``, and
+        what the index of ament lists.
+
+    Attributes
+    ----------
+    path : str
+    packages : mapping of str to PackagePlace
+    unreadable : list of str
+        Folders that this user may not read. They may have more packages or definitions.
 
     Raises
     ------
     DefinitionError
-        If the path is not a folder. It has no span.
+        If the path is not a folder, cannot be read or has too many folders. It has no span.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+    def __init__(self, path: str | os.PathLike[str], *, is_prefix: bool = False) -> None:
         root = os.fspath(path)
         if not os.path.isdir(root):
-            raise DefinitionError([Diagnostic(message=f"'{root}' is not a folder")])
-        self._files: dict[tuple[str, Kind, str], str] = {}
-        self._packages: dict[str, str] = {}
-        self._refused: dict[str, str] = {}
-        for package, folder, wrong in _packages(root):
-            if self._packages.setdefault(package, folder) == folder and wrong:
-                self._refused[package] = wrong
-            for kind in KINDS:
-                for file in _definition_files(folder, kind):
-                    key = package, kind, os.path.splitext(file)[0]
-                    self._files.setdefault(key, os.path.join(folder, kind, file))
+            raise _error(f"'{root}' is not a folder")
+        self.path = root
+        scan = Scan(root)
+        self.unreadable = scan.unreadable
+        self._folders: dict[str, list[PackageFolder]] = {}
+        for folder in scan.prefix() if is_prefix else scan.packages():
+            self._folders.setdefault(folder.package, []).append(folder)
+        for folders in self._folders.values():
+            folders.sort(key=lambda folder: folder.is_part)
+        self.packages: Mapping[str, PackagePlace] = {
+            package: PackagePlace(where=folders[0].path, wrong=_wrong(root, package, folders))
+            for package, folders in self._folders.items()
+            if not folders[0].is_part
+        }
 
     def names(self) -> Iterable[tuple[str, Kind, str]]:
-        """List the types of all files."""
-        return self._files
+        """List the types of all files but those like ``Name (copy).msg``."""
+        for package, folders in self._folders.items():
+            for kind, name in dict.fromkeys(key for folder in folders for key in folder.files):
+                if _NAME.fullmatch(name):
+                    yield package, kind, name
 
     def find(self, package: str, kind: Kind, name: str) -> Definition | None:
         """Read the file of a definition."""
-        file = self._files.get((package, kind, name))
-        if file is None:
+        files = self._files(package, kind, name)
+        if not files:
             return None
-        if package in self._refused:
-            raise DefinitionError([Diagnostic(message=self._refused[package])])
-        language: Language = "idl" if file.endswith(".idl") else kind
-        return Definition(source=_read(file), language=language)
+        if wrong := self.problem(package, kind, name):
+            raise _error(wrong)
+        language: Language = "idl" if files[0].endswith(".idl") else kind
+        return Definition(source=_read(files[0]), language=language)
+
+    def problem(self, package: str, kind: Kind, name: str) -> str:
+        """Return why it is not clear which file has a definition; empty if it is clear."""
+        place = self.packages.get(package)
+        if place is not None and place.wrong:
+            return place.wrong
+        files = self._files(package, kind, name)
+        # The same file may be linked from several folders.
+        if len(files) > 1 and len(set(map(os.path.realpath, files))) > 1:
+            return f"'{package}/{kind}/{name}' has {len(files)} definitions: {_listed(files)}"
+        return ""
+
+    def _files(self, package: str, kind: Kind, name: str) -> list[str]:
+        for folder in self._folders.get(package, ()):
+            if files := folder.files.get((kind, name)):
+                return [file for file in files if not file.endswith(".idl")] or files
+        return []
 
     def include(self, path: str) -> Source | None:
         """Read the file of an ``#include "package/folder/file.idl"``; `None` if it is not here."""
         package, _, rest = path.partition("/")
-        folder = self._packages.get(package)
-        if folder is None or rest.startswith("/") or ".." in rest.split("/"):
+        if package not in self._folders or rest.startswith("/") or ".." in rest.split("/"):
             return None
-        file = os.path.join(folder, rest)
+        if package in self.packages and self.packages[package].wrong:
+            raise _error(self.packages[package].wrong)
+        file = os.path.join(self._folders[package][0].path, rest)
         return _read(file) if os.path.isfile(file) else None
 
 
@@ -141,15 +212,65 @@ class Sources:
     Parameters
     ----------
     origins : iterable of Origin
-        The first one that has a type wins.
+        The first one that has a package hides the package in those after it.
     """
 
     def __init__(self, origins: Iterable[Origin]) -> None:
         self._origins = tuple(origins)
 
+    def _having(self, package: str) -> Iterator[Origin]:
+        """Yield the origins that may have types of a package: all without the hidden copies."""
+        is_taken = False
+        for origin in self._origins:
+            has_package = package in origin.packages
+            if not (has_package and is_taken):
+                yield origin
+            is_taken |= has_package
+
+    @cached_property
+    def _all_names(self) -> tuple[frozenset[tuple[str, Kind, str]], ...]:
+        return tuple(frozenset(origin.names()) for origin in self._origins)
+
     @cached_property
     def _names(self) -> tuple[frozenset[tuple[str, Kind, str]], ...]:
-        return tuple(frozenset(origin.names()) for origin in self._origins)
+        """What is defined in each origin, without hidden packages."""
+        found: list[frozenset[tuple[str, Kind, str]]] = []
+        taken: set[str] = set()
+        for origin, names in zip(self._origins, self._all_names, strict=True):
+            hidden = taken & origin.packages.keys()
+            found.append(frozenset(name for name in names if name[0] not in hidden))
+            taken |= origin.packages.keys()
+        return tuple(found)
+
+    def place(self, package: str) -> PackagePlace | None:
+        """Return where a package is taken from; `None` if no origin has the whole package."""
+        places = (origin.packages.get(package) for origin in self._having(package))
+        return next((place for place in places if place is not None), None)
+
+    def hidden_place(self, names: Iterable[TypeName]) -> PackagePlace | None:
+        """Return the place of a hidden package that has one of some types, or its interface."""
+        wanted = {(n.package, n.kind, n.name) for name in names for n in (name, *owners(name))}
+        for origin, names_of_all, shown in zip(
+            self._origins, self._all_names, self._names, strict=True
+        ):
+            for package, _, _ in wanted & (names_of_all - shown):
+                return origin.packages[package]
+        return None
+
+    @cached_property
+    def unreadable(self) -> list[str]:
+        """Folders that this user may not read."""
+        folders = (origin for origin in self._origins if isinstance(origin, FolderOrigin))
+        return [path for folder in folders for path in folder.unreadable]
+
+    @cached_property
+    def problems(self) -> list[Diagnostic]:
+        """Why some definitions cannot be used although they are listed, each reason once."""
+        found: dict[str, None] = {}
+        for origin, names in zip(self._origins, self._names, strict=True):
+            if isinstance(origin, FolderOrigin):
+                found |= dict.fromkeys(origin.problem(*name) for name in sorted(names))
+        return [Diagnostic(message=message) for message in found if message]
 
     @cached_property
     def names(self) -> frozenset[tuple[str, Kind, str]]:
@@ -200,7 +321,7 @@ class Sources:
         DefinitionError
             If the definition exists but cannot be read.
         """
-        for origin in self._origins:
+        for origin in self._having(package):
             found = origin.find(package, kind, name)
             if found is not None:
                 return found
@@ -215,7 +336,7 @@ class Sources:
             `None` if the file does not exist. Empty if the file is one that ROS generates from a
             definition in another language, because its types are found by name.
         """
-        for origin in self._origins:
+        for origin in self._having(path.partition("/")[0]):
             if isinstance(origin, FolderOrigin):
                 source = origin.include(path)
                 if source is not None:
@@ -229,73 +350,32 @@ class Sources:
         return None
 
 
-def _packages(root: str) -> Iterator[tuple[str, str, str]]:
-    """Yield name and folder of every package at or below a folder, in order of their paths.
-
-    The third item is the reason why the package cannot be used; empty if it can be used.
-    """
-    seen: set[tuple[int, int]] = set()
-    pending = [root]
-    while pending:
-        folder = pending.pop()
-        try:
-            status = os.stat(folder)
-            entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
-        except OSError:
-            continue  # This user may not read the folder.
-        names = {entry.name for entry in entries}
-        # A link may lead back to a folder above it.
-        if (status.st_dev, status.st_ino) in seen or names & _IGNORE_MARKERS:
-            continue
-        seen.add((status.st_dev, status.st_ino))
-        kinds = {kind for kind in KINDS if kind in names and _definition_files(folder, kind)}
-        if kinds:
-            name, wrong = _package_name(folder, "package.xml" in names)
-            yield name, folder, wrong
-        if "package.xml" in names:
-            continue  # As in colcon and catkin, a package contains no other packages.
-        pending += [
-            entry.path
-            for entry in reversed(entries)
-            if not entry.name.startswith(".")
-            and entry.name not in kinds
-            and os.path.isdir(entry.path)
-        ]
+def _wrong(root: str, package: str, folders: Iterable[PackageFolder]) -> str:
+    """Return why a package cannot be used; empty if it can be used."""
+    copies = [folder for folder in folders if not folder.is_part]
+    if len(copies) > 1:
+        places = _listed([folder.path for folder in copies])
+        return (
+            f"package '{package}' has {len(copies)} folders below '{root}': {places}; name one of "
+            "them, or put a file COLCON_IGNORE into the others"
+        )
+    return copies[0].wrong
 
 
-def _definition_files(package: str, kind: Kind) -> list[str]:
-    """List the files of one kind, the preferred one of each type first."""
-    try:
-        names = os.listdir(os.path.join(package, kind))
-    except OSError:
-        return []
-    endings = f".{kind}", ".idl"
-    found = [name for name in names if name.endswith(endings) and name not in endings]
-    return sorted(found, key=lambda name: (name.endswith(".idl"), name))
+def _listed(paths: Sequence[str]) -> str:
+    shown = ", ".join(f"'{path}'" for path in paths[:_MOST_PLACES])
+    return shown + (", ..." if len(paths) > _MOST_PLACES else "")
 
 
-def _package_name(folder: str, is_named: bool) -> tuple[str, str]:
-    """Read a package's name; also return the reason if it cannot be read."""
-    name, wrong = None, ""
-    if is_named:
-        path = os.path.join(folder, "package.xml")
-        try:
-            name = ElementTree.fromstring(read_file(path, _MAX_BYTES)).findtext("name")
-        except ElementTree.ParseError:
-            pass  # Use the folder's name, which is nearly always that of the package.
-        except OSError as error:
-            wrong = f"'{path}' cannot be read: {error.strerror}"
-        except (LookupError, ValueError):
-            wrong = f"'{path}' is in an encoding that is not known"
-    return (name or "").strip() or Path(folder).resolve().name, wrong
+def _error(message: str) -> DefinitionError:
+    return DefinitionError([Diagnostic(message=message)])
 
 
 def _read(path: str) -> Source:
     try:
-        data = read_file(path, _MAX_BYTES)
+        data = read_file(path, MAX_BYTES)
     except OSError as error:
-        message = f"'{path}' cannot be read: {error.strerror}"
-        raise DefinitionError([Diagnostic(message=message)]) from None
+        raise _error(f"'{path}' cannot be read: {error.strerror}") from None
     try:
         return Source(name=path, text=data.decode("utf-8"))
     except UnicodeDecodeError as error:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
 from difflib import get_close_matches
 
 from firm_hdl.frontend.explain import clip
-from firm_hdl.frontend.names import KINDS, Kind
-from firm_hdl.frontend.sources import Sources
+from firm_hdl.frontend.names import KINDS, Kind, TypeName
+from firm_hdl.frontend.sources import PackagePlace, Sources
 
 __all__ = ["did_you_mean", "similar_types", "unknown_type"]
 
@@ -22,17 +24,41 @@ _NOT_EMBEDDED = frozenset(
 )
 
 
-def unknown_type(sources: Sources, package: str, name: str) -> str:
-    """Give the message for a type that is not defined."""
-    if package in sources.types:
-        return f"type '{clip(name)}' is not defined in package '{clip(package)}'"
+def unknown_type(sources: Sources, names: Sequence[TypeName]) -> str:
+    """Give the message for a type that is not defined.
+
+    Parameters
+    ----------
+    names : sequence of TypeName
+        All types that the user may mean, with one package and one name.
+    """
+    package, name = names[0].package, names[0].name
+    place = sources.place(package)
+    if place is not None and place.wrong:
+        return place.wrong
+    if place is not None or package in sources.types:
+        message = f"type '{clip(name)}' is not defined in package '{clip(package)}'"
+        hidden = sources.hidden_place(names)
+        if place is not None and hidden is not None:
+            message += (
+                f", which is taken from '{place.where}' and hides that of '{hidden.where}', where "
+                "the type is; as in ROS, a package comes from one place as a whole"
+            )
+        return message + _unread(sources, place)
     message = f"package '{clip(package)}' is not found"
     if package in _NOT_EMBEDDED:
         message += (
             "; this ROS package does not come with firm-hdl: name a folder that has it with "
             "--path, or source the setup file of an installation that does"
         )
-    return message
+    return message + _unread(sources, None)
+
+
+def _unread(sources: Sources, place: PackagePlace | None) -> str:
+    """Name a folder that could not be read, of a package or anywhere, that may have the type."""
+    inside = "" if place is None else os.path.join(place.where, "")
+    found = [path for path in sources.unreadable if path.startswith(inside)]
+    return f"; '{found[0]}' cannot be read, and may have it" if found else ""
 
 
 def similar_types(

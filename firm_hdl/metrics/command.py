@@ -19,7 +19,7 @@ __all__ = ["metrics_text"]
 
 def metrics_text(
     library: Library,
-    names: Iterable[str] | None,
+    names: Iterable[str],
     form: str,
     wire: Wire | None,
     *,
@@ -30,8 +30,7 @@ def metrics_text(
     Parameters
     ----------
     library : Library
-    names : iterable of str or None
-        `None`: all types of the library.
+    names : iterable of str
     form : str
         A key of `FORMATS`.
     wire : "ros1", "cdr" or None
@@ -53,9 +52,8 @@ def metrics_text(
                 rows[message.name] = analyses.metrics(message)
 
     wrong = None
-    chosen = library.interfaces() if names is None else list(names)
     # `None` shows no bar where standard error is no terminal.
-    shown = tqdm(chosen, unit="type", leave=False, disable=None if bar else True)
+    shown = tqdm(list(names), unit="type", leave=False, disable=None if bar else True)
     try:
         load_interfaces(library, shown, on_loaded=on_loaded)
     except DefinitionError as error:

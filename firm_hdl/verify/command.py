@@ -91,7 +91,7 @@ def _request(given: argparse.Namespace) -> Request:
     return Request(
         types=tuple(given.types),
         distros=distros_of(given),
-        paths=(*given.path, *given.depends),
+        paths=tuple(given.path),
         depends=tuple(given.depends),
         systems=tuple(given.systems or (("board",) if given.board else _USUAL_SYSTEMS)),
         libraries=tuple(dict.fromkeys(given.sut)),

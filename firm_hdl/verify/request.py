@@ -96,9 +96,13 @@ def _collect(request: Request, problems: dict[str, Diagnostic]) -> list[TypeUnde
         )
     if request.paths:
         # An invalid type does not keep the others from being tested.
-        own = [path for path in request.paths if path not in request.depends]
-        distros: Sequence[str] = request.distros or [DEFAULT_DISTRO]
-        return collect_own(distros, request.types, request.paths, own=own, problems=problems)
+        return collect_own(
+            request.distros or [DEFAULT_DISTRO],
+            request.types,
+            request.paths,
+            depends=request.depends,
+            problems=problems,
+        )
     return collect_tasks(request.distros, request.types)
 
 

@@ -134,12 +134,14 @@ def _run_systems(work: Workload) -> list[Judged]:
 def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWriter:
     """Open a new file of results, or one to continue."""
     request = work.request
-    read = [*request.paths, *request.bags, *filter(None, [request.golden, request.node])]
+    files = filter(None, [request.golden, request.node])
+    read = [*request.paths, *request.depends, *request.bags, *files]
     options = {
         "systems": [system.name for system in systems],
         "bus_bytes": list(request.widths),
         "wire": request.wire,
         "paths": list(request.paths),
+        "depends": list(request.depends),
         "code": code_digest(),
         "inputs": inputs_digest(read),
     }

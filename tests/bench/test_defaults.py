@@ -100,7 +100,8 @@ def test_all_are_the_types_of_the_folders_listed_without_paths(
     names = ["p/msg/A", "p/srv/S_Request", "p/srv/S_Response"]
     assert [task.converter.type for task in asked["tasks"]] == [n for n in names for _ in "rw"]
     for task in asked["tasks"]:
-        assert (task.paths, task.bags, task.converter.distro) == ((src, more), (), "humble")
+        assert (task.paths, task.bags, task.depends) == ((src,), (), (more,))
+        assert task.converter.distro == "humble"
     assert "12.5 ns" not in capsys.readouterr().out
     assert main(["bench", "q/B", *words]) == 0
     assert [task.converter.type for task in asked["tasks"]] == ["q/msg/B"] * 2
@@ -129,12 +130,12 @@ def test_a_folder_without_types_has_no_figures(
 
 
 def test_a_task_takes_its_type_from_its_own_folders(monkeypatch: pytest.MonkeyPatch) -> None:
-    def open_library(*origins: object) -> object:
-        raise UserError(f"only {origins}")
+    def open_library(*origins: object, depends: object) -> object:
+        raise UserError(f"only {origins}, {depends}")
 
     monkeypatch.setattr(run, "open_library", open_library)
-    task = BenchTask(converter=result().converter, paths=("a",), bags=("b",))
-    assert run.run_task(task).problem == "only ('lyrical', ('a',), ('b',))"
+    task = BenchTask(converter=result().converter, paths=("a",), bags=("b",), depends=("c",))
+    assert run.run_task(task).problem == "only ('lyrical', ('a',), ('b',)), ('c',)"
 
 
 def test_libraries_without_a_figure_are_told_with_the_reason_after_each_type(

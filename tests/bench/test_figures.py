@@ -335,5 +335,6 @@ def test_tasks_are_of_each_width_once_and_of_all_folders(
         ("p/msg/A", 2),
     ]
     for task in asked:
-        assert (task.paths, task.seeds, task.device) == ((src, more), (0, 7), None)
+        assert (task.paths, task.depends) == ((src,), (more,))
+        assert (task.seeds, task.device) == ((0, 7), None)
         assert task.converter.direction == "serializer"

@@ -15,6 +15,7 @@ from firm_hdl.export.backend import Options
 from firm_hdl.export.build import BuildError
 from firm_hdl.export.top import DIRECTIONS
 from firm_hdl.frontend import Library
+from firm_hdl.frontend.names import TypeName
 from firm_hdl.plan import build_plan, from_yaml
 from firm_hdl.wire import lay_out
 from tests.frontend.recordings import make_recording
@@ -113,19 +114,29 @@ def test_prove_is_given_all_options_and_gives_its_status(workdir, monkeypatch, s
 
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])
 def test_prove_all_is_of_all_messages(workdir, monkeypatch, distro):
-    seen = proof_tasks(monkeypatch, ["--all", "--path", ".", "--distro", distro])
+    make_files(workdir, {"src/p/msg/Bad.msg": "int33 a\n", "more/q/msg/A.msg": ""})
+    make_files(workdir / "src", FILES)
+    words = ["--path", "src", "--depends", "more", "--distro", distro]
+    seen = proof_tasks(monkeypatch, ["--all", *words])
     assert seen["bar"] is True
-    names = Library(distro, ["."]).names()
-    assert [(t.name, t.direction) for t in seen["tasks"]] == [
-        (name, direction) for name in names for direction in DIRECTIONS
-    ]
-    assert names[0] < names[-1] and len(names) > 150
+    library = Library(distro, ["src"])
+    names = [name for name in library.interfaces() if name[:2] == "p/" and "Bad" not in name]
+    messages = {each.name for name in names for each in library.interface(name).messages}
+    messages |= {str(TypeName("p", "msg", "Bad", library.dialect))}
+    assert {t.name for t in seen["tasks"]} == messages
+    assert len(seen["tasks"]) == 2 * len(messages)
+    assert {(t.paths, t.depends) for t in seen["tasks"]} == {(("src",), ("more",))}
 
 
 def test_list_has_services_and_actions_and_paths_in_their_order(workdir, capsys):
-    make_files(workdir, {"one/q/msg/Q.msg": "int8 one", "two/q/msg/Q.msg": "int8 two"})
     assert main(["list", "--path", "."]) == 0
     assert capsys.readouterr().out.split() == Library("lyrical", ["."]).interfaces()
+    make_files(workdir, {"one/q/msg/Q.msg": "int8 one", "two/q/msg/Q.msg": "int8 two"})
+    # What cannot be used is told, too.
+    assert main(["list", "--path", "."]) == 1
+    out, err = capsys.readouterr()
+    assert out.split() == Library("lyrical", ["."]).interfaces()
+    assert "q/msg/Q" in out and "'./one/q', './two/q'" in err
     for paths, word in ((("one", "two"), "one"), (("two", "one"), "two")):
         words = [word for path in paths for word in ("--path", path)]
         assert main(["show", "q/Q", *words]) == 0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import pytest
 
 import firm_hdl.frontend
@@ -177,7 +179,7 @@ def test_same_name_of_several_kinds(tmp_path):
     assert [lib.interface(name).name for name in names] == ["p/A"] * 3
 
 
-def test_a_name_without_a_kind_is_that_of_the_first_folder_that_has_any(tmp_path):
+def test_a_name_without_a_kind_is_that_of_the_first_folder_that_has_the_package(tmp_path):
     one = make_files(tmp_path / "1", {"p/srv/A.srv": "int8 a\n---\n", "p/action/B.action": ""})
     idl = "module p { module msg { struct A { long b; }; }; };"
     two = make_files(tmp_path / "2", {"p/msg/A.idl": idl, "p/srv/B.srv": "---\n"})
@@ -187,8 +189,12 @@ def test_a_name_without_a_kind_is_that_of_the_first_folder_that_has_any(tmp_path
         assert lib.is_idl("p/A") is (kind is Message)
         assert lib.source("p/A").text == (idl if kind is Message else "int8 a\n---\n")
         assert lib.source("p/B").text == ("---\n" if kind is Message else "")
-    # By its kind, the other one is found, too.
-    assert lib.interface("p/srv/A").name == "p/srv/A" and not lib.is_idl("p/srv/A")
+    # As in ROS, the package of the second folder is hidden as a whole.
+    assert refused(lib.interface, "p/srv/A") == (
+        f"error: type 'A' is not defined in package 'p', which is taken from '{two}/p' and hides "
+        f"that of '{one}/p', where the type is; as in ROS, a package comes from one place as a "
+        "whole; did you mean 'p/msg/A'?"
+    )
 
 
 @pytest.mark.parametrize("name", ["p/B", "p/srv/B"])
@@ -257,6 +263,8 @@ def test_hash_of_services_is_that_of_all_their_messages(tmp_path):
 
 class Texts:
     """A minimal origin of definitions."""
+
+    packages: ClassVar = {}
 
     def __init__(self, texts):
         self.texts = texts

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 
 import pytest
 
@@ -55,12 +56,22 @@ def test_folders_come_first_then_the_environment_then_the_distribution(
         return ours.message(name).fields[0].name
 
     assert where("p/A") == "one"
-    assert where("p/B") == "two"
     assert where("p/A", root / "dir") == "dir"
-    assert where("p/B", root / "dir") == "two"
     assert where("std_msgs/Bool") == "two"
-    assert where("std_msgs/String") == "data"
+    assert where("geometry_msgs/Point") == "x"
     assert where("std_msgs/Bool", root / "dir") == "two"
+    # Of copies of a package, only the first counts.
+    for name, first, second in (
+        ("p/B", "one", "two"), ("p/srv/S", "one", "two"), ("std_msgs/String", "two", distro),
+    ):  # fmt: skip
+        with pytest.raises(DefinitionError) as error:
+            where(name)
+        taken, hides = re.search(
+            "taken from '(.*)' and hides that of '(.*)'", str(error.value)
+        ).groups()
+        assert f"{root}/{first}" in taken and (f"{root}/{second}" in hides or second == hides)
+    with pytest.raises(DefinitionError, match="hides that of"):
+        where("p/B", root / "dir")
     environment = {}
     assert where("std_msgs/Bool") == "data"
     with pytest.raises(DefinitionError, match="package 'p' is not found"):
@@ -76,17 +87,34 @@ def test_services_are_found_and_other_folders_are_not(fixture, distro, variable,
     assert own == [
         f"p{middle.format(kind)}{name}" for kind, name in (("msg", "A"), ("msg", "B"), ("srv", "S"))
     ]
+    both = os.pathsep.join([str(root / "one"), str(root / "two")])
+    found = open_library(distro, environment={variable: both}).interfaces()
+    assert [name for name in found if name.startswith("p/")] == own[:1]
 
 
 @pytest.mark.parametrize(("fixture", "distro", "variable"), CASES)
-def test_folders_of_packages_are_named_in_their_order(fixture, distro, variable, request):
+def test_the_first_folder_of_a_package_is_that_of_the_workspace(fixture, distro, variable, request):
     root = request.getfixturevalue(fixture)
     environment = {variable: os.pathsep.join([str(root / "two"), str(root / "one")])}
-    inside = {"ros1": "", "ros2": "share/p"}[fixture]
-    folders = [str(root / place / inside) for place in ("two", "one")]
-    assert workspace_folders(distro, {"p"}, environment) == folders
+    inside = {"ros1": "p", "ros2": "share/p"}[fixture]
+    assert workspace_folders(distro, {"p"}, environment) == [str(root / "two" / inside)]
     assert workspace_folders(distro, {"p"}, {}) == []
     assert workspace_folders(distro, {"no_msgs"}, environment) == []
+    # If it cannot be used, the error tells so.
+    make_files(root, {f"two/copy/{inside}/msg/A.msg": ""})
+    if fixture == "ros1":
+        assert workspace_folders(distro, {"p"}, environment) == [str(root / "two")]
+
+
+def test_an_index_of_ament_lists_packages_that_have_no_folder(ros2):
+    """As in ROS, such a package hides the others."""
+    index = "share/ament_index/resource_index/packages"
+    make_files(ros2, {f"empty/{index}/p": "", "empty/share/ament_index/x/msg/A.msg": ""})
+    both = os.pathsep.join([str(ros2 / "empty"), str(ros2 / "one")])
+    ours = open_library("lyrical", environment={"AMENT_PREFIX_PATH": both})
+    with pytest.raises(DefinitionError, match=f"taken from '{ros2}/empty/share/p' and hides"):
+        ours.message("p/A")
+    assert workspace_folders("lyrical", {"p"}, {"AMENT_PREFIX_PATH": both}) == []
 
 
 @pytest.mark.parametrize(("fixture", "distro", "variable"), CASES)
@@ -127,11 +155,12 @@ def test_dependencies_come_after_the_folders_and_before_the_environment(
     fixture, distro, variable, request
 ):
     root = request.getfixturevalue(fixture)
+    make_files(root, {"depends/p/msg/A.msg": "", "depends/q/msg/B.msg": named("depends")})
+    make_files(root, {"two/share/q/msg/B.msg": ""})
     environment = {variable: str(root / "two")}
-    make_files(root / "depends", {"p/msg/A.msg": named("depends"), "p/msg/B.msg": named("depends")})
     ours = open_library(distro, [root / "dir"], depends=[root / "depends"], environment=environment)
-    found = {name: ours.message(name).fields[0].name for name in ("p/A", "p/B", "std_msgs/Bool")}
-    assert found == {"p/A": "dir", "p/B": "depends", "std_msgs/Bool": "two"}
+    found = {name: ours.message(name).fields[0].name for name in ("p/A", "q/B", "std_msgs/Bool")}
+    assert found == {"p/A": "dir", "q/B": "depends", "std_msgs/Bool": "two"}
 
 
 def test_dependencies_come_after_the_recordings(tmp_path):
@@ -166,9 +195,7 @@ def test_packages_with_services_or_actions_alone_are_found_in_the_order_of_their
 
 def test_all_types_are_those_of_the_folders_if_there_are_any(ros1, monkeypatch):
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(ros1 / "one"))
-    assert all_names("noetic", [ros1 / "dir", ros1 / "two"], ()) == [
-        "p/A", "p/B", "p/S", "std_msgs/Bool",
-    ]  # fmt: skip
+    assert all_names("noetic", [ros1 / "dir", ros1 / "two"], ()) == ["p/A", "std_msgs/Bool"]
     assert all_names(None, [ros1 / "dir"], ()) == ["p/msg/A"]
     everywhere = all_names("noetic", (), ())
     assert "p/A" in everywhere and "std_msgs/String" in everywhere and "p/B" not in everywhere

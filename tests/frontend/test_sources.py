@@ -8,6 +8,7 @@ import sys
 import pytest
 
 from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import Library, scan
 from firm_hdl.frontend.names import TypeName
 from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Sources
 
@@ -17,6 +18,11 @@ from .workspace import make_files
 def sources(*roots):
     """Return the sources of some folders and of a distribution."""
     return Sources([*map(FolderOrigin, roots), EmbeddedOrigin("lyrical")])
+
+
+def package(name):
+    """Return the ``package.xml`` of a package."""
+    return f"<package><name>{name}</name></package>"
 
 
 def found(*roots):
@@ -80,8 +86,17 @@ def test_ignored_folders_are_left_out(tmp_path, marker):
     assert found(tmp_path) == [("other", "A")]
     make_files(tmp_path, {f"other/{marker}": ""})
     assert found(tmp_path) == []
-    # The same holds for the folder that is searched.
-    assert found(tmp_path / "a") == found(tmp_path / "other") == []
+
+
+@pytest.mark.parametrize("marker", ["AMENT_IGNORE", "CATKIN_IGNORE", "COLCON_IGNORE"])
+def test_a_folder_that_is_named_is_searched_even_if_colcon_leaves_it_out(tmp_path, marker):
+    share = "install/p/share/p"
+    make_files(tmp_path, {f"{share}/msg/A.msg": "", f"{share}/package.xml": package("p")})
+    make_files(tmp_path, {f"install/{marker}": "", f"install/old/{marker}": ""})
+    make_files(tmp_path, {"install/old/q/msg/A.msg": ""})
+    assert found(tmp_path) == []
+    assert found(tmp_path / "install") == [("p", "A")]
+    assert found(tmp_path / "install/old") == [("q", "A")]
 
 
 def test_hidden_folders_are_left_out(tmp_path):
@@ -103,17 +118,25 @@ def test_link_to_a_folder_above_ends(tmp_path, monkeypatch):
     make_files(tmp_path, {"ws/src/pkg/msg/A.msg": ""})
     (tmp_path / "ws/src/back").symlink_to(tmp_path)
     (tmp_path / "ws/src/loop").symlink_to(tmp_path / "ws/src/loop")
-    scanned, scandir = [], os.scandir
-    monkeypatch.setattr(os, "scandir", lambda folder: scanned.append(folder) or scandir(folder))
+    scanned, listdir = [], os.listdir
+    monkeypatch.setattr(os, "listdir", lambda folder: scanned.append(folder) or listdir(folder))
     assert found(tmp_path) == [("pkg", "A")]
-    # Each of the folders once, and the one above once more.
-    assert len(scanned) == len(["root", "ws", "src", "pkg"]) + 1
+    assert len(scanned) == len(["root", "ws", "src", "pkg", "msg"])
 
 
-def test_only_the_last_ending_of_a_file_is_not_of_its_name(tmp_path):
-    make_files(tmp_path, {"p/msg/A.old.msg": "# old", "p/msg/A.msg": "# new", "p/msg/B.v2.idl": ""})
-    assert found(tmp_path) == [("p", "A"), ("p", "A.old"), ("p", "B.v2")]
+@pytest.mark.parametrize(
+    "name", ["._A", ".#A", "#A#", "A~", "A (copy)", "A 2", "A(1)", "A.old", "A-1", "1A", "_A", "Ä"]
+)
+def test_files_whose_names_cannot_be_types_are_ignored(tmp_path, name):
+    make_files(tmp_path, {f"p/msg/{name}.{ending}": "\x00" for ending in ("msg", "idl")})
+    make_files(tmp_path, {f"p/srv/{name}.srv": "", "p/msg/A.msg": "# new"})
+    assert found(tmp_path) == [("p", "A")]
     assert sources(tmp_path).find("p", "msg", "A").source.text == "# new"
+
+
+def test_copies_of_hidden_files_are_no_copy_of_a_package(tmp_path):
+    make_files(tmp_path, {"ws/p/msg/A.msg": "# A", "__MACOSX/ws/p/msg/._A.msg": "\x00"})
+    assert sources(tmp_path).find("p", "msg", "A").source.text == "# A"
 
 
 def test_links_to_packages_are_followed(tmp_path):
@@ -122,28 +145,132 @@ def test_links_to_packages_are_followed(tmp_path):
     assert found(tmp_path / "ws") == [("pkg", "A")]
 
 
-def test_first_path_wins_type_by_type(tmp_path):
+def test_the_first_path_with_a_package_hides_the_others(tmp_path):
     make_files(tmp_path, {"one/pkg/msg/A.msg": "# 1", "two/pkg/msg/A.msg": "# 2"})
-    make_files(tmp_path, {"two/pkg/msg/B.msg": "# 2"})
-    have = sources(tmp_path / "one", tmp_path / "two")
-    assert [have.find("pkg", "msg", n).source.text for n in ("A", "B")] == ["# 1", "# 2"]
-    have = sources(tmp_path / "two", tmp_path / "one")
+    make_files(tmp_path, {"two/pkg/msg/B.msg": "# 2", "two/other/msg/B.msg": "# 2"})
+    one, two = tmp_path / "one", tmp_path / "two"
+    have = sources(one, two)
+    assert have.find("pkg", "msg", "A").source.text == "# 1"
+    assert have.find("pkg", "msg", "B") is None and have.types["pkg"] == [("msg", "A")]
+    assert have.find("other", "msg", "B").source.text == "# 2"
+    have = sources(two, one)
     assert [have.find("pkg", "msg", n).source.text for n in ("A", "B")] == ["# 2", "# 2"]
 
 
-def test_within_a_path_the_first_folder_by_name_wins(tmp_path):
-    make_files(tmp_path, {"b/pkg/msg/A.msg": "# b", "a/z/pkg/msg/A.msg": "# a", "c/x": ""})
-    assert sources(tmp_path).find("pkg", "msg", "A").source.text == "# a"
+def test_a_package_without_definitions_hides_others_too(tmp_path):
+    make_files(tmp_path, {"one/p/package.xml": package("p"), "one/p/p/node.py": ""})
+    make_files(tmp_path, {"two/p/msg/A.msg": "# 2"})
+    assert found(tmp_path / "one", tmp_path / "two") == []
+    assert found(tmp_path / "two", tmp_path / "one") == [("p", "A")]
 
 
-def test_folder_overrides_the_distribution_type_by_type(tmp_path):
+@pytest.mark.parametrize("xml", [package("p"), None])
+def test_two_copies_of_a_package_below_a_path_are_refused_with_both_places(tmp_path, xml):
+    make_files(tmp_path, {"b/p/msg/A.msg": "# b", "a/z/p/msg/A.msg": "# a", "c/q/msg/B.msg": "# q"})
+    make_files(tmp_path, {"b/p/srv/S.srv": "---", "b/p/sizes.idl": ""})
+    if xml is not None:
+        make_files(tmp_path, {"b/p/package.xml": xml, "a/z/p/package.xml": xml})
+    have = sources(tmp_path)
+    wanted = (
+        f"error: package 'p' has 2 folders below '{tmp_path}': '{tmp_path}/a/z/p', "
+        f"'{tmp_path}/b/p'; name one of them, or put a file COLCON_IGNORE into the others"
+    )
+    for kind, name in (("msg", "A"), ("srv", "S")):
+        with pytest.raises(DefinitionError) as error:
+            have.find("p", kind, name)
+        assert str(error.value) == wanted
+    with pytest.raises(DefinitionError):
+        have.include("p/sizes.idl")
+    assert list(map(str, have.problems)) == [wanted]
+    assert have.find("q", "msg", "B").source.text == "# q"
+    # Below a path of its own, each copy can be used, and a workspace is built with such a file.
+    assert sources(tmp_path / "b", tmp_path).find("p", "msg", "A").source.text == "# b"
+    make_files(tmp_path, {"a/COLCON_IGNORE": ""})
+    assert sources(tmp_path).find("p", "msg", "A").source.text == "# b"
+
+
+def test_what_a_catkin_build_adds_to_a_package_hides_nothing(tmp_path):
+    make_files(tmp_path, {"src/p/package.xml": package("p"), "src/p/msg/A.msg": "# A"})
+    make_files(tmp_path, {"devel/share/p/cmake/pConfig.cmake": ""})
+    make_files(tmp_path, {"devel/share/p/msg/DoGoal.msg": "# Do", "devel/share/p/msg/A.msg": ""})
+    src, devel = tmp_path / "src", tmp_path / "devel"
+    for paths in ([tmp_path], [src, devel]):
+        have = sources(*paths)
+        assert [have.find("p", "msg", n).source.text for n in ("A", "DoGoal")] == ["# A", "# Do"]
+        assert have.problems == []
+    assert found(devel, src) == [("p", "A"), ("p", "DoGoal")]
+
+
+def test_a_package_in_a_folder_hides_that_of_the_distribution(tmp_path):
     make_files(tmp_path, {"std_msgs/msg/Header.msg": "# mine", "std_msgs/msg/Extra.msg": ""})
     have = sources(tmp_path)
     assert have.find("std_msgs", "msg", "Header").source.text == "# mine"
-    embedded = have.find("std_msgs", "msg", "String")
-    assert embedded.source.name == "<rosbags lyrical>/std_msgs/msg/String.msg"
-    assert ("msg", "Extra") in have.types["std_msgs"]
-    assert have.find("std_msgs", "msg", "Nothing") is None
+    assert have.find("std_msgs", "msg", "String") is None
+    assert have.types["std_msgs"] == [("msg", "Extra"), ("msg", "Header")]
+    embedded = have.find("geometry_msgs", "msg", "Point")
+    assert embedded.source.name == "<rosbags lyrical>/geometry_msgs/msg/Point.msg"
+
+
+@pytest.mark.parametrize("xml", [package("p"), None])
+def test_definitions_in_subfolders_belong_to_the_package(tmp_path, xml):
+    files = ["msg/A.msg", "msg/a/b/B.msg", "srv/io/C.srv", "action/x/D.action", "msg/a/E.idl"]
+    make_files(tmp_path, {f"p/{file}": f"# {file}" for file in files})
+    # These are of other packages, of nobody, or for DDS.
+    others = ["msg/.svn/F.msg", "msg/dds_connext/G_.idl", "msg/old/COLCON_IGNORE", "msg/old/H.msg"]
+    others += [
+        "msg/q/package.xml",
+        "msg/q/I.msg",
+        "msg/srv.txt/J.srv",
+        "srv/io/K.msg",
+        "other/L.msg",
+    ]
+    make_files(tmp_path, {f"p/{file}": "" for file in others})
+    if xml is not None:
+        make_files(tmp_path, {"p/package.xml": xml})
+    origin = FolderOrigin(tmp_path)
+    texts = {"/".join(name): origin.find(*name).source.text for name in origin.names()}
+    assert texts == {
+        "p/msg/A": "# msg/A.msg", "p/msg/B": "# msg/a/b/B.msg", "p/msg/E": "# msg/a/E.idl",
+        "p/srv/C": "# srv/io/C.srv", "p/action/D": "# action/x/D.action",
+    }  # fmt: skip
+    have = sources(tmp_path)
+    assert have.include("p/msg/E.idl").text == "# msg/a/E.idl"
+    assert have.include("p/srv/C.idl").text == ""
+
+
+def test_two_definitions_of_one_name_are_refused_with_both_places(tmp_path):
+    make_files(tmp_path, {"p/srv/X.srv": "---", "p/srv/io/X.srv": "---", "p/srv/Y.srv": "# Y"})
+    make_files(tmp_path, {"p/msg/x/X.msg": "# X", "p/msg/X.idl": ""})
+    have = sources(tmp_path)
+    with pytest.raises(DefinitionError) as error:
+        have.find("p", "srv", "X")
+    both = f"'{tmp_path}/p/srv/X.srv', '{tmp_path}/p/srv/io/X.srv'"
+    assert str(error.value) == f"error: 'p/srv/X' has 2 definitions: {both}"
+    assert [str(problem) for problem in have.problems] == [str(error.value)]
+    assert have.find("p", "srv", "Y").source.text == "# Y"
+    assert have.find("p", "msg", "X").source.text == "# X"
+    # A link to the other file is no second definition.
+    (tmp_path / "p/srv/io/X.srv").unlink()
+    (tmp_path / "p/srv/io/X.srv").symlink_to("../X.srv")
+    assert sources(tmp_path).find("p", "srv", "X").source.text == "---"
+
+
+def test_links_in_a_package_lead_to_no_folder_above(tmp_path):
+    make_files(tmp_path, {"ws/p/msg/A.msg": "# A", "ws/q/msg/B.msg": "", "shared/C.msg": ""})
+    for name, place in (("up", ".."), ("all", "../.."), ("loop", "loop"), ("more", "more/x")):
+        (tmp_path / "ws/p/msg" / name).symlink_to(place)
+    (tmp_path / "ws/p/msg/shared").symlink_to(tmp_path / "shared")
+    assert found(tmp_path / "ws") == [("p", "A"), ("p", "C"), ("q", "B")]
+    assert sources(tmp_path / "ws").find("p", "msg", "A").source.text == "# A"
+
+
+def test_a_folder_with_too_many_folders_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(scan, "MAX_FOLDERS", 8)
+    make_files(tmp_path, {"a/b/c/d/p/msg/A.msg": ""})
+    assert found(tmp_path) == [("p", "A")]
+    make_files(tmp_path, {"a/b/c/d/p/msg/x/y/B.msg": ""})
+    with pytest.raises(DefinitionError, match="has more than 8 folders: name a folder with fewer"):
+        FolderOrigin(tmp_path)
 
 
 def test_source_is_named_as_the_user_wrote_the_path(tmp_path, monkeypatch):
@@ -186,16 +313,35 @@ def test_folder_that_cannot_be_read_is_passed_over(tmp_path):
 
 
 def test_search_goes_on_after_a_folder_that_cannot_be_read(tmp_path, monkeypatch):
-    make_files(tmp_path, {"a/pkg/msg/A.msg": "", "b/pkg/msg/B.msg": "", "c/pkg/msg/C.msg": ""})
-    scandir = os.scandir
+    make_files(tmp_path, {"a/p/msg/A.msg": "", "b/q/msg/B.msg": "", "c/r/msg/C.msg": ""})
+    listdir = os.listdir
 
     def refuse(folder):
-        if os.path.basename(folder) == "b":
+        if os.path.basename(folder) == hidden:
             raise PermissionError(13, "Permission denied", folder)
-        return scandir(folder)
+        return listdir(folder)
 
-    monkeypatch.setattr(os, "scandir", refuse)
-    assert found(tmp_path) == [("pkg", "A"), ("pkg", "C")]
+    monkeypatch.setattr(os, "listdir", refuse)
+    hidden = "b"
+    assert found(tmp_path) == [("p", "A"), ("r", "C")]
+    with pytest.raises(DefinitionError) as error:
+        Library("lyrical", [tmp_path]).message("q/B")
+    assert str(error.value) == (
+        f"error: package 'q' is not found; '{tmp_path}/b' cannot be read, and may have it"
+    )
+    with pytest.raises(DefinitionError) as error:
+        FolderOrigin(tmp_path / "b")
+    assert str(error.value) == f"error: '{tmp_path}/b' cannot be read: Permission denied"
+    make_files(tmp_path, {"a/p/msg/x/D.msg": ""})
+    hidden = "x"
+    ours = Library("lyrical", [tmp_path])
+    assert ours.message("p/A").fields == ()
+    with pytest.raises(DefinitionError) as error:
+        ours.message("p/D")
+    assert str(error.value) == (
+        "error: type 'D' is not defined in package 'p'; "
+        f"'{tmp_path}/a/p/msg/x' cannot be read, and may have it"
+    )
 
 
 KLINGON = "<?xml version='1.0' encoding='klingon'?><package><name>p</name></package>"
@@ -224,18 +370,6 @@ def test_package_whose_package_xml_is_no_file_is_refused_when_it_is_used(tmp_pat
         have.find("p", "msg", "A")
     reason = "it is a folder, not a regular file"
     assert str(error.value) == f"error: '{tmp_path}/p/package.xml' cannot be read: {reason}"
-
-
-@pytest.mark.parametrize("good", ["one", "two"])
-def test_of_two_packages_of_a_name_the_first_is_the_one_that_counts(tmp_path, good):
-    names = {"one": KLINGON, "two": KLINGON, good: "<package><name>p</name></package>"}
-    make_files(tmp_path, {f"{place}/p/package.xml": xml for place, xml in names.items()})
-    make_files(tmp_path, {"one/p/msg/A.msg": "# one", "two/p/msg/A.msg": "# two"})
-    if good == "one":
-        assert sources(tmp_path).find("p", "msg", "A").source.text == "# one"
-    else:
-        with pytest.raises(DefinitionError, match=r"one/p/package\.xml"):
-            sources(tmp_path).find("p", "msg", "A")
 
 
 def test_scanning_reads_no_definition(tmp_path):
@@ -302,9 +436,9 @@ def test_includes_are_read_from_folders_first(tmp_path):
 
 
 def test_names_are_sorted_by_their_first_origin(tmp_path):
-    make_files(tmp_path, {"std_msgs/srv/String.srv": "", "p/msg/A.msg": ""})
-    names = [TypeName("std_msgs", kind, "String", "ros2") for kind in ("msg", "srv", "action")]
-    assert sources(tmp_path).by_origin(names) == [names[1], names[0]]
+    make_files(tmp_path, {"p/srv/A.srv": ""})
+    names = [TypeName(*name, "ros2") for name in (("std_msgs", "msg", "Bool"), ("p", "srv", "A"))]
+    assert sources(tmp_path).by_origin([*names, TypeName("p", "msg", "A", "ros2")]) == names[::-1]
 
 
 def test_of_packages_with_a_type_those_of_the_last_origin_come_first(tmp_path):

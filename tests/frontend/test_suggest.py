@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import pytest
 
+from firm_hdl.frontend.names import TypeName
 from firm_hdl.frontend.sources import Sources
 from firm_hdl.frontend.suggest import did_you_mean, similar_types, unknown_type
 
 
 class Names:
     """An origin of names without texts."""
+
+    packages: ClassVar = {}
 
     def __init__(self, *names):
         self._names = [tuple(name.split("/")) for name in names]
@@ -24,6 +29,11 @@ class Names:
 def similar(origins, package, name, **options):
     found = similar_types(Sources([Names(*each) for each in origins]), package, name, **options)
     return ["/".join(each) for each in found]
+
+
+def unknown(origins, package, name):
+    sources = Sources([Names(*each) for each in origins])
+    return unknown_type(sources, [TypeName(package, "msg", name, "ros2")])
 
 
 def test_the_same_name_in_a_similar_package_comes_first_then_in_others():
@@ -90,14 +100,12 @@ def test_at_most_three_names_are_suggested(names, ending):
     ],
 )
 def test_the_message_tells_what_is_missing(package, name, message):
-    assert unknown_type(Sources([Names("p/msg/A")]), package, name) == message
+    assert unknown([["p/msg/A"]], package, name) == message
 
 
 def test_a_package_of_ros_that_is_not_embedded_is_told_where_to_find():
-    message = unknown_type(Sources([Names("p/msg/A")]), "tf", "A")
+    message = unknown([["p/msg/A"]], "tf", "A")
     assert message.startswith("package 'tf' is not found; this ROS package does not come with")
     assert "--path" in message
     # It may well be in the user's folders.
-    assert unknown_type(Sources([Names("tf/msg/A")]), "tf", "B") == (
-        "type 'B' is not defined in package 'tf'"
-    )
+    assert unknown([["tf/msg/A"]], "tf", "B") == "type 'B' is not defined in package 'tf'"

@@ -60,6 +60,7 @@ DEFINITIONS = {
     "example_interfaces/action/Fibonacci.action": (
         "int32 order\n---\nint32[] sequence\n---\nint32[] sequence\n"
     ),
+    "tf2_msgs/msg/TF2Error.msg": "uint8 error\nstring error_string\n",
     "tf2_msgs/action/LookupTransform.action": (
         "#Simple API\nstring target_frame\nstring source_frame\n"
         "builtin_interfaces/Time source_time\nbuiltin_interfaces/Duration timeout\n\n"

@@ -60,12 +60,15 @@ def test_csv_and_json_say_the_same(run):
     assert rows[0]["max_bytes"] == "" and rows[1]["max_bytes"] == "8"
 
 
-def test_all_are_all_messages(run):
-    status, out, err = run("--all", "--format", "csv", "--distro", "noetic", "--wire", "cdr")
+def test_all_are_all_messages_of_the_folder_or_of_the_distribution(run, capsys):
+    words = ["--all", "--format", "csv", "--distro", "noetic", "--wire", "cdr"]
+    status, out, err = run(*words)
     assert (status, err) == (0, "")
     names = [row["name"] for row in csv.DictReader(io.StringIO(out))]
-    assert {"p/A", "p/SRequest", "p/SResponse", "sensor_msgs/Imu"} <= {*names}
-    assert len(names) == len({*names}) > 160
+    assert sorted(names) == ["p/A", "p/B", "p/SRequest", "p/SResponse"]
+    assert main(["metrics", *words]) == 0
+    names = [row["name"] for row in csv.DictReader(io.StringIO(capsys.readouterr().out))]
+    assert "sensor_msgs/Imu" in names and len(names) == len({*names}) > 160
 
 
 def test_types_that_are_wrong_do_not_hide_the_others(run, tmp_path):

@@ -121,7 +121,8 @@ def test_all_are_messages_services_and_actions(tmp_path, capsys, distro):
     assert main(["metrics", "--all", "--format", "csv", *options]) == 0
     names = [row["name"] for row in csv.DictReader(io.StringIO(capsys.readouterr().out))]
     ours = Library(distro, [tmp_path])
-    want = {m.name for each in ours.interfaces() for m in ours.interface(each).messages}
+    own = [each for each in ours.interfaces() if each.startswith(("p/", "z/"))]
+    want = {m.name for each in own for m in ours.interface(each).messages}
     assert {*names} == want and len(names) == len(want)
     assert {n for n in names if n.startswith("z/")} == {
         m.name for m in ours.interface("z/Z").messages

@@ -46,7 +46,7 @@ def test_every_option_of_a_run_of_own_types_reaches_the_request(request_of):
     assert request_of(*words.split()) == Request(
         types=("p/A", "q/B"),
         distros=("noetic", "lyrical"),
-        paths=("one", "two", "three"),
+        paths=("one", "two"),
         depends=("three",),
         systems=("ts2", "ts1"),
         wire="ros1",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from dataclasses import replace
 from typing import ClassVar
 
@@ -10,6 +11,7 @@ import pytest
 
 import firm_hdl.verify.request as module
 import firm_hdl.verify.run as run
+from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.verify.request import Workload, resolve
 from firm_hdl.verify.results.file import read_results
@@ -57,13 +59,36 @@ def test_own_types_are_read_by_the_rules_of_each_distribution(tmp_path):
     texts = {"own/p/msg/A.msg": "q/B b\n", "own/p/msg/Bad.msg": "int8\n", "more/q/msg/B.msg": ""}
     make_files(tmp_path, texts)
     own, more = str(tmp_path / "own"), str(tmp_path / "more")
-    request = Request(paths=(own, more), depends=(more,), distros=("noetic", "lyrical"))
+    request = Request(paths=(own,), depends=(more,), distros=("noetic", "lyrical"))
     work = resolve(request)
     assert sorted(names_of(work)) == [("lyrical", "p/msg/A"), ("noetic", "p/A")]
     assert work.request == request and work.problems
-    assert names_of(resolve(Request(paths=(own, more), depends=(more,)))) == [
-        ("lyrical", "p/msg/A")
+    for depends in (more, own):
+        # The same folder may be named twice.
+        found = names_of(resolve(Request(paths=(own,), depends=(more, depends))))
+        assert found == [("lyrical", "p/msg/A")]
+
+
+def test_types_that_others_depend_on_are_not_judged_and_commands_name_their_folder(
+    tmp_path, monkeypatch, capsys
+):
+    make_files(tmp_path, {"own/p/msg/A.msg": "q/B b\n", "more/q/msg/B.msg": "int8 x\n"})
+    monkeypatch.chdir(tmp_path)
+    words = ["verify", "--path", "own", "--depends", "more", "--jobs", "1", "--results", "r.jsonl"]
+    words += ["--systems", "ts1,ts2,ts3", "--cases", "1", "--no-stalls", "--oracle", "rosbags"]
+    assert main([*words, "--all"]) == 0
+    found = read_results("r.jsonl")
+    assert [(test.system, test.type) for test in found.planned] == [
+        (system, "p/msg/A") for system in ("ts1", "ts2", "ts3")
     ]
+    for record in found.records.values():
+        program, *again = shlex.split(record.command)
+        assert program == "firm-hdl" and "--path own --depends more" in record.command
+        assert main([*again, "--jobs", "1"]) == 0
+    # A folder without definitions has nothing to judge.
+    (tmp_path / "own/p/msg/A.msg").unlink()
+    assert main(["verify", "--systems", "ts1", "--all", *words[1:7]]) == 1
+    assert "no test was judged" in capsys.readouterr().out
 
 
 def test_a_recording_has_one_wire(tmp_path):
@@ -122,9 +147,13 @@ def workload(problems=None, **options):
 
 def test_results_are_bound_to_all_options_and_inputs(tmp_path, fixed, capsys):
     fixed(ts1=Passed(1), ts3=Passed(1))
-    make_files(tmp_path, {"src/p/msg/A.msg": "", "golden/x.yaml": "", "node.yaml": "", "b.bag": ""})
-    source, golden, node, bag = (str(tmp_path / n) for n in ("src", "golden", "node.yaml", "b.bag"))
+    inputs = "src/p/msg/A.msg", "golden/x.yaml", "node.yaml", "b.bag", "more/q/msg/B.msg"
+    make_files(tmp_path, dict.fromkeys(inputs, ""))
+    source, golden, node, bag, more = (
+        str(tmp_path / n) for n in ("src", "golden", "node.yaml", "b.bag", "more")
+    )
     given = {"paths": (source,), "golden": golden, "node": node, "bags": (bag,), "wire": "cdr"}
+    given |= {"depends": (more,)}
     given |= {"systems": ("ts3", "ts1"), "widths": (4, 8), "results": str(tmp_path / "r.jsonl")}
     assert run.run_workload(workload(**given)) == 0
     found = read_results(tmp_path / "r.jsonl")
@@ -134,13 +163,14 @@ def test_results_are_bound_to_all_options_and_inputs(tmp_path, fixed, capsys):
         "bus_bytes": [4, 8],
         "wire": "cdr",
         "paths": [source],
+        "depends": [more],
         "of ts3": 1,
         "of ts1": 1,
     }
     assert [test.system for test in found.planned] == ["ts3", "ts1"] and not found.missing
     assert found.sessions[0]["executor"] == "processes"
     assert "definitions that are refused" not in found.sessions[0]
-    for number, name in enumerate(("src/p/msg/A.msg", "golden/x.yaml", "node.yaml", "b.bag")):
+    for number, name in enumerate(inputs):
         before = (tmp_path / name).read_text()
         times = os.stat(tmp_path / name)
         (tmp_path / name).write_text(f"changed {number}")

@@ -80,7 +80,8 @@ def compare_software(task: BenchTask, results: Sequence[Result]) -> Compared:
         If a library fails, or does not write what it has read.
     """
     what = task.converter
-    message = open_library(what.distro, task.paths, task.bags).message(what.type)
+    library = open_library(what.distro, task.paths, task.bags, depends=task.depends)
+    message = library.message(what.type)
     plan = plan_of(message, what.wire, what.bus_bytes, what.max_message_bytes)
     packets = stated_messages(plan, message, task.stated or STATED)[1][1:]
     sample = Sample(message=message, wire=what.wire, packets=tuple(packets))

@@ -67,7 +67,7 @@ def _packets_and_transfers(
     test: Test, options: Options, ghdl: str, folder: Path, watch: Stopwatch
 ) -> tuple[int, int]:
     """Return the numbers of correct packets and of correct transfers of leaves."""
-    library = library_of(test.distro, options.paths)
+    library = library_of(test.distro, options)
     message = library.message(test.type)
     check_wire(message)
     plan = plan_of(message, options.wire, test.bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)

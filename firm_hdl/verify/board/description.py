@@ -73,8 +73,8 @@ def described_board(request: Request, names: Iterable[str]) -> Description:
     Parameters
     ----------
     request : Request
-        `board`, `node`, `paths`, `widths` and `distros`; without ``--node``, one of each of the
-        latter two.
+        `board`, `node`, `paths`, `depends`, `widths` and `distros`; without ``--node``, one of each
+        of the latter two.
     names : iterable of str
         Full names of messages; not used with ``--node``.
 
@@ -86,7 +86,7 @@ def described_board(request: Request, names: Iterable[str]) -> Description:
         If it loops no type, or no node has a bus of that width.
     """
     if request.node is not None:
-        found = read_description(request.node, paths=request.paths)
+        found = read_description(request.node, paths=(*request.paths, *request.depends))
         if not found.loops():
             raise UserError(
                 f"'{request.node}' has no subscription with a publication of the same type"
@@ -137,12 +137,12 @@ def _text(request: Request, names: Iterable[str], folder: str) -> str:
     if bus_bytes not in NODE_BUS_BYTES:
         widths = ", ".join(map(str, NODE_BUS_BYTES))
         raise UserError(f"the bus of a node has {widths} bytes, not {bus_bytes}")
-    library = open_library(distro, request.paths)
+    library = open_library(distro, request.paths, depends=request.depends)
     return loop_text(
         # The names of ROS 1, which have no ``msg``.
         (library.interface(name).name for name in names),
         distro,
-        paths=request.paths,
+        paths=(*request.paths, *request.depends),
         folder=folder,
         bus_bytes=bus_bytes,
         board=request.board,

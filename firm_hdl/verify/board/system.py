@@ -171,7 +171,7 @@ class Boards(System):
         own += [] if request.broken else ["no-broken"]
         if request.references is not None:
             own.append(f"references={'+'.join(request.references)}")
-        own += [f"path={path}" for path in request.paths]
+        own += request.folders
         return Test(
             system=self.name,
             distro=description.distro,
@@ -194,6 +194,7 @@ class Boards(System):
             silent_seconds=request.silent_seconds,
             distro=None if node else self._description.distro,
             path=request.paths,
+            depends=request.depends,
             bus_bytes=None if node else self._description.bus_bytes,
             seed=request.seed,
             no_broken=not request.broken,

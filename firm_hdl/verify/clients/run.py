@@ -31,6 +31,7 @@ def command_of(request: Request, distro: str, name: str, library: str) -> str:
         sut=library,
         distro=distro,
         path=request.paths,
+        depends=request.depends,
         wire=request.wire,
         seed=request.seed or None,
         cases=request.most_cases,
@@ -62,13 +63,13 @@ def judge_type(
     Parameters
     ----------
     options : Request
-        `libraries`, `wire`, `seed`, `most_cases`, `paths` and `names_wires` are used. If the user
-        chose wires, a library that lacks one of them counts as not judged.
+        `libraries`, `wire`, `seed`, `most_cases`, `paths`, `depends` and `names_wires` are used. If
+        the user chose wires, a library that lacks one of them counts as not judged.
     installed : sequence of str
         References that can be used.
     """
     try:
-        message = library_of(distro, options.paths).message(name)
+        message = library_of(distro, options).message(name)
         wire = options.wire or message.wire
         values = _values(distro, message, wire, options)
     # The other types are judged in any case.

@@ -30,6 +30,9 @@ class Options:
         :data:`firm_hdl.verify.simulators.SIMULATORS`.
     paths : tuple of str
         Folders with ROS packages. They are searched before the distribution's own types.
+    depends : tuple of str
+        Folders with packages that others depend on, searched after `paths`. Their types are not
+        tested if no type is named.
     bags : tuple of str
         Recordings whose messages are replayed. All definitions come from the recordings then.
     longest : int
@@ -51,11 +54,19 @@ class Options:
     most_cases: int | None = None
     simulator: str = "python"
     paths: tuple[str, ...] = ()
+    depends: tuple[str, ...] = ()
     bags: tuple[str, ...] = ()
     longest: int = LONGEST
     references: tuple[str, ...] | None = None
     vcd: str | None = None
     simulated: bool = True
+
+    @property
+    def folders(self) -> list[str]:
+        """The folders that are searched, as options of a test."""
+        return [f"path={path}" for path in self.paths] + [
+            f"depends={path}" for path in self.depends
+        ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,8 +79,6 @@ class Request(Options):
         Empty: all types.
     distros : tuple of str
         Empty: the default of ``--distro``.
-    depends : tuple of str
-        The last entries of `paths`: their types are not tested if no type is named.
     systems : tuple of str
         Names of test systems, in the order in which they run.
     libraries : tuple of str
@@ -103,7 +112,6 @@ class Request(Options):
 
     types: tuple[str, ...] = ()
     distros: tuple[str, ...] = ()
-    depends: tuple[str, ...] = ()
     systems: tuple[str, ...] = ("ts3",)
     libraries: tuple[str, ...] = ()
     widths: tuple[int, ...] = (8,)

@@ -167,7 +167,7 @@ class TypesSystem(System):
             same=task.same,
             wire=wire_of(task.distro, self._request.wire),
             bus_bytes=bus_bytes,
-            options=",".join(f"path={path}" for path in self._request.paths),
+            options=",".join(self._request.folders),
         )
 
     def _command(self, test: Test, **more: object) -> str:
@@ -177,6 +177,7 @@ class TypesSystem(System):
             systems=self.name,
             distro=test.distro,
             path=self._request.paths,
+            depends=self._request.depends,
             wire=self._request.wire,
             **(more or {"bus_bytes": test.bus_bytes}),
         )

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from functools import cache
 
 from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.frontend import Library, open_library
+from firm_hdl.frontend import Library, all_names, open_library
 from firm_hdl.model import Message, closure
+from firm_hdl.verify.systems.options import Options
 from firm_hdl.wire import too_large
 
 __all__ = ["TypeUnderTest", "UnknownTypeError", "collect_own", "collect_tasks", "library_of"]
@@ -39,19 +40,23 @@ class TypeUnderTest:
     same: tuple[str, ...]
 
 
-def library_of(distro: str, paths: tuple[str, ...], bags: tuple[str, ...] = ()) -> Library:
-    """Return a library, which is opened once in a process.
+def library_of(distro: str, options: Options) -> Library:
+    """Return the library of a distribution with the folders or recordings of some options.
 
-    Without folders and recordings, it has only the distribution's own types, because rosbags knows
-    these. With folders, it searches the active workspace after them.
+    It is opened once in a process. Without folders and recordings, it has only the distribution's
+    own types, because rosbags knows these. With folders, it searches the active workspace after
+    them.
     """
-    return _opened(os.getcwd(), distro, paths, bags)
+    return _opened(os.getcwd(), distro, options.paths, options.bags, options.depends)
 
 
 @cache
-def _opened(folder: str, distro: str, paths: tuple[str, ...], bags: tuple[str, ...]) -> Library:
+def _opened(folder: str, distro: str, *origins: tuple[str, ...]) -> Library:
     """Open a library; `folder` is the one that relative paths start from."""
-    return open_library(distro, paths, bags) if paths or bags else Library(distro)
+    paths, bags, depends = origins
+    if not any(origins):
+        return Library(distro)
+    return open_library(distro, paths, bags, depends=depends)
 
 
 def collect_tasks(
@@ -105,7 +110,7 @@ def collect_own(
     names: Sequence[str],
     paths: Sequence[str],
     *,
-    own: Sequence[str] | None = None,
+    depends: Sequence[str] = (),
     problems: dict[str, Diagnostic] | None = None,
 ) -> list[TypeUnderTest]:
     """List the types in folders to test, the largest first.
@@ -115,11 +120,11 @@ def collect_own(
     distros : iterable of str
         The distributions by whose rules and types the definitions are read, one after the other.
     names : sequence of str
-        Types, services or actions; empty: all that are in the folders. Types that are named must
+        Types, services or actions; empty: all that are in `paths`. Types that are named must
         not be too large to be laid out (:func:`firm_hdl.wire.too_large`).
     paths : sequence of str
-    own : sequence of str or None
-        Those of `paths` whose types are tested if `names` is empty; `None`: all of `paths`.
+    depends : sequence of str
+        Folders with packages that others depend on.
     problems : dict or None
         Receives errors in definitions, by their texts. These definitions are left out then.
 
@@ -131,9 +136,8 @@ def collect_own(
     found: dict[tuple[str, str], int] = {}
     wrong: dict[str, Diagnostic] = {} if problems is None else problems
     for distro in distros:
-        library = library_of(distro, tuple(paths))
-        alone = Library(distro, paths if own is None else own, origins=())
-        for name in names or alone.interfaces():
+        library = library_of(distro, Options(paths=tuple(paths), depends=tuple(depends)))
+        for name in names or all_names(distro, paths, ()):
             try:
                 messages = library.interface(name).messages
             except DefinitionError as error:

@@ -46,6 +46,7 @@ def command_of(
         systems="ts1",
         distro=request.distros,
         path=request.paths,
+        depends=request.depends,
         oracle=tuple(oracles),
         mutations=None if number is None else 1,
         seed=number,

@@ -12,6 +12,7 @@ from functools import cached_property
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
+from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.verify.results.records import OracleVerdict, Record, Test
 from firm_hdl.verify.results.verdict import Failed
@@ -43,6 +44,8 @@ def each_distro(request: Request) -> list[Request]:
     ------
     UnknownTypeError
         If no distribution has the types.
+    DefinitionError
+        If the active workspace has their packages without the types.
     """
     names = request.distros or (
         [DEFAULT_DISTRO] if request.paths else _distros_with_any_of(request.types)
@@ -59,6 +62,10 @@ def _distros_with_any_of(types: Sequence[str]) -> list[str]:
             continue
         found.append(distro)
     if not found:
+        packages = {name.partition("/")[0] for name in types}
+        for distro in DISTROS:
+            if workspace_folders(distro, packages):
+                Universe(distro).select(types)  # Raises an error that says what is wrong.
         raise UnknownTypeError(f"No distribution has {', '.join(types)}")
     return found
 
@@ -69,9 +76,9 @@ class Ts1Run:
     Parameters
     ----------
     request : Request
-        A request for one distribution. `distros`, `paths`, `types`, `mutations`, `seed`, `oracles`
-        and `jobs` are used. Mutations are made from the definitions of the types. `seed` is the
-        number of the first mutation.
+        A request for one distribution. `distros`, `paths`, `depends`, `types`, `mutations`, `seed`,
+        `oracles` and `jobs` are used. Mutations are made from the definitions of the types. `seed`
+        is the number of the first mutation.
 
     Attributes
     ----------
@@ -95,7 +102,7 @@ class Ts1Run:
         self._stack = ExitStack()
         with ExitStack() as stack:
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="firm-hdl-ts1-"))
-            universe = Universe(self.distro, request.paths, folder)
+            universe = _universe(request, folder)
             write_definitions(universe)
             self.cases = universe.select(request.types)
             self.versions: dict[str, str] = {}
@@ -183,12 +190,16 @@ class Ts1Run:
         return record_of(self.test(number), self.case(number).language, [verdict])
 
 
+def _universe(request: Request, folder: str) -> Universe:
+    return Universe(request.distros[0], request.paths, folder, depends=request.depends)
+
+
 def _case(request: Request, cases: Sequence[DefinitionCase], number: int) -> DefinitionCase:
     return mutation(cases, number) if request.mutations else cases[number]
 
 
 def _test(request: Request, case: DefinitionCase, number: int) -> Test:
-    own = [f"path={path}" for path in request.paths]
+    own = request.folders
     own += [f"oracle={name}" for name in request.oracles]
     if request.mutations:
         own += [f"of={name}" for name in request.types]
@@ -223,7 +234,7 @@ _sessions: dict[_Key, _Session] = {}
 
 def _session(key: _Key) -> _Session:
     if key not in _sessions:
-        universe = Universe(key.request.distros[0], key.request.paths, key.folder)
+        universe = _universe(key.request, key.folder)
         cases = universe.select(key.request.types)
         oracles = [ORACLES[name](universe) for name in key.oracles]
         for oracle in oracles:

@@ -5,16 +5,24 @@ from __future__ import annotations
 import copy
 import os
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
+from typing import ClassVar
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source
 from firm_hdl.frontend import DISTROS, Library, show
 from firm_hdl.frontend.names import KINDS, Kind
 from firm_hdl.frontend.search import environment_origins
-from firm_hdl.frontend.sources import Definition, EmbeddedOrigin, FolderOrigin, Origin, Sources
+from firm_hdl.frontend.sources import (
+    Definition,
+    EmbeddedOrigin,
+    FolderOrigin,
+    Origin,
+    PackagePlace,
+    Sources,
+)
 from firm_hdl.model import Dialect, Interface
 from firm_hdl.verify.ts1.case import DefinitionCase
 
@@ -29,16 +37,25 @@ class Universe:
     Parameters
     ----------
     distro : str
-    paths : sequence of str
-        As for `Library`. The folders that the environment names are searched, too.
+    paths, depends : sequence of str
+        As for `open_library`. The folders that the environment names are searched, too.
     folder : str
         The folder for the files of `write_definitions`, ``PACKAGE/msg|srv|action/FILE``.
     """
 
-    def __init__(self, distro: str, paths: Sequence[str] = (), folder: str = "") -> None:
-        self._folders: list[Origin] = [FolderOrigin(path) for path in paths]
+    def __init__(
+        self,
+        distro: str,
+        paths: Sequence[str] = (),
+        folder: str = "",
+        *,
+        depends: Sequence[str] = (),
+    ) -> None:
+        self._folders = [FolderOrigin(path) for path in paths]
+        needed = map(FolderOrigin, depends)
         environment = environment_origins(DISTROS[distro].dialect, os.environ)
-        self._origins = [*self._folders, *environment, EmbeddedOrigin(distro)]
+        self._origins: list[Origin]
+        self._origins = [*self._folders, *needed, *environment, EmbeddedOrigin(distro)]
         self._sources = Sources(self._origins)
         self.library = Library(distro, origins=self._origins)
         self.distro = distro
@@ -52,8 +69,8 @@ class Universe:
     def select(self, types: Iterable[str]) -> list[DefinitionCase]:
         """List the definitions of some types.
 
-        If no type is named, these are all definitions in the folders. If the folders have none,
-        these are all definitions of the universe.
+        If no type is named, these are all definitions in `paths`. Without `paths`, these are all
+        definitions of the universe.
 
         Raises
         ------
@@ -63,7 +80,7 @@ class Universe:
         wanted = list(types)
         if wanted:
             return [self._selected(name) for name in wanted]
-        names = Sources(self._folders).names or self._sources.names
+        names = Sources(self._folders).names if self._folders else self._sources.names
         return [self._case(*name) for name in sorted(names)]
 
     def _selected(self, name: str) -> DefinitionCase:
@@ -91,8 +108,13 @@ class Universe:
     @cached_property
     def by_source(self) -> dict[str, DefinitionCase]:
         """Every definition by the name of its source, which may be a file."""
-        cases = [self._case(*name) for name in sorted(self._sources.names)]
-        return {case.source: case for case in cases}
+        found = {}
+        for name in sorted(self._sources.names):
+            # A definition that cannot be read is an error only if it is tested.
+            with suppress(DefinitionError):
+                case = self._case(*name)
+                found[case.source] = case
+        return found
 
     def _case(self, package: str, kind: Kind, name: str) -> DefinitionCase:
         try:
@@ -158,6 +180,8 @@ class Universe:
 class _Changed:
     """An origin that has only the text of one case."""
 
+    packages: ClassVar[Mapping[str, PackagePlace]] = {}
+
     def __init__(self, case: DefinitionCase) -> None:
         self._case = case
         self._key = case.package, case.kind, case.name
@@ -179,6 +203,7 @@ class _AllChanged:
         self, origin: Origin, dialect: Dialect, change: Callable[[DefinitionCase], DefinitionCase]
     ) -> None:
         self._origin, self._dialect, self._change = origin, dialect, change
+        self.packages = origin.packages
 
     def names(self) -> Iterable[tuple[str, Kind, str]]:
         return self._origin.names()

@@ -118,19 +118,21 @@ def check_golden(
     goldens: Iterable[Golden],
     paths: Sequence[str | os.PathLike[str]] = (),
     bags: Sequence[str | os.PathLike[str]] = (),
+    *,
+    depends: Sequence[str | os.PathLike[str]] = (),
 ) -> list[Checked]:
     """Plan each type again, compare the plans, and check the invariants of each new plan.
 
     Parameters
     ----------
-    paths, bags
+    paths, bags, depends
         As for `open_library`, which is called for the distribution of each golden plan.
     """
     libraries: dict[str, Library] = {}
     results = []
     for golden in goldens:
         if golden.distro not in libraries:
-            libraries[golden.distro] = open_library(golden.distro, paths, bags)
+            libraries[golden.distro] = open_library(golden.distro, paths, bags, depends=depends)
         results.append(_check(golden, libraries[golden.distro]))
     return results
 

@@ -47,7 +47,7 @@ def run_golden(given: argparse.Namespace) -> int:
     if not goldens:
         raise BuildError(f"'{given.folder}' has no golden plans")
     chosen = [golden for golden in goldens if not wanted or golden.plan.message in wanted]
-    results = check_golden(chosen, [*given.path, *given.depends], given.bag)
+    results = check_golden(chosen, given.path, given.bag, depends=given.depends)
     differing = [result for result in results if not isinstance(result.verdict, Passed)]
     for result in differing:
         _print(result)

@@ -140,7 +140,7 @@ class Ts2(TypesSystem):
             if (record := recorder.known(self._golden_test(golden))) is not None
         }
         left = [golden for golden in goldens if golden.path not in known]
-        for result in check_golden(left, self._request.paths):
+        for result in check_golden(left, self._request.paths, depends=self._request.depends):
             path, test = result.golden.path, self._golden_test(result.golden)
             verdict = clipped_verdict(result.verdict)
             command = self._command(test, golden=self._request.golden)
@@ -169,7 +169,7 @@ def _checked(options: Options, test: Test) -> Record:
     """Read, plan and check one type. An exception becomes the verdict."""
 
     def run(watch: Stopwatch) -> Record:
-        message = library_of(test.distro, options.paths).message(test.type)
+        message = library_of(test.distro, options).message(test.type)
         return check_plan(message, test, options.wire, watch)
 
     return recorded(test, run)

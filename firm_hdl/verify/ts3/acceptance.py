@@ -88,7 +88,7 @@ def measured(
     """
     result = Result(distro=distro, name=name, command=command_of(options, distro, name))
     try:
-        message = library_of(distro, options.paths, options.bags).message(name)
+        message = library_of(distro, options).message(name)
         judge = judge_of(
             message,
             None if options.paths or options.bags else distro,

@@ -74,7 +74,7 @@ def replay(distro: str, name: str, options: Options) -> Result:
 
 
 def _replay(message: Message, judge: Judge, options: Options, result: Result) -> None:
-    topics, others = _topics(message, library_of(result.distro, (), options.bags), options.bags)
+    topics, others = _topics(message, library_of(result.distro, options), options.bags)
     selection = _select(message, topics, options)
     longest = max(len(each.data) for each in selection.messages)
     run = Acceptance(message, message.wire, options, result, _room(longest))

@@ -114,6 +114,7 @@ def command_of(options: Options, distro: str, name: str) -> str:
         name,
         distro=distro,
         path=options.paths,
+        depends=options.depends,
         bag=options.bags,
         max_message_bytes=None if options.longest == LONGEST else options.longest,
         simulator=None if options.simulator == "python" else options.simulator,
@@ -135,7 +136,7 @@ def test_of(task: TypeUnderTest, options: Options) -> Test:
     own += [] if options.stalled else ["no-stalls"]
     own += [] if options.broken else ["no-broken"]
     own += [] if options.references is None else [f"references={'+'.join(options.references)}"]
-    own += [f"path={path}" for path in options.paths]
+    own += options.folders
     own += [f"bag={bag}" for bag in options.bags]
     own += [] if options.longest == LONGEST else [f"longest={options.longest}"]
     return Test(
@@ -194,7 +195,7 @@ def same_circuits(
     found: dict[TypeUnderTest, TypeUnderTest] = {}
     for task in tasks:
         try:
-            message = library_of(task.distro, options.paths).message(task.name)
+            message = library_of(task.distro, options).message(task.name)
             wire: Any = options.wire or message.wire
             limit = message_limit(lay_out(message, wire).min_bytes)
             plan = plan_of(message, wire, options.bus_bytes, limit)

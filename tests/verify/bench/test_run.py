@@ -272,7 +272,7 @@ def test_what_is_built_is_what_was_asked_for(monkeypatch, given, distro):
     record = run.run_bench((Options(**given), "ghdl"), test)
     assert record.verdict == Failed(("it stops",))
     assert asked == {
-        "library_of": (test.distro, given.get("paths", ())),
+        "library_of": (test.distro, Options(**given)),
         "check_wire": (message,),
         "plan_of": (message, wire, test.bus_bytes, DEFAULT_MAX_MESSAGE_BYTES),
         "check_size": ("plan",),

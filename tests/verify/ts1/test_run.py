@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
 from dataclasses import replace
@@ -178,6 +179,14 @@ def test_a_type_that_no_distribution_has_is_named():
         each_distro(Request(types=("std_msgs/Header", "p/None")))
 
 
+def test_a_type_in_a_hidden_package_of_the_workspace_is_told(tmp_path, monkeypatch):
+    make_files(tmp_path, {"over/share/p/package.xml": "", "under/share/p/msg/A.msg": ""})
+    prefixes = os.pathsep.join(str(tmp_path / name) for name in ("over", "under"))
+    monkeypatch.setenv("AMENT_PREFIX_PATH", prefixes)
+    with pytest.raises(DefinitionError, match=r"over/share/p' and hides that of .*under/share/p'"):
+        each_distro(Request(types=("p/A",)))
+
+
 def test_all_that_was_asked_for_is_in_the_request_for_each_distribution():
     asked = Request(
         distros=("foxy", "iron"), paths=("x", "y"), types=("p/A", "q/B"), mutations=3, seed=7
@@ -263,13 +272,17 @@ def test_mutations_are_repeatable_and_numbered(source, capsys, monkeypatch):
 
 
 def test_oracles_read_the_text_that_we_take(tmp_path):
-    # One type overrides another of the same package; the other types of the package stay.
+    # The first copy of a package hides the others.
     files = {"one/std_msgs/msg/Header.msg": "int8 x\n", "two/p/msg/A.msg": "std_msgs/Header h\n"}
-    files |= {"three/p/msg/A.msg": "int8 x\n", "three/p/msg/B.msg": "A a\nstd_msgs/String s\n"}
+    files |= {"two/p/srv/io/S.srv": "A a\n---\nq/B b\n", "three/p/msg/C.msg": "int8 x\n"}
+    files |= {"more/q/msg/B.msg": "p/A a\ngeometry_msgs/Point p\n", "more/std_msgs/msg/A.msg": ""}
+    # What cannot be read counts only if it is judged.
+    files |= {"more/x/r/msg/A.msg": "", "more/y/r/msg/A.msg": ""}
     make_files(tmp_path, files)
     paths = tuple(str(tmp_path / name) for name in ("one", "two", "three"))
-    tally, run = judged(Request(distros=("noetic",), paths=paths), ["genmsg"])
-    assert [case.full_name for case in run.cases] == ["p/A", "p/B", "std_msgs/Header"]
+    request = Request(distros=("noetic",), paths=paths, depends=(str(tmp_path / "more"),))
+    tally, run = judged(request, ["genmsg"])
+    assert [case.full_name for case in run.cases] == ["p/A", "p/S", "std_msgs/Header"]
     assert tally.verdicts == {("genmsg", "passed"): 3}
 
 

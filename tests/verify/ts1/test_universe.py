@@ -75,17 +75,19 @@ def test_types_come_in_the_order_in_which_they_are_named_and_all_in_that_of_thei
     assert names == sorted(name.rpartition(".")[0] for name in FILES)
 
 
-def test_without_folders_all_that_a_distribution_has_is_taken():
+def test_without_folders_all_that_a_distribution_has_is_taken(tmp_path):
     found = {case.package for case in Universe("lyrical").select([])}
     assert {"std_msgs", "sensor_msgs"} <= found and "p" not in found
+    # A folder without definitions has none that could be judged.
+    assert Universe("lyrical", [str(tmp_path)]).select([]) == []
 
 
 def test_definitions_of_an_active_workspace_come_after_those_of_the_folders(tmp_path, monkeypatch):
     files = {
-        "own/p/msg/A.msg": "q/B b\nq/C c\nstd_msgs/Empty e\n",
+        "own/p/msg/A.msg": "q/B b\nr/C c\nstd_msgs/Empty e\n",
         "own/q/msg/B.msg": "int8 own\n",
         "active/q/msg/B.msg": "int8 active\n",
-        "active/q/msg/C.msg": "int8 active\n",
+        "active/r/msg/C.msg": "int8 active\n",
         "active/std_msgs/msg/Empty.msg": "int8 active\n",
         **{f"active/{name}/package.xml": f"<name>{name}</name>" for name in ("q", "std_msgs")},
     }
@@ -99,14 +101,14 @@ def test_definitions_of_an_active_workspace_come_after_those_of_the_folders(tmp_
         ["active"],
         ["active"],
     ]
-    texts = [each.text for each in universe.select(["q/B", "q/C", "std_msgs/Empty"])]
+    texts = [each.text for each in universe.select(["q/B", "r/C", "std_msgs/Empty"])]
     assert texts == ["int8 own\n", "int8 active\n", "int8 active\n"]
     # Without names, only the folders count. Oracles get the same definitions as we.
     assert [each.full_name for each in universe.select([])] == ["p/A", "q/B"]
     write_definitions(universe)
     for name, text in (
         ("q/msg/B", texts[0]),
-        ("q/msg/C", texts[1]),
+        ("r/msg/C", texts[1]),
         ("std_msgs/msg/Empty", texts[2]),
     ):
         assert (tmp_path / "all" / f"{name}.msg").read_text() == text
@@ -235,20 +237,21 @@ def test_a_definition_without_any_text_is_an_error(universe_of, tmp_path, distro
     file = tmp_path / "src" / "p" / "msg" / "A.msg"
     file.unlink()
     file.symlink_to("A.msg")
-    universe = Universe(distro, [str(tmp_path / "src")])
+    universe = Universe(distro, [str(tmp_path / "src")], str(tmp_path / "all"))
     message = rf"^error: '{re.escape(str(file))}' cannot be read: .*symbolic links"
     for names in (["p/A"], []):
         with pytest.raises(DefinitionError, match=message):
             universe.select(names)
-    with pytest.raises(DefinitionError, match=message):
-        write_definitions(universe)
+    # Other definitions can be judged nevertheless.
+    write_definitions(universe)
+    assert (tmp_path / "all/p/msg/B.msg").exists()
     assert [case.name for case in universe.select(["p/B"])] == ["B"]
 
 
 def test_definitions_are_written_as_they_are_wherever_they_are_from(tmp_path):
     files = {
         "one/p/msg/A.msg": "int8 x\n",
-        "one/p/msg/B.msg": "int8 y\n",
+        "one/p/msg/more/B.msg": "int8 y\n",
         "two/p/msg/A.msg": "int16 other\n",
         "two/p/msg/C.msg": "int8 z\n",
         "two/std_msgs/msg/Own.msg": "int8 own\n",
@@ -260,11 +263,10 @@ def test_definitions_are_written_as_they_are_wherever_they_are_from(tmp_path):
     write_definitions(universe)
     folder = tmp_path / "all"
     texts = {path.name: path.read_text() for path in (folder / "p" / "msg").iterdir()}
-    # The first folder with a type counts.
-    assert texts == {"A.msg": "int8 x\n", "B.msg": "int8 y\n", "C.msg": "int8 z\n"}
-    # Some types of a package are files, and some are embedded in firm-hdl.
+    # The first folder with a package counts.
+    assert texts == {"A.msg": "int8 x\n", "B.msg": "int8 y\n"}
     assert (folder / "std_msgs" / "msg" / "Own.msg").read_text() == "int8 own\n"
-    assert "string data" in (folder / "std_msgs" / "msg" / "String.msg").read_text()
+    assert not (folder / "std_msgs" / "msg" / "String.msg").exists()
     # A complete folder is linked.
     assert (folder / "q" / "srv").is_symlink()
     assert (folder / "q" / "srv" / "S.srv").read_text() == "int8 s\n---\n"
@@ -276,10 +278,10 @@ def test_definitions_are_linked_to_from_another_folder_and_embedded_ones_written
     tmp_path, monkeypatch
 ):
     """The oracles' processes may have another working folder than this one."""
-    make_files(tmp_path, {"one/p/msg/A.msg": "int8 x\n", "two/p/msg/B.msg": "int8 1y\n"})
+    make_files(tmp_path, {"one/p/msg/A.msg": "int8 x\n", "one/p/msg/more/B.msg": "int8 1y\n"})
     make_files(tmp_path, {"one/q/srv/S.srv": "int8 s\r\n---\r\n"})
     monkeypatch.chdir(tmp_path)
-    universe = Universe("noetic", ["one", "two"], "all")
+    universe = Universe("noetic", ["one"], "all")
     write_definitions(universe)
     folder = tmp_path / "all"
     # Links to single files, a link to a folder, and a package that is embedded in firm-hdl.

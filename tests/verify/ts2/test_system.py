@@ -131,9 +131,9 @@ def test_golden_plans_are_those_of_the_types_and_distributions_asked_for(
         assert main(["golden", "add", folder, name, *options]) == 0
     compared = []
 
-    def noting(goldens, *more):
+    def noting(goldens, *more, **options):
         compared.extend((each.distro, each.plan.bus_bytes) for each in goldens)
-        return golden.check_golden(goldens, *more)
+        return golden.check_golden(goldens, *more, **options)
 
     monkeypatch.setattr(ts2, "check_golden", noting)
     call = ["verify", "--systems", "ts2", "--golden", folder, "--results", path, "--jobs", "1"]

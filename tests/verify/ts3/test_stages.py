@@ -37,7 +37,7 @@ def test_the_oracle_of_a_type(monkeypatch, given, distro, stand_in):
         return SimpleNamespace(note="a note")
 
     def library_of(*where):
-        assert where == ("lyrical", given.get("paths", ()), given.get("bags", ()))
+        assert where == ("lyrical", Options(**given))
         return Library("lyrical")
 
     monkeypatch.setattr(acceptance, "library_of", library_of)
