@@ -10,7 +10,7 @@ import dataclasses
 import hashlib
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -224,27 +224,30 @@ def _check_folders(tasks: list[_Task]) -> None:
 
 
 def _build_one(task: _Task, force: bool) -> Built:
-    figures = timing(task.converters.plan)
-    try:
-        return _write_folder(task, figures, force)
-    except OSError as error:
-        where = error.filename or task.folder
-        raise BuildError(f"'{where}' cannot be written: {error.strerror}") from None
-
-
-def _write_folder(task: _Task, figures: Timing, force: bool) -> Built:
-    clear_up(task.folder)
     converters = task.converters
+    figures = timing(converters.plan)
+    with _written(task.folder):
+        clear_up(task.folder)
     built = Built(
         name=task.name,
         folder=task.folder,
         was_current=not force and is_current(task.folder, converters.inputs),
         description=describe(task.name, converters.plan, figures),
     )
-    if not built.was_current:
-        files = _files(converters, figures)
-        built = dataclasses.replace(built, renamed=replace(task.folder, files))
-    return built
+    if built.was_current:
+        return built
+    files = _files(converters, figures)
+    with _written(task.folder):
+        return dataclasses.replace(built, renamed=replace(task.folder, files))
+
+
+@contextmanager
+def _written(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        where = error.filename or folder
+        raise BuildError(f"'{where}' cannot be written: {error.strerror}") from None
 
 
 def _files(converters: Converters, figures: Timing) -> dict[str, str]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
@@ -186,13 +187,20 @@ def write_design(
     UserError
         If the folder cannot be written.
     """
-    try:
+    with _written(folder):
         clear_up(folder)
-        if not force and is_current(folder, inputs):
-            return BuiltDesign(folder=folder, was_current=True)
-        files = dict(make_files())
-        files[MANIFEST] = _manifest(folder.name, inputs, facts, ports, files)
+    if not force and is_current(folder, inputs):
+        return BuiltDesign(folder=folder, was_current=True)
+    files = dict(make_files())
+    files[MANIFEST] = _manifest(folder.name, inputs, facts, ports, files)
+    with _written(folder):
         return BuiltDesign(folder=folder, was_current=False, renamed=replace(folder, files))
+
+
+@contextmanager
+def _written(folder: Path) -> Iterator[None]:
+    try:
+        yield
     except OSError as error:
         where = error.filename or folder
         raise UserError(f"'{where}' cannot be written: {error.strerror}") from None
