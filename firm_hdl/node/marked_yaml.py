@@ -2,6 +2,9 @@
 
 Only the syntax tree of PyYAML is used. No Python object is made of a tag, and every value is read
 by the function that its key asks for. All problems of a text are collected, and reported together.
+Texts come from unknown sources: an alias can stand for a large mapping in a thousand places, and a
+number can have a million digits. So reading ends after a number of problems, each of which has a
+message of limited length, and long numbers are refused.
 """
 
 from __future__ import annotations
@@ -11,8 +14,9 @@ from difflib import get_close_matches
 from typing import TypeVar
 
 import yaml
+from yaml.constructor import SafeConstructor
 
-from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
+from firm_hdl.errors import MAX_DIAGNOSTICS, DefinitionError, Diagnostic, Source, Span
 
 __all__ = ["Entry", "Marked", "parse"]
 
@@ -25,7 +29,16 @@ _KINDS = {
     "tag:yaml.org,2002:bool": "a boolean",
     "tag:yaml.org,2002:null": "empty",
     "tag:yaml.org,2002:timestamp": "a date",
+    "tag:yaml.org,2002:merge": "a merge key",
 }
+
+_NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
+
+_MOST_DIGITS = 64
+"""Most characters of a number. None that is in range needs more."""
+
+_MOST_SHOWN = 400
+"""Most characters of a message, which may quote any text."""
 
 
 class Marked:
@@ -34,13 +47,14 @@ class Marked:
     Attributes
     ----------
     source : Source
-    problems : list of Diagnostic
-        In the order in which they were found.
+    noted : int
+        How many problems were noted. What several topics share by an alias counts for each.
     """
 
     def __init__(self, source: Source) -> None:
         self.source = source
-        self.problems: list[Diagnostic] = []
+        self.noted = 0
+        self._problems: dict[Diagnostic, None] = {}
 
     def span(self, node: yaml.Node) -> Span:
         """Return the place of a value; of a mapping or a list, the place of its first word."""
@@ -52,15 +66,27 @@ class Marked:
 
     def error(self, node: yaml.Node, message: str) -> None:
         """Note a problem at a node."""
-        self.problems.append(Diagnostic(message=message, span=self.span(node)))
+        self.note(Diagnostic(message=_shortened(message), span=self.span(node)))
 
     def error_at_start(self, message: str) -> None:
         """Note a problem of the whole text."""
-        self.problems.append(Diagnostic(message=message, span=self._start))
+        start = Span(source=self.source, start=0, end=0)
+        self.note(Diagnostic(message=_shortened(message), span=start))
 
-    @property
-    def _start(self) -> Span:
-        return Span(source=self.source, start=0, end=0)
+    def note(self, problem: Diagnostic) -> None:
+        """Note a problem of this text, or of a definition that it names.
+
+        Raises
+        ------
+        DefinitionError
+            With all problems, if there are too many.
+        """
+        self._problems[problem] = None
+        self.noted += 1
+        if self.noted >= MAX_DIAGNOSTICS:
+            message = "too many errors; the rest of the description was not checked"
+            self._problems[Diagnostic(message=message, span=problem.span)] = None
+            self.check()
 
     def check(self) -> None:
         """Raise what was found.
@@ -70,10 +96,9 @@ class Marked:
         DefinitionError
             With all problems, in the order of the text.
         """
-        if self.problems:
-            # A service has one set of options for both of its messages, and one mistake in it.
-            found = dict.fromkeys(self.problems)
-            raise DefinitionError(sorted(found, key=lambda p: p.span.start if p.span else -1))
+        if self._problems:
+            places = sorted(self._problems, key=lambda p: p.span.start if p.span else -1)
+            raise DefinitionError(places)
 
     def mapping(self, node: yaml.Node, what: str, example: str = "") -> dict[str, Entry]:
         """Read a mapping whose keys are texts; a key that occurs twice is a problem.
@@ -90,7 +115,9 @@ class Marked:
         entries: dict[str, Entry] = {}
         for key, value in node.value:
             if not isinstance(key, yaml.ScalarNode) or key.tag != "tag:yaml.org,2002:str":
-                self.error(key, f"a key must be text, not {kind(key)}; put it in quotes")
+                is_merge = key.tag == "tag:yaml.org,2002:merge"
+                hint = "write all keys out" if is_merge else "put it in quotes"
+                self.error(key, f"a key must be text, not {kind(key)}; {hint}")
                 continue
             name = str(key.value)
             if name in entries:
@@ -149,11 +176,11 @@ class Entry:
 
     def choice(self, choices: Collection[str], default: T) -> str | T:
         """Read one of some words."""
-        before = len(self.marked.problems)
+        before = self.marked.noted
         word = self.text()
         if word in choices:
             return word
-        if len(self.marked.problems) == before:
+        if self.marked.noted == before:
             close = get_close_matches(word, choices, n=1)
             hint = f"; did you mean '{close[0]}'?" if close else ""
             self.error(f"'{self.name}' must be {_either(choices)}, not '{word}'{hint}")
@@ -161,13 +188,8 @@ class Entry:
 
     def integer(self, default: T, least: int, most: int | None = None) -> int | T:
         """Read an integer between limits, both included; ``0x10`` and ``1_000`` are as in YAML."""
-        value = self.value
-        if not isinstance(value, yaml.ScalarNode) or value.tag != "tag:yaml.org,2002:int":
-            self._wrong("an integer")
-            return default
-        try:
-            number = int(yaml.SafeLoader("").construct_yaml_int(value))
-        except ValueError:
+        number = self._number(_NUMBERS[:1])
+        if not isinstance(number, int):
             self._wrong("an integer")
             return default
         if number < least or (most is not None and number > most):
@@ -178,36 +200,52 @@ class Entry:
 
     def number(self, default: T, least: float, most: float) -> float | T:
         """Read a number between limits, both included."""
-        value = self.value
-        kinds = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
-        if not isinstance(value, yaml.ScalarNode) or value.tag not in kinds:
+        number = self._number(_NUMBERS)
+        if number is None:
             self._wrong("a number")
             return default
-        try:
-            # PyYAML knows infinite numbers and those that are none, such as ``.inf`` and ``.nan``.
-            number = float(yaml.SafeLoader("").construct_yaml_float(value))
-        except ValueError:
-            self._wrong("a number")
-            return default
+        # PyYAML knows infinite numbers and those that are none, such as ``.inf`` and ``.nan``.
         if not least <= number <= most:
-            self.error(f"'{self.name}' must be from {least:g} to {most:g}, not {value.value}")
+            self.error(f"'{self.name}' must be from {least:g} to {most:g}, not {self.value.value}")
             return default
-        return number
+        return float(number)
+
+    def _number(self, tags: Collection[str]) -> int | float | None:
+        """Read a number with one of some tags as PyYAML does; `None` if there is none."""
+        value = self.value
+        if (
+            not isinstance(value, yaml.ScalarNode)
+            or value.tag not in tags
+            or len(value.value) > _MOST_DIGITS
+        ):
+            return None
+        try:
+            if value.tag == _NUMBERS[0]:
+                return int(SafeConstructor().construct_yaml_int(value))
+            return float(SafeConstructor().construct_yaml_float(value))
+        except (ValueError, IndexError):
+            # A tag can be written before any text, or before none.
+            return None
 
     def checked(self, problem: Callable[[str], str], default: str = "") -> str:
         """Read a text that `problem` finds nothing wrong with."""
-        before = len(self.marked.problems)
+        before = self.marked.noted
         text = self.text(default)
-        if len(self.marked.problems) == before and (wrong := problem(text)):
+        if self.marked.noted == before and (wrong := problem(text)):
             self.error(wrong)
             return default
         return text
 
     def _wrong(self, wanted: str) -> None:
-        found = kind(self.value)
-        is_word = isinstance(self.value, yaml.ScalarNode) and found != "empty"
-        quotes = "; put it in quotes" if wanted == "text" and is_word else ""
-        self.error(f"'{self.name}' must be {wanted}, not {found}{quotes}")
+        value, found = self.value, kind(self.value)
+        if not isinstance(value, yaml.ScalarNode) or found == "empty":
+            self.error(f"'{self.name}' must be {wanted}, not {found}")
+        elif wanted == "text":
+            self.error(f"'{self.name}' must be text, not {found}; put it in quotes")
+        elif value.tag in _NUMBERS:
+            self.error(f"'{self.name}' must be {wanted}, not '{value.value}'")
+        else:
+            self.error(f"'{self.name}' must be {wanted}, not {found}")
 
 
 def kind(node: yaml.Node) -> str:
@@ -220,6 +258,14 @@ def kind(node: yaml.Node) -> str:
     return f"{what} ({node.value})" if what in ("a boolean", "an integer", "a date") else what
 
 
+def _shortened(message: str) -> str:
+    """Shorten a message in its middle: what it quotes comes first, and the reason last."""
+    # An escape can stand for half a character, which cannot be printed.
+    message = message.encode("utf-8", "backslashreplace").decode("utf-8")
+    half = _MOST_SHOWN // 2
+    return message if len(message) <= _MOST_SHOWN else f"{message[:half]} ... {message[-half:]}"
+
+
 def parse(source: Source) -> tuple[Marked, yaml.Node]:
     """Parse a text.
 
@@ -229,25 +275,34 @@ def parse(source: Source) -> tuple[Marked, yaml.Node]:
         If the text is not YAML, is nested too deep, or is empty.
     """
     marked = Marked(source)
-    end = len(source.text)
     try:
         # The loader in Python: it counts characters, as spans do.
-        node = yaml.compose(source.text, Loader=yaml.SafeLoader)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
-        at = getattr(error, "position", None) if mark is None else mark.index
-        reason = getattr(error, "problem", None) or getattr(error, "reason", None) or "not YAML"
-        raise _failure(source, min(at or 0, end), f"not YAML: {reason}") from None
+        loader = yaml.SafeLoader(source.text)
+    except yaml.reader.ReaderError as error:
+        raise _failure(source, error.position, f"not YAML: {error.reason}") from None
+    try:
+        node = loader.get_single_node()
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        at = loader.index if mark is None else mark.index
+        raise _failure(source, at, f"not YAML: {error.problem}") from None
+    except (ValueError, OverflowError):
+        # Python's own, such as for a character with a code that there is not.
+        raise _failure(source, loader.index, "not YAML: a number is out of range") from None
     except RecursionError:
-        raise _failure(source, 0, "not a description: nested too deep") from None
+        # The scanner is ahead.
+        event = loader.current_event
+        at = loader.index if event is None else event.start_mark.index
+        raise _failure(source, at, "not a description: nested too deep") from None
     if node is None:
         raise _failure(source, 0, "a description must not be empty")
     return marked, node
 
 
 def _failure(source: Source, at: int, message: str) -> DefinitionError:
+    at = min(at, len(source.text))
     span = Span(source=source, start=at, end=at)
-    return DefinitionError([Diagnostic(message=message, span=span)])
+    return DefinitionError([Diagnostic(message=_shortened(message), span=span)])
 
 
 def _either(choices: Collection[str]) -> str:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+from codecs import BOM_UTF8
 from collections.abc import Iterable
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.errors import DefinitionError, Diagnostic, Source
+from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
 from firm_hdl.files import read_file
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS, Library, open_library
 from firm_hdl.model import WIRE_OF
@@ -28,6 +29,9 @@ __all__ = ["read_description", "read_description_text"]
 
 MOST_BYTES = 1 << 18
 """Largest file that is read: a thousand topics need less."""
+
+MOST_COMPARED = 1000
+"""Most pairs of names that are compared to find out what the user means."""
 
 KINDS: tuple[Kind, ...] = ("subscribe", "publish", "serve")
 
@@ -59,12 +63,18 @@ def read_description(
     """
     name = os.fspath(path)
     try:
-        text = read_file(path, MOST_BYTES).decode("utf-8")
+        data = read_file(path, MOST_BYTES).removeprefix(BOM_UTF8)
     except OSError as error:
         message = f"cannot read '{name}': {error.strerror or error}"
         raise DefinitionError([Diagnostic(message=message)]) from None
-    except UnicodeDecodeError:
-        raise DefinitionError([Diagnostic(message=f"'{name}' is not text in UTF-8")]) from None
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        source = Source(name=name, text=data.decode("utf-8", "replace"))
+        at = len(data[: error.start].decode("utf-8"))
+        message = f"byte 0x{data[error.start]:02x} is not UTF-8 text"
+        span = Span(source=source, start=at, end=at + 1)
+        raise DefinitionError([Diagnostic(message=message, span=span)]) from None
     folder = str(Path(name).parent)
     return read_description_text(text, name=name, folder=folder, paths=paths, library=library)
 
@@ -131,7 +141,7 @@ class _Reader:
             names.remap = self._remap(known["remap"], library, names)
         topics = self._topics(known, library, names, bus_bytes, link)
         self._check_remap(names)
-        if not topics and not self.marked.problems:
+        if not topics and not self.marked.noted:
             self.marked.error_at_start(f"a node needs a topic: {', '.join(KINDS)}")
         accelerator = known["accelerator"].checked(_class_problem) if "accelerator" in known else ""
         self.marked.check()
@@ -160,28 +170,33 @@ class _Reader:
             if distro not in (None, self.library.distro):
                 known["distro"].error(f"the types are those of {self.library.distro}")
             return self.library
-        named = known["paths"].texts() if "paths" in known else []
-        bags = known["bags"].texts() if "bags" in known else []
-        folders = [*self.paths, *map(self._place, named)]
+        named = self._places(known["paths"]) if "paths" in known else []
+        bags = self._places(known["bags"]) if "bags" in known else []
+        folders = [*self.paths, *named]
         if bags and folders:
             known["bags"].error_at_key("recordings are read without any other definitions")
             bags = []
         try:
-            return open_library(distro, folders, list(map(self._place, bags)))
+            return open_library(distro, folders, bags)
         except DefinitionError as error:
             # A folder or a recording that cannot be read has no place of its own.
             entry = known.get("bags" if bags else "paths")
             for problem in error.diagnostics:
                 if entry is None or problem.span is not None:
-                    self.marked.problems.append(problem)
+                    self.marked.note(problem)
                 else:
                     entry.error(problem.message)
             self.marked.check()
             raise
 
-    def _place(self, name: str) -> str:
-        """Return the path of a file or folder, which is relative to the description."""
-        return os.path.normpath(os.path.join(self.folder, name))
+    def _places(self, entry: Entry) -> list[str]:
+        """Return the paths of files or folders, which are relative to the description."""
+        texts = entry.texts()
+        for text in texts:
+            if problem := _path_problem(text):
+                entry.error(problem)
+        self.marked.check()
+        return [os.path.normpath(os.path.join(self.folder, text)) for text in texts]
 
     def _bus_bytes(self, entry: Entry) -> int:
         width = entry.integer(8, 1)
@@ -205,11 +220,14 @@ class _Reader:
 
     def _check_remap(self, names: _Names) -> None:
         """Report remappings of names that no topic has: nobody else could use them."""
-        for name, entry in self.renamed.items():
-            if name not in names.used:
-                close = get_close_matches(name, names.used, n=1)
-                hint = f"; did you mean '{close[0]}'?" if close else ""
-                entry.error_at_key(f"no topic has the name '{name}'{hint}")
+        unused = [name for name in self.renamed if name not in names.used]
+        # To compare two names can take ten milliseconds.
+        is_quick = len(unused) * len(names.used) <= MOST_COMPARED
+        for name in unused:
+            is_name = len(name) <= MOST_TOPIC_CHARACTERS
+            close = get_close_matches(name, names.used, n=1) if is_quick and is_name else []
+            hint = f"; did you mean '{close[0]}'?" if close else ""
+            self.renamed[name].error_at_key(f"no topic has the name '{name}'{hint}")
 
     def _topics(
         self,
@@ -228,9 +246,9 @@ class _Reader:
             kind: Kind = section.name  # type: ignore[assignment]
             for written, entry in self.marked.mapping(section.value, f"'{kind}'").items():
                 name = self._name(entry, written, library, names)
-                before = len(self.marked.problems)
+                before = self.marked.noted
                 keys = self.marked.mapping(entry.value, f"'{written}'", "{type: std_msgs/msg/Bool}")
-                if not keys and len(self.marked.problems) > before:
+                if not keys and self.marked.noted > before:
                     continue
                 options = self.marked.known(keys, TOPIC_KEYS[kind], f"a topic of '{kind}'")
                 if (name, kind) in places:
@@ -270,9 +288,18 @@ class _Names:
         return self.remap.get(complete, complete)
 
 
+def _path_problem(text: str) -> str:
+    try:
+        is_path = b"\0" not in os.fsencode(text)
+    except UnicodeEncodeError:
+        # An escape can stand for half a character.
+        is_path = False
+    return "" if is_path else f"{text!r} is not a path"
+
+
 def _class_problem(text: str) -> str:
     module, colon, name = text.partition(":")
     words = [*module.split("."), *name.split(".")]
-    if not colon or not all(word.isidentifier() for word in words):
+    if not colon or not all(word.isidentifier() for word in words) or len(text) > 255:
         return "an accelerator is named as 'module:Class', such as 'wheels.core:Wheels'"
     return ""

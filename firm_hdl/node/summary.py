@@ -5,22 +5,27 @@ Nothing is elaborated. Cycles come from plans, areas from converters that were m
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from typing import Any, TypeAlias
 
-from firm_hdl.estimates import estimates_of
-from firm_hdl.metrics import metrics_of
+from firm_hdl.estimates import Estimate, estimates_of
+from firm_hdl.metrics import Metrics, metrics_of
+from firm_hdl.model import Message
 from firm_hdl.node.control import IDENTITY, registers
 from firm_hdl.node.description import Description, Direction, Store, Topic
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
 from firm_hdl.node.link_reading import LINK_OPTIONS
-from firm_hdl.plan import Plan, build_plan
-from firm_hdl.plan.timing import timing
+from firm_hdl.plan import build_plan
+from firm_hdl.plan.timing import Cost, timing
 from firm_hdl.wire import lay_out
 
 __all__ = ["facts_of", "summary"]
 
 _SERVICES = {"in": "request", "out": "response"}
+
+_Figures: TypeAlias = tuple[Metrics, Cost, Mapping[str, Estimate]]
+"""Of a message: its sizes, its hardest packet, and the measured converters that are near."""
 
 
 def facts_of(description: Description) -> dict[str, Any]:
@@ -31,6 +36,18 @@ def facts_of(description: Description) -> dict[str, Any]:
     """
     link = description.link
     options = LINK_OPTIONS[link.kind]
+
+    # Many topics may have one type, and planning takes its time.
+    @cache
+    def figures_of(message: Message, max_message_bytes: int) -> _Figures:
+        plan = build_plan(
+            lay_out(message, description.wire),
+            bus_bytes=description.bus_bytes,
+            max_message_bytes=max_message_bytes,
+        )
+        metrics = metrics_of(message, description.wire)
+        return metrics, timing(plan).hardest, estimates_of(plan)
+
     return {
         "node": description.node,
         "namespace": description.namespace,
@@ -45,7 +62,7 @@ def facts_of(description: Description) -> dict[str, Any]:
             "header": [{"name": each.name, "bytes": each.bytes} for each in HEADER],
         },
         "accelerator": description.accelerator,
-        "topics": [_topic(description, topic) for topic in description.topics],
+        "topics": [_topic(topic, figures_of) for topic in description.topics],
         "registers": [
             {"number": each.number, "owner": each.owner, "part": each.part, "name": each.name}
             for each in registers(description)
@@ -53,7 +70,7 @@ def facts_of(description: Description) -> dict[str, Any]:
     }
 
 
-def _topic(description: Description, topic: Topic) -> dict[str, Any]:
+def _topic(topic: Topic, figures_of: Callable[[Message, int], _Figures]) -> dict[str, Any]:
     qos = topic.qos
     return {
         "id": topic.id,
@@ -70,26 +87,23 @@ def _topic(description: Description, topic: Topic) -> dict[str, Any]:
             "depth": qos.depth,
         },
         "packets": {
-            direction: _store(description, topic, direction, store)
+            direction: _store(
+                topic, direction, store, figures_of(store.message, store.max_message_bytes)
+            )
             for direction, store in topic.stores
         },
     }
 
 
-def _store(
-    description: Description, topic: Topic, direction: Direction, store: Store
-) -> dict[str, Any]:
+def _store(topic: Topic, direction: Direction, store: Store, figures: _Figures) -> dict[str, Any]:
     """Return the figures of the packets of a topic in one direction."""
-    plan = _plan(description, store)
-    figures = metrics_of(store.message, description.wire)
-    hardest = timing(plan).hardest
-    name = "deserializer" if direction == "in" else "serializer"
-    estimate = estimates_of(plan).get(name)
+    metrics, hardest, estimates = figures
+    estimate = estimates.get("deserializer" if direction == "in" else "serializer")
     rate = topic.rate_hz
     return {
         "message": store.message.name,
-        "min_bytes": figures.min_bytes,
-        "max_bytes": figures.max_bytes,
+        "min_bytes": metrics.min_bytes,
+        "max_bytes": metrics.max_bytes,
         "memory_bytes": store.memory_bytes,
         "stored_packets": store.packets,
         "when_full": store.when_full,
@@ -100,14 +114,6 @@ def _store(
         if estimate is None
         else {"part": estimate.part, "lut": estimate.lut, "ff": estimate.ff, "mhz": estimate.mhz},
     }
-
-
-def _plan(description: Description, store: Store) -> Plan:
-    return build_plan(
-        lay_out(store.message, description.wire),
-        bus_bytes=description.bus_bytes,
-        max_message_bytes=store.max_message_bytes,
-    )
 
 
 def summary(description: Description) -> str:

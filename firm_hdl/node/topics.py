@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import keyword
 import re
+from functools import cache
 from typing import Any
 
 from firm_hdl.errors import DefinitionError
@@ -85,6 +86,8 @@ class TopicReader:
 
     def __init__(self, marked: Marked, library: Library, bus_bytes: int, link: Link) -> None:
         self.marked, self.library, self.bus_bytes, self.link = marked, library, bus_bytes, link
+        # Many topics may have one type.
+        self._metrics_of, self._hash_of = cache(metrics_of), cache(library.definition_hash)
 
     def topic(
         self,
@@ -117,7 +120,7 @@ class TopicReader:
             written=written,
             port=port,
             type=interface.name,
-            definition_hash=self.library.definition_hash(interface),
+            definition_hash=self._hash_of(interface),
             stores=stores,
             qos=qos,
             rate_hz=rate,
@@ -135,8 +138,8 @@ class TopicReader:
             for problem in error.diagnostics:
                 if problem.span is None:
                     entry.error(problem.message)
-                elif problem not in self.marked.problems:
-                    self.marked.problems.append(problem)
+                else:
+                    self.marked.note(problem)
             return None
         if kind == "serve" and not isinstance(found, Service):
             what = "an action" if isinstance(found, Action) else "a message"
@@ -148,7 +151,8 @@ class TopicReader:
             entry.error(f"'{found.name}' is {what}, and a topic has a message{where}")
             return None
         wrong = [each for _, message in _directions(kind, found) for each in refusals(message)]
-        self.marked.problems.extend(each for each in wrong if each not in self.marked.problems)
+        for problem in wrong:
+            self.marked.note(problem)
         return None if wrong else found
 
     def _qos(self, options: dict[str, Entry]) -> Qos:
@@ -166,7 +170,7 @@ class TopicReader:
     def _store(
         self, message: Message, direction: Direction, kind: Kind, options: dict[str, Entry]
     ) -> Store | None:
-        figures = metrics_of(message)
+        figures = self._metrics_of(message)
         least, most = figures.min_bytes or 0, figures.max_bytes
         memory = _memory_bytes(least, most, self.bus_bytes)
         if "memory_bytes" in options:

@@ -369,3 +369,20 @@ def test_an_error_in_a_process_is_reported(tmp_path):
     (tmp_path / "lyrical").write_text("not a folder")
     with pytest.raises(BuildError, match=r"^'.*lyrical.*' cannot be written: "):
         build(["std_msgs/msg/Empty", "std_msgs/msg/Bool"], tmp_path, jobs=2)
+
+
+@pytest.mark.usefixtures("hollow")
+def test_what_cannot_be_read_is_not_called_unwritable(tmp_path, monkeypatch):
+    class Reads:
+        name = "reads"
+
+        def check(self, tasks):
+            pass
+
+        def write(self, converters):
+            return (tmp_path / "missing.json").read_text()
+
+    monkeypatch.setattr(build_module, "BACK_ENDS", [Reads()])
+    with pytest.raises(FileNotFoundError) as caught:
+        build(["std_msgs/msg/Empty"], tmp_path / "out")
+    assert caught.value.filename.endswith("missing.json")

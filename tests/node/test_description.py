@@ -111,10 +111,13 @@ def test_names_are_completed_as_ros_does():
         ("", "1:1: error: a description must not be empty"),
         ("- x", "1:1: error: a description must be a mapping of names to values, not a list"),
         ("a: [", "1:5: error: not YAML"),
-        ("[" * 9999, "1:1: error: not a description: nested too deep"),
+        ("[" * 9999, "error: not a description: nested too deep\n...[[["),
+        ('"\\UFFFFFFFF"', "1:4: error: not YAML: a number is out of range"),
+        (f"%YAML {'1' * 5000}.1\n---\n", "1:7: error: not YAML: a number is out of range"),
         ("node: \x01", "1:7: error: not YAML: special characters are not allowed"),
         ("node: !!python/name:os.system ''", "1:7: error: 'node' must be text"),
         ("&a {node: *a}", "error: 'node' must be text, not a mapping"),
+        ("node: n\n<<: {bus_bytes: 8}", "2:1: error: a key must be text, not a merge key; write"),
         ("nod: x", "1:1: error: a description has no 'nod'; did you mean 'node'?"),
         ("bus_bytes: 8", "1:1: error: a description needs a 'node'"),
         ("node: x", "1:1: error: a node needs a topic: subscribe, publish, serve"),
@@ -128,6 +131,19 @@ def test_names_are_completed_as_ros_does():
         ("node: a\nbus_bytes: 32", "2:12: error: 'bus_bytes' must be 1, 2, 4, 8 or 16, not 32"),
         ("node: a\nbus_bytes: 3", "2:12: error: 'bus_bytes' must be 1, 2, 4, 8 or 16, not 3"),
         ("node: a\nbus_bytes: 0", "2:12: error: 'bus_bytes' must be at least 1, not 0"),
+        ("node: a\nbus_bytes: !!int ''", "2:12: error: 'bus_bytes' must be an integer, not ''"),
+        ("node: a\nbus_bytes: !!int '-'", "2:12: error: 'bus_bytes' must be an integer, not '-'"),
+        ("node: a\nbus_bytes: !!int x", "2:12: error: 'bus_bytes' must be an integer, not 'x'"),
+        (f"node: a\nbus_bytes: 0x{'f' * 5000}", "2:12: error: 'bus_bytes' must be an integer, not"),
+        (f"node: a\nbus_bytes: {'9' * 5000}", "2:12: error: 'bus_bytes' must be an integer, not"),
+        (f"node: a\nclock_mhz: {'1:' * 999}1.0", "2:12: error: 'clock_mhz' must be a number, not"),
+        ("node: a\nclock_mhz: !!float ''", "2:12: error: 'clock_mhz' must be a number, not ''"),
+        ("node: a\nclock_mhz: !!binary QQ==", "must be a number, not a value with a tag"),
+        (
+            "node: a\nclock_mhz: !!timestamp x",
+            "2:12: error: 'clock_mhz' must be a number, not a da",
+        ),
+        ('node: a\ndistro: "\\ud800"', "or 'lyrical', not '\\ud800'"),
         ("node: a\nnode: b", "2:1: error: 'node' is already in line 1"),
         ("node: a\ndistro: humbel", "did you mean 'humble'?"),
         ("node: a\nclock_mhz: 0", "2:12: error: 'clock_mhz' must be from 1 to 1000, not 0"),
@@ -198,11 +214,35 @@ def test_a_mistake_is_reported_at_its_place(text, message):
             "{type: std_msgs/msg/Bool}, not text",
         ),
         ("node: n\npaths: ./nowhere\n" + body(a="type: x/y")[8:], "2:8: error: 'nowhere' is not a"),
+        ('node: n\npaths: "\\0"', "2:8: error: '\\x00' is not a path"),
+        ('node: n\nbags: ["\\ud800"]', "2:7: error: '\\ud800' is not a path"),
     ],
 )
 def test_a_mistake_has_one_message(text, message):
     found = error_of(text, library=None)
     assert found.count("error: ") == 1 and message in found
+
+
+def test_many_names_and_remappings_take_no_minutes():
+    text = body(**{f"/arm/of/robot/joint_{n}": "type: std_msgs/msg/Bool" for n in range(800)})
+    remap = "".join(f"  /arm/of/robot/join_{n}: /x{n}\n" for n in range(1000))
+    found = error_of(f"{text}remap:\n{remap}")
+    assert found.count("no topic has the name '/arm/of/robot/join_") == 1000
+
+
+def test_what_many_topics_share_is_not_reported_without_an_end():
+    keys = ", ".join(f"key_{n}: 1" for n in range(1000))
+    topics = ", ".join(f"t_{n}: *all" for n in range(1000))
+    found = error_of(f"node: n\nserve: {{a: &all {{{keys}}}}}\npublish: {{{topics}}}")
+    assert "too many errors; the rest of the description was not checked" in found
+    assert found.count("has no 'key_") <= 1000
+
+
+def test_a_message_is_short_whatever_it_quotes():
+    name, number = "k" * 100_000, "1" * 100_000
+    assert len(error_of(f"? {name}\n: *{name}")) < 2000
+    assert len(error_of(f"node: n\n? {name}\n: 1\n")) < 2000
+    assert len(error_of(f"node: {number}\n")) < 2000
 
 
 def test_ros_1_has_rules_of_its_own():
@@ -248,9 +288,17 @@ def test_files_that_cannot_be_read(tmp_path):
         read_description(tmp_path / "none.yaml")
     with pytest.raises(DefinitionError, match="it is a folder, not a regular file"):
         read_description(tmp_path)
-    (tmp_path / "latin.yaml").write_bytes(b"node: \xe4")
-    with pytest.raises(DefinitionError, match="is not text in UTF-8"):
+    (tmp_path / "latin.yaml").write_bytes(b"# \xc3\xa4\nnode: \xe4")
+    with pytest.raises(DefinitionError, match=r"latin\.yaml:2:7: error: byte 0xe4 is not UTF-8"):
         read_description(tmp_path / "latin.yaml")
+    (tmp_path / "wide.yaml").write_text("node: a\n", encoding="utf-16")
+    with pytest.raises(DefinitionError, match=r"wide\.yaml:1:1: error: byte 0xff is not UTF-8"):
+        read_description(tmp_path / "wide.yaml")
+    (tmp_path / "marked.yaml").write_text("nod: a\n", encoding="utf-8-sig")
+    with pytest.raises(
+        DefinitionError, match=r"marked\.yaml:1:1: error: .*'nod'.*\nnod: a\n\^\^\^"
+    ):
+        read_description(tmp_path / "marked.yaml")
     (tmp_path / "far.yaml").write_text("node: a\npaths: [nowhere]\n")
     with pytest.raises(DefinitionError, match=r"far\.yaml:2:8: error: '.*nowhere' is not a folder"):
         read_description(tmp_path / "far.yaml")

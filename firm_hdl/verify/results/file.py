@@ -22,6 +22,7 @@ from typing import Any
 
 from firm_hdl.files import read_file
 from firm_hdl.verify.results.records import Record, Test, from_json, to_json
+from firm_hdl.verify.results.texts import clipped
 
 __all__ = ["FORMAT", "Results", "ResultsError", "ResultsWriter", "read_results"]
 
@@ -30,6 +31,9 @@ FORMAT = "firm-hdl results 2"
 
 # The results of a thousand types on seven widths have a hundredth of this size.
 _MOST_BYTES = 1 << 28
+# The first line has all tests. Each line is read as a whole, and takes up to thirty times its size.
+_MOST_LINE_BYTES = 1 << 25
+_MOST_DIGITS = 1000
 
 
 class ResultsError(ValueError):
@@ -102,11 +106,8 @@ def _read(path: Path) -> tuple[Results, int]:
             else:
                 record = from_json(Record, given["record"])
                 records[record.test.key] = record
-        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            # Only our own messages about wrong values are shown. Python's start in lower case.
-            is_ours = isinstance(error, ValueError | TypeError) and " must be " in str(error)
-            reason = str(error) if is_ours and str(error)[0].isupper() else "it is damaged"
-            raise ResultsError(f"'{path}', line {number}: {reason}") from None
+        except _DAMAGE as error:
+            raise _damaged(path, number, error) from None
     found = Results(
         options=options,
         planned=planned,
@@ -117,26 +118,47 @@ def _read(path: Path) -> tuple[Results, int]:
     return found, whole
 
 
+_DAMAGE = (ValueError, KeyError, TypeError, AttributeError, RecursionError)
+
+
+def _damaged(path: Path, number: int, error: Exception) -> ResultsError:
+    # Only our own messages about wrong values are shown. Python's start in lower case.
+    is_ours = isinstance(error, ValueError | TypeError) and " must " in str(error)
+    reason = str(error) if is_ours and str(error)[0].isupper() else "it is damaged"
+    return ResultsError(f"'{path}', line {number}: {reason}")
+
+
 def _header(path: Path, line: bytes) -> tuple[Mapping[str, Any], tuple[Test, ...]]:
+    is_ours = line.startswith(f'{{"format": "{FORMAT}"'.encode())
     try:
         given = _value(line)
-        if given["format"] != FORMAT or not isinstance(given["options"], dict):
-            raise ValueError
+        is_ours = given["format"] == FORMAT
+        if not is_ours or not isinstance(given["options"], dict):
+            raise ValueError("The options must be an object")
         return given["options"], tuple(from_json(Test, test) for test in given["planned"])
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise ResultsError(f"'{path}' has no results of firm-hdl verify") from None
+    except _DAMAGE as error:
+        if not is_ours:
+            raise ResultsError(f"'{path}' has no results of firm-hdl verify") from None
+        raise _damaged(path, 1, error) from None
 
 
 def _value(line: bytes) -> Any:
-    """Read a line. Refuse NaN and infinities: Python reads them, but reports cannot write them."""
+    """Read a line. Refuse numbers that Python reads, but that reports cannot write."""
+
+    def integer(text: str) -> int:
+        if len(text) > _MOST_DIGITS:
+            raise ValueError(f"A number must have at most {_MOST_DIGITS} digits, not {len(text)}")
+        return int(text)
 
     def number(text: str) -> float:
         value = float(text)
         if not math.isfinite(value):
-            raise ValueError(f"{text} is not a number of JSON")
+            raise ValueError(f"A number must be finite, not {clipped(text, 20)}")
         return value
 
-    return json.loads(line, parse_float=number, parse_constant=number)
+    if len(line) > _MOST_LINE_BYTES:
+        raise ValueError(f"A line must have at most {_MOST_LINE_BYTES} bytes, not {len(line)}")
+    return json.loads(line, parse_int=integer, parse_float=number, parse_constant=number)
 
 
 def _session(given: object) -> Mapping[str, str]:

@@ -32,6 +32,9 @@ T = TypeVar("T")
 MOST_FAILURES = 20
 MOST_CHARACTERS = 4000
 
+MOST_COUNTED = 10**100
+"""Largest number of a record: types have no more leaves, and reports can square it."""
+
 STAGES = ("generation", "simulation", "testing")
 """The stages of a test, in order; `Seconds` has them."""
 
@@ -286,7 +289,8 @@ def from_json(kind: type[T], given: object) -> T:
     Raises
     ------
     ValueError
-        If the object has unknown names, or lacks one, or has a value of another type.
+        If the object has unknown names, or lacks one, or has a value of another type, or a number
+        that nothing that is counted or measured can have.
     """
     values = _object(given, _CALLED.get(kind, kind.__name__))
     if kind is OracleVerdict:
@@ -324,13 +328,18 @@ def _read(hint: Any, given: Any) -> Any:
         return part
     # Compare types exactly, because a bool of Python is an int as well.
     if type(given) is hint or (hint is float and type(given) is int):
-        return given
+        if isinstance(given, int | float) and not 0 <= given <= MOST_COUNTED:
+            most = f"{MOST_COUNTED:.0e}"
+            raise ValueError(f"A number must be from 0 to {most}, not {clipped(str(given), 20)}")
+        # As it would have been written: a logarithmic axis has no room for the smallest floats.
+        return to_json(given)
     raise TypeError
 
 
 def _verdict(given: object) -> Verdict:
     if not isinstance(given, dict) or given.get("verdict") not in _VERDICTS:
-        raise ValueError(f"A verdict must be one of {', '.join(_VERDICTS)}, not {given!r}")
+        shown = clipped(repr(given), 200)
+        raise ValueError(f"A verdict must be one of {', '.join(_VERDICTS)}, not {shown}")
     values = {name: value for name, value in given.items() if name != "verdict"}
     verdict: Verdict = from_json(_VERDICTS[given["verdict"]], values)
     return verdict

@@ -116,13 +116,10 @@ def test_damage_elsewhere_is_an_error_that_names_the_line(tmp_path):
         read_results(path)
 
 
-NO_OPTIONS = json.dumps({"format": FORMAT, "options": 7, "planned": []}).encode() + b"\n"
-
-
 @pytest.mark.parametrize(
     "content",
     [
-        *(b"hello", b"hello\n", b"{}\n", b"[]\n", NO_OPTIONS),
+        *(b"hello", b"hello\n", b"{}\n", b"[]\n"),
         # With and without a line end: only the start of our own first line is torn.
         *(b'{"format": "other"}\n', b'{"format": "other"', b'{"of": "mine"}'),
     ],
@@ -272,6 +269,10 @@ def test_workers_end_with_a_run_that_was_killed(tmp_path):
     raise AssertionError(f"workers {workers} are still there")
 
 
+def changed(**values: object) -> str:
+    return json.dumps({"record": {**to_json(a_record()), **values}})
+
+
 @pytest.mark.parametrize(
     ("line", "reason"),
     [
@@ -285,8 +286,27 @@ def test_workers_end_with_a_run_that_was_killed(tmp_path):
         ('{"record": []}', "A record must be an object, not a list"),
         ('{"record": {"test": 3}}', "Test must be an object, not a number"),
         # Python reads such numbers, but reports cannot write them.
-        ('{"session": NaN}', "it is damaged"),
-        ('{"session": 1e999}', "it is damaged"),
+        ('{"session": NaN}', "A number must be finite, not NaN"),
+        ('{"session": -Infinity}', "A number must be finite, not -Infinity"),
+        ('{"session": 1e999}', "A number must be finite, not 1e999"),
+        (f'{{"session": {"9" * 5000}}}', "A number must have at most 1000 digits, not 5000"),
+        ('{"session": ' + "[" * 9999 + "]" * 9999 + "}", "it is damaged"),
+        (changed(cycles=True), "Record: cycles must be of another type"),
+        (changed(cycles=-1), "A number must be from 0 to 1e+100, not -1"),
+        (changed(cpu_seconds=-0.5), "A number must be from 0 to 1e+100, not -0.5"),
+        (
+            changed(seconds={"testing": 10**400}),
+            f"A number must be from 0 to 1e+100, not 1{'0' * 19}... (401 characters)",
+        ),
+        (
+            changed(metrics={"depth": 1e300}),
+            "A number must be from 0 to 1e+100, not 1e+300",
+        ),
+        (
+            changed(verdict={"verdict": "v" * 9999}),
+            "A verdict must be one of failed, not judged, known difference, passed, not "
+            f"{{'verdict': '{'v' * 187}... (10014 characters)",
+        ),
         ('{"session": 7}', "A session must be an object of texts"),
         ('{"session": {"started": 7}}', "A session must be an object of texts"),
         ('{"failure": 7}', "A failure must be a text"),
@@ -300,6 +320,31 @@ def test_an_invalid_line_is_reported_with_the_reason(tmp_path, line, reason):
     with pytest.raises(ResultsError) as error:
         read_results(path)
     assert str(error.value) == f"'{path}', line {number}: {reason}"
+
+
+@pytest.mark.parametrize(
+    ("more", "reason"),
+    [
+        ('"options": 7, "planned": []', "The options must be an object"),
+        ('"options": {"seed": NaN}, "planned": []', "A number must be finite, not NaN"),
+        ('"options": {}, "planned": [{"system": 1}]', "Test: system must be of another type"),
+        ('"options": {}, "planned": 7', "it is damaged"),
+    ],
+)
+def test_an_invalid_first_line_is_reported_with_the_reason(tmp_path, more, reason):
+    path = tmp_path / "r.jsonl"
+    path.write_text(f'{{"format": "{FORMAT}", {more}}}\n')
+    with pytest.raises(ResultsError) as error:
+        read_results(path)
+    assert str(error.value) == f"'{path}', line 1: {reason}"
+
+
+def test_a_line_that_would_fill_the_memory_is_not_read(tmp_path):
+    path = written(tmp_path / "r.jsonl", a_record())
+    with path.open("a") as file:
+        file.write(f'{{"record": [{"[]," * (12 << 20)}[]]}}\n')
+    with pytest.raises(ResultsError, match="line 4: A line must have at most 33554432 bytes, not"):
+        read_results(path)
 
 
 def test_what_is_written_is_on_the_disk_when_the_call_returns(tmp_path, monkeypatch):
