@@ -41,7 +41,7 @@ MAY_IMPORT["export"] = {
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
-    *("firm_hdl", "errors", "files", "garbage", "names", "rtps", "vhdl"),
+    *("firm_hdl", "errors", "files", "garbage", "names", "rtlil", "rtps", "vhdl"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
     *("sim", "export"),
 }

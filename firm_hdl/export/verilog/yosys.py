@@ -16,17 +16,15 @@ import os
 import re
 import sys
 
-from amaranth.back import rtlil
-
 from firm_hdl.errors import UserError
 from firm_hdl.export.top import Top
-from firm_hdl.export.verilog.memories import settled_memories, short_initials
+from firm_hdl.export.verilog.memories import settled_memories, with_initials
 from firm_hdl.export.verilog.ports import named_ports
 from firm_hdl.export.verilog.runtime import YosysError, run_yosys
 from firm_hdl.export.verilog.vectors import whole_vectors
 from firm_hdl.names.identifiers import first_free
 from firm_hdl.names.keywords import KEYWORDS
-from firm_hdl.rtlil import without_indices
+from firm_hdl.rtlil import convert, without_indices
 
 if sys.platform != "win32":
     import resource
@@ -123,7 +121,7 @@ def to_verilog(top: Top | str, *, module: str, header: str) -> str:
         If there is not enough memory.
     """
     if not isinstance(top, str):
-        top = rtlil.convert(top, name=module, emit_src=False)
+        top = convert(top, name=module)
     design = settled_memories(_renamed(top, module))
     design = whole_vectors(_without_keywords(without_indices(named_ports(design))))
     script = _SCRIPT.format(
@@ -140,7 +138,7 @@ def to_verilog(top: Top | str, *, module: str, header: str) -> str:
     # The first line names the version of Yosys, which is in the manifest.
     _, _, body = text.partition("\n")
     # A wire of width 0 is never used, and Verilog would read its range as two bits.
-    body = short_initials(_named_choices(_EMPTY_WIRE.sub("", body)))
+    body = with_initials(_named_choices(_EMPTY_WIRE.sub("", body)))
     comment = "".join(f"// {line}".rstrip() + "\n" for line in header.splitlines())
     return f"{comment}{body}"
 
