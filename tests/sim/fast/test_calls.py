@@ -348,8 +348,8 @@ def compiler(monkeypatch):
 
     monkeypatch.setattr(engines, "find_compiler", find_compiler)
     monkeypatch.setattr(engines, "program_of", program_of)
-    monkeypatch.setattr(engines, "cxxrtl_source", lambda top: f"source of {top}")
-    monkeypatch.setattr(engines, "CxxrtlEngine", lambda program: ("cxxrtl", *program))
+    monkeypatch.setattr(engines, "verilated_source", lambda top: f"source of {top}")
+    monkeypatch.setattr(engines, "VerilatorEngine", lambda program: ("verilator", *program))
     monkeypatch.setattr(engines, "AmaranthEngine", lambda top: ("amaranth", top))
     return state
 
@@ -358,16 +358,16 @@ def test_the_engine_is_compiled_if_there_is_a_compiler(compiler):
     def started(engine):
         return engines.start("top", engine, options=["-O1"], cache="folder")
 
-    compiled = ("cxxrtl", "source of top", ["-O1"], "folder")
-    for engine, expected in (("auto", compiled), ("cxxrtl", compiled)):
-        assert engines.expected_engine(engine) == ("cxxrtl", "")
+    compiled = ("verilator", "source of top", ["-O1"], "folder")
+    for engine, expected in (("auto", compiled), ("verilator", compiled)):
+        assert engines.expected_engine(engine) == ("verilator", "")
         assert started(engine) == expected
     compiler.is_missing = True
     assert engines.expected_engine("auto") == ("amaranth", "there is none")
     assert started("auto") == ("amaranth", "top")
     for call in (engines.expected_engine, started):
         with pytest.raises(ProgramMissingError, match="there is none"):
-            call("cxxrtl")
+            call("verilator")
     for compiler.is_missing in (True, False):
         assert engines.expected_engine("amaranth") == ("amaranth", "")
         assert started("amaranth") == ("amaranth", "top")

@@ -25,7 +25,7 @@ from firm_hdl.sim.fast import (
     SimulationError,
     compilers,
 )
-from firm_hdl.sim.fast.cxxrtl import CxxrtlSource
+from firm_hdl.sim.fast.verilated import VerilatedSource
 from tests.sim.fast.designs import Awkward, WithClocks
 
 DEADLINE = 60.0
@@ -36,7 +36,7 @@ from pathlib import Path
 from firm_hdl.sim.fast import FastSimulation
 from tests.sim.fast.designs import Awkward
 
-simulation = FastSimulation(Awkward(), engine="cxxrtl", options=["-O0"], cache=Path(sys.argv[1]))
+simulation = FastSimulation(Awkward(), engine="verilator", options=["-O0"], cache=Path(sys.argv[1]))
 simulation.go_live()
 # A process that outlives the parent, and has its sockets.
 if os.fork() == 0:
@@ -58,7 +58,7 @@ def is_alive(process: int) -> bool:
 
 
 def test_a_process_that_died(start):
-    simulation = start("cxxrtl")
+    simulation = start("verilator")
     simulation._channel.process.kill()
     with pytest.raises(SimulationError, match=r"^The simulation ended: killed by SIGKILL$"):
         simulation.run(1)
@@ -67,7 +67,7 @@ def test_a_process_that_died(start):
 
 
 def test_a_process_that_dies_during_a_run(start):
-    simulation = start("cxxrtl")
+    simulation = start("verilator")
     simulation.go_live()
     os.kill(simulation._channel.process.pid, signal.SIGABRT)
     with pytest.raises(SimulationError, match="killed by SIGABRT"):
@@ -77,7 +77,7 @@ def test_a_process_that_dies_during_a_run(start):
 
 
 def test_a_message_that_is_wrong_ends_the_engine(start):
-    simulation = start("cxxrtl")
+    simulation = start("verilator")
     simulation._channel.send(b"\x63\0\0\0\0")
     with pytest.raises(SimulationError, match="exit status 2"):
         simulation.run(1)
@@ -89,7 +89,7 @@ def test_a_message_that_is_wrong_ends_the_engine(start):
 
 @pytest.mark.parametrize("is_live", [False, True])
 def test_the_process_ends_when_its_pipe_is_cut(start, is_live):
-    simulation = start("cxxrtl")
+    simulation = start("verilator")
     if is_live:
         simulation.go_live()
     process = simulation._channel.process
@@ -131,13 +131,13 @@ def script(folder: Path, name: str, text: str) -> str:
 
 @pytest.fixture
 def source(monkeypatch):
-    """A source that CXXRTL need not translate."""
+    """A source that Verilator need not translate."""
 
-    def translate(source: CxxrtlSource, folder: Path) -> Path:
+    def translate(source: VerilatedSource, folder: Path) -> Path:
         return folder / "main.cc"
 
     monkeypatch.setattr(compilers, "translate", translate)
-    return CxxrtlSource("netlist", "main")
+    return VerilatedSource("netlist", "main")
 
 
 COMPILES = 'case "$*" in *--version) cat "$0.version"; exit;; esac; echo "$@" >>"$0.calls"'
@@ -198,7 +198,7 @@ def test_a_compiler_that_fails_is_quoted(source, tmp_path, monkeypatch):
 
 def test_the_name_of_a_program_has_all_that_it_depends_on(monkeypatch, tmp_path):
     def key(netlist="n", main="m", script="s", command=("g++", "-O2"), version="1"):
-        source = CxxrtlSource(netlist, main)
+        source = VerilatedSource(netlist, main)
         source.script = script
         return compilers._key(source, command, version)
 
@@ -265,7 +265,7 @@ def test_a_program_that_cannot_start(source, tmp_path, monkeypatch):
     Path(f"{compiler}.version").write_text("1")
     monkeypatch.setenv("CXX", compiler)
     with pytest.raises(BuildError, match=r"cannot be started: .*Permission denied"):
-        FastSimulation(Awkward(), engine="cxxrtl", cache=tmp_path / "cache")
+        FastSimulation(Awkward(), engine="verilator", cache=tmp_path / "cache")
 
 
 def test_a_cache_that_cannot_be_written(source, tmp_path, monkeypatch):
@@ -282,7 +282,7 @@ def test_without_a_compiler_amaranth_simulates(monkeypatch, tmp_path):
     with FastSimulation(Awkward()) as simulation:
         assert simulation.engine == "amaranth"
     with pytest.raises(ProgramMissingError, match=r"A fast simulation needs .*or pip install zig"):
-        FastSimulation(Awkward(), engine="cxxrtl")
+        FastSimulation(Awkward(), engine="verilator")
     monkeypatch.setattr(all_programs.importlib.util, "find_spec", lambda name: object())
     found = all_programs.find_compiler("A test", with_zig=True)
     assert found == (sys.executable, "-m", "ziglang", "c++")
@@ -322,7 +322,7 @@ class Plain(Elaboratable):
         (Unused, ClockDomainError, "one clock domain, 'sync'; the design also has 'spare'"),
     ],
 )
-@pytest.mark.parametrize("engine", ["cxxrtl", "amaranth"])
+@pytest.mark.parametrize("engine", ["verilator", "amaranth"])
 def test_designs_that_cannot_be_simulated(design, error, message, engine):
     with pytest.raises(error, match=message):
         FastSimulation(design(), engine=engine)
