@@ -10,6 +10,7 @@ import weakref
 from contextlib import suppress
 from pathlib import Path
 
+from firm_hdl.jobs.processes import start_program
 from firm_hdl.sim.fast.channel import Channel
 from firm_hdl.sim.fast.compilers import BuildError
 
@@ -47,7 +48,7 @@ class VerilatorEngine(Channel):
         command = [str(program), str(os.getpid())]
         try:
             # Texts of `Print` and `Assert` go where those of this process go.
-            self.process = subprocess.Popen(command, stdin=other.fileno(), start_new_session=True)
+            self.process = start_program(command, stdin=other.fileno(), stdout=None, stderr=None)
         except OSError as error:
             own.close()
             raise BuildError(f"The program of a design cannot be started: {error}") from None
