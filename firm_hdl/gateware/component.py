@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 from amaranth.lib import wiring
 
 __all__ = ["Component"]
+
+
+Self = TypeVar("Self", bound="Component")
 
 
 class Component(wiring.Component):
@@ -16,8 +19,8 @@ class Component(wiring.Component):
     `__init__` of this class last, and only a component that was made so far has to be used.
     """
 
-    def __new__(cls, *args: Any, src_loc_at: int = 0, **options: Any) -> Any:
-        self = super().__new__(cls, src_loc_at=src_loc_at + 1)
+    def __new__(cls: type[Self], *args: Any, src_loc_at: int = 0, **options: Any) -> Self:
+        self: Self = super().__new__(cls, src_loc_at=src_loc_at + 1)
         self._MustUse__used = True
         return self
 
