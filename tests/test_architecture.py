@@ -22,6 +22,8 @@ MAY_IMPORT = {
     "names": set[str](),
     "rtlil": {"names"},
     "vhdl": {"names", "rtlil"},
+    # `errors`, `jobs`: Yosys may have too little memory; its process ends with this one.
+    "verilog": {"errors", "jobs", "names", "rtlil"},
     "rtps": set[str](),
     # Know messages.
     "model": {"errors"},
@@ -37,7 +39,7 @@ MAY_IMPORT = {
     "sim": {"errors", "garbage", "jobs", "model", "wire", "plan", "gateware"},
 }
 MAY_IMPORT["export"] = {
-    *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl"),
+    *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "vhdl", "verilog"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
@@ -50,11 +52,11 @@ MAY_IMPORT["covering"] = {
     *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
 }
 MAY_IMPORT["verify"] = {
-    *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil"}),
+    *(MAY_IMPORT["export"] - {"estimates", "garbage"}),
     *("arguments", "drawing", "export", "identity", "metrics", "node", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
-    *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
+    *("arguments", "errors", "jobs", "names", "terminal", "vhdl", "verilog"),
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
 MAY_IMPORT["formal"] = {
@@ -62,7 +64,7 @@ MAY_IMPORT["formal"] = {
     *("model", "frontend", "wire", "plan", "gateware"),
 }
 MAY_IMPORT["fuzz"] = {
-    *("arguments", "errors", "jobs", "terminal"),
+    *("arguments", "errors", "jobs", "terminal", "verilog"),
     *("model", "frontend", "plan", "gateware", "export"),
     # `verify`: how Verilator is found and run.
     "verify",

@@ -119,7 +119,7 @@ class Converters:
     def _circuit(self, direction: Direction) -> str:
         converter = Deserializer if direction == "deserializer" else Serializer
         top = Top(converter(self.message, **self.parameters()))
-        return rtlil.convert(top, name=f"{self.name}_{direction}")
+        return rtlil.rtlil_of(top, name=f"{self.name}_{direction}")
 
     def header(self, name: str, what: str) -> str:
         """Write the lines of a comment at the head of a file; empty without `inputs`.

@@ -16,7 +16,7 @@ import firm_hdl
 from firm_hdl.errors import UserError
 from firm_hdl.export.folder import clear_up, is_current, is_empty, read_manifest, replace
 from firm_hdl.export.manifest import FORMAT, MANIFEST, digest, to_json
-from firm_hdl.export.verilog.yosys import to_verilog
+from firm_hdl.verilog import convert
 
 __all__ = [
     "BuiltDesign",
@@ -85,7 +85,7 @@ def verilog_file(design: str, *, name: str, header: str) -> dict[str, str]:
         The text, by the file's path in the folder of the design, as for all files here.
     """
     module = verilog_module(name)
-    return {f"{module}.v": to_verilog(design, module=module, header=header)}
+    return {f"{module}.v": convert(design, name=module, header=header)}
 
 
 def vhdl_folder(files: Mapping[str, str]) -> dict[str, str]:

@@ -150,7 +150,7 @@ def _designed(
             # The plain ports are there all the same.
             reason = str(error)
     with conflicts_reported(description), search_put_off():
-        circuit = rtlil.convert(NodeTop(node), name=name)
+        circuit = rtlil.rtlil_of(NodeTop(node), name=name)
     return _Design(
         description=description,
         name=name,

@@ -7,39 +7,64 @@ and 8 MB of text. RTLIL extends a constant that has fewer digits than bits by it
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 from amaranth.back import rtlil
-from amaranth.hdl import Fragment, Signal, _ir, _nir
+from amaranth.hdl import Elaboratable, Fragment, ValueCastable, _ir, _nir
+from amaranth.hdl._ir import PortDirection
 from amaranth.lib import wiring
 
-__all__ = ["convert", "convert_fragment"]
+__all__ = ["convert_fragment", "rtlil_of"]
 
 
-def convert(component: wiring.Component, *, name: str) -> str:
-    """Return a component as RTLIL, without source attributes, which have paths of the machine.
+def rtlil_of(design: Any, *, name: str, ports: Any = None, platform: Any = None) -> str:
+    """Return the RTLIL of a design, without source attributes, which have paths of the machine.
 
     Parameters
     ----------
-    component : wiring.Component
-        Its members are the ports, with ``__`` between the names on the way to a member.
+    design : elaboratable or str
+        A component or other elaboratable, or already RTLIL.
     name : str
         Name of the outermost module.
+    ports, platform
+        As for `amaranth.back.rtlil.convert`; a component needs no ports.
+
+    Raises
+    ------
+    TypeError
+        If the design or its name is none, or an elaboratable that is no component has no ports.
+    ValueError
+        If the name is no word.
     """
-    ports = {
-        "__".join(map(str, path)): (
-            getattr(value, "as_value", lambda value=value: value)(),
-            _ir.PortDirection.Input if member.flow == wiring.In else _ir.PortDirection.Output,
+    if not isinstance(name, str):
+        raise TypeError(f"Name of a design must be a text, not {name!r}")
+    if [name] != name.split():
+        raise ValueError(f"Name of a design must be one word, not {name!r}")
+    if isinstance(design, str):
+        return design
+    if not isinstance(design, Elaboratable | Fragment):
+        raise TypeError(
+            "A design must be an Amaranth component or another elaboratable, or the text of its "
+            f"RTLIL, not {design!r}"
         )
-        for path, member, value in component.signature.flatten(component)
-    }
-    return convert_fragment(Fragment.get(component, None), ports, name=name)
+    if ports is None and not isinstance(getattr(design, "signature", None), wiring.Signature):
+        raise TypeError(
+            f"{design!r} is no component of amaranth.lib.wiring, so its ports must be given: "
+            "ports=[...]"
+        )
+    fragment = Fragment.get(design, platform)
+    if ports is None:
+        ports = {
+            "__".join(map(str, path)): (
+                value.as_value() if isinstance(value, ValueCastable) else value,
+                PortDirection.Input if member.flow == wiring.In else PortDirection.Output,
+            )
+            for path, member, value in design.signature.flatten(design)
+        }
+    return convert_fragment(fragment, ports, name=name)
 
 
-def convert_fragment(
-    fragment: Fragment, ports: dict[str, Any] | Sequence[Signal], *, name: str
-) -> str:
+def convert_fragment(fragment: Fragment, ports: Any, *, name: str) -> str:
     """Return an elaborated design as RTLIL. Parameters are those of `amaranth.back.rtlil`."""
     netlist = _ir.build_netlist(fragment, ports=ports, name=name)
     empty = rtlil.EmptyModuleChecker(netlist)

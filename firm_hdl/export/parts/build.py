@@ -47,7 +47,7 @@ def build_part(
     folder = design_folder(out, name)
     ports = part_ports(part)
     with search_put_off():
-        design = rtlil.convert(PartTop(part), name=name)
+        design = rtlil.rtlil_of(PartTop(part), name=name)
     settings = ", ".join(f"{key} {value}" for key, value in part.parameters.items())
     what = f"packet {part.kind}: {settings}"
 

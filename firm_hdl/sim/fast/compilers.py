@@ -121,7 +121,9 @@ class _Build:
                 pool.shutdown(cancel_futures=True)
                 raise
         program = folder / "program"
-        self._run([*self.command, *sorted(map(str, objects)), "-pthread", "-o", program.name], folder)
+        self._run(
+            [*self.command, *sorted(map(str, objects)), "-pthread", "-o", program.name], folder
+        )
         return made_by(self.command[0], program)
 
     def _object(
@@ -145,7 +147,9 @@ class _Build:
         self, command: Sequence[str], folder: Path, stop: threading.Event | None = None
     ) -> None:
         try:
-            run_tool(command, folder, environment=_environment(), timeout=_COMPILE_SECONDS, stop=stop)
+            run_tool(
+                command, folder, environment=_environment(), timeout=_COMPILE_SECONDS, stop=stop
+            )
         except ToolError as error:
             said = _shortened(str(error))
             raise BuildError(f"The compiler failed: {shlex.join(command)}\n{said}") from None

@@ -110,9 +110,7 @@ class FastSimulation:
         self.is_live = False
         self._clear()
         self._stalls, top = stalls, Top(design, self.ports)
-        self._channel: Channel = start(
-            top, engine, options=options, cache=cache, report=report
-        )
+        self._channel: Channel = start(top, engine, options=options, cache=cache, report=report)
         self.engine: Literal["verilator", "amaranth"] = self._channel.engine
         try:
             self._prepare(stalls)

@@ -8,11 +8,11 @@ from pathlib import Path
 import jinja2
 from amaranth.hdl import Fragment
 
-from firm_hdl.export.verilog import to_verilog
 from firm_hdl.garbage import search_put_off
 from firm_hdl.jobs import ToolError, made_by, run_tool
 from firm_hdl.rtlil import convert_fragment
 from firm_hdl.sim.fast.top import Top, check_domains
+from firm_hdl.verilog import convert
 
 __all__ = ["SERVER", "VerilatedSource", "translate", "verilated_source"]
 
@@ -67,7 +67,7 @@ def verilated_source(top: Top) -> VerilatedSource:
     main = _templates.get_template("model.cc.j2").render(
         prefix=_PREFIX, streams=top.ports.streams, plain=top.ports.plain
     )
-    return VerilatedSource(to_verilog(netlist, module=_MODULE, header=""), main)
+    return VerilatedSource(convert(netlist, name=_MODULE), main)
 
 
 def translate(
