@@ -13,7 +13,6 @@ from firm_hdl.plan import Plan
 
 if TYPE_CHECKING:
     from firm_hdl.node import Description
-    from firm_hdl.sim.fast import EngineName
 
 __all__ = ["add_node"]
 
@@ -108,14 +107,14 @@ def _act(args: argparse.Namespace, description: Description) -> None:
         for old, new in sorted(built.renamed.items()):
             print(f"        your file {old} is now {new}", flush=True)
         if args.sim:
-            _compile(description, args.engine)
+            _compile(description, args)
     print(summary(description))
 
 
-def _compile(description: Description, engine: EngineName) -> None:
+def _compile(description: Description, args: argparse.Namespace) -> None:
     from firm_hdl.node.boards.simulated import SimulatedBoard
 
     def report(stage: str) -> None:
         print(f"board sim: {stage}", file=sys.stderr, flush=True)
 
-    SimulatedBoard(description, engine=engine, report=report).compile()
+    SimulatedBoard(description, engine=args.engine, report=report).compile()

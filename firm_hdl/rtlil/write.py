@@ -79,7 +79,7 @@ def convert_fragment(fragment: Fragment, ports: Any, *, name: str) -> str:
     return str(design)
 
 
-class _Emitter(rtlil.ModuleEmitter):  # type: ignore[misc]
+class _Emitter(rtlil.ModuleEmitter):
     def emit_memory(self, cell_idx: int, cell: _nir.Memory) -> None:
         if any(cell.init):
             super().emit_memory(cell_idx, cell)

@@ -59,13 +59,10 @@ def run_bridge(
         answered in `seconds`.
     """
     status = Status(sys.stderr, quiet=quiet)
-    simulation: dict[str, Any] = {}
+    simulation: dict[str, Any] = {"engine": engine}
     if board == "sim":
         status.report(f"board sim: starts; {_engine(engine)}")
-        simulation = {
-            "engine": engine,
-            "report": lambda stage: status.report(f"board sim: {stage}"),
-        }
+        simulation["report"] = lambda stage: status.report(f"board sim: {stage}")
     bridge = Bridge(
         description,
         board_of(board, description, **simulation),

@@ -31,6 +31,7 @@ Report = Callable[[str], object]
 
 _ALWAYS = ("-std=c++17", "-w")
 _COMPILE_SECONDS = 3600.0
+_REPORT_SECONDS = 5.0
 # Lines of a compiler's messages: the first ones say what is wrong.
 _MOST_LINES = 12
 _MOST_CHARACTERS = 2000
@@ -104,7 +105,7 @@ class _Build:
         include = (f"-I{headers}", f"-I{headers / 'vltstd'}")
         own = "".join(path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.h")))
         stop = threading.Event()
-        started, done = time.monotonic(), 0
+        started = told = time.monotonic()
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             futures = [
                 pool.submit(self._object, path, folder, include, own, stop) for path in files
@@ -113,18 +114,18 @@ class _Build:
                 objects = []
                 for future in as_completed(futures):
                     objects.append(future.result())
-                    seconds = time.monotonic() - started
-                    self.report(f"compiles, {len(objects)} of {len(files)} files, {seconds:.0f} s")
+                    now = time.monotonic()
+                    if now > told + _REPORT_SECONDS or len(objects) == len(files):
+                        told = now
+                        done = f"{len(objects)} of {len(files)} files"
+                        self.report(f"compiled {done} in {now - started:.0f} s")
             except BaseException:
                 # Also Ctrl-C. What has been compiled is kept.
                 stop.set()
                 pool.shutdown(cancel_futures=True)
                 raise
-        program = folder / "program"
-        self._run(
-            [*self.command, *sorted(map(str, objects)), "-pthread", "-o", program.name], folder
-        )
-        return made_by(self.command[0], program)
+        linked = [*self.command, *sorted(map(str, objects)), "-pthread"]
+        return self._run(linked, folder / "program", folder)
 
     def _object(
         self, path: Path, folder: Path, include: Sequence[str], own: str, stop: threading.Event
@@ -132,27 +133,29 @@ class _Build:
         """Compile a file, unless its object is kept."""
         # What runs once, at the start, is a third of the text.
         command = [*self.command, *(["-O0"] if "Slow" in path.name else []), *include]
-        whole = [*command, "-c", str(path), "-o"]
+        whole = [*command, "-c", str(path)]
 
         def make(scratch: Path) -> Path:
-            made = scratch / "object.o"
-            self._run([*whole, str(made)], folder, stop)
-            return made_by(self.command[0], made)
+            return self._run(whole, scratch / "object.o", folder, stop)
 
         version = _said(tuple(self.command), "--version")
         parts = (path.read_text(encoding="utf-8"), own, version, *command)
         return kept_program("object", parts, make, self.cache)
 
     def _run(
-        self, command: Sequence[str], folder: Path, stop: threading.Event | None = None
-    ) -> None:
+        self,
+        command: Sequence[str],
+        output: Path,
+        folder: Path,
+        stop: threading.Event | None = None,
+    ) -> Path:
+        whole = [*command, "-o", str(output)]
         try:
-            run_tool(
-                command, folder, environment=_environment(), timeout=_COMPILE_SECONDS, stop=stop
-            )
+            run_tool(whole, folder, environment=_environment(), timeout=_COMPILE_SECONDS, stop=stop)
+            return made_by(command[0], output)
         except ToolError as error:
             said = _shortened(str(error))
-            raise BuildError(f"The compiler failed: {shlex.join(command)}\n{said}") from None
+            raise BuildError(f"The compiler failed: {shlex.join(whole)}\n{said}") from None
 
 
 def _nothing(line: str) -> None:

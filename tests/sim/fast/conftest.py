@@ -6,6 +6,7 @@ from __future__ import annotations
 import fcntl
 import os
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -33,7 +34,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with (folder.parent / "programs.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         design = Awkward()
-        source = verilated_source(Top(design, ports_of(design)))
+        source = partial(verilated_source, Top(design, ports_of(design)))
         program_of(source, options=OPTIONS, cache=folder)
     return folder
 
