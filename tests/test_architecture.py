@@ -22,6 +22,8 @@ MAY_IMPORT = {
     "names": set[str](),
     "rtlil": {"names"},
     "vhdl": {"names", "rtlil"},
+    # `errors`, `jobs`: Yosys may have too little memory; its process ends with this one.
+    "verilog": {"errors", "jobs", "names", "rtlil"},
     "rtps": set[str](),
     # Know messages.
     "model": {"errors"},
@@ -34,14 +36,16 @@ MAY_IMPORT = {
     "estimates": {"plan"},
     "gateware": {"model", "wire", "plan"},
     # `jobs`: compilers.
-    "sim": {"errors", "garbage", "jobs", "model", "wire", "plan", "gateware"},
+    "sim": {
+        *("errors", "garbage", "jobs", "rtlil", "verilog", "model", "wire", "plan", "gateware"),
+    },
 }
 MAY_IMPORT["export"] = {
-    *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl"),
+    *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl", "verilog"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
-    *("firm_hdl", "errors", "files", "garbage", "names", "rtps", "vhdl"),
+    *("firm_hdl", "errors", "files", "garbage", "names", "rtlil", "rtps", "vhdl"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
     *("sim", "export"),
 }
@@ -54,7 +58,7 @@ MAY_IMPORT["verify"] = {
     *("arguments", "drawing", "export", "identity", "metrics", "node", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
-    *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
+    *("arguments", "errors", "jobs", "names", "terminal", "vhdl", "verilog"),
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
 MAY_IMPORT["formal"] = {
@@ -62,7 +66,7 @@ MAY_IMPORT["formal"] = {
     *("model", "frontend", "wire", "plan", "gateware"),
 }
 MAY_IMPORT["fuzz"] = {
-    *("arguments", "errors", "jobs", "terminal"),
+    *("arguments", "errors", "jobs", "terminal", "verilog"),
     *("model", "frontend", "plan", "gateware", "export"),
     # `verify`: how Verilator is found and run.
     "verify",

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from firm_hdl.export.verilog import is_out_of_memory, out_of_memory
 from firm_hdl.jobs import ProgramMissingError, ToolError, TooSlowError, made_by, run_tool
 from firm_hdl.jobs.programs import find_ghdl, find_package, find_yosys
+from firm_hdl.verilog import is_out_of_memory, out_of_memory
 
 __all__ = ["Tools", "answer_of", "find_tools"]
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from firm_hdl.export.backend import Options
 from firm_hdl.export.build import BuildError, Built, build
 from firm_hdl.export.top import Port, Top, ports_of
-from firm_hdl.export.verilog import to_verilog
 
 __all__ = [
     "BuildError",
@@ -15,5 +14,4 @@ __all__ = [
     "Top",
     "build",
     "ports_of",
-    "to_verilog",
 ]

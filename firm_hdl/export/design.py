@@ -15,7 +15,7 @@ import yaml
 import firm_hdl
 from firm_hdl.export.folder import build_folder, check_folder
 from firm_hdl.export.manifest import FORMAT, digest
-from firm_hdl.export.verilog.yosys import to_verilog
+from firm_hdl.verilog import convert
 
 __all__ = [
     "BuiltDesign",
@@ -83,7 +83,7 @@ def verilog_file(design: str, *, name: str, header: str) -> dict[str, str]:
         The text, by the file's path in the folder of the design, as for all files here.
     """
     module = verilog_module(name)
-    return {f"{module}.v": to_verilog(design, module=module, header=header)}
+    return {f"{module}.v": convert(design, name=module, header=header)}
 
 
 def vhdl_folder(files: Mapping[str, str]) -> dict[str, str]:

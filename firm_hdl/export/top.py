@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from amaranth.hdl import Cat, ClockDomain, Module, Mux, Shape, Signal, Value
-from amaranth.lib import data, wiring
+from amaranth.lib import data
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.limits import MAX_CELL_BITS
 from firm_hdl.gateware.signatures import leaf_shape
 from firm_hdl.model import Array, Field, Message, Sequence
@@ -186,7 +187,7 @@ def _meaning(leaf: Leaf) -> str:
     return f"{leaf}: {leaf.type} ({form})."
 
 
-class Top(wiring.Component):
+class Top(Component):
     """A converter with AXI4-Stream on its packet side and named ports on its message side.
 
     The top level adds neither registers nor latency. `aresetn` is active low and synchronous to the
@@ -201,9 +202,19 @@ class Top(wiring.Component):
     Members
     -------
     As :func:`ports_of` lists them.
+
+    Raises
+    ------
+    TypeError
+        If the core is another component.
     """
 
     def __init__(self, core: Deserializer | Serializer):
+        if not isinstance(core, Deserializer | Serializer):
+            raise TypeError(
+                f"A top level has a Deserializer or a Serializer, not {core!r}; any other "
+                "component can be written by firm_hdl.verilog.convert and firm_hdl.vhdl.convert"
+            )
         self.core = core
         self.direction: Direction = (
             "deserializer" if isinstance(core, Deserializer) else "serializer"

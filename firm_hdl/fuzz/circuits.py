@@ -12,16 +12,15 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 import jinja2
-from amaranth.back import rtlil
 
 from firm_hdl.export.top import Direction, Port, Top, leaf_names, ports_of
-from firm_hdl.export.verilog import to_verilog
 from firm_hdl.fuzz.table import Table
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.packets import PacketGate
 from firm_hdl.gateware.packets.memory import WhenFull
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
+from firm_hdl.verilog import convert
 
 __all__ = ["CIRCUITS", "Alter", "Circuit", "CircuitName", "circuits_of", "templates", "unaltered"]
 
@@ -237,9 +236,7 @@ class _Maker:
             max_message_bytes=self.max_message_bytes,
         )
         module = f"gate_{policy}"
-        text = to_verilog(
-            rtlil.convert(gate, name=module, emit_src=False), module=module, header=""
-        )
+        text = convert(gate, name=module)
         # A payload has the data in its lowest bits, then the count, then `last`.
         data, last = 8 * bus, 8 * bus + bus.bit_length()
         size_bits = memory.bit_length()
@@ -273,7 +270,7 @@ class _Maker:
                 bus_bytes=self.bus_bytes,
                 max_message_bytes=self.max_message_bytes,
             )
-            text = to_verilog(Top(core), module=direction, header="")
+            text = convert(Top(core), name=direction)
             self._tops[direction] = core.plan, self.alter(direction, text)
         return self._tops[direction]
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from amaranth.hdl import Module
-from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.mover import Mover
 from firm_hdl.gateware.parse import Buffer, OrderQueue, Sequencer
@@ -25,7 +25,7 @@ from firm_hdl.wire import Wire, lay_out
 __all__ = ["Deserializer"]
 
 
-class Deserializer(wiring.Component):
+class Deserializer(Component):
     """Turn packets into messages.
 
     Every leaf has one register. A packet advances one step of the plan per cycle, while its bytes

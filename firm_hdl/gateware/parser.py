@@ -6,6 +6,7 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import Buffer, Sequencer, verdict_layout
 from firm_hdl.gateware.positions import Ring, beat_layout
@@ -53,7 +54,7 @@ def parser_plan(
     )
 
 
-class Parser(wiring.Component):
+class Parser(Component):
     """Judge packets, without extracting their messages.
 
     Each packet ends in one transfer on `status`, the same as from a :class:`Deserializer` with the

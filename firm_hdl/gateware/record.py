@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from amaranth.hdl import Cat, Module, Signal, Value
-from amaranth.lib import data, stream, wiring
+from amaranth.lib import data, stream
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.limits import MAX_CELL_BITS
 from firm_hdl.gateware.members import MemberTree, member_tree
 from firm_hdl.gateware.record_layout import Record, Transfer
@@ -24,7 +25,7 @@ from firm_hdl.wire import Wire, lay_out
 __all__ = ["RecordReader", "RecordWriter"]
 
 
-class _Adapter(wiring.Component):
+class _Adapter(Component):
     def __init__(
         self,
         message: Message,

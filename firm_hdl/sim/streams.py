@@ -144,7 +144,7 @@ async def receive_packets(
     ------
     DeadlineError
     StreamRuleError
-        If a beat breaks rule 3 or 4 of :mod:`firm_hdl.sim.watch`.
+        If a beat breaks rule 5 or 6 of :mod:`firm_hdl.sim.watch`.
     """
     collector = PacketCollector(len(port.payload.data))
     rules = PacketRules(name, collector.bus_bytes)

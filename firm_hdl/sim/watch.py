@@ -1,12 +1,12 @@
 """Check the rules of streams.
 
-Rules 1 and 2 are the rules of `amaranth.lib.stream` that can be observed in every cycle. Rules 3
-and 4 are those of packets (:func:`firm_hdl.gateware.signatures.packet_layout`):
+The rules have the numbers of ``docs/interface.md``. Those that can be observed are checked: two of
+all streams, and two of packets (:func:`firm_hdl.gateware.signatures.packet_layout`).
 
-1. Once `valid` is high, it stays high until the transfer.
-2. Once `valid` is high, the payload stays the same until the transfer.
-3. A beat that is not the last of its packet is full: `count` is the width of the bus.
-4. `count` is at most the width of the bus, and 0 only in the single beat of an empty packet.
+* Rule 2: once `valid` is high, it stays high until the transfer.
+* Rule 3: once `valid` is high, the payload stays the same until the transfer.
+* Rule 5: a beat that is not the last of its packet is full: `count` is the width of the bus.
+* Rule 6: `count` is at most the width of the bus, and 0 only in the single beat of an empty packet.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class StreamRuleError(AssertionError):
     stream : str
         Name of the stream.
     rule : int
-        Number of the rule; see :mod:`firm_hdl.sim.watch`.
+        Number of the rule in ``docs/interface.md``; see :mod:`firm_hdl.sim.watch`.
     cycle : int
         Cycle in which the rule was broken, counted from 0.
     """
@@ -44,7 +44,7 @@ class StreamRuleError(AssertionError):
 
 @dataclass(slots=True)
 class StreamRules:
-    """Rules 1 and 2 for a set of streams, checked in each cycle.
+    """Rules 2 and 3 for a set of streams, checked in each cycle.
 
     Each stream is a bit in an integer, so that a cycle in which no transfer waits is checked fast.
 
@@ -64,14 +64,14 @@ class StreamRules:
         """Check one cycle; `payload` returns the payload of a stream by its number, as bits."""
         if dropped := self._waiting & ~valid:
             name = self.names[dropped.bit_length() - 1]
-            raise StreamRuleError(name, 1, cycle, "valid fell before the transfer")
+            raise StreamRuleError(name, 2, cycle, "valid fell before the transfer")
         waiting = valid & ~ready
         if not (waiting or self.held):
             return
         for number, before in self.held.items():
             if (now := payload(number)) != before:
                 what = f"payload changed from {before:#x} to {now:#x} before the transfer"
-                raise StreamRuleError(self.names[number], 2, cycle, what)
+                raise StreamRuleError(self.names[number], 3, cycle, what)
         if waiting == self._waiting:
             return
         self.held = {
@@ -84,7 +84,7 @@ class StreamRules:
 
 @dataclass(slots=True)
 class PacketRules:
-    """Rules 3 and 4 for one packet stream, checked at each transfer."""
+    """Rules 5 and 6 for one packet stream, checked at each transfer."""
 
     name: str
     bus_bytes: int
@@ -97,10 +97,10 @@ class PacketRules:
         last = bool(bits >> (8 * self.bus_bytes + count_bits))
         if not last and count != self.bus_bytes:
             what = f"count is {count}, not {self.bus_bytes}, in a beat that is not the last"
-            raise StreamRuleError(self.name, 3, cycle, what)
+            raise StreamRuleError(self.name, 5, cycle, what)
         if count > self.bus_bytes or (count == 0 and self._inside):
             what = f"count is {count}" + (" at the end of a packet" if self._inside else "")
-            raise StreamRuleError(self.name, 4, cycle, what)
+            raise StreamRuleError(self.name, 6, cycle, what)
         self._inside = not last
 
 
@@ -118,7 +118,7 @@ def watch(streams: Mapping[str, stream.Interface]) -> Callable[[SimulatorContext
     Parameters
     ----------
     streams : mapping of str to stream.Interface
-        Streams by name, for errors. Packet streams are also checked for rules 3 and 4.
+        Streams by name, for errors. Packet streams are also checked for rules 5 and 6.
 
     Raises
     ------

@@ -15,11 +15,10 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from amaranth.back import rtlil as amaranth_rtlil
-
 from firm_hdl.rtlil.ir import Cell, Design, Module
 from firm_hdl.rtlil.read import parse
 from firm_hdl.rtlil.simplify import simplified
+from firm_hdl.rtlil.write import rtlil_of
 from firm_hdl.vhdl.declare import fixed_names, part_names
 from firm_hdl.vhdl.module import EntityNames, ModuleWriter
 from firm_hdl.vhdl.names import AMS, Scope
@@ -85,15 +84,13 @@ def convert(
 
     Raises
     ------
+    TypeError
+        If the design or its name is none, or an elaboratable that is no component has no ports.
     ValueError
         If the design has a construct that VHDL cannot express, such as `AnyConst`, or the text is
         not RTLIL that Amaranth 0.5 prints.
     """
-    if not isinstance(design, str):
-        design = amaranth_rtlil.convert(
-            design, name=name, platform=platform, ports=ports, emit_src=False
-        )
-    netlist = _read(design)
+    netlist = _read(rtlil_of(design, name=name, ports=ports, platform=platform))
     prefix = netlist.top.name
     entities = Scope([PACKAGE_NAME]).give_all(
         {module: name + module.removeprefix(prefix) for module in netlist.modules}

@@ -300,14 +300,14 @@ def test_build_that_is_interrupted_leaves_whole_folders(workdir, capsys, monkeyp
     # Each type takes two calls, one for each direction; the interrupt comes in one of them.
     module = importlib.import_module("firm_hdl.export.verilog.backend")
     left = iter(range(calls))
-    to_verilog = module.to_verilog
+    convert = module.convert
 
     def interrupted(*args: Any, **options: Any) -> str:
         if next(left, None) is None:
             raise KeyboardInterrupt
-        return to_verilog(*args, **options)
+        return convert(*args, **options)
 
-    monkeypatch.setattr(module, "to_verilog", interrupted)
+    monkeypatch.setattr(module, "convert", interrupted)
     assert main(["build", "std_msgs/msg/Bool", "std_msgs/msg/Char", "--jobs", "1"]) == 130
     assert capsys.readouterr().err == "interrupted\n"
     assert [path.name for path in workdir.glob("vhdl_out/lyrical/*")] == [

@@ -21,8 +21,8 @@ def quick(monkeypatch):
     """Replace Yosys by a stub, because Yosys takes nearly all of a build's time."""
     monkeypatch.setattr(Converters, "make_circuits", lambda self: dict.fromkeys(DIRECTIONS, ""))
     monkeypatch.setattr(
-        "firm_hdl.export.verilog.backend.to_verilog",
-        lambda top, module, header: f"{header}module {module};\n",
+        "firm_hdl.export.verilog.backend.convert",
+        lambda top, name, header: f"{header}module {name};\n",
     )
     monkeypatch.setattr(Vhdl, "write", quick_vhdl)
 

@@ -311,19 +311,19 @@ def test_values_of_an_output_are_whole_words():
 
 
 def test_gates_have_little_memory_and_their_own_policy(monkeypatch):
-    texts, asked = [], []
+    designs, asked = [], []
 
     class Gate(PacketGate):
         def __init__(self, message, **options):
             asked.append(options)
             super().__init__(message, **options)
 
-    def to_verilog(text, *, module, header):
-        texts.append(text)
-        return f"module {module}\n"
+    def convert(design, *, name):
+        designs.append(design)
+        return f"module {name}\n"
 
     # Yosys is slow.
-    monkeypatch.setattr("firm_hdl.fuzz.circuits.to_verilog", to_verilog)
+    monkeypatch.setattr("firm_hdl.fuzz.circuits.convert", convert)
     monkeypatch.setattr("firm_hdl.fuzz.circuits.PacketGate", Gate)
     message = make("ros2", {"data": "float64[40]"})
     table = table_of(message, wire="cdr", bus_bytes=4, max_message_bytes=500)
@@ -336,7 +336,7 @@ def test_gates_have_little_memory_and_their_own_policy(monkeypatch):
     )
     # Two of the shortest packets fit: of 4 and 320 bytes.
     assert [(each.drops, each.memory_bytes) for each in made] == [(False, 1024), (True, 1024)]
-    assert texts[0] != texts[1]
+    assert designs[0] != designs[1]
     assert [(each["when_full"], each["max_message_bytes"]) for each in asked] == [
         ("wait", 500),
         ("drop", 500),
@@ -349,7 +349,7 @@ def test_gates_have_little_memory_and_their_own_policy(monkeypatch):
 
 
 def test_a_table_of_other_leaves_or_widths_is_refused(monkeypatch):
-    monkeypatch.setattr("firm_hdl.fuzz.circuits.to_verilog", lambda *given, **options: "")
+    monkeypatch.setattr("firm_hdl.fuzz.circuits.convert", lambda *given, **options: "")
     message = message_of(STRING)
     table = table_of(message, wire="cdr", bus_bytes=4, max_message_bytes=300)
 

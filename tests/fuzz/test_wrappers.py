@@ -20,11 +20,11 @@ def made(monkeypatch):
     """A function that makes circuits for a bus, without their Verilog."""
     modules = []
 
-    def to_verilog(top, *, module, header):
-        modules.append(module)
-        return f"module {module}\n"
+    def convert(design, *, name):
+        modules.append(name)
+        return f"module {name}\n"
 
-    monkeypatch.setattr("firm_hdl.fuzz.circuits.to_verilog", to_verilog)
+    monkeypatch.setattr("firm_hdl.fuzz.circuits.convert", convert)
     message = make("ros1", FIELDS)
 
     def of(bus_bytes, *names):

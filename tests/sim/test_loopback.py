@@ -275,8 +275,8 @@ def test_deadline_of_a_decoder_names_the_leaves_that_are_missing():
     ("fault", "error"),
     [
         ("silent", r"^No transfer in \d+ .*; outstanding: packets_out \(0 of 1\); offered and .*"),
-        ("unstable", r"^Stream 'packets_out' breaks rule 2 in cycle \d+: payload changed from "),
-        ("count", r"^Stream 'packets_out' breaks rule 3 in cycle \d+: count is 3, not 8, in "),
+        ("unstable", r"^Stream 'packets_out' breaks rule 3 in cycle \d+: payload changed from "),
+        ("count", r"^Stream 'packets_out' breaks rule 5 in cycle \d+: count is 3, not 8, in "),
         ("twice", r"^Stream 'sent_status' has more than the 1 expected, in cycle 1$"),
     ],
 )
@@ -305,7 +305,7 @@ def test_dropped_valid_is_found_in_a_bench():
         outstanding=lambda: "some",
         options=RunOptions(stalls={"o": Stalls.bits("00001")}),
     )
-    with pytest.raises(StreamRuleError, match=r"^Stream 'o' breaks rule 1 in cycle \d+"):
+    with pytest.raises(StreamRuleError, match=r"^Stream 'o' breaks rule 2 in cycle \d+"):
         bench.run(job)
 
 

@@ -72,7 +72,7 @@ def test_start_of_another_packet_is_an_error():
 
 def test_beats_that_no_packet_has_are_an_error():
     take = recorder().takes()["packets_out"]
-    with pytest.raises(StreamRuleError, match="breaks rule 3 in cycle 3"):
+    with pytest.raises(StreamRuleError, match="breaks rule 5 in cycle 3"):
         take(3, beat(b"abc", last=False))
 
 

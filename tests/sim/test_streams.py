@@ -121,7 +121,7 @@ def test_receive_packets_checks_their_rules():
     async def sink(ctx):
         await receive_packets(ctx, dut.o, 1, name="answers")
 
-    with pytest.raises(StreamRuleError, match=r"^Stream 'answers' breaks rule 3 in cycle 0: "):
+    with pytest.raises(StreamRuleError, match=r"^Stream 'answers' breaks rule 5 in cycle 0: "):
         run_testbenches(dut, source, sink)
 
 

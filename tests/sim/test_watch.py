@@ -37,16 +37,16 @@ def test_valid_that_falls_is_rule_1():
     with pytest.raises(StreamRuleError) as caught:
         relay("drop")
     error = caught.value
-    assert (error.stream, error.rule) == ("dut.o", 1)
+    assert (error.stream, error.rule) == ("dut.o", 2)
     assert str(error) == (
-        f"Stream 'dut.o' breaks rule 1 in cycle {error.cycle}: valid fell before the transfer"
+        f"Stream 'dut.o' breaks rule 2 in cycle {error.cycle}: valid fell before the transfer"
     )
 
 
 def test_payload_that_changes_is_rule_2():
     with pytest.raises(
         StreamRuleError,
-        match=r"^Stream 'dut\.o' breaks rule 2 in cycle \d+: payload changed from 0x1 to 0x0 ",
+        match=r"^Stream 'dut\.o' breaks rule 3 in cycle \d+: payload changed from 0x1 to 0x0 ",
     ):
         relay("change")
 
@@ -114,14 +114,14 @@ def test_rules_follow_each_stream_on_its_own():
     rules.check(1, 0b11, 0b11, payloads.__getitem__)
     rules.check(2, 0b00, 0b00, payloads.__getitem__)
     rules.check(3, 0b01, 0b00, payloads.__getitem__)
-    with pytest.raises(StreamRuleError, match=r"^Stream 'a' breaks rule 1 in cycle 4"):
+    with pytest.raises(StreamRuleError, match=r"^Stream 'a' breaks rule 2 in cycle 4"):
         rules.check(4, 0b10, 0b11, payloads.__getitem__)
 
 
 def test_change_in_the_cycle_of_the_transfer_is_seen():
     rules = StreamRules(["a"])
     rules.check(0, 1, 0, lambda number: 1)
-    with pytest.raises(StreamRuleError, match="rule 2 in cycle 1"):
+    with pytest.raises(StreamRuleError, match="rule 3 in cycle 1"):
         rules.check(1, 1, 1, lambda number: 2)
 
 
@@ -132,14 +132,14 @@ def beat(count, last, bus_bytes=4):
 @pytest.mark.parametrize(
     ("beats", "rule"),
     [
-        ([(3, 0)], 3),
-        ([(0, 0)], 3),
-        ([(5, 1)], 4),
-        ([(4, 0), (0, 1)], 4),
-        ([(4, 0), (4, 1), (2, 0)], 3),
+        ([(3, 0)], 5),
+        ([(0, 0)], 5),
+        ([(5, 1)], 6),
+        ([(4, 0), (0, 1)], 6),
+        ([(4, 0), (4, 1), (2, 0)], 5),
     ],
 )
-def test_beats_that_no_packet_has_are_rules_3_and_4(beats, rule):
+def test_beats_that_no_packet_has_are_rules_5_and_6(beats, rule):
     rules = PacketRules("p", 4)
     with pytest.raises(StreamRuleError, match=f"^Stream 'p' breaks rule {rule} in cycle "):
         for cycle, (count, last) in enumerate(beats):
@@ -164,7 +164,7 @@ def test_watch_knows_packet_streams():
     async def sink(ctx):
         await receive(ctx, dut.o, 1)
 
-    with pytest.raises(StreamRuleError, match=r"^Stream 'packets' breaks rule 3 in cycle"):
+    with pytest.raises(StreamRuleError, match=r"^Stream 'packets' breaks rule 5 in cycle"):
         run_testbenches(dut, source, sink, background=[watch({"packets": dut.o})])
 
 
@@ -194,5 +194,5 @@ def test_a_beat_is_checked_in_the_cycle_of_its_transfer_and_cycles_of_a_reset_co
     simulator.add_testbench(source)
     simulator.add_testbench(sink)
     simulator.add_testbench(watch({"i": dut.i}), background=True)
-    with pytest.raises(StreamRuleError, match=r"^Stream 'i' breaks rule 3 in cycle 6:"):
+    with pytest.raises(StreamRuleError, match=r"^Stream 'i' breaks rule 5 in cycle 6:"):
         simulator.run()

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from amaranth.hdl import Cat, Module, Mux, Shape, Value
-from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.errors import UserError
 from firm_hdl.export.parts.catalog import Part
 from firm_hdl.export.top import MAX_INPUT_BITS, Port, add_domain, trailing_ones
+from firm_hdl.gateware.component import Component
 
 __all__ = ["PartTop", "clocks_of", "part_ports"]
 
@@ -72,7 +72,7 @@ def _clock(clock: str, reset: str) -> Iterator[Port]:
     yield Port(name=reset, direction="in", width=1, meaning="Synchronous reset, active low.")
 
 
-class PartTop(wiring.Component):
+class PartTop(Component):
     """A packet part with ports of plain vectors. It adds neither registers nor latency.
 
     On an input, `tkeep` is a contiguous run of ones from lane 0, and only its value in the last

@@ -8,8 +8,8 @@ from typing import Any
 from firm_hdl.export.backend import BackEnd, Converters, Output, module_name
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
 from firm_hdl.export.verilog.template import template
-from firm_hdl.export.verilog.yosys import to_verilog
 from firm_hdl.plan import Plan
+from firm_hdl.verilog import convert
 
 __all__ = ["Verilog", "section", "waivers"]
 
@@ -35,8 +35,8 @@ class Verilog(BackEnd):
         files = {_WAIVERS: waivers(modules.values())}
         for direction, module in modules.items():
             header = converters.header(module, f"the {direction}")
-            files[f"{module}.v"] = to_verilog(
-                converters.circuits[direction], module=module, header=header
+            files[f"{module}.v"] = convert(
+                converters.circuits[direction], name=module, header=header
             )
             files[f"{module}.veo"] = template(
                 converters.message, converters.plan, direction, module=module, header=header

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value
-from amaranth.lib import data, wiring
+from amaranth.lib import data
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.positions import any_of
 from firm_hdl.gateware.signatures import PacketSignature, packet_layout
@@ -37,7 +38,7 @@ class _Turn:
         return [self.number.eq(other.number), self.bits.eq(other.bits)]
 
 
-class PacketArbiter(wiring.Component):
+class PacketArbiter(Component):
     """Merge packet streams, packet by packet, round robin.
 
     The inputs take turns. After the end of a packet, it is the turn of the next input that offers

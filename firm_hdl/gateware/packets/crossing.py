@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from amaranth.hdl import Module, Value
-from amaranth.lib import wiring
 from amaranth.lib.fifo import AsyncFIFO
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.signatures import PacketSignature, packet_layout
 
 __all__ = ["PacketCrossing"]
 
 
-class PacketCrossing(wiring.Component):
+class PacketCrossing(Component):
     """Carry packets from one clock domain to another.
 
     Beats cross in a FIFO in block RAM, whose positions are exchanged as Gray codes. If it is empty,

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from amaranth.hdl import Module, Signal, Value
-from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
+from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.memories import BlockMemory, LutMemory
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
@@ -17,7 +17,7 @@ from firm_hdl.gateware.signatures import PacketSignature, packet_layout
 __all__ = ["PacketFifo"]
 
 
-class PacketFifo(wiring.Component):
+class PacketFifo(Component):
     """Store-and-forward FIFO for packets, in block RAM.
 
     A packet is sent after its last beat was stored, and only if it is kept. `abort` drops the

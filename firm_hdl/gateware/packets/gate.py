@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from amaranth.hdl import Module, Mux, Signal, Value
-from amaranth.lib import data, stream, wiring
+from amaranth.lib import data, stream
 from amaranth.lib.fifo import SyncFIFO, SyncFIFOBuffered
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.packets.block_fifo import BlockFifo
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.fifo import PacketFifo
@@ -40,7 +41,7 @@ COUNTED = {
 }
 
 
-class PacketGate(wiring.Component):
+class PacketGate(Component):
     """Forward only the good packets of a message type.
 
     A :class:`Parser` judges each packet while it is stored in a :class:`PacketFifo`, which drops

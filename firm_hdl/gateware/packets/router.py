@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from amaranth.hdl import Cat, Module, Mux, Signal
-from amaranth.lib import data, wiring
+from amaranth.lib import data
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.signatures import PacketSignature, packet_layout
@@ -13,7 +14,7 @@ from firm_hdl.gateware.signatures import PacketSignature, packet_layout
 __all__ = ["PacketRouter"]
 
 
-class PacketRouter(wiring.Component):
+class PacketRouter(Component):
     """Send each packet to the output of its topic.
 
     `topic` travels with the packet; the value beside its first beat counts. A packet whose topic

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
-from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.signatures import PacketSignature, packet_layout
 
 __all__ = ["PacketWidth"]
 
 
-class PacketWidth(wiring.Component):
+class PacketWidth(Component):
     """Carry packets from a bus of one width to a bus of another width.
 
     The bytes of a packet do not change. All beats but the last one are full.

@@ -14,13 +14,13 @@ from firm_hdl.jobs.processes import start_program
 from firm_hdl.sim.fast.channel import Channel
 from firm_hdl.sim.fast.compilers import BuildError
 
-__all__ = ["CxxrtlEngine"]
+__all__ = ["VerilatorEngine"]
 
 _END_SECONDS = 2.0
 
 
-class CxxrtlEngine(Channel):
-    """A process that simulates a design by CXXRTL.
+class VerilatorEngine(Channel):
+    """A process that simulates a design that Verilator has translated.
 
     The process ends when its socket is closed, or when the process that started it has died, half a
     second later at most. It is not interrupted by Ctrl-C, so that its parent may finish first.
@@ -40,7 +40,7 @@ class CxxrtlEngine(Channel):
         If the program cannot be started.
     """
 
-    engine = "cxxrtl"
+    engine = "verilator"
 
     def __init__(self, program: Path):
         self._program = program
@@ -58,8 +58,8 @@ class CxxrtlEngine(Channel):
         # A simulation that nobody closed leaves no zombie.
         self._finalizer = weakref.finalize(self, _end, own, self.process)
 
-    def again(self) -> CxxrtlEngine:
-        return CxxrtlEngine(self._program)
+    def again(self) -> VerilatorEngine:
+        return VerilatorEngine(self._program)
 
     def close(self) -> None:
         self._finalizer()

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from firm_hdl.export.top import Top
-from firm_hdl.export.verilog import module_name, to_verilog
+from firm_hdl.export.verilog import module_name
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.verify.simulators.benches import STIMULI
 from firm_hdl.verify.simulators.trace import Trace
+from firm_hdl.verilog import convert
 
 __all__ = ["modules_of", "write_inputs"]
 
@@ -29,7 +30,7 @@ def write_inputs(trace: Trace, tops: Sequence[Top], folder: Path) -> list[str]:
     files = []
     for module, top in zip(modules_of(trace), tops, strict=True):
         files.append(f"{module}.v")
-        text = to_verilog(top, module=module, header="")
+        text = convert(top, name=module)
         (folder / files[-1]).write_text(text, encoding="utf-8")
     rows = (f"{row.count(' ') // 2} {row}\n" for row in trace.stimuli)
     (folder / STIMULI).write_text("".join(rows))

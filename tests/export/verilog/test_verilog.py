@@ -15,10 +15,10 @@ import firm_hdl
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.errors import UserError
 from firm_hdl.export.top import DIRECTIONS, Top, ports_of
-from firm_hdl.export.verilog import out_of_memory, to_verilog
-from firm_hdl.export.verilog.runtime import YosysError
 from firm_hdl.plan import Plan, build_plan, encode
 from firm_hdl.sim import to_transfers
+from firm_hdl.verilog import convert, out_of_memory
+from firm_hdl.verilog.runtime import YosysError
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 
@@ -30,7 +30,7 @@ WAIVED = ["WIDTH", "UNUSEDSIGNAL", "CASEOVERLAP", "DECLFILENAME"]
 def verilog_of(type_: str, direction: str, bus_bytes: int = 8, distro: str = "lyrical") -> str:
     converter = Deserializer if direction == "deserializer" else Serializer
     top = Top(converter(load_message(type_, distro=distro), bus_bytes=bus_bytes))
-    return to_verilog(top, module=direction, header="One line.\n\nAnother.\n")
+    return convert(top, name=direction, header="One line.\n\nAnother.\n")
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
@@ -179,23 +179,23 @@ def broken(message):
 def test_errors_of_the_system_are_passed_on(monkeypatch):
     top = Top(Deserializer(load_message("std_msgs/msg/Bool")))
     message = "failed to write the module\n\nCaused by:\n    File too large (os error 27)"
-    runs = "firm_hdl.export.verilog.yosys.run_yosys"
+    runs = "firm_hdl.verilog.yosys.run_yosys"
     monkeypatch.setattr(runs, broken(message))
     with pytest.raises(UserError, match=r"^m: Yosys cannot be run: File too large$"):
-        to_verilog(top, module="m", header="")
+        convert(top, name="m")
     monkeypatch.setattr(runs, broken("a fault"))
     with pytest.raises(YosysError, match=r"^a fault$"):
-        to_verilog(top, module="m", header="")
+        convert(top, name="m")
 
 
 def test_lack_of_memory_states_what_yosys_needs_and_what_there_is(monkeypatch):
-    runs = "firm_hdl.export.verilog.yosys.run_yosys"
+    runs = "firm_hdl.verilog.yosys.run_yosys"
     monkeypatch.setattr(runs, broken("mmap failed: Cannot allocate memory (os error 12)"))
     limits = {resource.RLIMIT_AS: (5_300_000_000, resource.RLIM_INFINITY)}
     monkeypatch.setattr(resource, "getrlimit", limits.__getitem__)
     top = Top(Deserializer(load_message("std_msgs/msg/Bool")))
     with pytest.raises(UserError, match=r"^m: .* 4\.1 GB .* this process may have 5\.3 GB"):
-        to_verilog(top, module="m", header="")
+        convert(top, name="m")
     limits[resource.RLIMIT_AS] = (resource.RLIM_INFINITY, 5_300_000_000)
     pages = {"SC_AVPHYS_PAGES": 500_000, "SC_PAGE_SIZE": 4_096}
     monkeypatch.setattr(os, "sysconf", pages.__getitem__)

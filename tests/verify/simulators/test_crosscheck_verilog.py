@@ -13,7 +13,6 @@ from firm_hdl.export.backend import Options as BuildOptions
 from firm_hdl.export.backend import Output
 from firm_hdl.export.build import build
 from firm_hdl.export.top import Top
-from firm_hdl.export.verilog import to_verilog
 from firm_hdl.export.vhdl.backend import Vhdl
 from firm_hdl.jobs.processes import ToolError, run_tool
 from firm_hdl.jobs.programs import ProgramMissingError
@@ -21,6 +20,7 @@ from firm_hdl.verify import Options, Result, accept
 from firm_hdl.verify.simulators import Icarus, TextSimulator, Verilator, verilator, verilog
 from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.verify.simulators.verilog import write_inputs
+from firm_hdl.verilog import convert
 from tests.depth import by_depth
 from tests.verify.judged import assert_passed
 
@@ -204,18 +204,18 @@ _made: dict[str, str] = {}
 def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
     """A function that changes the first line with `pattern` in one Verilog file."""
 
-    def changed(top, *, module, header):
+    def changed(top, *, name, **options):
         # The name says type, bus and direction: the text before the change is made once.
-        before = _made.get(module) or to_verilog(top, module=module, header=header)
-        _made[module] = before
-        if not module.endswith(f"{file}_verilog"):
+        before = _made.get(name) or convert(top, name=name, **options)
+        _made[name] = before
+        if not name.endswith(f"{file}_verilog"):
             return before
         after, count = re.subn(pattern, text, before, count=1)
         assert count == 1 and after != before
         assert after.count("\n") == before.count("\n")
         return after
 
-    monkeypatch.setattr(verilog, "to_verilog", changed)
+    monkeypatch.setattr(verilog, "convert", changed)
 
 
 INITIAL = r"(?<=reg \[31:0\] message__stamp__sec__payload) = 32'd0"

@@ -12,10 +12,10 @@ from amaranth.hdl import Cat, Module, Signal
 
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.export.top import DIRECTIONS, Top
-from firm_hdl.export.verilog import to_verilog
-from firm_hdl.export.verilog.ports import named_ports
-from firm_hdl.export.verilog.vectors import whole_vectors
-from firm_hdl.export.verilog.yosys import _named_choices
+from firm_hdl.verilog import convert
+from firm_hdl.verilog.ports import named_ports
+from firm_hdl.verilog.vectors import whole_vectors
+from firm_hdl.verilog.yosys import _named_choices
 from tests.depth import by_depth
 
 
@@ -37,8 +37,8 @@ def test_parts_are_put_together_in_the_order_of_their_bits() -> None:
 @pytest.mark.parametrize("keeps", [True, False])
 def test_a_vector_is_no_loop_through_its_parts(tmp_path: Path, keeps: bool, monkeypatch) -> None:
     if not keeps:
-        monkeypatch.setattr("firm_hdl.export.verilog.yosys.whole_vectors", lambda design: design)
-    text = to_verilog(Top(Deserializer(load_message("std_msgs/msg/String"))), module="t", header="")
+        monkeypatch.setattr("firm_hdl.verilog.yosys.whole_vectors", lambda design: design)
+    text = convert(Top(Deserializer(load_message("std_msgs/msg/String"))), name="t")
     (tmp_path / "t.v").write_text(text)
     done = subprocess.run(
         ["verilator", "--lint-only", "t.v"], cwd=tmp_path, capture_output=True, text=True
@@ -81,7 +81,7 @@ def test_ports_that_are_parts_have_the_name_of_the_whole() -> None:
 )
 def test_every_signal_of_a_converter_has_a_name(direction: str, name: str) -> None:
     converter = Deserializer if direction == "deserializer" else Serializer
-    text = to_verilog(Top(converter(load_message(name))), module="t", header="")
+    text = convert(Top(converter(load_message(name))), name="t")
     # Results of operators have numbers. `$signal` is a signal for which Amaranth found no name.
     assert set(re.findall(r"\\(\$?\w*\$[A-Za-z]\w*|port\$\S*)", text)) == set()
     assert r"\$1 " in text

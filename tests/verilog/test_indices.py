@@ -13,9 +13,9 @@ from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.bench.netlist import top_module
 from firm_hdl.bench.tools import Tool, find_yosys
 from firm_hdl.export.top import Top
-from firm_hdl.export.verilog import to_verilog
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.rtlil import without_indices
+from firm_hdl.verilog import convert
 from tests.depth import by_depth
 from tests.tools import need
 
@@ -40,7 +40,7 @@ def test_two_elements_never_get_one_name() -> None:
 def test_no_name_of_a_converter_has_an_index(converter: type) -> None:
     design = converter(load_message(by_depth("shape_msgs/msg/Plane", "sensor_msgs/msg/Imu")))
     assert r"payload.data[1]" in rtlil.convert(design, emit_src=False)
-    text = to_verilog(Top(design), module="t", header="")
+    text = convert(Top(design), name="t")
     assert "payload.data_1 " in text and not re.search(r"\\\S*\[", text)
 
 
@@ -106,8 +106,8 @@ def test_yosys_keeps_bits_and_elements_apart(
     yosys: Tool, tmp_path: Path, device: str, keeps: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if keeps:
-        monkeypatch.setattr("firm_hdl.export.verilog.yosys.without_indices", lambda design: design)
-    (tmp_path / "t.v").write_text(to_verilog(TWO, module="top", header=""))
+        monkeypatch.setattr("firm_hdl.verilog.yosys.without_indices", lambda design: design)
+    (tmp_path / "t.v").write_text(convert(TWO, name="top"))
     script = f"read_verilog t.v; synth_{device} -top top -json t.json"
     yosys.run(tmp_path, "-q", "-p", script)
     ports = top_module(json.loads((tmp_path / "t.json").read_text()))["ports"]

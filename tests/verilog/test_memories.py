@@ -11,19 +11,21 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.equivalence import find_tools
-from firm_hdl.export.verilog import to_verilog
-from firm_hdl.export.verilog.memories import settled_memories, short_initials
 from firm_hdl.jobs import ProgramMissingError
+from firm_hdl.rtlil import rtlil_of as rtlil_text
+from firm_hdl.verilog import convert
+from firm_hdl.verilog.memories import settled_memories, with_initials
 from tests.depth import by_depth
 from tests.rtlil.memory_designs import DESIGNS, WHOLE, Store, Stores, rtlil_of, simulated
 from tests.tools import need
+from tests.verilog.icarus import replay
 
 STEPS = 200
 STANDARDS = ["-g2005", "-g2012"]
 
 
 def _verilog(name: str) -> str:
-    return to_verilog(Stores(DESIGNS[name]), module="stores", header="Memories.\n")  # type: ignore[arg-type]
+    return convert(Stores(DESIGNS[name]), name="stores", header="Memories.\n")  # type: ignore[arg-type]
 
 
 def _run(folder: Path, *command: str) -> None:
@@ -37,38 +39,8 @@ def _replay(name: str, text: str, standard: str, folder: Path) -> str | None:
     Beyond the last word, Verilog reads unknown bits; all other bits must be known.
     """
     inputs, outputs, steps, wanted = simulated(DESIGNS[name], steps=STEPS, seed=len(name))
-    inputs = {port: width for port, width in inputs.items() if width}
-    rows = ("".join(f"{step[n]:0{width}b}" for n, width in inputs.items()) for step in steps)
-    (folder / "stimuli.txt").write_text("".join(f"{row}\n" for row in rows))
-    (folder / "stores.v").write_text(text)
-    ports = ", ".join(f".{n}({n})" for n in [*inputs, *outputs])
-    declared = [f"  reg [{width - 1}:0] {n} = 0;\n" for n, width in inputs.items()]
-    declared += [f"  wire [{width - 1}:0] {n};\n" for n, width in outputs.items()]
-    (folder / "bench.v").write_text(f"""
-module bench;
-{"".join(declared)}
-  reg [{sum(inputs.values()) - 1}:0] steps [0:{STEPS - 1}];
-  integer step;
-  stores dut({ports});
-  initial begin
-    $readmemb("stimuli.txt", steps);
-    for (step = 0; step < {STEPS}; step = step + 1) begin
-      {{{", ".join(inputs)}}} = steps[step];
-      #1;
-      $display("{" ".join(["%b"] * len(outputs))}", {", ".join(outputs)});
-    end
-  end
-endmodule
-""")
-    # Icarus warns of constant addresses beyond the last word.
-    command = ["iverilog", standard, "-o", "bench", "-s", "bench", "bench.v", "stores.v"]
-    subprocess.run(command, cwd=folder, capture_output=True, check=True)
-    done = subprocess.run(
-        ["vvp", "-n", "bench"], cwd=folder, capture_output=True, text=True, check=True
-    )
-    rows_seen = [dict(zip(outputs, row.split(), strict=True)) for row in done.stdout.splitlines()]
-    assert len(rows_seen) == STEPS
-    for number, (want, seen) in enumerate(zip(wanted, rows_seen, strict=True)):
+    rows = replay(text, "stores", inputs, outputs, steps, standard, folder)
+    for number, (want, seen) in enumerate(zip(wanted, rows, strict=True)):
         for output, width in outputs.items():
             bits = f"{want[output]:0{width}b}"
             unknown = name not in WHOLE and set(seen[output]) == {"x"} and not want[output]
@@ -177,13 +149,6 @@ def _cells_on_ecp5(text: str, folder: Path) -> list[str]:
     return [cell["type"] for cell in module["cells"].values()]
 
 
-def _words(count: int, last: str = "2'h0") -> str:
-    """Return a memory as Yosys writes it."""
-    words = [*["2'h0"] * (count - 1), last]
-    lines = "".join(f"    kept[{number}] = {word};\n" for number, word in enumerate(words))
-    return f"  reg [1:0] kept [{count - 1}:0];\n  initial begin\n{lines}  end\n"
-
-
 def _starts_at_zero(text: str, count: int, standard: str, folder: Path) -> bool:
     (folder / "t.v").write_text(
         f"module t;\n{text}  integer n, bad;\n  initial begin\n    #1 bad = 0;\n"
@@ -197,12 +162,25 @@ def _starts_at_zero(text: str, count: int, standard: str, folder: Path) -> bool:
 
 @pytest.mark.parametrize("standard", STANDARDS)
 def test_a_loop_sets_all_words_of_a_large_memory(standard: str, tmp_path: Path) -> None:
-    text = short_initials(_words(65))
+    text = with_initials("  reg [1:0] kept [64:0];\n")
     assert len(text.splitlines()) == 5
     assert _starts_at_zero(text, 65, standard, tmp_path)
     assert not _starts_at_zero(text.replace("< 65", "< 64"), 65, standard, tmp_path)
 
 
-@pytest.mark.parametrize("text", [_words(64), _words(65, last="2'h1")])
-def test_other_memories_have_a_line_for_each_word(text: str) -> None:
-    assert short_initials(text) == text
+@pytest.mark.parametrize("words", [64, 65])
+def test_memories_that_do_not_start_at_zero_have_a_line_for_each_word(words: int) -> None:
+    text = convert(Stores({"mem": Store(depth=words, init=[0] * (words - 1) + [1])}), name="m")
+    assert text.count("] = ") == words and "integer" not in text
+
+
+def test_a_memory_of_a_megabyte_is_a_few_lines() -> None:
+    """Each bit and each word would be a digit of RTLIL and a line of Verilog."""
+    store = Stores({"mem": Store(shape=64, depth=1 << 17)})
+    assert len(rtlil_text(store, name="m")) < 10_000
+    assert len(convert(store, name="m")) < 10_000
+
+
+def test_a_large_memory_with_an_escaped_name_starts_at_zero() -> None:
+    text = with_initials("  reg [1:0] \\mem$1  [99:0];\n")
+    assert "mem__1_at < 100" in text and "\\mem$1 [mem__1_at] = 2'h0;" in text

