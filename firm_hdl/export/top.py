@@ -212,8 +212,8 @@ class Top(Component):
     def __init__(self, core: Deserializer | Serializer):
         if not isinstance(core, Deserializer | Serializer):
             raise TypeError(
-                f"A top level has a Deserializer or a Serializer, not {core!r}; any other "
-                "component can be written by firm_hdl.verilog.convert and firm_hdl.vhdl.convert"
+                f"A top level has a Deserializer or a Serializer, not {core!r}; "
+                "firm_hdl.verilog.convert and firm_hdl.vhdl.convert write any component"
             )
         self.core = core
         self.direction: Direction = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -85,9 +85,16 @@ class Record:
         members = self._chosen(message, ())
         if self._choice.unknown:
             names = ", ".join(repr(".".join(name)) for name in sorted(self._choice.unknown))
-            raise ValueError(f"Message {message.name} has no field of fixed size {names}")
+            raise ValueError(
+                f"Message {message.name} has no field of fixed size {names}; it has "
+                f"{', '.join(_fixed_fields(message)) or 'none'}"
+            )
         if not members:
-            raise ValueError(f"Message {message.name} has no field of fixed size for a record")
+            fields_ = ", ".join(f"{item.name} ({item.type})" for item in message.fields)
+            raise ValueError(
+                f"Message {message.name} has no field of fixed size for a record; "
+                f"its fields: {fields_ or 'none'}"
+            )
         self.layout = data.StructLayout(members)
         self._check_width("record", self.layout.size)
 
@@ -178,6 +185,16 @@ class _Choice:
         if name is not None:
             self.unknown.discard(name)
         return name is not None
+
+
+def _fixed_fields(message: Message, path: Path = ()) -> Iterator[str]:
+    """Yield the names of the fields that a record can have, without those inside of others."""
+    for item in message.fields:
+        name = (*path, item.name)
+        if is_fixed_size(item.type):
+            yield ".".join(name)
+        elif isinstance(item.type, Message):
+            yield from _fixed_fields(item.type, name)
 
 
 def _bits(kind: FieldType) -> int:

@@ -8,10 +8,12 @@ until the transfer.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from typing import Any
+from weakref import WeakKeyDictionary
 
-from amaranth.hdl import Shape, signed, unsigned
+from amaranth.hdl import Module, Shape, signed, unsigned
 from amaranth.lib import data, enum, stream, wiring
 from amaranth.lib.wiring import Out
 
@@ -153,6 +155,17 @@ class MessageSignature(wiring.Signature):
         self.message, self.bus_bytes, self.wire = message, plan.bus_bytes, plan.wire
         super().__init__(_members(plan.leaves, tree))
 
+    def create(self, *, path: Any = None, src_loc_at: int = 0) -> Any:
+        return _Interface(self, path=path, src_loc_at=1 + src_loc_at)
+
+    def is_compliant(self, obj: Any, *, reasons: Any = None, path: Any = ("obj",)) -> bool:
+        is_compliant = super().is_compliant(obj, reasons=reasons, path=path)
+        # `connect` has no other hook, and asks each of its arguments here before it compares them.
+        caller = sys._getframe(1)
+        if is_compliant and caller.f_code is wiring.connect.__code__:
+            _check_connection(caller.f_locals["m"], list(caller.f_locals["objects"].values()))
+        return bool(is_compliant)
+
     def __eq__(self, other: object) -> bool:
         # `isinstance` would also accept a flipped signature.
         return type(other) is MessageSignature and self._key == other._key
@@ -168,15 +181,83 @@ class MessageSignature(wiring.Signature):
         return f"MessageSignature({self.message}, bus_bytes={self.bus_bytes}, wire={self.wire!r})"
 
 
+_connected: WeakKeyDictionary[Module, dict[tuple[int, bool], Any]] = WeakKeyDictionary()
+"""Message interfaces that a module has connected, by `id` and whether they are flipped."""
+
+
+def _check_connection(m: Module, objects: list[Any]) -> None:
+    """Check that the messages to connect are of one type, and that none is connected twice.
+
+    Without the second check, the last connection would silently count.
+    """
+    messages = [each for each in objects if isinstance(each.signature, MessageSignature)]
+    first = messages[0].signature
+    widths = [_widths(each.signature) for each in messages]
+    for each, width in zip(messages, widths, strict=True):
+        if width != widths[0]:
+            raise wiring.ConnectionError(
+                f"Cannot connect the messages {_described(first)} and "
+                f"{_described(each.signature)}: their leaves differ"
+            )
+    connected = _connected.setdefault(m, {})
+    for each in messages:
+        is_flipped = isinstance(each, wiring.FlippedInterface)
+        plain = wiring.flipped(each) if is_flipped else each
+        if (id(plain), is_flipped) in connected:
+            raise wiring.ConnectionError(
+                f"The message {_described(each.signature)} is connected twice in one module: "
+                "only the last connection would count"
+            )
+        connected[id(plain), is_flipped] = plain
+
+
+def _widths(signature: wiring.Signature) -> dict[tuple[str, ...], int]:
+    members = signature.members.flatten()
+    return {path: Shape.cast(member.shape).width for path, member in members if member.is_port}
+
+
+def _described(signature: Any) -> str:
+    name, bus_bytes, wire = signature.message.name, signature.bus_bytes, signature.wire
+    return f"{name} (bus_bytes={bus_bytes}, wire={wire!r})"
+
+
+class _Interface(wiring.PureInterface):
+    """A message, or a part of one, that names its members if another one is asked for."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        message = getattr(self.signature, "message", None)
+        what = f"Message {message.name}" if message else "This part of a message"
+        raise AttributeError(
+            f"{what} has no member {name!r}; it has {', '.join(self.signature.members)}"
+        )
+
+
+class _PartSignature(wiring.Signature):
+    """A part of a message: a field that is a message, an array, or a text."""
+
+    def create(self, *, path: Any = None, src_loc_at: int = 0) -> Any:
+        return _Interface(self, path=path, src_loc_at=1 + src_loc_at)
+
+    def __eq__(self, other: Any) -> bool:
+        # As for any signature without a name of its own, the members decide.
+        is_plain = type(other) in (_PartSignature, wiring.Signature)
+        return is_plain and bool(self.members == other.members)
+
+    def __hash__(self) -> int:
+        return hash(tuple(self.members))
+
+
 def signature_of(leaves: Sequence[Leaf], tree: MemberTree) -> wiring.Signature:
     """Return the signature that has exactly the leaves of a tree."""
-    return wiring.Signature(_members(leaves, tree))
+    return _PartSignature(_members(leaves, tree))
 
 
 def _members(leaves: Sequence[Leaf], node: MemberTree) -> dict[str, wiring.Member]:
     return {
         child.member: Out(
-            wiring.Signature(_members(leaves, child))
+            _PartSignature(_members(leaves, child))
             if child.leaf is None
             else stream.Signature(leaf_shape(leaves[child.leaf]))
         )

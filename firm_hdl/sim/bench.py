@@ -20,10 +20,11 @@ from amaranth.lib import stream
 from amaranth.sim import Simulator, SimulatorContext
 
 from firm_hdl.garbage import search_put_off
+from firm_hdl.sim.design import check_connections, check_domains
 from firm_hdl.sim.drive import Drive, Inputs
 from firm_hdl.sim.job import Job
 from firm_hdl.sim.levels import divided
-from firm_hdl.sim.stalls import stalls_of
+from firm_hdl.sim.stalls import check_stalls, stalls_of
 from firm_hdl.sim.watch import StreamRules
 
 __all__ = ["RESET_CYCLES", "Bench", "DeadlineError", "Ports", "in_chunks"]
@@ -84,6 +85,11 @@ class Bench:
         Between runs, only reset the design, as in hardware: memories and registers without a reset
         keep their values. Otherwise each run starts with all initial values.
 
+    Raises
+    ------
+    ClockDomainError
+        If the design has another clock domain than `sync`.
+
     Attributes
     ----------
     names : list of str
@@ -121,7 +127,10 @@ class Bench:
         # expressions.
         self.probes = [_gathered(top, [value]) for value in probes]
         self._circuit = top
-        self._simulator = Simulator(divided(top))
+        fragment = divided(top)
+        check_connections(fragment)
+        check_domains(fragment, "A bench")
+        self._simulator = Simulator(fragment)
         # A waveform shows the modules as they were written, so it needs a second simulator.
         self._for_waveforms: Simulator | None = None
         self._started: set[Simulator] = set()
@@ -132,8 +141,10 @@ class Bench:
         Raises
         ------
         ValueError
-            If the job asks for a waveform, and the bench keeps its state.
+            If the job asks for a waveform, and the bench keeps its state, or for stalls of a stream
+            that does not exist.
         """
+        check_stalls(job.options.stalls, self.names)
         vcd = job.options.vcd
         if vcd is not None and self._keeps_state:
             raise ValueError("A bench that keeps its state writes no waveforms")

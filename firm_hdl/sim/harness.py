@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 from amaranth.hdl import Cat, Elaboratable, Module, Signal, Value
 from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import leaf_streams
@@ -19,7 +21,7 @@ from firm_hdl.model import Message
 from firm_hdl.plan import Payload, Plan
 from firm_hdl.sim.bench import Bench, Ports, in_chunks
 from firm_hdl.sim.job import Job, RunOptions
-from firm_hdl.sim.payloads import all_beats, beats_of, encoder_of
+from firm_hdl.sim.payloads import all_beats, as_packets, beats_of, encoder_of
 from firm_hdl.sim.record import Recorder, RunResult, leaf_name
 from firm_hdl.sim.stalls import StallPlan, stalls_of
 from firm_hdl.sim.transfers import join_transfers, transfer_table
@@ -46,6 +48,11 @@ class Harness:
     keeps_state : bool
         Between runs, only reset the converters, as in hardware: memories and registers without a
         reset keep their values. Otherwise each run starts with all initial values.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a converter is none, or the two are of different messages or parameters.
     """
 
     def __init__(
@@ -61,6 +68,10 @@ class Harness:
         component = deserializer if deserializer is not None else serializer
         if component is None:
             raise ValueError("A harness needs a deserializer or a serializer")
+        _check_converter(deserializer, "deserializer", In)
+        _check_converter(serializer, "serializer", Out)
+        if deserializer is not None and serializer is not None:
+            _check_pair(deserializer.plan, serializer.plan)
         self.plan: Plan = component.plan
         self.table = None if message is None else transfer_table(self.plan, message)
         self.deserializer, self.serializer = deserializer, serializer
@@ -88,6 +99,7 @@ class Harness:
         """
         if self.deserializer is None:
             raise ValueError("Packets need a harness with a deserializer")
+        packets = list(as_packets(packets))
         sources: dict[str, Iterable[int]] = {
             "packets_in": all_beats(packets, self.plan.bus_bytes, counts=True)
         }
@@ -172,6 +184,25 @@ class Harness:
         target = sources if rx is None else sinks if tx is None else taps
         target.update(self.leaf_ports)
         return Ports(sources=sources, sinks=sinks, taps=taps, gates=gates, payloads=payloads)
+
+
+def _check_converter(converter: Any, name: str, flow: wiring.Flow) -> None:
+    """Check that a user's converter, if there is one, has packets in this direction."""
+    if converter is None:
+        return
+    members = converter.signature.members if isinstance(converter, wiring.Component) else {}
+    has_all = all(member in members for member in ("packets", "message", "status"))
+    if not has_all or members["packets"].flow != flow:
+        raise TypeError(f"The {name} of a harness must be a {name.title()}, not {converter!r}")
+
+
+def _check_pair(one: Plan, other: Plan) -> None:
+    about = [f"{p.message} with bus_bytes={p.bus_bytes} and wire={p.wire!r}" for p in (one, other)]
+    if about[0] != about[1] or [*one.leaves] != [*other.leaves]:
+        raise ValueError(
+            f"The deserializer is for {about[0]}, and the serializer for {about[1]}: "
+            "a harness connects two of the same message"
+        )
 
 
 class _Circuit(Elaboratable):

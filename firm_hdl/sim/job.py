@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from firm_hdl.sim.stalls import StallPlan
+from firm_hdl.sim.stalls import StallPlan, check_stalls
 
 __all__ = ["Job", "RunOptions"]
 
@@ -39,6 +39,14 @@ class RunOptions:
     settle: int = 4
     vcd: str | os.PathLike[str] | None = None
     observe: Callable[[list[int]], None] | None = None
+
+    def __post_init__(self) -> None:
+        check_stalls(self.stalls)
+        for name, number in (("deadline", self.deadline), ("settle", self.settle)):
+            if not isinstance(number, int):
+                raise TypeError(f"{name}= must be a number of cycles, not {number!r}")
+        if self.limit is not None and not isinstance(self.limit, int):
+            raise TypeError(f"limit= must be a number of cycles or None, not {self.limit!r}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -18,6 +18,7 @@ from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Payload, Plan
 from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.job import RunOptions
+from firm_hdl.sim.payloads import as_packets
 from firm_hdl.sim.record import RunResult, leaf_name
 from firm_hdl.sim.stalls import StallPlan, stalls_of
 from firm_hdl.sim.values import to_transfers
@@ -133,18 +134,21 @@ def loopback(
 
     Raises
     ------
+    TypeError, ValueError
+        If an argument is not what it has to be.
     DeadlineError
         If expected transfers do not come; the text names them.
     StreamRuleError
         If a stream breaks a rule.
     """
+    options = RunOptions(stalls=stalls, deadline=deadline, limit=limit, vcd=vcd)
+    packets = list(as_packets(packets))
     rx = Deserializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
     tx = Serializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
     names = [leaf_name(rx.plan, leaf) for leaf in range(len(rx.plan.leaves))]
     gated = any(stalls_of(stalls, name) for name in names)
-    options = RunOptions(stalls=stalls, deadline=deadline, limit=limit, vcd=vcd)
     harness = Harness(rx, tx, message=message, gated=gated)
-    return _select(Loopback, harness.run_packets(list(packets), options))
+    return _select(Loopback, harness.run_packets(packets, options))
 
 
 def decode(
@@ -163,10 +167,11 @@ def decode(
 
     Parameters and errors are those of :func:`loopback`.
     """
-    rx = Deserializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
     options = RunOptions(stalls=stalls, deadline=deadline, limit=limit, vcd=vcd)
+    packets = list(as_packets(packets))
+    rx = Deserializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
     harness = Harness(rx, None, message=message)
-    return _select(Decoding, harness.run_packets(list(packets), options))
+    return _select(Decoding, harness.run_packets(packets, options))
 
 
 def encode(
@@ -191,8 +196,11 @@ def encode(
 
     Other parameters and errors are those of :func:`loopback`.
     """
-    tx = Serializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
     options = RunOptions(stalls=stalls, deadline=deadline, limit=limit, vcd=vcd)
+    if isinstance(values, Mapping | str | bytes) or not isinstance(values, Iterable):
+        raise TypeError(f"Values must be a list of messages, such as [{{...}}], not {values!r}")
+    values = list(values)
+    tx = Serializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
     harness = Harness(None, tx, message=message)
     messages = [_as_transfers(tx.plan, message, value) for value in values]
     return _select(Encoding, harness.run_messages(messages, options))
@@ -206,5 +214,8 @@ def _select(kind: type[T], result: RunResult) -> T:
 def _as_transfers(plan: Plan, message: Message, value: object) -> Mapping[int, list[Payload]]:
     """Return the transfers of a message that is given as transfers or as a value."""
     if isinstance(value, Mapping) and value and all(isinstance(key, int) for key in value):
+        if unknown := [key for key in value if key not in range(len(plan.leaves))]:
+            last = len(plan.leaves) - 1
+            raise ValueError(f"{plan.message} has the leaves 0 to {last}, and not {unknown[0]}")
         return value
     return to_transfers(plan, message, value)

@@ -11,7 +11,7 @@ Bits that a receiver has to ignore are random in simulation, so that a circuit t
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sized
 from dataclasses import dataclass, field
 
 from firm_hdl.plan import Leaf, Payload
@@ -19,6 +19,7 @@ from firm_hdl.plan import Leaf, Payload
 __all__ = [
     "PacketCollector",
     "all_beats",
+    "as_packets",
     "beats_of",
     "decoder_of",
     "encoder_of",
@@ -59,6 +60,28 @@ def encoder_of(leaf: Leaf) -> Callable[[Payload], int]:
         return value
 
     return encode
+
+
+def as_packets(packets: Iterable[bytes]) -> Iterator[bytes]:
+    """Return packets of a user, checked: those of a list at once, others when they are taken.
+
+    Raises
+    ------
+    TypeError
+        If it is one packet in place of several, or one of them is not bytes.
+    """
+    if isinstance(packets, bytes | bytearray | memoryview | str) or not isinstance(
+        packets, Iterable
+    ):
+        raise TypeError(f"Packets must be a list of bytes, such as [b'...'], not {packets!r}")
+    checked = map(_as_packet, packets)
+    return iter(list(checked)) if isinstance(packets, Sized) else checked
+
+
+def _as_packet(packet: object) -> bytes:
+    if not isinstance(packet, bytes | bytearray | memoryview):
+        raise TypeError(f"A packet must be bytes, not {packet!r}")
+    return bytes(packet)
 
 
 def beats_of(packet_bytes: int, bus_bytes: int) -> int:

@@ -8,11 +8,15 @@ patterns. A fixed `pattern` is the same for all streams.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from numbers import Integral, Real
 from typing import ClassVar, TypeAlias
 
-__all__ = ["StallPlan", "Stalls", "stalls_of"]
+__all__ = ["StallPlan", "Stalls", "check_stalls", "stalls_of"]
+
+_MOST_NAMES = 12
+"""Names of streams that an error lists."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +48,16 @@ class Stalls:
     none: ClassVar[Stalls]
 
     def __post_init__(self) -> None:
+        if not isinstance(self.pattern, str):
+            raise TypeError(f"Pattern must be a text of 0 and 1, not {self.pattern!r}")
+        if isinstance(self.probability, bool) or not isinstance(self.probability, Real):
+            raise TypeError(
+                f"Probability must be a number, not {self.probability!r}; "
+                "Stalls.bits takes a pattern"
+            )
+        for cycles in (self.min_cycles, self.max_cycles):
+            if not isinstance(cycles, Integral):
+                raise TypeError(f"Cycles of a stall must be an integer, not {cycles!r}")
         if not 0 <= self.probability <= 1:
             raise ValueError(f"Probability must be in 0..1, not {self.probability!r}")
         if not 1 <= self.min_cycles <= self.max_cycles:
@@ -59,7 +73,7 @@ class Stalls:
     @classmethod
     def bits(cls, pattern: str) -> Stalls:
         """Return the stalls of a repeated bit string: ``1`` does not stall, ``0`` stalls."""
-        if not pattern:
+        if pattern == "":
             raise ValueError("Pattern must not be empty")
         return cls(pattern=pattern)
 
@@ -95,6 +109,39 @@ A name also includes all streams below it: ``message`` includes every leaf, and 
 the leaves of the header. The longest name that fits a stream counts. Streams that no name fits are
 not stalled.
 """
+
+
+def check_stalls(plan: StallPlan, names: Iterable[str] | None = None) -> None:
+    """Check a user's stalls of the streams with these names; `None`: of any.
+
+    Raises
+    ------
+    TypeError
+        If the plan is not a `StallPlan`.
+    ValueError
+        If it names a stream that does not exist.
+    """
+    if plan is None or isinstance(plan, Stalls):
+        return
+    if not isinstance(plan, Mapping):
+        raise TypeError(
+            "stalls= must be Stalls, such as Stalls(0.5), or a dict of Stalls by the names of "
+            f"streams, not {plan!r}"
+        )
+    # The streams of packets and statuses come before those of leaves.
+    known = None if names is None else sorted(names, key=lambda name: name.count("."))
+    for name, stalls in plan.items():
+        if known is not None and not any(f"{each}.".startswith(f"{name}.") for each in known):
+            raise ValueError(f"There is no stream {name!r} to stall; there are {_listed(known)}")
+        if not isinstance(stalls, Stalls):
+            raise TypeError(
+                f"The stalls of {name!r} must be Stalls, such as Stalls(0.5), not {stalls!r}"
+            )
+
+
+def _listed(names: list[str]) -> str:
+    more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
+    return ", ".join(map(repr, names[:_MOST_NAMES])) + more
 
 
 def stalls_of(plan: StallPlan, name: str) -> Stalls:

@@ -3,15 +3,15 @@
 All are async functions; await them in a testbench of `amaranth.sim`. To run functions at the same
 time, use separate testbenches. Each function starts in the current cycle and returns right after
 the clock edge of its last transfer. Payloads are the values that `ctx.set` and `ctx.get` use for
-the stream.
+the stream. Each function has the clock domain of its stream as `domain`.
 
-The receiving side checks the deadline. If no transfer comes for that many cycles, it raises a
-`DeadlineError`, which names the transfers that were still expected.
+Both sides have a deadline. If there is no transfer for that many cycles, a `DeadlineError` names
+the transfers that were still expected, and the streams of the design that wait.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,9 +21,10 @@ from amaranth.sim import SimulatorContext
 
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.sim.bench import DeadlineError
-from firm_hdl.sim.payloads import PacketCollector, all_beats
-from firm_hdl.sim.stalls import Stalls
-from firm_hdl.sim.watch import PacketRules
+from firm_hdl.sim.design import Domain, check_domain, what_waits
+from firm_hdl.sim.payloads import PacketCollector, all_beats, as_packets
+from firm_hdl.sim.stalls import Stalls, check_stalls, stalls_of
+from firm_hdl.sim.watch import PacketRules, check_packet_stream, check_stream
 
 __all__ = [
     "receive",
@@ -34,6 +35,8 @@ __all__ = [
 ]
 
 DEADLINE = 1000
+SEND_DEADLINE = 10_000
+"""A message may have to wait while another stream transfers a large array."""
 
 
 async def send(
@@ -43,6 +46,8 @@ async def send(
     *,
     stalls: Stalls = Stalls.none,
     name: str = "stream",
+    domain: Domain = "sync",
+    deadline: int = SEND_DEADLINE,
 ) -> None:
     """Send payloads on a stream, and leave it idle.
 
@@ -53,22 +58,39 @@ async def send(
     stalls : Stalls
         Cycles in which the next payload is not offered.
     name : str
-        Name of the stream, for the pattern of stalls.
+        Name of the stream, for errors and for the pattern of stalls.
+    domain : str or ClockDomain
+        Clock domain of the stream.
+    deadline : int
+        Most cycles in which a payload is not taken.
+
+    Raises
+    ------
+    ClockDomainError
+        If the stream is in another clock domain, or the domain has no clock.
+    DeadlineError
     """
-    stalled = stalls.cycles(name)
+    check_stream(port, name)
+    check_stalls(stalls, [name])
+    check_domain(ctx, {name: port}, domain)
+    stalled = stalls_of(stalls, name).cycles(name)
     bits = Value.cast(port.payload)
-    for payload in payloads:
+    for number, payload in enumerate(payloads):
         while next(stalled):
-            await ctx.tick()
+            await ctx.tick(domain)
         if isinstance(payload, int):
             ctx.set(bits, payload)
         else:
             ctx.set(port.payload, payload)
         ctx.set(port.valid, 1)
         # Do not use `until`: its generator raises if the simulation ends with an error before it.
-        taken = 0
+        taken = quiet = 0
         while not taken:
-            _, _, taken = await ctx.tick().sample(port.ready)
+            _, _, taken = await ctx.tick(domain).sample(port.ready)
+            quiet += 1
+            if quiet > deadline and not taken:
+                what = f"No transfer on stream {name!r} in {quiet} cycles"
+                raise DeadlineError(f"{what}; {number} payloads were taken{what_waits(ctx)}")
         ctx.set(port.valid, 0)
 
 
@@ -80,6 +102,7 @@ async def receive(
     stalls: Stalls = Stalls.none,
     deadline: int = DEADLINE,
     name: str = "stream",
+    domain: Domain = "sync",
 ) -> list[Any]:
     """Receive payloads from a stream, and leave it not ready.
 
@@ -93,20 +116,23 @@ async def receive(
         Most cycles without a transfer, in addition to the longest stall.
     name : str
         Name of the stream, for errors and for the pattern of stalls.
+    domain : str or ClockDomain
+        Clock domain of the stream.
 
     Raises
     ------
+    ClockDomainError
+        If the stream is in another clock domain, or the domain has no clock.
     DeadlineError
     """
+    check_stream(port, name)
     payloads: list[Any] = []
 
     def expected() -> str:
         left = count - len(payloads)
         return f"{left} of {count} transfers" if left > 0 else ""
 
-    receiver = _Receiver(
-        port=port, payload=port.payload, stalls=stalls, deadline=deadline, name=name
-    )
+    receiver = _Receiver(port, port.payload, count, stalls, deadline, name, domain)
     await receiver.run(ctx, payloads.append, expected)
     return payloads
 
@@ -118,13 +144,15 @@ async def send_packets(
     *,
     stalls: Stalls = Stalls.none,
     name: str = "packets_in",
+    domain: Domain = "sync",
+    deadline: int = SEND_DEADLINE,
 ) -> None:
     """Send packets on a packet stream, back to back. Parameters are those of :func:`send`.
 
     Lanes that are not valid carry random bytes, which a receiver has to ignore.
     """
-    beats: Iterator[int] = all_beats(packets, len(port.payload.data))
-    await send(ctx, port, beats, stalls=stalls, name=name)
+    beats = all_beats(as_packets(packets), check_packet_stream(port, name))
+    await send(ctx, port, beats, stalls=stalls, name=name, domain=domain, deadline=deadline)
 
 
 async def receive_packets(
@@ -135,6 +163,7 @@ async def receive_packets(
     stalls: Stalls = Stalls.none,
     deadline: int = DEADLINE,
     name: str = "packets_out",
+    domain: Domain = "sync",
 ) -> list[bytes]:
     """Receive packets from a packet stream, and check its rules.
 
@@ -142,11 +171,12 @@ async def receive_packets(
 
     Raises
     ------
-    DeadlineError
+    ClockDomainError, DeadlineError
+        As for :func:`receive`.
     StreamRuleError
         If a beat breaks rule 5 or 6 of :mod:`firm_hdl.sim.watch`.
     """
-    collector = PacketCollector(len(port.payload.data))
+    collector = PacketCollector(check_packet_stream(port, name))
     rules = PacketRules(name, collector.bus_bytes)
 
     def expected() -> str:
@@ -159,7 +189,7 @@ async def receive_packets(
         collector.take(beat)
 
     bits = Value.cast(port.payload)
-    receiver = _Receiver(port=port, payload=bits, stalls=stalls, deadline=deadline, name=name)
+    receiver = _Receiver(port, bits, count, stalls, deadline, name, domain)
     await receiver.run(ctx, take, expected)
     return collector.packets
 
@@ -172,12 +202,15 @@ async def receive_statuses(
     stalls: Stalls = Stalls.none,
     deadline: int = DEADLINE,
     name: str = "status",
+    domain: Domain = "sync",
 ) -> list[Status]:
     """Receive statuses. Parameters and errors are those of :func:`receive`."""
-    return await receive(ctx, port, count, stalls=stalls, deadline=deadline, name=name)
+    return await receive(
+        ctx, port, count, stalls=stalls, deadline=deadline, name=name, domain=domain
+    )
 
 
-@dataclass(slots=True, kw_only=True)
+@dataclass(slots=True)
 class _Receiver:
     """A stream that a testbench receives from.
 
@@ -185,33 +218,40 @@ class _Receiver:
     ----------
     payload : value
         What to read at each transfer.
-    stalls, deadline, name
+    count, stalls, deadline, name, domain
         As for :func:`receive`.
     """
 
     port: stream.Interface
     payload: Any
+    count: int
     stalls: Stalls
     deadline: int
     name: str
+    domain: Domain
 
     async def run(
         self, ctx: SimulatorContext, take: Callable[[Any], object], expected: Callable[[], str]
     ) -> None:
         """Receive until `expected` returns an empty text; call `take` with each payload."""
-        stalled = self.stalls.cycles(self.name)
+        if isinstance(self.count, bool) or not isinstance(self.count, int):
+            raise TypeError(f"The number to receive must be an integer, not {self.count!r}")
+        check_stalls(self.stalls, [self.name])
+        check_domain(ctx, {self.name: self.port}, self.domain)
+        stalls = stalls_of(self.stalls, self.name)
+        stalled = stalls.cycles(self.name)
         ready = quiet = 0
         while expected():
             if ready == (stall := next(stalled)):
                 ready = not stall
                 ctx.set(self.port.ready, ready)
-            _, _, valid, payload = await ctx.tick().sample(self.port.valid, self.payload)
+            _, _, valid, payload = await ctx.tick(self.domain).sample(self.port.valid, self.payload)
             if valid and ready:
                 take(payload)
                 quiet = 0
             else:
                 quiet += 1
-            if quiet > self.deadline + self.stalls.longest:
+            if quiet > self.deadline + stalls.longest:
                 what = f"No transfer on stream {self.name!r} in {quiet} cycles"
-                raise DeadlineError(f"{what}; outstanding: {expected()}")
+                raise DeadlineError(f"{what}; outstanding: {expected()}{what_waits(ctx)}")
         ctx.set(self.port.ready, 0)

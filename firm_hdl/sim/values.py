@@ -234,7 +234,7 @@ def _members(message: Message, value: object, where: str) -> list[Any]:
         names = [f.name for f in dataclasses.fields(value) if not f.name.startswith("__")]
         given = {name: getattr(value, name) for name in names}
     elif isinstance(value, int | float | str | bytes | list | tuple | type | None):
-        raise TypeError(f"{what} must be a {message.name}, not {value!r}")
+        raise TypeError(f"{what} must be a {message.name} ({_fields(message)}), not {value!r}")
     else:
         names = [name for item in message.fields for name in _spellings(item)]
         given = {name: getattr(value, name) for name in names if hasattr(value, name)}
@@ -244,12 +244,21 @@ def _members(message: Message, value: object, where: str) -> list[Any]:
     for item in message.fields:
         names = [name for name in _spellings(item) if name in given]
         if not names:
-            raise ValueError(f"{what} lacks the field {item.name!r} of {message.name}")
+            raise ValueError(
+                f"{what} lacks the field {item.name!r} of {message.name} ({_fields(message)})"
+            )
         members.append(given.pop(names[0]))
     if given:
         name = next(iter(given))
-        raise ValueError(f"{what} has a field {name!r} that {message.name} does not have")
+        raise ValueError(
+            f"{what} has a field {name!r} that {message.name} does not have ({_fields(message)})"
+        )
     return members
+
+
+def _fields(message: Message) -> str:
+    names = ", ".join(item.name for item in message.fields)
+    return f"its fields: {names}" if names else "it has no fields"
 
 
 def _spellings(item: Field) -> list[str]:

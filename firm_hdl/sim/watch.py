@@ -19,7 +19,16 @@ from amaranth.hdl import Cat, Value
 from amaranth.lib import data, stream
 from amaranth.sim import SimulatorContext
 
-__all__ = ["PacketRules", "StreamRuleError", "StreamRules", "watch"]
+from firm_hdl.sim.design import Domain, check_domain
+
+__all__ = [
+    "PacketRules",
+    "StreamRuleError",
+    "StreamRules",
+    "check_packet_stream",
+    "check_stream",
+    "watch",
+]
 
 
 class StreamRuleError(AssertionError):
@@ -104,13 +113,36 @@ class PacketRules:
         self._inside = not last
 
 
-def _is_packet_stream(port: Any) -> bool:
-    """Return whether a stream carries packets."""
+def check_stream(port: Any, name: str) -> None:
+    """Raise a TypeError unless a port of a user's is a stream."""
+    # A flipped stream is not an instance of the class.
+    if not all(hasattr(port, part) for part in ("payload", "valid", "ready")):
+        raise TypeError(f"{name!r} must be a stream, such as rx.packets, not {port!r}")
+
+
+def bus_bytes_of(port: Any) -> int:
+    """Return the bytes of a beat of a packet stream, and 0 for any other stream."""
     shape = port.payload.shape()
-    return isinstance(shape, data.StructLayout) and list(shape.members) == ["data", "count", "last"]
+    if isinstance(shape, data.StructLayout) and list(shape.members) == ["data", "count", "last"]:
+        return int(shape["data"].shape.length)
+    return 0
 
 
-def watch(streams: Mapping[str, stream.Interface]) -> Callable[[SimulatorContext], Awaitable[None]]:
+def check_packet_stream(port: Any, name: str) -> int:
+    """Return the bytes of a beat; raise a TypeError unless a port is a stream of packets."""
+    check_stream(port, name)
+    bus_bytes = bus_bytes_of(port)
+    if not bus_bytes:
+        raise TypeError(
+            f"{name!r} must be a stream of packets, such as rx.packets, not one of "
+            f"{port.payload.shape()!r}"
+        )
+    return bus_bytes
+
+
+def watch(
+    streams: Mapping[str, stream.Interface], *, domain: Domain = "sync"
+) -> Callable[[SimulatorContext], Awaitable[None]]:
     """Return a testbench that checks streams while the simulation runs.
 
     Use as ``sim.add_testbench(watch({"packets": rx.packets}), background=True)``.
@@ -119,21 +151,35 @@ def watch(streams: Mapping[str, stream.Interface]) -> Callable[[SimulatorContext
     ----------
     streams : mapping of str to stream.Interface
         Streams by name, for errors. Packet streams are also checked for rules 5 and 6.
+    domain : str or ClockDomain
+        Clock domain of all of them.
 
     Raises
     ------
+    TypeError
+        If the streams are not given by name.
+    ClockDomainError
+        From the simulation, if a stream is in another clock domain.
     StreamRuleError
         From the simulation, in the cycle in which a rule is broken.
     """
+    if not isinstance(streams, Mapping):
+        raise TypeError(
+            "watch takes a dict of streams by name, such as {'packets': rx.packets}, "
+            f"not {streams!r}"
+        )
+    for name, port in streams.items():
+        check_stream(port, name)
     ports = list(streams.values())
     names = list(streams)
     packets = {
-        number: PacketRules(name, len(port.payload.data))
+        number: PacketRules(name, bus_bytes)
         for number, (name, port) in enumerate(streams.items())
-        if _is_packet_stream(port)
+        if (bus_bytes := bus_bytes_of(port))
     }
 
     async def watcher(ctx: SimulatorContext) -> None:
+        check_domain(ctx, streams, domain)
         rules = StreamRules(names)
         for rule in packets.values():
             rule._inside = False
@@ -141,7 +187,9 @@ def watch(streams: Mapping[str, stream.Interface]) -> Callable[[SimulatorContext
         payloads = [Value.cast(port.payload) for port in ports]
         cycle = 0
         while True:
-            _, reset, valid, ready, *bits = await ctx.tick().sample(valids, readies, *payloads)
+            _, reset, valid, ready, *bits = await ctx.tick(domain).sample(
+                valids, readies, *payloads
+            )
             if reset:
                 # A reset discards offered transfers and incomplete packets.
                 rules = StreamRules(names)

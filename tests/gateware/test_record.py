@@ -34,6 +34,7 @@ SHAPE = make(
     "ros1",
     {"name": "string", "corners": (POINT, "[3]"), "holes": "uint8[11]", "closed": "bool"},
 )
+SHAPE_FIELDS = "corners, holes, closed"
 
 
 class Loop(wiring.Component):
@@ -205,12 +206,20 @@ def test_a_record_is_offered_when_all_of_it_is_there():
 @pytest.mark.parametrize(
     ("message", "fields", "error"),
     [
-        (SHAPE, ["corner"], "Message p/T has no field of fixed size 'corner'"),
-        (SHAPE, ["name"], "Message p/T has no field of fixed size 'name'"),
+        (
+            SHAPE,
+            ["corner"],
+            "Message p/T has no field of fixed size 'corner'; it has " + SHAPE_FIELDS,
+        ),
+        (
+            SHAPE,
+            ["name"],
+            "Message p/T has no field of fixed size 'name'; it has " + SHAPE_FIELDS,
+        ),
         (
             make("ros1", {"s": "string"}),
             None,
-            "Message p/T has no field of fixed size for a record",
+            "Message p/T has no field of fixed size for a record; its fields: s (string)",
         ),
         (
             make("ros1", {"a": "uint64[1025]"}),

@@ -271,7 +271,7 @@ def test_silence_is_counted_from_the_last_transfer():
     assert run.taken["o0"] == [(1, 1), (4, 2)]
 
 
-@pytest.mark.parametrize(("fault", "rule"), [("drop", "1"), ("change", "2")])
+@pytest.mark.parametrize(("fault", "rule"), [("drop", "2"), ("change", "3")])
 def test_rules_are_watched_at_sinks(fault, rule):
     run = Run([[4, 4]], fault=fault, stalls={"o0": Stalls.bits("00001")})
     with pytest.raises(StreamRuleError, match=f"[Rr]ule {rule}"):

@@ -254,6 +254,10 @@ def test_leaves_that_are_offered_and_not_awaited_do_not_put_off_the_deadline():
     async def sink(ctx):
         await o.receive(ctx, deadline=5)
 
-    message = r"^No transfer of a message in 6 cycles; outstanding: message\.a \(1\)$"
+    message = (
+        r"^No transfer of a message in 6 cycles; outstanding: message\.a \(1\); "
+        r"offered while no logic drives `ready`: design\.o\.r, design\.o\.g, design\.o\.b; "
+        r"offered while `ready` is low: design\.i\.r, design\.i\.g, design\.i\.b$"
+    )
     with pytest.raises(DeadlineError, match=message):
         run_testbenches(dut, source, sink)

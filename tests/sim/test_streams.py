@@ -105,7 +105,8 @@ def test_deadline_of_packets_reports_the_partial_packet():
 
     message = (
         r"^No transfer on stream 'packets_out' in 10 cycles; "
-        r"outstanding: 1 of 2 packets, 12 bytes of one have come$"
+        r"outstanding: 1 of 2 packets, 12 bytes of one have come; "
+        r"offered while `ready` is low: design\.i$"
     )
     with pytest.raises(DeadlineError, match=message):
         run_testbenches(dut, sink, background=[source])

@@ -69,7 +69,7 @@ def test_taps_are_watched_and_held_up_by_their_gates(stalls, times):
     assert taken["tap"] == [(time, 256 + payload) for time, payload in taken["o"]]
 
 
-@pytest.mark.parametrize(("fault", "rule"), [("drop", 1), ("change", 2)])
+@pytest.mark.parametrize(("fault", "rule"), [("drop", 2), ("change", 3)])
 def test_rules_are_watched_at_taps(fault, rule):
     design = Tapped(fault)
     # The output behind the tap is never ready, and nobody watches it.

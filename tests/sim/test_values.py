@@ -170,22 +170,27 @@ REFUSED = [
     ({"x": "uint8[]"}, {"x": [1, 256]}, ValueError, "x[1] must be from 0 to 255, not 256"),
     ({"x": "uint8[]"}, {"x": "abc"}, TypeError, "x must be a list of uint8, not 'abc'"),
     ({"x": "uint8[]"}, {"x": 3}, TypeError, "x must be a list of uint8, not 3"),
-    ({"x": "uint8"}, {}, ValueError, "value lacks the field 'x' of p/msg/T"),
+    ({"x": "uint8"}, {}, ValueError, "value lacks the field 'x' of p/msg/T (its fields: x)"),
     (
         {"x": "uint8"},
         {"x": 1, "y": 2},
         ValueError,
-        "value has a field 'y' that p/msg/T does not have",
+        "value has a field 'y' that p/msg/T does not have (its fields: x)",
     ),
-    ({"x": "uint8"}, 5, TypeError, "value must be a p/msg/T, not 5"),
+    ({"x": "uint8"}, 5, TypeError, "value must be a p/msg/T (its fields: x), not 5"),
     (
         {"p": (INNER, "[]")},
         {"p": [{"x": 1, "s": ""}, {"x": 1 << 15, "s": ""}]},
         ValueError,
         "p[1].x must be from -32768 to 32767, not 32768",
     ),
-    ({"p": INNER}, {"p": None}, TypeError, "p must be a p/msg/I, not None"),
-    ({"p": INNER}, {"p": {"x": 1}}, ValueError, "p lacks the field 's' of p/msg/I"),
+    ({"p": INNER}, {"p": None}, TypeError, "p must be a p/msg/I (its fields: x, s), not None"),
+    (
+        {"p": INNER},
+        {"p": {"x": 1}},
+        ValueError,
+        "p lacks the field 's' of p/msg/I (its fields: x, s)",
+    ),
 ]
 
 

@@ -7,17 +7,13 @@ port. Each port has at least one bit.
 from __future__ import annotations
 
 from amaranth.hdl import ClockDomain, Elaboratable, Fragment, Module, Signal, Value
-from amaranth.hdl._xfrm import DomainCollector
 from amaranth.lib import wiring
 
-from firm_hdl.errors import UserError
+from firm_hdl.sim import design
+from firm_hdl.sim.design import ClockDomainError
 from firm_hdl.sim.fast.ports import Ports
 
 __all__ = ["ClockDomainError", "Top", "check_domains"]
-
-
-class ClockDomainError(UserError):
-    """A design has another clock domain than `sync`."""
 
 
 class Top(Elaboratable):
@@ -82,17 +78,11 @@ class Top(Elaboratable):
 
 
 def check_domains(fragment: Fragment) -> None:
-    """Check that an elaborated design has no other clock domain than `sync`.
+    """Check that an elaborated design has no clock domain but `sync`, and one source per stream.
 
     Raises
     ------
-    ClockDomainError
+    ClockDomainError, wiring.ConnectionError
     """
-    collector = DomainCollector()
-    collector(fragment)
-    others = (collector.used_domains | collector.defined_domains) - {"comb", "sync"}
-    if others:
-        raise ClockDomainError(
-            "A fast simulation has one clock domain, 'sync'; the design also has "
-            + ", ".join(repr(name) for name in sorted(others))
-        )
+    design.check_domains(fragment, "A fast simulation")
+    design.check_connections(fragment)
