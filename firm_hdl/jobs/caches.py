@@ -70,7 +70,9 @@ def private_folder(folder: Path) -> Path:
         if status.st_uid not in owners:
             raise PermissionError(errno.EPERM, "it belongs to another user", str(each))
         if status.st_mode & writers:
-            raise PermissionError(errno.EPERM, "other users can write it", str(each))
+            raise PermissionError(
+                errno.EPERM, "other users can write it (see chmod go-w)", str(each)
+            )
     return folder
 
 

@@ -98,6 +98,19 @@ def test_yosys_without_memory_says_how_much_it_needs(tmp_path):
     assert not list(tmp_path.rglob("*.v"))
 
 
+@pytest.mark.thorough  # Yosys is compiled, for half a minute of processor time.
+@pytest.mark.parametrize("home", ["/dev/null", "no room for WebAssembly"])
+def test_without_a_cache_a_type_is_built_all_the_same(tmp_path, monkeypatch, home):
+    if home != "/dev/null":
+        (tmp_path / ".cache" / "firm-hdl" / "programs").mkdir(parents=True)
+        (tmp_path / ".cache" / "firm-hdl" / "programs" / "wasmtime").write_text("a file")
+    monkeypatch.setitem(ENVIRONMENT, "HOME", home if home == "/dev/null" else str(tmp_path))
+    monkeypatch.setitem(ENVIRONMENT, "XDG_CACHE_HOME", "")
+    done = run("build", "std_msgs/msg/Bool", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert ("/dev/null: it is not a folder" in done.stderr) == (home == "/dev/null")
+
+
 # Runs command lines one by one; prints status and output of each, and the memory used so far.
 MEASURED = """
 import contextlib, io, json, resource, sys

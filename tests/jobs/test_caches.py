@@ -49,8 +49,7 @@ def test_a_program_is_made_once_and_nobody_else_can_write_it(kept, tmp_path):
 
 
 def test_only_programs_that_were_not_used_for_long_are_removed(kept, tmp_path):
-    folder = tmp_path / "cache"
-    folder.mkdir()
+    folder = private_folder(tmp_path / "cache")
     names = {
         "thesis.tex": 10_000,
         "simulation-notes": 31,
@@ -162,7 +161,10 @@ def test_programs_are_kept_in_the_home_of_the_user(home, monkeypatch, variable):
         ({"HOME": "/dev/null"}, "/dev/null: it is not a folder"),
         ({"HOME": "nowhere"}, "nowhere/.cache: there is no such folder"),
         ({"XDG_CACHE_HOME": "/proc/nowhere"}, "/proc/nowhere: No such file or directory"),
-        ({"XDG_CACHE_HOME": "{folder}/open"}, "{folder}/open: other users can write it"),
+        (
+            {"XDG_CACHE_HOME": "{folder}/open"},
+            "{folder}/open: other users can write it (see chmod go-w)",
+        ),
     ],
 )
 def test_without_a_home_programs_are_kept_until_the_process_ends(
