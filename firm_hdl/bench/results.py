@@ -176,10 +176,26 @@ def read_results(path: str | Path) -> list[Result]:
         found = json.loads(read_file(path, MOST_BYTES))
         if found["format"] != FORMAT:
             raise BenchError(f"'{path}' has format {found['format']}, and {FORMAT} is read")
-        return [_result(entry) for entry in found["results"]]
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        results = [_result(entry) for entry in found["results"]]
+        if not all(map(_can_be_compared, results)):
+            raise ValueError("a figure is no number that was measured")
+        return results
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         reason = f"{type(error).__name__}: {error}"
         raise BenchError(f"'{path}' is not a file of results of bench ({reason})") from None
+
+
+def _can_be_compared(result: Result) -> bool:
+    """Tell whether all figures are numbers that a program can have measured."""
+    found: list[object] = []
+    if (cycles := result.cycles) is not None:
+        found += [cycles.bytes, cycles.latency, cycles.beats, cycles.cycles]
+        if 0 in (cycles.beats, cycles.cycles):
+            return False
+    if result.measured is not None:
+        found += asdict(result.measured.area).values()
+        found += [each.mhz for each in result.measured.placed]
+    return all(type(each) in (int, float) and 0 <= each < 1e18 for each in found)  # type: ignore[operator]
 
 
 def _result(entry: Mapping[str, Any]) -> Result:

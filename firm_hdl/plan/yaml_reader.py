@@ -36,24 +36,27 @@ from firm_hdl.plan.ir import (
 )
 from firm_hdl.wire import RULES
 
-__all__ = ["from_yaml"]
+__all__ = ["compose", "from_yaml"]
 
 Entries: TypeAlias = "dict[str, yaml.Node]"
 T = TypeVar("T")
 
 NUMBERS = ("bus_bytes", "max_message_bytes", "header_bytes", "max_trailing_bytes", "levels")
 KEYS = ("message", "wire", *NUMBERS, "leaves", "runs", "start", "steps")
-LEAF = re.compile(r"(?:(trigger|length)|(signed )?(\w+)(?: x (\d+))?)")
-RANGE = re.compile(r"(?:at (\d+)|(\d+)(?:\.\.(\d+))?)")
+MOST_LEVELS = 16
+MOST_SHOWN = 400
+# Numbers have at most 18 digits: more are none of a plan, and Python refuses to read thousands.
+LEAF = re.compile(r"(?:(trigger|length)|(signed )?(\w+)(?: x (\d{1,18}))?)")
+RANGE = re.compile(r"(?:at (\d{1,18})|(\d{1,18})(?:\.\.(\d{1,18}))?)")
 FIXED = re.compile(r"\(((?:[0-9a-f]{2} )+)(checked|ignored)\)")
 RUN_WORDS = ("counted", "constant count", "with NUL", "with tail")
 PART = re.compile(
-    r"([\w.]+)(?:, (\d+) items?)?(?:, bytes (\d+)(?:\.\.(\d+))? of (\d+))?"
-    r"(?:(, last)(?: of loop (\d+))?)?"
+    r"([\w.]+)(?:, (\d{1,18}) items?)?(?:, bytes (\d{1,18})(?:\.\.(\d{1,18}))? of (\d{1,18}))?"
+    r"(?:(, last)(?: of loop (\d{1,18}))?)?"
 )
-JUMP = re.compile(r"(?:end|step (\d+))(?: with (.+))?")
-CLAIM = re.compile(r"(\d+) from (\d+)(?: less (\d+))?(?: of (\d+))?")
-COUNTER = re.compile(r"(?:loop (\d+)|run) = (\d+)")
+JUMP = re.compile(r"(?:end|step (\d{1,18}))(?: with (.+))?")
+CLAIM = re.compile(r"(\d{1,18}) from (\d{1,18})(?: less (\d{1,18}))?(?: of (\d{1,18}))?")
+COUNTER = re.compile(r"(?:loop (\d{1,18})|run) = (\d{1,18})")
 
 
 def from_yaml(text: str) -> Plan:
@@ -64,19 +67,57 @@ def from_yaml(text: str) -> Plan:
     ValueError
         If the text is not YAML or not that of a plan; the message starts with the line.
     """
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    try:
-        node = yaml.compose(text, Loader=loader)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = "" if mark is None else f"Line {mark.line + 1}: "
-        raise ValueError(f"{line}not YAML: {getattr(error, 'problem', error)}") from None
+    node = compose(text)
     if node is None:
         raise ValueError("Line 1: a plan must be a mapping, not empty")
     return _Reader().plan(node)
 
 
+def compose(text: str) -> yaml.Node | None:
+    """Parse a text into a tree; `None` if it is empty.
+
+    Aliases are refused: a text with few of them can stand for a tree without an end.
+
+    Raises
+    ------
+    ValueError
+        If the text is not YAML, or has an alias or more levels than a plan; the message starts
+        with the line.
+    """
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    try:
+        root = yaml.compose(text, Loader=loader)
+    except yaml.reader.ReaderError as error:
+        line = text.count("\n", 0, max(0, text.find(chr(error.character))))
+        raise ValueError(f"Line {line + 1}: not YAML: {error.reason}") from None
+    except yaml.MarkedYAMLError as error:
+        line = 0 if error.problem_mark is None else error.problem_mark.line
+        raise ValueError(f"Line {line + 1}: not YAML: {error.problem}") from None
+    except (RecursionError, ValueError, OverflowError) as error:
+        # Half of a surrogate pair; the others are of the loader in Python.
+        line = text.count("\n", 0, getattr(error, "start", 0))
+        raise ValueError(f"Line {line + 1}: not YAML that a plan can have") from None
+    seen: set[int] = set()
+    level = [] if root is None else [root]
+    for _ in range(MOST_LEVELS):
+        below: list[yaml.Node] = []
+        for node in level:
+            if id(node) in seen:
+                raise _error(node, "a plan has no aliases")
+            seen.add(id(node))
+            if isinstance(node, yaml.MappingNode):
+                below += [each for pair in node.value for each in pair]
+            elif isinstance(node, yaml.SequenceNode):
+                below += node.value
+        level = below
+    if level:
+        raise _error(level[0], "a plan is not nested so deep")
+    return root
+
+
 def _error(node: yaml.Node, problem: str) -> ValueError:
+    if len(problem) > MOST_SHOWN:
+        problem = f"{problem[:MOST_SHOWN]}..."
     return ValueError(f"Line {node.start_mark.line + 1}: {problem}")
 
 
@@ -100,7 +141,7 @@ def _text(node: yaml.Node, what: str) -> str:
 
 def _number(node: yaml.Node, what: str) -> int:
     text = _text(node, what)
-    if not re.fullmatch("[0-9]+", text):
+    if not re.fullmatch("[0-9]{1,18}", text):
         raise _error(node, f"{what} must be a number, not {text!r}")
     return int(text)
 
@@ -258,7 +299,7 @@ class _Reader:
         default = self.jump(entries.pop("else"), "else")
         repeats: list[tuple[int, Jump]] = []
         for key, value in entries.items():
-            found = re.fullmatch(r"loop (\d+) again", key)
+            found = re.fullmatch(r"loop (\d{1,18}) again", key)
             if found is None:
                 raise _error(value, f"next has no {key!r}")
             repeats.append((int(found[1]), self.jump(value, key)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -57,6 +58,17 @@ def test_other_files_are_refused(tmp_path: Path, text: str, message: str) -> Non
     file = tmp_path / "a.json"
     file.write_text(text)
     with pytest.raises(BenchError, match=message):
+        read_results(file)
+
+
+@pytest.mark.parametrize("figure", ["NaN", "-1", f"1{'0' * 400}", '"2"', "true", "null"])
+@pytest.mark.parametrize("name", ["lut", "mhz", "latency", "beats"])
+def test_figures_that_nobody_measured_are_refused(tmp_path: Path, name: str, figure: str) -> None:
+    text, count = re.subn(rf'(?<="{name}": )[0-9.]+', figure, results_text([result()]))
+    assert count
+    file = tmp_path / "a.json"
+    file.write_text(text)
+    with pytest.raises(BenchError, match="is not a file of results of bench"):
         read_results(file)
 
 

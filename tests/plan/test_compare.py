@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl import load_message
-from firm_hdl.plan import build_plan, to_yaml
+from firm_hdl.plan import build_plan, from_yaml, to_yaml
 from firm_hdl.plan.compare import Change, _step_names, compare
 from firm_hdl.wire import lay_out
 from tests.strategies import make
@@ -115,7 +115,7 @@ def test_kinds_leave_out_what_belongs_to_one_type():
 @pytest.mark.parametrize("is_old", [True, False])
 def test_texts_that_are_no_plans_are_refused(text, is_old):
     texts = [text, "steps: {}"] if is_old else ["steps: {}", text]
-    with pytest.raises(ValueError, match=r"^Not (YAML|a plan: it has no steps)"):
+    with pytest.raises(ValueError, match=r"^(Line 2: not YAML|Not a plan: it has no steps)"):
         compare(*texts)
 
 
@@ -149,6 +149,39 @@ def test_loops_that_are_tried_in_another_order_are_a_change():
     new = replace(old, steps=(*others, replace(last, exits=exits)))
     (change,) = differences(old, new)
     assert change.endswith(".next.order: loop 1 again, loop 0 again -> loop 0 again, loop 1 again")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("steps: {}\nwire: !!int ''", ""),
+        ("steps: {}\nwire: !!timestamp x", ""),
+        ("steps: {}\nwire: !!python/name:os.system x", ""),
+        (f"steps: {{}}\nlevels: {'9' * 5000}", ""),
+        ("steps: {}\n? [a]\n: b", "Not a plan: the mapping in line 1 has a key that is no text"),
+        ("steps: {}\n\0", "Line 2: not YAML: control characters are not allowed"),
+        ("steps: {}\n\ud800", "Line 2: not YAML that a plan can have"),
+        ("steps: {}\nwire: &a [x]\nruns: *a", "Line 2: a plan has no aliases"),
+        ("steps: {}\nwire: &a [*a]", "Line 2: a plan has no aliases"),
+        ("steps: {}\n<<: &a {b: *a}", "Line 2: a plan has no aliases"),
+        (f"steps: {{}}\nwire: {'[' * 99}{']' * 99}", "Line 2: a plan is not nested so deep"),
+        (f"steps: {{}}\nwire: {'[' * 99999}", "Line 2: not YAML: exceeded maximum nesting depth"),
+    ],
+)
+def test_damaged_texts_have_errors_of_our_own(text, message):
+    # What both texts have is no change, whatever it is.
+    if not message:
+        assert compare(text, text) == []
+        return
+    with pytest.raises(ValueError, match=f"^{message}$"):
+        compare("steps: {}", text)
+
+
+def test_few_aliases_do_not_stand_for_billions_of_lines():
+    lines = ["a0: &a0 [x, x]", *(f"a{n}: &a{n} [*a{n - 1}, *a{n - 1}]" for n in range(1, 40))]
+    for read in (from_yaml, lambda text: compare(text, text)):
+        with pytest.raises(ValueError, match=r"^Line \d+: a plan has no aliases$"):
+            read("\n".join([*lines, "steps: {}"]))
 
 
 @pytest.mark.parametrize("content", ["", "5", "words of", "[a]"])

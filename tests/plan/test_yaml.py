@@ -272,7 +272,14 @@ MISTAKES = [
     ("[counted, with NUL]", "[counted, constant count]",
      "Line 16: run 'points.item.name.items' must have one of 'counted' and 'constant count'"),
     ("wire: cdr", "wire: [cdr", "Line 3: not YAML: "),
-    ("wire: cdr", "wire: \0cdr", "not YAML: "),
+    ("wire: cdr", "wire: \0cdr", "Line 2: not YAML: "),
+    ("wire: cdr", "wire: &a [*a]", "Line 2: a plan has no aliases"),
+    ("stamp: uint32", "stamp: &a uint32\n  also: *a", "Line 9: a plan has no aliases"),
+    ("wire: cdr", f"wire: {'[' * 99}{']' * 99}", "Line 2: a plan is not nested so deep"),
+    ("bus_bytes: 8", f"bus_bytes: {'8' * 5000}",
+     f"Line 3: bus_bytes must be a number, not '{'8' * 367}..."),
+    ("4..7: stamp", f"4..{'7' * 30}: stamp", f"Line 23: a step has no '4..{'7' * 30}'"),
+    ("next: step 4\n", f"next: step {'4' * 5000}\n", f"Line 26: 'step {'4' * 394}..."),
 ]  # fmt: skip
 
 
