@@ -272,6 +272,8 @@ def load_message(
 def _folders(paths: Iterable[str | os.PathLike[str]]) -> list[FolderOrigin]:
     folders: list[FolderOrigin] = []
     wrong: list[Diagnostic] = []
+    if isinstance(paths, str | os.PathLike):
+        raise TypeError(f"paths= must be a list of folders, such as [{str(paths)!r}], not one")
     for path in paths:
         try:
             folders.append(FolderOrigin(path))

@@ -172,7 +172,12 @@ class _Choice:
             raise TypeError(f"Fields must be a list of names, not the text {fields!r}")
         if fields is None:
             return cls(None)
-        wanted = [tuple(name.split(".")) for name in fields]
+        names = list(fields) if isinstance(fields, Iterable) else [fields]
+        if not all(isinstance(name, str) for name in names):
+            raise TypeError(f"Fields must be a list of names, not {fields!r}")
+        if not names:
+            raise ValueError("Fields must have at least one name; None takes all")
+        wanted = [tuple(name.split(".")) for name in names]
         return cls(wanted, set(wanted))
 
     def takes(self, path: Path, kind: FieldType) -> bool:

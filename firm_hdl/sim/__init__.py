@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.sim.bench import DeadlineError
+from firm_hdl.sim.design import ClockDomainError
 from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.job import RunOptions
 from firm_hdl.sim.loopback import Decoding, Encoding, Loopback, decode, encode, loopback
@@ -26,6 +27,7 @@ from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.sim.watch import StreamRuleError, StreamRules, watch
 
 __all__ = [
+    "ClockDomainError",
     "DeadlineError",
     "Decoding",
     "Encoding",

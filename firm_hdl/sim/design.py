@@ -34,9 +34,10 @@ __all__ = [
 Domain: TypeAlias = "str | ClockDomain"
 """A clock domain, or its name in the outermost module."""
 
+_ENDS = {True: "sends on", False: "receives from"}
 _MOST_NAMES = 12
-_KEPT = ("passed", "routed")
-"""Counters of packets that were not dropped."""
+_LOST = tuple("aborted full large truncated trailing length encapsulation string overrun".split())
+"""Counters of packets that FIFOs and gates dropped."""
 
 
 class ClockDomainError(UserError):
@@ -44,18 +45,35 @@ class ClockDomainError(UserError):
 
 
 def check_domain(
-    ctx: SimulatorContext, ports: Mapping[str, stream.Interface], domain: Domain
+    ctx: SimulatorContext,
+    ports: Mapping[str, stream.Interface],
+    domain: Domain,
+    *,
+    sends: bool | None = None,
 ) -> None:
-    """Check that a testbench can drive streams, given by name, in a clock domain.
+    """Check that a testbench can use streams, given by name, in a clock domain.
+
+    Parameters
+    ----------
+    sends : bool or None
+        Whether the testbench sends on the streams or receives from them; `None`: it only watches.
 
     Raises
     ------
+    TypeError
+        If the context or the domain is none.
+    ValueError
+        If the design has the same end of a stream as the testbench.
     ClockDomainError
         If the design has no such domain, the domain has no clock, or a stream belongs to registers
         of other domains.
     wiring.ConnectionError
         As :func:`check_connections`.
     """
+    if not isinstance(ctx, SimulatorContext):
+        raise TypeError(f"The first argument must be the context of a testbench, not {ctx!r}")
+    if not isinstance(domain, str | ClockDomain):
+        raise TypeError(f"domain= must be the name of a clock domain, not {domain!r}")
     design: Design = ctx._design
     if design not in _logic:
         check_connections(design.fragment)
@@ -68,13 +86,16 @@ def check_domain(
             f"call add_clock(period, domain={clock.name!r}) of the simulator"
         )
     for name, port in ports.items():
+        if sends is not None and id(port.valid if sends else port.ready) in logic.drivers:
+            hint = "receive from it" if sends else "send on it"
+            raise ValueError(f"The design itself {_ENDS[sends]} stream {name!r}; {hint}")
         found = logic.domains_of(port)
         if found and not any(logic.share_a_clock(each, clock) for each in found):
-            names = " and ".join(sorted(repr(each.name) for each in found))
-            given = next((repr(each.name) for each in found if _is_named(design, each)), "...")
+            named = [each for each in found if design.fragment.domains.get(each.name) is each]
+            names = sorted(repr(each.name) for each in named or found)
             raise ClockDomainError(
-                f"Stream {name!r} is in the clock domain {names}, not in {clock.name!r}: "
-                f"pass domain={given}"
+                f"Stream {name!r} is in the clock domain {' and '.join(names)}, not in "
+                f"{clock.name!r}: pass domain={names[0] if named else 'that ClockDomain'}"
             )
 
 
@@ -133,15 +154,11 @@ def _resolved(design: Design, domain: Domain) -> ClockDomain:
     try:
         found: ClockDomain = design.lookup_domain(domain, None)
     except KeyError:
-        there = ", ".join(map(repr, design.fragment.domains)) or "none"
+        there = ", ".join(map(repr, sorted(design.fragment.domains))) or "none"
         raise ClockDomainError(
             f"The design has no clock domain {domain!r}; the names for domain= are {there}"
         ) from None
     return found
-
-
-def _is_named(design: Design, domain: ClockDomain) -> bool:
-    return design.fragment.domains.get(domain.name) is domain
 
 
 def _has_clock(ctx: SimulatorContext, domain: ClockDomain) -> bool:
@@ -257,9 +274,11 @@ def what_waits(ctx: SimulatorContext) -> str:
                 names = waiting if id(port.ready) in driven else open_
                 names.append(".".join([*place, *name]))
         if isinstance(component, Component) and "counters" in component.signature.members:
-            counts = {key: ctx.get(counter) for key, counter in component.counters}
-            lost = [f"{n} {key}" for key, n in counts.items() if n and key not in _KEPT]
-            dropped += [f"{'.'.join(place)} ({', '.join(lost)})"] if lost else []
+            counters: Any = component.counters
+            there = (key for key in _LOST if key in counters.shape().members)
+            counts = {key: ctx.get(counters[key]) for key in there}
+            if lost := ", ".join(f"{count} {key}" for key, count in counts.items() if count):
+                dropped.append(f"{'.'.join(place) or type(component).__name__} ({lost})")
     parts = [
         ("offered while no logic drives `ready`", open_),
         ("offered while `ready` is low", waiting),

@@ -24,7 +24,8 @@ from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, as_packets, beats_of, encoder_of
 from firm_hdl.sim.record import Recorder, RunResult, leaf_name
 from firm_hdl.sim.stalls import StallPlan, stalls_of
-from firm_hdl.sim.transfers import join_transfers, transfer_table
+from firm_hdl.sim.transfers import checked_transfers, join_transfers, transfer_table
+from firm_hdl.wire import lay_out
 
 __all__ = ["Harness"]
 
@@ -73,6 +74,8 @@ class Harness:
         if deserializer is not None and serializer is not None:
             _check_pair(deserializer.plan, serializer.plan)
         self.plan: Plan = component.plan
+        if message is not None and lay_out(message).message.name != self.plan.message:
+            raise ValueError(f"The converter is for {self.plan.message}, not for {message.name}")
         self.table = None if message is None else transfer_table(self.plan, message)
         self.deserializer, self.serializer = deserializer, serializer
         names = [leaf_name(self.plan, leaf) for leaf in range(len(self.plan.leaves))]
@@ -119,7 +122,9 @@ class Harness:
         """
         if self.deserializer is not None:
             raise ValueError("Messages need a harness without a deserializer")
-        transfers = join_transfers(messages)
+        if isinstance(messages, Mapping) or not isinstance(messages, Iterable):
+            raise TypeError(f"Messages must be a list of dicts, not {messages!r}")
+        transfers = join_transfers(checked_transfers(self.plan, each) for each in messages)
         sources: dict[str, Iterable[int]] = {
             leaf_name(self.plan, leaf): map(encoder_of(self.plan.leaves[leaf]), payloads)
             for leaf, payloads in transfers.items()
@@ -135,6 +140,8 @@ class Harness:
         self, sources: dict[str, Iterable[int]], messages: int, size: int, options: RunOptions
     ) -> RunResult:
         """Run until `messages` messages have come; `size` is the number of bytes or transfers."""
+        if not isinstance(options, RunOptions):
+            raise TypeError(f"Options must be RunOptions, not {options!r}")
         if self.deserializer is not None and self.serializer is not None and not self.gated:
             self._refuse_leaf_stalls(options.stalls)
         if options.limit is None:

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from firm_hdl.gateware.limits import check_integer
 from firm_hdl.sim.stalls import StallPlan, check_stalls
 
 __all__ = ["Job", "RunOptions"]
@@ -42,11 +43,10 @@ class RunOptions:
 
     def __post_init__(self) -> None:
         check_stalls(self.stalls)
-        for name, number in (("deadline", self.deadline), ("settle", self.settle)):
-            if not isinstance(number, int):
-                raise TypeError(f"{name}= must be a number of cycles, not {number!r}")
-        if self.limit is not None and not isinstance(self.limit, int):
-            raise TypeError(f"limit= must be a number of cycles or None, not {self.limit!r}")
+        check_integer("deadline=", self.deadline)
+        check_integer("settle=", self.settle)
+        if self.limit is not None:
+            check_integer("limit=", self.limit)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -25,7 +25,7 @@ from firm_hdl.sim.payloads import decoder_of, encoder_of
 from firm_hdl.sim.record import leaf_name
 from firm_hdl.sim.stalls import StallPlan, check_stalls, stalls_of
 from firm_hdl.sim.streams import SEND_DEADLINE
-from firm_hdl.sim.transfers import PendingTransfers, transfer_table
+from firm_hdl.sim.transfers import PendingTransfers, checked_transfers, transfer_table
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import Wire, lay_out
 
@@ -143,9 +143,9 @@ class MessagePort:
         stalls: StallPlan = None,
     ) -> None:
         """Send transfers given by leaf until all are taken; they may be invalid on purpose."""
-        self._check(ctx, stalls)
+        self._check(ctx, stalls, sends=True)
         sources = []
-        for leaf, payloads in transfers.items():
+        for leaf, payloads in checked_transfers(self.plan, transfers).items():
             port, name = self.streams[leaf], self._names[leaf]
             bits = map(self._encoders[leaf], payloads)
             stalled = stalls_of(stalls, name).cycles(name)
@@ -170,7 +170,7 @@ class MessagePort:
         self, ctx: SimulatorContext, *, stalls: StallPlan = None, deadline: int = 1000
     ) -> dict[int, list[Payload]]:
         """Receive the transfers of one message. Parameters and errors as for :meth:`receive`."""
-        self._check(ctx, stalls)
+        self._check(ctx, stalls, sends=False)
         pending = PendingTransfers(self._table)
         got: dict[int, list[Payload]] = {leaf: [] for leaf in self.streams}
         kinds = [stalls_of(stalls, name) for name in self._names]
@@ -196,9 +196,10 @@ class MessagePort:
                 what = f"No transfer of a message in {quiet} cycles; outstanding"
                 raise DeadlineError(f"{what}: {', '.join(left)}{what_waits(ctx)}")
 
-    def _check(self, ctx: SimulatorContext, stalls: StallPlan) -> None:
+    def _check(self, ctx: SimulatorContext, stalls: StallPlan, *, sends: bool) -> None:
         check_stalls(stalls, self._names)
-        check_domain(ctx, dict(zip(self._names, self.streams.values(), strict=True)), self.domain)
+        streams = dict(zip(self._names, self.streams.values(), strict=True))
+        check_domain(ctx, streams, self.domain, sends=sends)
 
     def _set_ready(
         self,

@@ -11,6 +11,7 @@ the transfers that were still expected, and the streams of the design that wait.
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -19,6 +20,7 @@ from amaranth.hdl import Value
 from amaranth.lib import stream
 from amaranth.sim import SimulatorContext
 
+from firm_hdl.gateware.limits import check_integer
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.sim.bench import DeadlineError
 from firm_hdl.sim.design import Domain, check_domain, what_waits
@@ -72,14 +74,21 @@ async def send(
     """
     check_stream(port, name)
     check_stalls(stalls, [name])
-    check_domain(ctx, {name: port}, domain)
+    check_domain(ctx, {name: port}, domain, sends=True)
+    check_integer("deadline=", deadline)
+    if isinstance(payloads, str) or not isinstance(payloads, Iterable):
+        raise TypeError(f"Payloads must be a list, not {payloads!r}")
     stalled = stalls_of(stalls, name).cycles(name)
     bits = Value.cast(port.payload)
     for number, payload in enumerate(payloads):
         while next(stalled):
             await ctx.tick(domain)
         if isinstance(payload, int):
+            if not -(1 << len(bits)) >> 1 <= payload < 1 << len(bits):
+                raise ValueError(f"{name!r} has {len(bits)} bits, too few for {payload}")
             ctx.set(bits, payload)
+        elif payload is None:
+            raise TypeError(f"{name!r} needs a payload, not None")
         else:
             ctx.set(port.payload, payload)
         ctx.set(port.valid, 1)
@@ -205,6 +214,10 @@ async def receive_statuses(
     domain: Domain = "sync",
 ) -> list[Status]:
     """Receive statuses. Parameters and errors are those of :func:`receive`."""
+    check_stream(port, name)
+    if not isinstance(port.payload.shape(), enum.EnumMeta):
+        shape = port.payload.shape()
+        raise TypeError(f"{name!r} must be a stream of statuses, not one of {shape!r}")
     return await receive(
         ctx, port, count, stalls=stalls, deadline=deadline, name=name, domain=domain
     )
@@ -234,10 +247,12 @@ class _Receiver:
         self, ctx: SimulatorContext, take: Callable[[Any], object], expected: Callable[[], str]
     ) -> None:
         """Receive until `expected` returns an empty text; call `take` with each payload."""
-        if isinstance(self.count, bool) or not isinstance(self.count, int):
-            raise TypeError(f"The number to receive must be an integer, not {self.count!r}")
+        check_integer("The number to receive", self.count)
+        check_integer("deadline=", self.deadline)
+        if self.count < 0:
+            raise ValueError(f"The number to receive must be at least 0, not {self.count}")
         check_stalls(self.stalls, [self.name])
-        check_domain(ctx, {self.name: self.port}, self.domain)
+        check_domain(ctx, {self.name: self.port}, self.domain, sends=False)
         stalls = stalls_of(self.stalls, self.name)
         stalled = stalls.cycles(self.name)
         ready = quiet = 0

@@ -27,6 +27,7 @@ from firm_hdl.wire import (
 __all__ = [
     "PendingTransfers",
     "TransferTable",
+    "checked_transfers",
     "join_transfers",
     "split_transfers",
     "transfer_table",
@@ -123,6 +124,29 @@ def transfer_table(plan: Plan, message: Message) -> TransferTable:
 
     start = tuple(visit(lay_out(message, plan.wire).nodes))
     return TransferTable(start=start, below=below, items=items)
+
+
+def checked_transfers(
+    plan: Plan, message: Mapping[int, Sequence[Payload]]
+) -> Mapping[int, Sequence[Payload]]:
+    """Return a user's transfers of a message, with checked types; values may be wrong on purpose.
+
+    Raises
+    ------
+    TypeError, ValueError
+    """
+    if not isinstance(message, Mapping):
+        raise TypeError(f"Transfers must be a dict of lists by leaf, not {message!r}")
+    for number, payloads in message.items():
+        if number not in range(len(plan.leaves)):
+            last = len(plan.leaves) - 1
+            raise ValueError(f"{plan.message} has the leaves 0 to {last}, not {number!r}")
+        leaf = plan.leaves[number]
+        kind = tuple if leaf.kind == "items" else int
+        if not isinstance(payloads, Iterable) or not all(isinstance(p, kind) for p in payloads):
+            what = "tuples of lanes and `last`" if kind is tuple else "integers"
+            raise TypeError(f"{leaf} takes a list of {what}, not {payloads!r}")
+    return message
 
 
 def split_transfers(

@@ -56,6 +56,7 @@ def to_transfers(
     ValueError
         If a number, a count or a set of fields is not allowed by the message type.
     """
+    _check(plan, message)
     splitter = _Splitter(plan, check_bounds)
     splitter.message(message, value, (), "")
     return splitter.streams
@@ -85,12 +86,27 @@ def from_transfers(
     ValueError
         If transfers are missing or left over, or if `last` is not set in exactly the last one.
     """
+    _check(plan, message)
+    if not isinstance(transfers, Mapping):
+        raise TypeError(f"Transfers must be a dict of lists by leaf, not {transfers!r}")
+    for leaf in transfers:
+        if leaf not in range(len(plan.leaves)):
+            last = len(plan.leaves) - 1
+            raise ValueError(f"{plan.message} has the leaves 0 to {last}, not {leaf!r}")
     joiner = _Joiner(plan, transfers, exact)
     value = joiner.message(message, ())
     for leaf, stream in joiner.streams.items():
         if any(True for _ in stream):
             raise ValueError(f"Leaf {plan.leaves[leaf]} has more transfers than the message needs")
     return value
+
+
+def _check(plan: Plan, message: Message) -> None:
+    """Check that a plan of a user's is one of the message."""
+    if not isinstance(plan, Plan) or not isinstance(message, Message):
+        raise TypeError(f"A Plan and its Message are needed, not {plan!r} and {message!r}")
+    if plan.message != message.name:
+        raise ValueError(f"The plan is that of {plan.message}, not of {message.name}")
 
 
 class _Leaves:

@@ -7,6 +7,7 @@ from amaranth.lib.fifo import AsyncFIFO
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.limits import check_integer
 from firm_hdl.gateware.signatures import PacketSignature, packet_layout
 
 __all__ = ["PacketCrossing"]
@@ -50,8 +51,14 @@ class PacketCrossing(Component):
         write_domain: str = "write",
         read_domain: str = "read",
     ):
+        check_integer("Number of beats", beats)
         if beats < 4 or beats & (beats - 1):
             raise ValueError(f"Number of beats must be a power of two from 4 on, not {beats}")
+        for name, domain in (("write_domain", write_domain), ("read_domain", read_domain)):
+            if not isinstance(domain, str):
+                raise TypeError(f"{name}= must be the name of a clock domain, not {domain!r}")
+            if domain in ("", "comb"):
+                raise ValueError(f"{name}= must be the name of a clock domain, not {domain!r}")
         self.bus_bytes, self.beats = bus_bytes, beats
         self.write_domain, self.read_domain = write_domain, read_domain
         super().__init__(

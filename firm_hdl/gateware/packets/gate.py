@@ -19,7 +19,7 @@ from firm_hdl.gateware.signatures import PacketSignature, Status, packet_layout
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 from firm_hdl.plan.geometry import ring_beats
-from firm_hdl.wire import Wire
+from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["PacketGate"]
 
@@ -94,6 +94,11 @@ class PacketGate(Component):
     ----------
     plan : Plan
         The plan of the parser.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a parameter is not what it has to be, or the memory has no room for any packet.
     """
 
     def __init__(
@@ -111,6 +116,12 @@ class PacketGate(Component):
         self.bus_bytes, self.when_full = bus_bytes, when_full
         self.plan = parser_plan(message, wire, bus_bytes, max_message_bytes)
         self.shape = MemoryShape(bus_bytes, memory_bytes, packets)
+        least = lay_out(message, wire).min_bytes
+        if memory_bytes < least:
+            raise ValueError(
+                f"Memory size must be at least {least} bytes, the least that a {message.name} has, "
+                f"not {memory_bytes}"
+            )
         super().__init__(
             {
                 "packets_in": In(PacketSignature(bus_bytes)),

@@ -7,6 +7,7 @@ from typing import Literal, TypeAlias, get_args
 from amaranth.lib import enum
 from amaranth.utils import ceil_log2
 
+from firm_hdl.gateware.limits import check_integer
 from firm_hdl.plan import check_bus_bytes
 
 __all__ = ["MemoryShape", "Outcome", "WhenFull", "check_policy"]
@@ -67,9 +68,8 @@ class MemoryShape:
 
     def __init__(self, bus_bytes: int, memory_bytes: int, packets: int):
         check_bus_bytes(bus_bytes)
-        for name, value in (("Memory size", memory_bytes), ("Number of packets", packets)):
-            if not isinstance(value, int):
-                raise TypeError(f"{name} must be an integer, not {value!r}")
+        check_integer("Memory size", memory_bytes)
+        check_integer("Number of packets", packets)
         if memory_bytes < 2 * bus_bytes or memory_bytes & (memory_bytes - 1):
             least = 2 * bus_bytes
             raise ValueError(

@@ -131,6 +131,10 @@ def test_parameters_are_checked():
         PacketArbiter(8, 0)
     with pytest.raises(ValueError, match=r"^Bus width must be one of"):
         PacketArbiter(3, 2)
+    with pytest.raises(TypeError, match=r"^Number of inputs must be an integer, not '2'$"):
+        PacketArbiter(8, "2")
+    with pytest.raises(ValueError, match=r"^Number of side bits must be at least 0, not -1$"):
+        PacketArbiter(8, 2, side_bits=-1)
 
 
 class _Unfair(PacketArbiter):

@@ -6,7 +6,7 @@ from __future__ import annotations
 import random
 
 import pytest
-from amaranth.hdl import Value
+from amaranth.hdl import ClockDomain, Value
 from amaranth.sim import Simulator
 
 from firm_hdl import PacketCrossing, load_message
@@ -108,6 +108,12 @@ def test_parameters_are_checked():
     for beats in (2, 12):
         with pytest.raises(ValueError, match=f"power of two from 4 on, not {beats}$"):
             PacketCrossing(8, beats)
+    with pytest.raises(TypeError, match=r"^Number of beats must be an integer, not '16'$"):
+        PacketCrossing(8, "16")
+    with pytest.raises(TypeError, match=r"^write_domain= must be the name of a clock domain, not "):
+        PacketCrossing(8, write_domain=ClockDomain("sync"))
+    with pytest.raises(ValueError, match=r"^read_domain= must be the name .*, not 'comb'$"):
+        PacketCrossing(8, read_domain="comb")
 
 
 class _IsNeverFull(PacketCrossing):

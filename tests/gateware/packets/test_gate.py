@@ -293,6 +293,10 @@ def test_parameters_are_checked():
         PacketGate(message, when_full="hold")
     with pytest.raises(ValueError, match=r"^Memory size must be a power of two from 16 bytes"):
         PacketGate(message, memory_bytes=100)
+    least = r"^Memory size must be at least 16 bytes, the least that a .*Header has, not 8$"
+    with pytest.raises(ValueError, match=least):
+        PacketGate(message, bus_bytes=4, memory_bytes=8)
+    assert PacketGate(message, memory_bytes=16).shape.beats == 2
     with pytest.raises(TypeError, match=r"^Message must be a Message"):
         PacketGate("std_msgs/msg/Header")
 
