@@ -4,7 +4,7 @@ It exchanges samples as bytes, and knows nothing of message types. :mod:`firm_hd
 names and conventions of ROS 2 on top. ``docs/rtps.md`` describes what is implemented.
 """
 
-from firm_hdl.rtps.endpoints import DataReader, DataWriter
+from firm_hdl.rtps.endpoints import ClosedError, DataReader, DataWriter
 from firm_hdl.rtps.events import Sample
 from firm_hdl.rtps.participant import Participant
 from firm_hdl.rtps.qos import Durability, Qos, Reliability
@@ -13,6 +13,7 @@ from firm_hdl.rtps.wire.guid import Guid, SampleIdentity
 from firm_hdl.rtps.writer import HistoryFullError
 
 __all__ = [
+    "ClosedError",
     "DataReader",
     "DataWriter",
     "Durability",

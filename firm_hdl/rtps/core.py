@@ -7,23 +7,24 @@ the endpoint that it is for. :mod:`firm_hdl.rtps.participant` connects it with a
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator
 
+from firm_hdl.rtps.backlog import MOST_SAMPLE_BYTES
+from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData
-from firm_hdl.rtps.events import Arrived, Event, PeerFound, PeerLost, Sample
-from firm_hdl.rtps.fragments import Budget
+from firm_hdl.rtps.events import Arrived, Event, Sample
 from firm_hdl.rtps.outgoing import Outgoing
-from firm_hdl.rtps.qos import Qos
+from firm_hdl.rtps.qos import Durability, Qos
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.sedp import Local, Sedp
+from firm_hdl.rtps.settings import Settings
 from firm_hdl.rtps.spdp import Spdp
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import (
     SPDP_WRITER,
-    UNKNOWN_PREFIX,
     Guid,
     SampleIdentity,
+    is_builtin,
     user_reader,
     user_writer,
 )
@@ -34,46 +35,15 @@ from firm_hdl.rtps.wire.octets import MalformedError
 from firm_hdl.rtps.wire.parameters import ParameterList, identity
 from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
 from firm_hdl.rtps.wire.samples import NO_PARAMETERS, Data, DataFrag
-from firm_hdl.rtps.writer import FRAGMENT_BYTES, Writer
+from firm_hdl.rtps.wire.submessages import Submessage
+from firm_hdl.rtps.writer import HistoryFullError, Writer
 
-__all__ = ["Core", "Settings"]
+__all__ = ["Core"]
 
-# Bytes that wait to be sent. More come only if peers ask for much, and can ask again.
-_MAX_OUTBOX_BYTES = 64 << 20
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Settings:
-    """What a participant is and does.
-
-    Attributes
-    ----------
-    own : ParticipantData
-        What it announces.
-    host : str
-        Its IPv4 address.
-    targets : tuple of Address
-        Where announcements go.
-    period : float
-        Seconds between announcements.
-    fragment_bytes : int
-        Larger samples are sent in fragments of this size: from 256 to 65,000.
-    memory_bytes : int
-        Memory for samples that cannot be delivered yet.
-    """
-
-    own: ParticipantData
-    host: str
-    targets: tuple[Address, ...]
-    period: float = 1.0
-    fragment_bytes: int = FRAGMENT_BYTES
-    memory_bytes: int = 128 << 20
-
-    def __post_init__(self) -> None:
-        if not 256 <= self.fragment_bytes <= 65_000:
-            raise ValueError(
-                f"Fragments must have from 256 to 65000 bytes, not {self.fragment_bytes}"
-            )
+# Bytes that wait to be sent. An address has at most as many as are left for others.
+_MAX_OUTBOX_BYTES = 128 << 20
+# Events that wait for the user, and bytes of the samples among them.
+_MAX_EVENTS, _MAX_EVENT_BYTES = 1 << 16, 64 << 20
 
 
 class Core:
@@ -89,11 +59,9 @@ class Core:
     outbox : deque
         Datagrams to send, in this order: pairs of an address and bytes.
     events : deque
-        What happened, oldest first. The user removes them.
+        What happened, oldest first. :meth:`next_event` removes them.
     counters : Counter
-        How many datagrams came (``received``), were not valid or not valid to the end
-        (``malformed``), had a kind of submessage that is not known (``unknown``), or were not sent
-        because too many wait (``dropped``).
+        What came and what became of it; the page docs/rtps.md explains each.
     """
 
     def __init__(self, settings: Settings):
@@ -103,13 +71,13 @@ class Core:
         self.events: deque[Event] = deque()
         self.counters: Counter[str] = Counter()
         self._outbox_bytes = 0
+        # Of which so many to each address.
+        self._waiting: dict[Address, int] = {}
+        self._event_bytes = 0
         self._keys = 0
         self._budget = Budget(settings.memory_bytes)
-        own, host, send = settings.own, settings.host, self._post
-        self._sedp = Sedp(own.prefix, host, send, self._budget, self.events)
-        self._spdp = Spdp(
-            own, host, settings.targets, settings.period, send, self._found, self._lost
-        )
+        self._sedp = Sedp(self.prefix, self._post, self._budget, self.events, self.counters)
+        self._spdp = Spdp(settings, self._sedp, self._tell, self.counters)
         pub, sub = self._sedp.publications, self._sedp.subscriptions
         self._writers = {each.guid.entity: each for each in (pub, sub)}
         listeners = (self._sedp.publications_reader, self._sedp.subscriptions_reader)
@@ -125,7 +93,7 @@ class Core:
         return self._sedp.remotes(writers)
 
     def matched(self, guid: Guid) -> tuple[EndpointData, ...]:
-        """Return the endpoints of peers that one of ours is matched with."""
+        """Return the endpoints that one of ours is matched with."""
         local = self._sedp.locals.get(guid)
         return () if local is None else tuple(local.matched.values())
 
@@ -135,13 +103,19 @@ class Core:
         """Create and announce a writer. The names are those of the wire."""
         self._keys += 1
         guid = Guid(self.prefix, user_writer(self._keys))
-        writer = Writer(guid, qos, self._post, self.settings.fragment_bytes)
+        writer = Writer(guid, qos, self._post, self.settings.fragment_bytes, self.counters)
         self._writers[guid.entity] = writer
         self._announce(writer, topic, type_name, qos, user_data, now)
         return writer
 
     def add_reader(
-        self, topic: str, type_name: str, qos: Qos, user_data: bytes, now: float
+        self,
+        topic: str,
+        type_name: str,
+        qos: Qos,
+        user_data: bytes,
+        now: float,
+        most_bytes: int = MOST_SAMPLE_BYTES,
     ) -> Reader:
         """Create and announce a reader. Its samples become events."""
         self._keys += 1
@@ -150,14 +124,24 @@ class Core:
         def deliver(source: Guid, data: Data, timestamp: int | None) -> None:
             self._deliver(guid, source, data, timestamp)
 
-        reader = Reader(guid, qos, self._post, deliver, self._budget)
+        reader = Reader(guid, qos, self._post, deliver, self._budget, most_bytes, self.counters)
         self._readers[guid.entity] = reader
-        self._announce(reader, topic, type_name, qos, user_data, now)
+        local = self._announce(reader, topic, type_name, qos, user_data, now)
+        if qos.durability > Durability.VOLATILE:
+            # Writers of this participant that are volatile have no history for it.
+            for other in local.beside.values():
+                assert isinstance(other.endpoint, Writer)
+                for change in other.endpoint.history():
+                    if change.is_for(guid):
+                        self._deliver(guid, other.data.guid, change.data, change.timestamp)
         return reader
 
     def remove(self, guid: Guid, now: float) -> None:
         """Remove an endpoint, and tell peers."""
-        if guid in self._sedp.locals:
+        local = self._sedp.locals.get(guid)
+        if local is not None:
+            if isinstance(local.endpoint, Writer):
+                self.counters["unacknowledged"] += local.endpoint.unacknowledged
             self._sedp.remove(guid, now)
             self._writers.pop(guid.entity, None)
             self._readers.pop(guid.entity, None)
@@ -169,6 +153,7 @@ class Core:
         now: float,
         timestamp: int | None,
         related: SampleIdentity | None = None,
+        to: Collection[Guid] | None = None,
     ) -> int:
         """Write a sample, and return its sequence number.
 
@@ -177,11 +162,34 @@ class Core:
         HistoryFullError
             The writer keeps all samples, and readers have acknowledged too little.
         """
+        local = self._sedp.locals.get(writer.guid)
+        beside = [] if local is None else [g for g in local.beside if to is None or g in to]
+        if beside and self._is_crowded and writer.qos.reliable and not writer.qos.depth:
+            raise HistoryFullError("readers of this participant have taken too few samples")
         inline = NO_PARAMETERS if related is None else ParameterList(tuple(identity(related)))
-        return writer.write(payload, now, timestamp, inline)
+        number = writer.write(payload, now, timestamp, inline, to=to)
+        for reader in beside:
+            if self._is_crowded:
+                self.counters["refused"] += 1
+                continue
+            data = Data(
+                reader=reader.entity,
+                writer=writer.guid.entity,
+                sequence_number=number,
+                payload=payload,
+                inline=inline,
+            )
+            self._deliver(reader, writer.guid, data, timestamp)
+        return number
 
-    def receive(self, datagram: bytes, now: float) -> None:
-        """Take a datagram. Whatever is in it, there is no error; what is wrong is counted."""
+    def receive(self, datagram: bytes, now: float, host: str | None = None) -> None:
+        """Take a datagram. Whatever is in it, there is no error; what is wrong is counted.
+
+        Parameters
+        ----------
+        host : str or None
+            IPv4 address that it came from, if that is known. Peers are reached there first.
+        """
         self.counters["received"] += 1
         try:
             content = message.read(datagram, self.prefix)
@@ -190,12 +198,12 @@ class Core:
             return
         if content.source == self.prefix:
             return
-        self._spdp.refresh(content.source, now)
+        self._spdp.hear(content.source, host, len(datagram), now)
         self.counters["unknown"] += bool(content.unknown)
         bad = content.error is not None
         for each in content.received:
             try:
-                self._take(each, now)
+                self._take(each, host, now)
             except MalformedError:
                 # Such as discovery data that is no parameter list. Other submessages are not
                 # concerned.
@@ -209,9 +217,33 @@ class Core:
             due.append(local.endpoint.tick(now))
         return min(due)
 
+    def ask(self, writers: Iterable[Writer], now: float) -> None:
+        """Ask the readers of some writers to acknowledge what they have, at once."""
+        for writer in writers:
+            writer.ask_all(now)
+
+    @property
+    def writers(self) -> list[Writer]:
+        """The user's writers."""
+        ends = [local.endpoint for local in self._sedp.locals.values()]
+        return [each for each in ends if isinstance(each, Writer)]
+
     def leave(self) -> None:
-        """Tell all peers that this participant leaves."""
+        """Tell all peers that this participant leaves. What was not sent yet is dropped."""
+        self.counters["unsent"] += len(self.outbox)
+        self.counters["unacknowledged"] += sum(each.unacknowledged for each in self.writers)
+        while self.outbox:
+            self.pop()
         self._spdp.leave()
+
+    def next_event(self) -> Event | None:
+        """Remove and return the oldest event, or return `None`."""
+        if not self.events:
+            return None
+        event = self.events.popleft()
+        if isinstance(event, Arrived):
+            self._event_bytes -= len(event.sample.payload)
+        return event
 
     def pop(self) -> tuple[Address, bytes]:
         """Remove and return the next datagram to send.
@@ -223,16 +255,38 @@ class Core:
         """
         address, datagram = self.outbox.popleft()
         self._outbox_bytes -= len(datagram)
+        self._waiting[address] -= len(datagram)
+        if not self._waiting[address]:
+            del self._waiting[address]
         return address, datagram
 
     def _post(self, outgoing: Outgoing) -> None:
-        head = () if outgoing.prefix == UNKNOWN_PREFIX else (InfoDestination(outgoing.prefix),)
-        datagram = message.write(self.prefix, (*head, *outgoing.submessages))
-        if self._outbox_bytes + len(datagram) > _MAX_OUTBOX_BYTES:
+        """Send to a peer, if it has the credit for what it asked for."""
+        route = outgoing.route
+        datagram = message.write(
+            self.prefix, (InfoDestination(outgoing.prefix), *outgoing.submessages)
+        )
+        ways, are_its_own = route.ways()
+        for way in ways:
+            # Whatever goes to an address that may be somebody else's costs credit.
+            is_free = are_its_own and not outgoing.is_answer
+            if is_free or route.peer.spend(len(datagram)):
+                self._enqueue(way, datagram)
+            else:
+                self.counters["withheld"] += 1
+
+    def _tell(self, address: Address, submessage: Submessage) -> None:
+        self._enqueue(address, message.write(self.prefix, (submessage,)))
+
+    def _enqueue(self, address: Address, datagram: bytes) -> None:
+        size = len(datagram)
+        waiting = self._waiting.get(address, 0) + size
+        if waiting > _MAX_OUTBOX_BYTES - self._outbox_bytes:
             self.counters["dropped"] += 1
             return
-        self._outbox_bytes += len(datagram)
-        self.outbox.append((outgoing.to, datagram))
+        self._outbox_bytes += size
+        self._waiting[address] = waiting
+        self.outbox.append((address, datagram))
 
     def _announce(
         self,
@@ -242,7 +296,7 @@ class Core:
         qos: Qos,
         user_data: bytes,
         now: float,
-    ) -> None:
+    ) -> Local:
         data = EndpointData(
             guid=endpoint.guid,
             topic=topic,
@@ -251,18 +305,31 @@ class Core:
             addresses=self.settings.own.user,
             user_data=user_data,
         )
-        self._sedp.add(Local(endpoint, data), now)
+        local = Local(endpoint, data)
+        self._sedp.add(local, now)
+        return local
 
-    def _take(self, received: Received, now: float) -> None:
+    @property
+    def _is_crowded(self) -> bool:
+        """Whether the user has to take events before more come."""
+        return len(self.events) >= _MAX_EVENTS or self._event_bytes >= _MAX_EVENT_BYTES
+
+    def _take(self, received: Received, host: str | None, now: float) -> None:
         """Bring a submessage to the endpoints that it is for."""
         submessage, stamp = received.submessage, received.timestamp
-        match submessage:
-            case AckNack() | NackFrag():
-                self._answered(Guid(received.source, submessage.reader), submessage, now)
-                return
-            case Data(writer=entity) if entity == SPDP_WRITER:
-                self._spdp.on_data(received.source, submessage, now)
-                return
+        if isinstance(submessage, Data | DataFrag) and self._is_crowded:
+            # A reliable writer sends it again.
+            self.counters["refused"] += 1
+            return
+        if isinstance(submessage, Data) and submessage.writer == SPDP_WRITER:
+            self._spdp.on_data(received.source, submessage, host, now)
+            return
+        if self._spdp.peer(received.source) is None:
+            self.counters["strangers"] += 1
+            return
+        if isinstance(submessage, AckNack | NackFrag):
+            self._answered(Guid(received.source, submessage.reader), submessage, now)
+            return
         for reader, writer in self._listeners(received):
             match submessage:
                 case Data():
@@ -270,7 +337,8 @@ class Core:
                 case DataFrag():
                     reader.on_data_frag(writer, submessage, stamp, now)
                 case Heartbeat():
-                    reader.on_heartbeat(writer, submessage, now)
+                    if reader.on_heartbeat(writer, submessage, now) and is_builtin(writer.entity):
+                        self._sedp.renew(writer.prefix, now)
                 case HeartbeatFrag():
                     reader.on_heartbeat_frag(writer, submessage, now)
                 case Gap():
@@ -296,10 +364,10 @@ class Core:
         writer = self._writers.get(answer.writer)
         if writer is None:
             return
-        if isinstance(answer, AckNack):
-            writer.on_ack_nack(reader, answer, now)
-        else:
+        if isinstance(answer, NackFrag):
             writer.on_nack_frag(reader, answer, now)
+        elif writer.on_ack_nack(reader, answer, now) and is_builtin(answer.writer):
+            self._sedp.renew(reader.prefix, now)
 
     def _deliver(self, reader: Guid, writer: Guid, data: Data, timestamp: int | None) -> None:
         if data.payload is None or data.key:
@@ -316,12 +384,5 @@ class Core:
             source_timestamp=timestamp,
             related=related,
         )
+        self._event_bytes += len(sample.payload)
         self.events.append(Arrived(reader, sample))
-
-    def _found(self, peer: ParticipantData, now: float) -> None:
-        self._sedp.on_peer(peer, now)
-        self.events.append(PeerFound(peer))
-
-    def _lost(self, peer: ParticipantData, expired: bool) -> None:
-        self._sedp.on_peer_lost(peer.prefix)
-        self.events.append(PeerLost(peer, expired))

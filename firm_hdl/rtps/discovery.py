@@ -136,6 +136,8 @@ class EndpointData:
         """Return the payload of its announcement, little-endian."""
         items = (
             (Pid.ENDPOINT_GUID, bytes(self.guid)),
+            # Peers of ROS 2 find the node of an endpoint by this one.
+            (Pid.PARTICIPANT_GUID, bytes(Guid(self.guid.prefix, PARTICIPANT))),
             (Pid.KEY_HASH, bytes(self.guid)),
             (Pid.TOPIC_NAME, string(self.topic)),
             (Pid.TYPE_NAME, string(self.type_name)),

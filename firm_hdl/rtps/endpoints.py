@@ -2,36 +2,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Protocol, TypeAlias
 
+from firm_hdl.rtps.backlog import MOST_SAMPLE_BYTES
 from firm_hdl.rtps.discovery import EndpointData
 from firm_hdl.rtps.events import Sample
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire.guid import Guid, SampleIdentity
 from firm_hdl.rtps.writer import Writer
 
-__all__ = ["DataReader", "DataWriter", "Endpoint", "OnIncompatible", "OnMatch", "OnSample", "Owner"]
+__all__ = [
+    "ClosedError",
+    "DataReader",
+    "DataWriter",
+    "Endpoint",
+    "OnIncompatible",
+    "OnMatch",
+    "OnSample",
+    "Owner",
+]
+
+# The encapsulation header of a serialized sample (10.2).
+_HEADER_BYTES = 4
 
 OnSample: TypeAlias = Callable[[Sample], None]
 OnMatch: TypeAlias = Callable[[EndpointData, bool], None]
 OnIncompatible: TypeAlias = Callable[[EndpointData, tuple[str, ...]], None]
 
 
+class ClosedError(RuntimeError):
+    """A participant or a writer was used after it was closed."""
+
+
 class Owner(Protocol):
     """What endpoints need of their participant; see its methods of the same names."""
 
     def matched(self, guid: Guid) -> tuple[EndpointData, ...]:
-        """Return the endpoints of peers that an endpoint is matched with."""
+        """Return the endpoints that an endpoint is matched with."""
 
-    def remove(self, guid: Guid) -> None:
-        """Remove an endpoint."""
+    def remove(self, *guids: Guid) -> None:
+        """Remove endpoints."""
 
     def wait_until(self, condition: Callable[[], bool], timeout: float) -> bool:
         """Wait for a condition."""
 
     def write(
-        self, writer: Writer, payload: bytes, related: SampleIdentity | None, timeout: float
+        self,
+        writer: Writer,
+        payload: bytes,
+        related: SampleIdentity | None,
+        timeout: float,
+        to: Collection[Guid] | None,
     ) -> int:
         """Write a sample."""
 
@@ -46,9 +68,9 @@ class Endpoint:
     topic, type_name : str
         The names on the wire.
     on_match : callable or None
-        Called with an endpoint of a peer, and whether it came (`True`) or went.
+        Called with another endpoint, and whether it came (`True`) or went.
     on_incompatible : callable or None
-        Called with an endpoint of a peer whose policies do not fit, and the names of those.
+        Called with another endpoint whose policies do not fit, and the names of those.
     """
 
     def __init__(self, participant: Owner, guid: Guid, topic: str, type_name: str):
@@ -61,7 +83,7 @@ class Endpoint:
 
     @property
     def matched(self) -> tuple[EndpointData, ...]:
-        """The endpoints of peers that it is matched with."""
+        """The endpoints of peers, and of its own participant, that it is matched with."""
         return self._participant.matched(self.guid)
 
     def wait_for_match(self, count: int = 1, timeout: float = 10.0) -> bool:
@@ -75,7 +97,7 @@ class Endpoint:
         return self._participant.wait_until(lambda: len(self.matched) >= count, timeout)
 
     def close(self) -> None:
-        """Remove the endpoint, and tell peers."""
+        """Remove the endpoint, and tell peers; see :meth:`Participant.remove`."""
         self._participant.remove(self.guid)
 
 
@@ -86,8 +108,17 @@ class DataWriter(Endpoint):
         super().__init__(participant, writer.guid, topic, type_name)
         self._writer = writer
 
+    @property
+    def overwritten(self) -> int:
+        """How many samples gave way to new ones before all reliable readers acknowledged them."""
+        return self._writer.overwritten
+
     def write(
-        self, payload: bytes, related: SampleIdentity | None = None, timeout: float = 0.1
+        self,
+        payload: bytes,
+        related: SampleIdentity | None = None,
+        timeout: float = 0.1,
+        to: Collection[Guid] | None = None,
     ) -> int:
         """Write a sample, and return its sequence number.
 
@@ -99,13 +130,29 @@ class DataWriter(Endpoint):
             The sample that this one answers.
         timeout : float
             Seconds to wait for room, if the writer keeps all samples (`Qos.depth` 0).
+        to : collection of Guid or None
+            The readers that get it; by default all.
 
         Raises
         ------
+        ClosedError
+            The writer, or its participant, is closed.
         HistoryFullError
             There was no room in time.
+        TypeError, ValueError
+            A parameter is none of the above. Nothing was written.
         """
-        return self._participant.write(self._writer, payload, related, timeout)
+        if not isinstance(payload, bytes | bytearray | memoryview):
+            raise TypeError(f"a sample is bytes, not {type(payload).__name__}")
+        payload = bytes(payload)
+        if not _HEADER_BYTES <= len(payload) <= MOST_SAMPLE_BYTES:
+            raise ValueError(
+                f"a sample has at least the {_HEADER_BYTES} bytes of its encapsulation header, and "
+                f"at most {MOST_SAMPLE_BYTES} bytes; this one has {len(payload)}"
+            )
+        if related is not None and not isinstance(related, SampleIdentity):
+            raise TypeError(f"a sample is related to a SampleIdentity, not to {related!r}")
+        return self._participant.write(self._writer, payload, related, float(timeout), to)
 
     def wait_for_acknowledgments(self, timeout: float = 10.0) -> bool:
         """Wait until all reliable readers have all samples, at most `timeout` seconds."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from firm_hdl.rtps.wire.locators import Address
+from firm_hdl.rtps.peers import Route
 from firm_hdl.rtps.wire.submessages import Submessage
 
 __all__ = ["Outgoing", "Send"]
@@ -18,17 +18,20 @@ class Outgoing:
 
     Attributes
     ----------
-    to : Address
-        Where it goes.
+    route : Route
+        The way that it goes.
     prefix : bytes
         GUID prefix of the participant that it is for.
     submessages : tuple
         Its content, without the INFO_DST that names the participant.
+    is_answer : bool
+        Whether the peer has made us send it, so that it costs credit (:mod:`firm_hdl.rtps.peers`).
     """
 
-    to: Address
+    route: Route
     prefix: bytes
     submessages: tuple[Submessage, ...]
+    is_answer: bool = True
 
 
 Send: TypeAlias = Callable[[Outgoing], None]

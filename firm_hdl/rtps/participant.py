@@ -12,13 +12,15 @@ import socket
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from types import TracebackType
 from typing import TypeAlias
 
-from firm_hdl.rtps.core import Core, Settings
+from firm_hdl.rtps.backlog import MOST_SAMPLE_BYTES
+from firm_hdl.rtps.core import Core
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData
 from firm_hdl.rtps.endpoints import (
+    ClosedError,
     DataReader,
     DataWriter,
     OnIncompatible,
@@ -27,10 +29,12 @@ from firm_hdl.rtps.endpoints import (
 )
 from firm_hdl.rtps.events import Arrived, Event, Incompatible, Matched, Unmatched
 from firm_hdl.rtps.pacing import Pacer
-from firm_hdl.rtps.qos import Qos
+from firm_hdl.rtps.qos import Durability, Qos
+from firm_hdl.rtps.settings import Settings
 from firm_hdl.rtps.transport import Transport, address_of
 from firm_hdl.rtps.wire.guid import Guid, SampleIdentity, new_prefix
 from firm_hdl.rtps.wire.locators import Address, Ports
+from firm_hdl.rtps.wire.octets import MOST_NAME_BYTES
 from firm_hdl.rtps.writer import FRAGMENT_BYTES, HistoryFullError, Writer
 
 __all__ = ["Participant"]
@@ -38,8 +42,10 @@ __all__ = ["Participant"]
 _LOG = logging.getLogger("firm_hdl.rtps")
 # Seconds. A write in another thread may make a heartbeat due that soon.
 _MOST_SLEEP = 0.05
-# A peer with a fixed address has one of the first numbers of a participant on its host.
-_PARTICIPANTS_PER_HOST = 5
+# Most participants of a host have one of the first numbers. All numbers are tried, too, but seldom.
+_FIRST_PARTICIPANTS = 5
+# Seconds that closing waits until what was written is sent and acknowledged.
+_FAREWELL = 1.0
 
 OnEvent: TypeAlias = Callable[[Event], None]
 
@@ -59,8 +65,8 @@ class Participant:
     user_data : bytes
         What it announces in addition.
     peers : tuple of str
-        IPv4 addresses of hosts that multicast does not reach. On the loopback interface, which
-        may have no multicast, this host is one of them.
+        IPv4 addresses of hosts that multicast does not reach. Without multicast, and on the
+        loopback interface, which may have none, this host is one of them.
     multicast : bool
         Whether it announces itself by multicast. Announcements of others are received anyway.
     lease : float
@@ -111,14 +117,16 @@ class Participant:
             domain=domain,
         )
         group = (self._transport.group,) if multicast else ()
-        numbers = range(_PARTICIPANTS_PER_HOST)
-        hosts = dict.fromkeys((*([host] if host.startswith("127.") else []), *peers))
-        direct = (Address(each, Ports.of(domain, n).discovery) for each in hosts for n in numbers)
+        alone = host.startswith("127.") or not multicast
+        hosts = dict.fromkeys((*([host] if alone else []), *peers))
+        ports = [each.discovery for each in Ports.all_of(domain)]
+        first, rest = ports[:_FIRST_PARTICIPANTS], ports[_FIRST_PARTICIPANTS:]
         self._core = Core(
             Settings(
                 own=own,
                 host=host,
-                targets=(*group, *direct),
+                targets=(*group, *(Address(each, port) for each in hosts for port in first)),
+                seldom=tuple(Address(each, port) for each in hosts for port in rest),
                 period=period,
                 fragment_bytes=fragment_bytes,
             )
@@ -127,7 +135,8 @@ class Participant:
         self._endpoints: dict[Guid, DataWriter | DataReader] = {}
         self._lock = threading.RLock()
         self._changed = threading.Condition(self._lock)
-        self._closing = False
+        # A participant that closes takes nothing new, but sends what it has. Then it has left.
+        self._closing = self._left = False
         self._wake_receiver, self._wake_sender = socket.socketpair()
         for each in (self._wake_receiver, self._wake_sender):
             each.setblocking(False)
@@ -161,10 +170,7 @@ class Participant:
 
     @property
     def counters(self) -> Counter[str]:
-        """What came and went, as of :class:`firm_hdl.rtps.core.Core`, and ``sent``.
-
-        ``failed`` are datagrams that a fault of firm-hdl concerns, which is in the log.
-        """
+        """What came and went, and what was refused; docs/rtps.md explains each of them."""
         with self._lock:
             return Counter(self._core.counters)
 
@@ -174,7 +180,7 @@ class Participant:
             return tuple(self._core.remotes(writers))
 
     def matched(self, guid: Guid) -> tuple[EndpointData, ...]:
-        """Return the endpoints of peers that an endpoint is matched with."""
+        """Return the endpoints that an endpoint is matched with."""
         with self._lock:
             return self._core.matched(guid)
 
@@ -200,9 +206,18 @@ class Participant:
             What is announced in addition.
         on_match, on_incompatible : callables
             See :class:`firm_hdl.rtps.endpoints.Endpoint`.
+
+        Raises
+        ------
+        ClosedError
+            The participant is closed.
+        TypeError, ValueError
+            A parameter is none of the above, or a name has more than 256 bytes.
         """
+        qos = _checked(topic, type_name, qos, user_data)
         with self._lock:
-            qos, now = qos or Qos(), time.monotonic()
+            self._check_open()
+            now = time.monotonic()
             made = self._core.add_writer(topic, type_name, qos, user_data, now)
             writer = DataWriter(self, made, topic, type_name)
             writer.on_match, writer.on_incompatible = on_match, on_incompatible
@@ -218,44 +233,66 @@ class Participant:
         qos: Qos | None = None,
         *,
         user_data: bytes = b"",
+        most_bytes: int = MOST_SAMPLE_BYTES,
         on_match: OnMatch | None = None,
         on_incompatible: OnIncompatible | None = None,
     ) -> DataReader:
         """Create a reader; the parameters are those of :meth:`writer`.
 
-        `on_sample` is called with each sample, in the thread of the participant.
+        `on_sample` is called with each sample, in the thread of the participant. Samples of more
+        than `most_bytes` are refused.
         """
+        qos = _checked(topic, type_name, qos, user_data)
+        if not callable(on_sample):
+            raise TypeError(f"on_sample is called with each sample, so it cannot be {on_sample!r}")
         with self._lock:
-            qos, now = qos or Qos(), time.monotonic()
-            made = self._core.add_reader(topic, type_name, qos, user_data, now)
+            self._check_open()
+            now = time.monotonic()
+            made = self._core.add_reader(topic, type_name, qos, user_data, now, most_bytes)
             reader = DataReader(self, made, topic, type_name, on_sample)
             reader.on_match, reader.on_incompatible = on_match, on_incompatible
             self._endpoints[made.guid] = reader
             self._flush()
             return reader
 
-    def remove(self, guid: Guid) -> None:
-        """Remove an endpoint, and tell peers."""
+    def remove(self, *guids: Guid) -> None:
+        """Remove endpoints, and tell peers.
+
+        What was written is acknowledged before, if that takes no longer than a second; else it is
+        counted (``unacknowledged``).
+        """
+        with self._lock:
+            writers = [each for each in self._core.writers if each.guid in guids]
+        if writers:
+            self._settle(writers, lambda: True)
         with self._lock:
             if not self._closing:
-                self._core.remove(guid, time.monotonic())
+                for guid in guids:
+                    self._core.remove(guid, time.monotonic())
                 self._flush()
-            self._endpoints.pop(guid, None)
+            for guid in guids:
+                self._endpoints.pop(guid, None)
 
     def write(
-        self, writer: Writer, payload: bytes, related: SampleIdentity | None, timeout: float
+        self,
+        writer: Writer,
+        payload: bytes,
+        related: SampleIdentity | None,
+        timeout: float,
+        to: Collection[Guid] | None,
     ) -> int:
         """Write a sample; see :meth:`DataWriter.write`."""
         deadline = time.monotonic() + timeout
         while True:
             with self._changed:
+                self._check_open(writer)
                 now = time.monotonic()
                 try:
-                    number = self._core.write(writer, payload, now, time.time_ns(), related)
+                    number = self._core.write(writer, payload, now, time.time_ns(), related, to)
                     self._flush()
                     return number
                 except HistoryFullError:
-                    if now >= deadline or self._closing:
+                    if now >= deadline:
                         raise
                     if not self._in_callback():
                         self._changed.wait(deadline - now)
@@ -284,17 +321,48 @@ class Participant:
             )
 
     def close(self) -> None:
-        """Tell peers that this participant leaves, and close its sockets. Once is enough."""
+        """Tell peers that this participant leaves, and close its sockets. Once is enough.
+
+        What was written is sent and acknowledged before, if that takes no longer than a second;
+        else it is counted (``unsent``, ``unacknowledged``).
+        """
         with self._changed:
             if self._closing:
                 return
-            self._core.leave()
-            self._flush(everything=True)
             self._closing = True
             self._changed.notify_all()
+        self._settle(self._core.writers, lambda: not self._core.outbox)
+        with self._lock:
+            self._core.leave()
+            self._flush(everything=True)
+            self._left = True
         self._wake()
         if not self._in_callback():
             self._thread.join()
+
+    def _settle(self, writers: Collection[Writer], condition: Callable[[], bool]) -> None:
+        """Wait at most a second until readers have what was written, and for a condition."""
+
+        def is_settled() -> bool:
+            return condition() and not any(each.unacknowledged for each in writers)
+
+        end = time.monotonic() + _FAREWELL
+        with self._changed:
+            self._core.ask(writers, time.monotonic())
+            self._flush()
+            if not self._in_callback():
+                self._changed.wait_for(is_settled, _FAREWELL)
+                return
+        # Nobody else receives the acknowledgements.
+        while not is_settled() and (left := end - time.monotonic()) > 0:
+            self._poll(min(left, _MOST_SLEEP))
+
+    def _check_open(self, writer: Writer | None = None) -> None:
+        """Raise an error if the participant is closed, or one of its writers."""
+        if self._closing:
+            raise ClosedError("the participant is closed")
+        if writer is not None and writer.guid not in self._endpoints:
+            raise ClosedError("the writer is closed")
 
     def _in_callback(self) -> bool:
         return threading.current_thread() is self._thread
@@ -324,7 +392,7 @@ class Participant:
 
     def _run(self) -> None:
         sleep = 0.0
-        while not self._closing:
+        while not self._left:
             sleep = self._poll(sleep)
             self._dispatch()
         self._selector.close()
@@ -348,17 +416,17 @@ class Participant:
             datagrams = list(self._transport.receive(key.fileobj))
             with self._lock:
                 now = time.monotonic()
-                for each in datagrams:
-                    self._receive(each, now)
+                for datagram, host in datagrams:
+                    self._receive(datagram, now, host)
         with self._changed:
             now = time.monotonic()
             due = self._core.tick(now)
             self._changed.notify_all()
             return max(0.0, min(due - now, self._flush(), _MOST_SLEEP))
 
-    def _receive(self, datagram: bytes, now: float) -> None:
+    def _receive(self, datagram: bytes, now: float, host: str) -> None:
         try:
-            self._core.receive(datagram, now)
+            self._core.receive(datagram, now, host)
         except Exception:
             # No datagram is known that gets here. One must not end the participant.
             self._core.counters["failed"] += 1
@@ -368,10 +436,12 @@ class Participant:
         """Call users back, without the lock, so that they may call in turn."""
         while True:
             with self._changed:
-                if not self._core.events:
-                    return
-                event = self._core.events.popleft()
+                event = self._core.next_event()
                 self._changed.notify_all()
+            if event is None:
+                return
+            if self._closing:
+                continue
             try:
                 self._call(event)
             except Exception:
@@ -394,3 +464,24 @@ class Participant:
                     endpoint.on_incompatible(remote, policies)
         if self._on_event is not None:
             self._on_event(event)
+
+
+def _checked(topic: str, type_name: str, qos: Qos | None, user_data: bytes) -> Qos:
+    """Check what an endpoint is made of; return its policies."""
+    for what, name in (("topic", topic), ("type", type_name)):
+        if not isinstance(name, str):
+            raise TypeError(f"the name of a {what} is a str, not {name!r}")
+        if not 0 < len(name.encode()) <= MOST_NAME_BYTES:
+            raise ValueError(
+                f"the name of a {what} has from 1 to {MOST_NAME_BYTES} bytes, "
+                f"not {len(name.encode())}"
+            )
+    if not isinstance(user_data, bytes):
+        raise TypeError(f"user data is bytes, not {user_data!r}")
+    if qos is not None and not isinstance(qos, Qos):
+        hint = f": Qos(depth={qos}) is one with a depth" if isinstance(qos, int) else ""
+        raise TypeError(f"qos is a Qos, not {qos!r}{hint}")
+    qos = qos or Qos()
+    if qos.durability > Durability.TRANSIENT_LOCAL:
+        raise ValueError(f"no writer or reader of firm-hdl is {qos.durability.name}")
+    return qos

@@ -79,6 +79,11 @@ class Qos:
     representations: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
+        kinds = {"reliability": Reliability, "durability": Durability}
+        for name, kind in (*kinds.items(), ("depth", int), ("max_samples", int)):
+            value = getattr(self, name)
+            if not isinstance(value, kind) or isinstance(value, bool):
+                raise TypeError(f"{name} is of type {kind.__name__}, and is {value!r}")
         if self.depth < 0:
             raise ValueError(f"Depth must be at least 0, not {self.depth}")
         if self.max_samples < 1:

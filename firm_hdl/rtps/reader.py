@@ -5,16 +5,18 @@ As in :mod:`firm_hdl.rtps.writer`, there is neither I/O nor a clock.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TypeAlias
 
+from firm_hdl.rtps.backlog import MOST_SAMPLE_BYTES, Backlog
+from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.discovery import EndpointData
-from firm_hdl.rtps.fragments import Budget, Reassembly
 from firm_hdl.rtps.outgoing import Outgoing, Send
+from firm_hdl.rtps.peers import Route
 from firm_hdl.rtps.qos import Qos
 from firm_hdl.rtps.wire.guid import Guid
-from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
 from firm_hdl.rtps.wire.samples import Data, DataFrag
@@ -29,6 +31,8 @@ _WINDOW = 4096
 _REPEAT, _MOST_REPEATS = 0.1, 20
 # Seconds to wait for fragments or samples that may be on their way.
 _PATIENCE = 0.02
+# Seconds between answers to heartbeats of a writer (heartbeatResponseDelay, 8.4.7.1).
+_RESPONSE = 0.001
 # Seconds between ACKNACKs to a writer that has said nothing yet, at first; and their number.
 _GREETING, _MOST_GREETINGS = 0.25, 6
 # How GUID prefixes of Fast DDS and RTI begin. They answer a first ACKNACK at once if its base is
@@ -36,6 +40,10 @@ _GREETING, _MOST_GREETINGS = 0.25, 6
 _GREETED_WITH_0 = (b"\x01\x0f", b"\x01\x01")
 # NACK_FRAGs in one answer.
 _MOST_PARTIAL = 4
+# Seconds without anything new after which what waits is forgotten; a writer can send it again.
+_MOST_WAITING = 30.0
+# Seconds without anything new after which a lower number is not late: the writer began anew.
+_MOST_LATE = 1.0
 
 Deliver: TypeAlias = Callable[[Guid, Data, int | None], None]
 """Takes a sample: the writer, the sample, and the time that the writer gave, in nanoseconds."""
@@ -46,21 +54,30 @@ class _Proxy:
     """A matched writer (WriterProxy, 8.4.10.4)."""
 
     guid: Guid
-    address: Address
+    route: Route
     reliable: bool
-    fragments: Reassembly
+    backlog: Backlog
     # Lowest sequence number that was neither delivered nor given up, and the highest known.
     next: int = 1
     last: int = 0
     # Whether a heartbeat has said where the sequence begins.
     synced: bool = False
-    early: dict[int, tuple[Data, int | None]] = field(default_factory=dict)
-    gaps: set[int] = field(default_factory=set)
+    # Bit n: sample ``next + n`` will not come.
+    gaps: int = 0
     heartbeat_count: int | None = None
     fragment_count: int | None = None
+    # Whether a heartbeat waits for its answer, and when the last one was answered.
+    owes_answer: bool = False
+    answered_at: float = float("-inf")
     ask_at: float = float("inf")
     repeats: int = 0
     fragment_at: float = float("-inf")
+    # When something came that was not known yet.
+    news_at: float = float("-inf")
+
+    def is_gap(self, number: int) -> bool:
+        """Whether a sample from `next` on will not come."""
+        return bool(self.gaps >> (number - self.next) & 1)
 
 
 class Reader:
@@ -78,14 +95,35 @@ class Reader:
         Takes samples.
     budget : Budget
         Memory for fragments, and for samples that wait for earlier ones.
+    most_bytes : int
+        The largest sample that it takes in fragments.
+    counters : Counter
+        Counts samples and fragments that were ``refused``: too large, too far ahead, without
+        memory; and writers that ``restarted``.
+
+    Attributes
+    ----------
+    lost : int
+        How many samples did not come, and will not.
     """
 
-    def __init__(self, guid: Guid, qos: Qos, send: Send, deliver: Deliver, budget: Budget):
+    def __init__(
+        self,
+        guid: Guid,
+        qos: Qos,
+        send: Send,
+        deliver: Deliver,
+        budget: Budget,
+        most_bytes: int = MOST_SAMPLE_BYTES,
+        counters: Counter[str] | None = None,
+    ):
         self.guid = guid
         self.qos = qos
         self._send = send
         self._deliver = deliver
         self._budget = budget
+        self._most_bytes = most_bytes
+        self._counters = Counter[str]() if counters is None else counters
         self._proxies: dict[Guid, _Proxy] = {}
         self._count = 0
         self.lost = 0
@@ -95,15 +133,17 @@ class Reader:
         """The writers that it listens to."""
         return tuple(self._proxies)
 
-    def match(self, writer: EndpointData, address: Address, now: float) -> None:
-        """Begin to listen to a writer, or note its new address."""
+    def match(self, writer: EndpointData, route: Route, now: float) -> None:
+        """Begin to listen to a writer, or note the new way to it."""
         known = self._proxies.get(writer.guid)
         if known is not None:
-            known.address = address
+            known.route = route
             return
         reliable = self.qos.reliable and writer.qos.reliable
-        proxy = _Proxy(writer.guid, address, reliable, Reassembly(self._budget))
-        self._proxies[writer.guid] = proxy
+        backlog = Backlog(
+            writer.guid.prefix, self._budget, reliable, self._most_bytes, self._counters
+        )
+        proxy = self._proxies[writer.guid] = _Proxy(writer.guid, route, reliable, backlog)
         if reliable:
             proxy.ask_at = now
 
@@ -111,9 +151,7 @@ class Reader:
         """Stop to listen to a writer. Samples that wait for earlier ones are lost."""
         proxy = self._proxies.pop(writer, None)
         if proxy is not None:
-            proxy.fragments.drop_all()
-            for data, _ in proxy.early.values():
-                self._budget.give_back(len(data.payload or b""))
+            proxy.backlog.clear()
 
     def on_data(self, writer: Guid, data: Data, timestamp: int | None, now: float) -> None:
         """Take a sample (8.4.12.1, 8.4.12.2)."""
@@ -123,21 +161,24 @@ class Reader:
             return
         if not proxy.reliable:
             self.lost += number - proxy.next if proxy.synced else 0
-            proxy.synced = True
+            proxy.synced, proxy.news_at = True, now
             proxy.next = number + 1
-            proxy.fragments.drop_below(proxy.next)
+            proxy.backlog.take_below(proxy.next)
             self._deliver(writer, data, timestamp)
             return
-        if number >= proxy.next + _WINDOW or number in proxy.early:
+        if number in proxy.backlog:
             return
-        proxy.fragments.drop(number)
-        if number == proxy.next and proxy.synced:
-            proxy.next += 1
-            proxy.repeats = 0
+        is_next = number == proxy.next and proxy.synced
+        if number >= proxy.next + _WINDOW:
+            self._counters["refused"] += 1
+            return
+        if not is_next and not proxy.backlog.keep(data, timestamp):
+            return
+        proxy.news_at = now
+        if is_next:
+            self._go_on(proxy, number + 1)
             self._deliver(writer, data, timestamp)
-        elif self._budget.take(len(data.payload or b"")):
-            proxy.early[number] = (data, timestamp)
-        self._progress(proxy, now)
+        self._progress(proxy)
         if proxy.synced and number > proxy.last:
             # Writers send in order (8.4.2.2.1): what is below and did not come may be lost.
             proxy.last = number
@@ -148,30 +189,50 @@ class Reader:
         """Take fragments (8.4.14.1); the last missing ones complete a sample."""
         proxy = self._proxies.get(writer)
         number = data.sequence_number
-        if proxy is None or number < proxy.next or number in proxy.early:
+        if proxy is None or number < proxy.next or number in proxy.backlog:
             return
         if proxy.reliable and number >= proxy.next + _WINDOW:
+            self._counters["refused"] += 1
             return
-        proxy.fragment_at = now
-        whole = proxy.fragments.add(data)
+        proxy.fragment_at = proxy.news_at = now
+        whole = proxy.backlog.add(data)
         if whole is not None:
             self.on_data(writer, whole, timestamp, now)
 
-    def on_heartbeat(self, writer: Guid, heartbeat: Heartbeat, now: float) -> None:
-        """Take a HEARTBEAT (8.4.12.2): what is lost for good, and what can be asked for."""
+    def on_heartbeat(self, writer: Guid, heartbeat: Heartbeat, now: float) -> bool:
+        """Take a HEARTBEAT (8.4.12.2): what is lost for good, and what can be asked for.
+
+        Returns
+        -------
+        bool
+            Whether the writer began anew: its last number went back. Of a heartbeat that is late,
+            it did so, too; but then, others came in the last second.
+        """
         proxy = self._proxies.get(writer)
-        if proxy is None or not proxy.reliable or heartbeat.count == proxy.heartbeat_count:
-            return
-        proxy.heartbeat_count = heartbeat.count
+        if proxy is None:
+            return False
+        went_back = heartbeat.last < max(proxy.last, proxy.next - 1)
+        restarted = went_back and now - proxy.news_at >= _MOST_LATE
+        if restarted:
+            self._restart(proxy)
+        if not proxy.reliable or heartbeat.count == proxy.heartbeat_count:
+            return restarted
+        if went_back and not restarted:
+            return False
+        proxy.heartbeat_count, proxy.news_at = heartbeat.count, now
         if heartbeat.first > proxy.next:
             self._give_up(proxy, heartbeat.first)
         # What was asked before is answered; what is missing now is asked for below.
         proxy.synced, proxy.ask_at = True, float("inf")
         proxy.last = max(proxy.last, heartbeat.last)
         proxy.repeats = 0
-        self._progress(proxy, now)
+        self._progress(proxy)
         if proxy.next <= proxy.last or not heartbeat.final:
-            self._answer(proxy, now)
+            if now - proxy.answered_at >= _RESPONSE:
+                self._answer(proxy, now)
+            else:
+                proxy.owes_answer, proxy.ask_at = True, proxy.answered_at + _RESPONSE
+        return restarted
 
     def on_heartbeat_frag(self, writer: Guid, heartbeat: HeartbeatFrag, now: float) -> None:
         """Take a HEARTBEAT_FRAG: ask for the fragments that the writer has already sent."""
@@ -180,8 +241,8 @@ class Reader:
             return
         proxy.fragment_count = heartbeat.count
         number = heartbeat.sequence_number
-        if number >= proxy.next and number in proxy.fragments:
-            missing = proxy.fragments.missing(number, heartbeat.last)
+        if number >= proxy.next and proxy.backlog.has_part(number):
+            missing = proxy.backlog.missing(number, heartbeat.last)
             if missing:
                 self._post(proxy, (self._nack_frag(proxy, number, missing),))
 
@@ -191,22 +252,30 @@ class Reader:
         if proxy is None or not proxy.reliable:
             return
         if gap.start <= proxy.next < gap.numbers.base:
-            self._deliver_below(proxy, gap.numbers.base)
-        end = min(gap.numbers.base, proxy.next + _WINDOW)
-        proxy.gaps.update(range(max(gap.start, proxy.next), end))
-        limit = proxy.next + _WINDOW
-        proxy.gaps.update(n for n in gap.numbers.members if proxy.next <= n < limit)
-        self._progress(proxy, now)
+            self._go_on(proxy, gap.numbers.base)
+        first, limit = max(gap.start, proxy.next), proxy.next + _WINDOW
+        end = min(gap.numbers.base, limit)
+        if first < end:
+            proxy.gaps |= (1 << (end - first)) - 1 << (first - proxy.next)
+        for number in gap.numbers.members:
+            if proxy.next <= number < limit:
+                proxy.gaps |= 1 << (number - proxy.next)
+        self._progress(proxy)
 
     def tick(self, now: float) -> float:
         """Send the ACKNACKs that are due. Return when to call again, at the latest."""
         due = float("inf")
         for proxy in self._proxies.values():
+            if proxy.backlog and now - proxy.news_at >= _MOST_WAITING:
+                proxy.backlog.clear()
+                self._counters["refused"] += 1
             if now >= proxy.ask_at:
                 proxy.ask_at = float("inf")
                 if not proxy.synced:
                     self._greet(proxy, now)
-                elif proxy.next <= proxy.last and proxy.repeats < _MOST_REPEATS:
+                elif proxy.owes_answer or (
+                    proxy.next <= proxy.last and proxy.repeats < _MOST_REPEATS
+                ):
                     self._answer(proxy, now)
             due = min(due, proxy.ask_at)
         return due
@@ -219,62 +288,63 @@ class Reader:
         if proxy.repeats < _MOST_GREETINGS:
             proxy.ask_at = now + _GREETING * 2 ** (proxy.repeats - 1)
 
+    def _restart(self, proxy: _Proxy) -> None:
+        """Begin anew with a writer that began anew."""
+        proxy.backlog.clear()
+        proxy.next, proxy.last, proxy.gaps, proxy.repeats = 1, 0, 0, 0
+        proxy.synced, proxy.heartbeat_count, proxy.fragment_count = False, None, None
+        self._counters["restarted"] += 1
+
     def _give_up(self, proxy: _Proxy, first: int) -> None:
         """Note that a writer no longer has what is below `first`. What came of it is delivered."""
-        before = proxy.next
-        delivered = self._deliver_below(proxy, first)
+        before, gaps = proxy.next, proxy.gaps
+        delivered = self._go_on(proxy, first)
         if proxy.synced:
-            gone = sum(each < first for each in proxy.gaps)
+            gone = (gaps & (1 << min(first - before, _WINDOW)) - 1).bit_count()
             self.lost += first - before - delivered - gone
 
-    def _deliver_below(self, proxy: _Proxy, number: int) -> int:
+    def _go_on(self, proxy: _Proxy, number: int) -> int:
         """Deliver the samples that wait below `number`, go on there, and return how many.
 
         `number` is above the one that is next.
         """
-        ready = sorted(each for each in proxy.early if each < number)
+        ready = proxy.backlog.take_below(number)
+        # Bits of samples that came although they were said not to come count no more.
+        proxy.gaps >>= min(number - proxy.next, _WINDOW)
         proxy.next, proxy.repeats = number, 0
         for each in ready:
-            self._take_early(proxy, each)
+            self._deliver(proxy.guid, each.data, each.timestamp)
         return len(ready)
 
-    def _progress(self, proxy: _Proxy, now: float) -> None:
+    def _progress(self, proxy: _Proxy) -> None:
         """Deliver what no longer waits for an earlier sample."""
         if not proxy.synced:
             return
-        before = proxy.next
-        while proxy.next in proxy.early or proxy.next in proxy.gaps:
-            proxy.next += 1
-            if proxy.next - 1 in proxy.early:
-                self._take_early(proxy, proxy.next - 1)
-        if proxy.gaps:
-            proxy.gaps = {each for each in proxy.gaps if each >= proxy.next}
-        proxy.fragments.drop_below(proxy.next)
-        if proxy.next > before:
-            proxy.repeats = 0
-
-    def _take_early(self, proxy: _Proxy, number: int) -> None:
-        data, timestamp = proxy.early.pop(number)
-        self._budget.give_back(len(data.payload or b""))
-        self._deliver(proxy.guid, data, timestamp)
+        number = proxy.next
+        while number in proxy.backlog or proxy.is_gap(number):
+            number += 1
+        if number > proxy.next:
+            self._go_on(proxy, number)
 
     def _answer(self, proxy: _Proxy, now: float) -> None:
         """Acknowledge what came, and ask for what is missing (8.4.12.2, 8.4.14.1)."""
         window = range(proxy.next, min(proxy.last, proxy.next + NumberSet.MAX_SIZE - 1) + 1)
-        absent = [n for n in window if n not in proxy.early and n not in proxy.gaps]
-        partial = [n for n in absent if n in proxy.fragments]
-        whole = [n for n in absent if n not in proxy.fragments]
+        absent, partial = proxy.backlog.absent(window)
+        if proxy.gaps:
+            absent = [number for number in absent if not proxy.is_gap(number)]
+            partial = [number for number in partial if not proxy.is_gap(number)]
         submessages: list[Submessage] = [
-            self._ack_nack(proxy, NumberSet.of(proxy.next, whole), final=True)
+            self._ack_nack(proxy, NumberSet.of(proxy.next, absent), final=True)
         ]
-        if absent:
+        proxy.owes_answer, proxy.answered_at = False, now
+        if absent or partial:
             proxy.repeats += 1
             proxy.ask_at = now + _REPEAT
         if partial and now - proxy.fragment_at < _PATIENCE:
             proxy.ask_at = now + _PATIENCE
         else:
             for number in partial[:_MOST_PARTIAL]:
-                missing = proxy.fragments.missing(number)
+                missing = proxy.backlog.missing(number)
                 submessages.append(self._nack_frag(proxy, number, missing))
         self._post(proxy, tuple(submessages))
 
@@ -301,4 +371,4 @@ class Reader:
         return self._count
 
     def _post(self, proxy: _Proxy, submessages: tuple[Submessage, ...]) -> None:
-        self._send(Outgoing(proxy.address, proxy.guid.prefix, submessages))
+        self._send(Outgoing(proxy.route, proxy.guid.prefix, submessages))

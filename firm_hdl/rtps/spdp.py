@@ -2,38 +2,58 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import Protocol, TypeAlias
 
 from firm_hdl.rtps.discovery import ParticipantData, key_of, key_payload
-from firm_hdl.rtps.outgoing import Outgoing, Send
-from firm_hdl.rtps.wire.guid import PARTICIPANT, SPDP_READER, SPDP_WRITER, UNKNOWN_PREFIX, Guid
-from firm_hdl.rtps.wire.locators import Address, nearest
+from firm_hdl.rtps.peers import Peer, Route
+from firm_hdl.rtps.settings import Settings
+from firm_hdl.rtps.wire.guid import PARTICIPANT, SPDP_READER, SPDP_WRITER, Guid
+from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
 from firm_hdl.rtps.wire.samples import NO_PARAMETERS, Data
 
-__all__ = ["DISPOSED", "Spdp"]
+__all__ = ["DISPOSED", "Listener", "Spdp", "Tell"]
 
 DISPOSED = b"\0\0\0\x03"
 """Status of an instance that its writer disposed of and left (9.6.4.9), always big-endian."""
 
-_MAX_PEERS = 256
-# Announcements of a new participant come quickly, as some may be lost.
+_MOST_PEERS = 256
+# A domain has ports for 120 participants of a host (9.6.1.1).
+_MOST_PEERS_OF_HOST = 120
+# Our first announcements come quickly, as some may be lost.
 _QUICK, _QUICK_COUNT = 0.1, 5
-# A lease of days would keep a dead peer for days; one of microseconds would lose it at once.
-_LEASE_LIMITS = (1.0, 3600.0)
+# Seconds of silence after which a peer has no better place than a stranger.
+_QUIET = 10.0
+# An address where a peer may be is tried once in so many announcements.
+_SELDOM = 20
+# A lease of days would keep a dead peer for days; one of microseconds would lose it at once. Peers
+# without endpoints are kept for shorter than others.
+_LEAST_LEASE, _MOST_LEASE, _MOST_LEASE_OF_STRANGER = 1.0, 300.0, 30.0
 # Seconds for which a participant that left is not found again: its farewell may have overtaken an
-# announcement.
-_GONE = 1.0
-# Seconds between directed answers to one peer, so that a flood of announcements makes no other.
-_ANSWER = 1.0
+# announcement; and how many are remembered.
+_GONE, _MOST_GONE = 1.0, 256
+# Seconds between answers to the announcements of a peer.
+_ANSWER = 0.5
+# Bytes of an announcement besides its payload.
+_HEAD_BYTES = 44
+
+Tell: TypeAlias = Callable[[Address, Data], None]
+"""Sends a submessage to whoever is at an address."""
 
 
-@dataclass(slots=True)
-class _Peer:
-    data: ParticipantData
-    deadline: float
-    answered_at: float
+class Listener(Protocol):
+    """Who is told of peers."""
+
+    def on_peer(self, peer: Peer, now: float) -> None:
+        """A peer is new, or says something else of itself."""
+
+    def on_peer_lost(self, prefix: bytes, expired: bool) -> None:
+        """A peer left, or its lease expired, or it gave way to another one."""
+
+    def rank(self, prefix: bytes) -> int:
+        """Return 2 for a peer that is matched with us, 1 for one with endpoints, and 0."""
 
 
 class Spdp:
@@ -41,38 +61,29 @@ class Spdp:
 
     Parameters
     ----------
-    own : ParticipantData
-        What it announces.
-    host : str
-        Our IPv4 address, for the choice among a peer's addresses.
-    targets : tuple of Address
-        Where announcements go: the multicast group, and addresses where peers may be.
-    period : float
-        Seconds between announcements.
-    send : Send
-        Takes datagrams.
-    found, lost : callables
-        Called with a new or changed peer, and with one that left or whose lease expired.
+    settings : Settings
+        What it announces, and where.
+    listener : Listener
+        Who is told of peers.
+    tell : Tell
+        Sends announcements.
+    counters : Counter
+        Counts announcements that got ``no_place``, and peers that were ``displaced`` by others.
     """
 
     def __init__(
         self,
-        own: ParticipantData,
-        host: str,
-        targets: tuple[Address, ...],
-        period: float,
-        send: Send,
-        found: Callable[[ParticipantData, float], None],
-        lost: Callable[[ParticipantData, bool], None],
+        settings: Settings,
+        listener: Listener,
+        tell: Tell,
+        counters: Counter[str] | None = None,
     ):
-        self._own = own
-        self._host = host
-        self._targets = targets
-        self._period = period
-        self._send = send
-        self._found = found
-        self._lost = lost
-        self._peers: dict[bytes, _Peer] = {}
+        self._settings = settings
+        self._own = settings.own
+        self._listener = listener
+        self._tell = tell
+        self._counters = Counter[str]() if counters is None else counters
+        self._peers: dict[bytes, Peer] = {}
         self._left: dict[bytes, float] = {}
         self._announce_at = float("-inf")
         self._announced = 0
@@ -82,55 +93,71 @@ class Spdp:
         """The participants that are there."""
         return tuple(peer.data for peer in self._peers.values())
 
-    def peer(self, prefix: bytes) -> ParticipantData | None:
+    def peer(self, prefix: bytes) -> Peer | None:
         """Return a participant by its GUID prefix."""
-        known = self._peers.get(prefix)
-        return None if known is None else known.data
+        return self._peers.get(prefix)
 
-    def refresh(self, prefix: bytes, now: float) -> None:
-        """Note that a participant sent anything: it lives."""
+    def hear(self, prefix: bytes, host: str | None, size: int, now: float) -> None:
+        """Note that a participant sent anything, and from which host: it lives."""
         known = self._peers.get(prefix)
         if known is not None:
-            known.deadline = now + _lease(known.data)
+            known.hear(host, size, now)
 
-    def on_data(self, source: bytes, data: Data, now: float) -> None:
+    def on_data(self, source: bytes, data: Data, host: str | None, now: float) -> None:
         """Take an announcement, or the news that a participant leaves (8.5.3.3)."""
         if data.payload is None or data.key:
             gone = key_of(data.payload, data.inline, Pid.PARTICIPANT_GUID)
             if gone is not None and gone.prefix == source:
-                if source in self._peers:
+                if source in self._peers and len(self._left) < _MOST_GONE:
                     self._left[source] = now
                 self._drop(source, expired=False)
             return
-        peer = ParticipantData.decode(data.payload)
+        announced = ParticipantData.decode(data.payload)
         # A participant announces itself alone; another domain may have the same port.
-        if peer.prefix != source or peer.domain not in (None, self._own.domain):
+        if announced.prefix != source or announced.domain not in (None, self._own.domain):
             return
         known = self._peers.get(source)
-        if known is None and (len(self._peers) == _MAX_PEERS or source in self._left):
+        if known is not None and known.data == announced:
+            if self._listener.rank(source) < 2:
+                self._answer(known, now)
             return
-        if known is not None and known.data == peer:
-            known.deadline = now + _lease(peer)
-            return
-        answered_at = float("-inf") if known is None else known.answered_at
-        known = self._peers[source] = _Peer(peer, now + _lease(peer), answered_at)
+        if known is None:
+            if source in self._left:
+                return
+            if not self._has_place(host, now):
+                self._counters["no_place"] += 1
+                return
+            known = self._peers[source] = Peer(announced, self._settings.host, host)
+            known.hear(host, _HEAD_BYTES + len(data.payload), now)
+        else:
+            known.renew(announced)
+            known.hear(host, 0, now)
         self._answer(known, now)
-        # A peer may announce itself before it listens.
-        self._announced = min(self._announced, _QUICK_COUNT - 2)
-        self._announce_at = min(self._announce_at, now + _QUICK)
-        self._found(peer, now)
+        self._listener.on_peer(known, now)
 
     def tick(self, now: float) -> float:
         """Announce if it is time; drop silent peers. Return when to call again, at the latest."""
         if now >= self._announce_at:
+            # All possible addresses at first, and after that a part of them each time.
+            seldom = self._settings.seldom
+            some = seldom[self._announced % _SELDOM :: _SELDOM] if self._announced else seldom
             self._announced += 1
-            quick = self._announced < _QUICK_COUNT
-            self._announce_at = now + (min(_QUICK, self._period) if quick else self._period)
-            self._tell_all(self._announcement())
+            period, quick = self._settings.period, self._announced < _QUICK_COUNT
+            self._announce_at = now + (min(_QUICK, period) if quick else period)
+            matched = [p for prefix, p in self._peers.items() if self._listener.rank(prefix) == 2]
+            self._tell_all(self._announcement(), some, matched)
         self._left = {prefix: at for prefix, at in self._left.items() if now < at + _GONE}
-        for prefix in [p for p, peer in self._peers.items() if now >= peer.deadline]:
-            self._drop(prefix, expired=True)
-        return min([self._announce_at, *(peer.deadline for peer in self._peers.values())])
+        due = self._announce_at
+        for prefix, peer in list(self._peers.items()):
+            deadline = peer.heard_at + self._lease(peer.data)
+            if now >= deadline:
+                self._drop(prefix, expired=True)
+                continue
+            if now >= peer.again_at:
+                peer.again_at = float("inf")
+                self._tell_peer(peer)
+            due = min(due, deadline, peer.again_at)
+        return due
 
     def leave(self) -> None:
         """Tell all that this participant leaves."""
@@ -144,17 +171,17 @@ class Spdp:
             key=True,
             inline=inline,
         )
-        self._tell_all(farewell)
+        self._tell_all(farewell, (), list(self._peers.values()))
 
-    def _tell_all(self, data: Data) -> None:
-        """Send to the targets, and to each peer: multicast does not reach all of them.
+    def _tell_all(self, data: Data, some: tuple[Address, ...], peers: list[Peer]) -> None:
+        """Send to the targets, and to peers: multicast does not reach all of them.
 
         A peer of ROS 2 whose discovery is limited to its host joins no group.
         """
-        known = (nearest(peer.data.discovery, self._host) for peer in self._peers.values())
+        known = [way for peer in peers for way in Route(peer, discovery=True).ways()[0]]
         # Without repetitions, in an order that does not depend on hashes.
-        for target in dict.fromkeys((*self._targets, *(each for each in known if each))):
-            self._send(Outgoing(target, UNKNOWN_PREFIX, (data,)))
+        for target in dict.fromkeys((*self._settings.targets, *some, *known)):
+            self._tell(target, data)
 
     def _announcement(self) -> Data:
         # 8.5.3.3.1: a best-effort stateless writer sends its only sample again and again.
@@ -166,18 +193,53 @@ class Spdp:
             inline=NO_PARAMETERS,
         )
 
-    def _answer(self, peer: _Peer, now: float) -> None:
-        """Announce this participant to a new peer at once."""
-        address = nearest(peer.data.discovery, self._host)
-        if address is not None and now - peer.answered_at >= _ANSWER:
-            peer.answered_at = now
-            self._send(Outgoing(address, UNKNOWN_PREFIX, (self._announcement(),)))
+    def _answer(self, peer: Peer, now: float) -> None:
+        """Answer the announcement of a peer by our own, and again if it is new.
+
+        A peer may announce itself before it listens.
+        """
+        if now - peer.answered_at < _ANSWER:
+            return
+        if peer.answered_at == float("-inf"):
+            peer.again_at = now + _QUICK
+        peer.answered_at = now
+        self._tell_peer(peer)
+
+    def _tell_peer(self, peer: Peer) -> None:
+        announcement = self._announcement()
+        size = _HEAD_BYTES + len(announcement.payload or b"")
+        for way in Route(peer, discovery=True).ways()[0]:
+            if peer.spend(size):
+                self._tell(way, announcement)
+            else:
+                self._counters["withheld"] += 1
+
+    def _has_place(self, host: str | None, now: float) -> bool:
+        """Make sure that one more peer has a place.
+
+        Strangers give way: first those without endpoints or without a sign of life, then those
+        that are not matched with us; of these, the one that was silent for longest. No host takes
+        the places of all others.
+        """
+        of_host = [p for p, peer in self._peers.items() if peer.host == host and host is not None]
+        if len(of_host) < _MOST_PEERS_OF_HOST and len(self._peers) < _MOST_PEERS:
+            return True
+
+        def worth(prefix: bytes) -> tuple[int, float]:
+            heard_at = self._peers[prefix].heard_at
+            return self._listener.rank(prefix) if now - heard_at < _QUIET else 0, heard_at
+
+        first = min(of_host if len(of_host) >= _MOST_PEERS_OF_HOST else self._peers, key=worth)
+        if worth(first)[0] == 2:
+            return False
+        self._counters["displaced"] += 1
+        self._drop(first, expired=True)
+        return True
+
+    def _lease(self, peer: ParticipantData) -> float:
+        most = _MOST_LEASE if self._listener.rank(peer.prefix) else _MOST_LEASE_OF_STRANGER
+        return min(max(peer.lease, _LEAST_LEASE), most)
 
     def _drop(self, prefix: bytes, expired: bool) -> None:
-        peer = self._peers.pop(prefix, None)
-        if peer is not None:
-            self._lost(peer.data, expired)
-
-
-def _lease(peer: ParticipantData) -> float:
-    return min(max(peer.lease, _LEASE_LIMITS[0]), _LEASE_LIMITS[1])
+        if self._peers.pop(prefix, None) is not None:
+            self._listener.on_peer_lost(prefix, expired)

@@ -16,7 +16,6 @@ __all__ = ["Transport", "TransportError", "address_of"]
 _IP_MULTICAST_ALL = 49
 # Linux, <linux/sockios.h>: the IPv4 address of an interface.
 _SIOCGIFADDR = 0x8915
-_MAX_PARTICIPANTS = 120
 _RECEIVE_BUFFER_BYTES = 4 << 20
 
 
@@ -114,11 +113,12 @@ class Transport:
             return True
         return True
 
-    def receive(self, source: socket.socket, limit: int = 64) -> Iterator[bytes]:
-        """Yield the datagrams that wait at a socket, at most `limit` of them."""
+    def receive(self, source: socket.socket, limit: int = 64) -> Iterator[tuple[bytes, str]]:
+        """Yield the datagrams that wait at a socket, at most `limit`, and where they come from."""
         for _ in range(limit):
             try:
-                yield source.recv(65536)
+                datagram, address = source.recvfrom(65536)
+                yield datagram, address[0]
             except BlockingIOError:
                 return
             except OSError:
@@ -133,8 +133,8 @@ class Transport:
 
 def _bind_unicast(domain: int, host: str) -> tuple[int, tuple[socket.socket, socket.socket]]:
     """Return the lowest free number of a participant, and its sockets."""
-    for participant in range(_MAX_PARTICIPANTS):
-        ports = Ports.of(domain, participant)
+    every = Ports.all_of(domain)
+    for participant, ports in enumerate(every):
         discovery, user = _socket(), _socket()
         try:
             discovery.bind((host, ports.discovery))
@@ -147,7 +147,7 @@ def _bind_unicast(domain: int, host: str) -> tuple[int, tuple[socket.socket, soc
             user.close()
             if not _in_use(problem):
                 raise TransportError(f"no sockets on {host}: {problem}") from problem
-    raise TransportError(f"all {_MAX_PARTICIPANTS} participants of domain {domain} are there")
+    raise TransportError(f"all {len(every)} participants of domain {domain} are there")
 
 
 def _bind_multicast(group: Address, host: str) -> socket.socket:

@@ -6,23 +6,24 @@ what is lost, and when.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 from firm_hdl.rtps.discovery import EndpointData
 from firm_hdl.rtps.fragments import fragment, fragment_count
 from firm_hdl.rtps.outgoing import Outgoing, Send
+from firm_hdl.rtps.peers import Route
 from firm_hdl.rtps.qos import Durability, Qos
 from firm_hdl.rtps.wire.guid import Guid
 from firm_hdl.rtps.wire.infos import InfoTimestamp
-from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import ParameterList
 from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, NackFrag
 from firm_hdl.rtps.wire.samples import NO_PARAMETERS, Data
 from firm_hdl.rtps.wire.submessages import Submessage
 
-__all__ = ["FRAGMENT_BYTES", "HistoryFullError", "Writer"]
+__all__ = ["FRAGMENT_BYTES", "Change", "HistoryFullError", "Writer"]
 
 FRAGMENT_BYTES = 1280
 """Largest payload of one datagram, in bytes.
@@ -39,6 +40,15 @@ _HEARTBEAT_WHEN_FULL = 0.002
 _MOST_UNANSWERED = 12
 # Seconds before a sample is sent once more: nackSuppressionDuration of 8.4.7.1.
 _SUPPRESSION = 0.01
+# Seconds after which a full history no longer waits for a reader that does not get on: that has not
+# acknowledged a hundredth of the history. One that was left behind once is waited for less.
+_PATIENCE, _LITTLE_PATIENCE = 10.0, 1.0
+# Ends of instances that are kept for readers that have not acknowledged them.
+_MOST_ENDS = 256
+# Seconds without an answer after which a lower number is not late: the reader began anew.
+_MOST_LATE = 1.0
+# Bytes of a datagram besides the payload, about.
+_HEAD_BYTES = 100
 
 
 class HistoryFullError(Exception):
@@ -46,13 +56,35 @@ class HistoryFullError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class _Change:
-    """A sample in the history (CacheChange, 8.2.3)."""
+class Change:
+    """A sample in the history (CacheChange, 8.2.3).
+
+    Attributes
+    ----------
+    data : Data
+        The sample.
+    timestamp : int or None
+        Nanoseconds since 1970.
+    to : collection of Guid or None
+        The readers that it is for; by default all.
+    passing : bool
+        Whether it is kept until readers of today have it, even if others may come: the end of an
+        instance.
+    """
 
     data: Data
     timestamp: int | None
-    # Kept until readers of today have it, even if others may come: the end of an instance.
-    passing: bool
+    to: Collection[Guid] | None = None
+    passing: bool = False
+
+    @property
+    def size(self) -> int:
+        """Bytes that it takes to send it, about."""
+        return len(self.data.payload or b"") + _HEAD_BYTES
+
+    def is_for(self, reader: Guid) -> bool:
+        """Whether a reader gets it."""
+        return self.to is None or reader in self.to
 
 
 @dataclass(slots=True)
@@ -60,11 +92,20 @@ class _Proxy:
     """A matched reader (ReaderProxy, 8.4.7.5)."""
 
     guid: Guid
-    address: Address
+    route: Route
     reliable: bool
     # Lowest sequence number that is relevant to it; all up to `acked` were acknowledged.
     first: int
     acked: int
+    # When it was last seen to get on, and `acked` at that time.
+    progress_at: float
+    progress: int
+    # Whether the history waits for it, and for how long.
+    waited_for: bool = True
+    patience: float = _PATIENCE
+    # Up to where it has said that it has all, and when it last answered.
+    stated: int = 0
+    answered_at: float = float("-inf")
     heard: bool = False
     unanswered: int = 0
     last_count: int | None = None
@@ -73,6 +114,17 @@ class _Proxy:
     heartbeat_at: float = 0.0
     asked_at: float = float("-inf")
     resent: dict[int, float] = field(default_factory=dict)
+    # Samples for others that it was told of by a GAP, which may be lost.
+    skipped: list[int] = field(default_factory=list)
+
+    def lacks(self, number: int, change: Change) -> bool:
+        """Whether it has to acknowledge a sample yet."""
+        return self.waits and self.acked < number and change.is_for(self.guid)
+
+    @property
+    def waits(self) -> bool:
+        """Whether samples are kept for it."""
+        return self.reliable and self.waited_for
 
 
 class Writer:
@@ -88,6 +140,16 @@ class Writer:
         Takes its datagrams.
     fragment_bytes : int
         Samples with more bytes are sent in fragments of this size.
+    counters : Counter
+        Counts samples that were ``overwritten`` before all readers had them, readers that were
+        ``left_behind``, and samples or fragments that were asked for and ``withheld``.
+
+    Attributes
+    ----------
+    last : int
+        Sequence number of the last sample.
+    overwritten : int
+        How many samples gave way to new ones before all reliable readers had acknowledged them.
     """
 
     def __init__(
@@ -96,20 +158,27 @@ class Writer:
         qos: Qos,
         send: Send,
         fragment_bytes: int = FRAGMENT_BYTES,
+        counters: Counter[str] | None = None,
     ):
         self.guid = guid
         self.qos = qos
         self._send = send
         self._fragment_bytes = fragment_bytes
-        self._changes: dict[int, _Change] = {}
+        self._counters = Counter[str]() if counters is None else counters
+        self._changes: dict[int, Change] = {}
         self._proxies: dict[Guid, _Proxy] = {}
         self._count = 0
         self.last = 0
+        self.overwritten = 0
 
     @property
     def matched(self) -> tuple[Guid, ...]:
         """The readers that it serves."""
         return tuple(self._proxies)
+
+    def history(self) -> Iterator[Change]:
+        """Yield the samples that it keeps, the oldest first."""
+        yield from self._changes.values()
 
     def write(
         self,
@@ -118,8 +187,9 @@ class Writer:
         timestamp: int | None = None,
         inline: ParameterList = NO_PARAMETERS,
         key: bool = False,
+        to: Collection[Guid] | None = None,
     ) -> int:
-        """Add a sample to the history, send it to all readers, and return its sequence number.
+        """Add a sample to the history, send it to its readers, and return its sequence number.
 
         Parameters
         ----------
@@ -129,13 +199,15 @@ class Writer:
             The time, in seconds of any clock that never goes back.
         timestamp : int or None
             Nanoseconds since 1970, for the readers.
+        to : collection of Guid or None
+            The readers that it is for; by default all.
 
         Raises
         ------
         HistoryFullError
             The depth is 0, and readers have acknowledged too little.
         """
-        self._make_room()
+        self._make_room(now)
         self.last += 1
         data = Data(
             reader=0,
@@ -145,12 +217,21 @@ class Writer:
             key=key,
             inline=inline,
         )
-        change = _Change(data, timestamp, key)
-        if self._durable or any(proxy.reliable for proxy in self._proxies.values()):
+        change = Change(data, timestamp, to, passing=key)
+        if key:
+            ends = [number for number, each in self._changes.items() if each.passing]
+            for number in ends[:-_MOST_ENDS]:
+                self._overwrite(number)
+        if self._durable or any(p.lacks(self.last, change) for p in self._proxies.values()):
             self._changes[self.last] = change
         for proxy in self._proxies.values():
+            if not change.is_for(proxy.guid):
+                self._skip(proxy)
+                continue
             if proxy.acked >= self.last - 1:
+                proxy.progress_at = now
                 proxy.period, proxy.heartbeat_at = _HEARTBEAT, now + _HEARTBEAT
+            proxy.route.allow_sample(change.size)
             self._transmit(proxy, change, self._heartbeat_with(proxy, change, now))
         return self.last
 
@@ -158,43 +239,57 @@ class Writer:
         """Remove a sample from the history. Readers that ask for it get a GAP."""
         self._changes.pop(number, None)
 
-    def match(self, reader: EndpointData, address: Address, now: float) -> None:
-        """Begin to serve a reader, or note its new address.
+    def match(self, reader: EndpointData, route: Route, now: float) -> None:
+        """Begin to serve a reader, or note the new way to it.
 
         A reader that is not volatile gets the history. Any other begins with the next sample; old
         ones are not sent again, whoever asks for them.
         """
         known = self._proxies.get(reader.guid)
         if known is not None:
-            known.address = address
+            known.route = route
             return
         wants_old = self._durable and reader.qos.durability > Durability.VOLATILE
         first = min(self._changes, default=self.last + 1) if wants_old else self.last + 1
         reliable = self.qos.reliable and reader.qos.reliable
-        proxy = _Proxy(reader.guid, address, reliable, first, first - 1)
+        proxy = _Proxy(reader.guid, route, reliable, first, first - 1, now, first - 1)
         self._proxies[reader.guid] = proxy
+        old = [each for number, each in self._changes.items() if number >= first]
+        route.allow_history(sum(each.size for each in old), now)
         if reliable:
             self._ask(proxy, now)
             return
-        for number, change in self._changes.items():
-            if number >= first:
-                self._transmit(proxy, change, ())
+        for change in old:
+            if change.is_for(reader.guid):
+                self._repair(proxy, change)
 
     def unmatch(self, reader: Guid) -> None:
         """Stop to serve a reader."""
         if self._proxies.pop(reader, None) is not None:
             self._purge()
 
-    def on_ack_nack(self, reader: Guid, answer: AckNack, now: float) -> None:
-        """Take an ACKNACK (8.4.9.2): what it acknowledges, and what it misses."""
+    def on_ack_nack(self, reader: Guid, answer: AckNack, now: float) -> bool:
+        """Take an ACKNACK (8.4.9.2): what it acknowledges, and what it misses.
+
+        Returns
+        -------
+        bool
+            Whether the reader began anew: it misses what it once had. Of an answer that is late,
+            it does so, too; but then, others came in the last second.
+        """
         proxy = self._proxies.get(reader)
         if proxy is None or not proxy.reliable or answer.count == proxy.last_count:
-            return
-        proxy.last_count = answer.count
-        proxy.heard, proxy.unanswered = True, 0
+            return False
         acked = min(answer.missing.base - 1, self.last)
+        began_anew = acked < proxy.stated and now - proxy.answered_at >= _MOST_LATE
+        proxy.last_count, proxy.answered_at = answer.count, now
+        if acked > proxy.stated:
+            proxy.stated = acked
+            proxy.skipped = [number for number in proxy.skipped if number > acked]
+        proxy.heard, proxy.unanswered = True, 0
         if acked > proxy.acked:
             proxy.acked = acked
+            self._note_progress(proxy, now)
             proxy.period, proxy.heartbeat_at = _HEARTBEAT, now + _HEARTBEAT
             proxy.resent = {n: at for n, at in proxy.resent.items() if n > acked}
             self._purge()
@@ -202,6 +297,7 @@ class Writer:
         if not answer.final and not answer.missing.members:
             # A reader asks for a heartbeat; also when it has just found this writer.
             self._ask(proxy, now, final=proxy.acked >= self.last)
+        return began_anew
 
     def on_nack_frag(self, reader: Guid, answer: NackFrag, now: float) -> None:
         """Take a NACK_FRAG (8.4.14.1): send the fragments that a reader misses."""
@@ -210,16 +306,17 @@ class Writer:
             return
         proxy.last_fragment_count = answer.count
         proxy.heard, proxy.unanswered = True, 0
-        change = self._changes.get(answer.sequence_number)
-        if change is None or answer.sequence_number < proxy.first:
-            self._gap(proxy, (answer.sequence_number,))
+        number = answer.sequence_number
+        if number > self.last:
+            return
+        change = self._changes.get(number)
+        if change is None or not self._is_for(proxy, number, change):
+            self._gap(proxy, (number,))
             return
         if change.data.payload is None:
             return
-        size = fragment_count(len(change.data.payload), self._fragment_bytes)
-        self._fragments(
-            proxy, change, (each for each in answer.missing.members if 0 < each <= size)
-        )
+        count = self._count_of(len(change.data.payload))
+        self._repair(proxy, change, [each for each in answer.missing.members if 0 < each <= count])
         self._ask(proxy, now)
 
     def tick(self, now: float) -> float:
@@ -230,27 +327,67 @@ class Writer:
                 continue
             if now >= proxy.heartbeat_at:
                 proxy.period = min(2 * proxy.period, _MAX_HEARTBEAT)
-                self._ask(proxy, now)
+                self._ask(proxy, now, is_answer=not proxy.heard)
             due = min(due, proxy.heartbeat_at)
         return due
+
+    def ask_all(self, now: float) -> None:
+        """Ask the readers that have not acknowledged all samples to do so at once."""
+        for proxy in self._proxies.values():
+            if self._pending(proxy) and proxy.acked < self.last:
+                self._ask(proxy, now, is_answer=False)
 
     @property
     def acknowledged(self) -> bool:
         """Whether all reliable readers have all samples."""
-        return all(p.acked >= self.last for p in self._proxies.values() if p.reliable)
+        return all(p.acked >= self.last for p in self._proxies.values() if p.waits)
+
+    @property
+    def unacknowledged(self) -> int:
+        """How many samples of the history not all of their reliable readers have."""
+        return sum(
+            any(proxy.lacks(number, change) for proxy in self._proxies.values())
+            for number, change in self._changes.items()
+        )
 
     @property
     def _durable(self) -> bool:
         return self.qos.durability > Durability.VOLATILE
 
-    def _make_room(self) -> None:
-        depth = self.qos.depth
-        if not depth:
-            if len(self._changes) >= self.qos.max_samples:
-                raise HistoryFullError(f"{self.qos.max_samples} samples are not acknowledged")
+    def _make_room(self, now: float) -> None:
+        if self.qos.depth:
+            while len(self._changes) >= self.qos.depth:
+                self._overwrite(next(iter(self._changes)))
             return
-        while len(self._changes) >= depth:
-            del self._changes[next(iter(self._changes))]
+        if len(self._changes) >= self.qos.max_samples:
+            self._leave_behind(now)
+        if len(self._changes) >= self.qos.max_samples:
+            raise HistoryFullError(f"{self.qos.max_samples} samples are not acknowledged")
+
+    def _overwrite(self, number: int) -> None:
+        change = self._changes.pop(number)
+        if any(proxy.lacks(number, change) for proxy in self._proxies.values()):
+            self.overwritten += 1
+            self._counters["overwritten"] += 1
+
+    def _note_progress(self, proxy: _Proxy, now: float) -> None:
+        """Note that a reader acknowledged something."""
+        has_all = proxy.acked >= self.last
+        if has_all or proxy.acked >= proxy.progress + self.qos.max_samples // 100:
+            proxy.progress, proxy.progress_at = proxy.acked, now
+        proxy.waited_for |= has_all
+
+    def _leave_behind(self, now: float) -> None:
+        """Wait no longer for readers that do not get on, until they have all samples.
+
+        So one that hangs does not stop the writer for all others.
+        """
+        for proxy in self._proxies.values():
+            is_behind = proxy.waits and proxy.acked < self.last
+            if is_behind and now - proxy.progress_at >= proxy.patience:
+                proxy.waited_for, proxy.patience = False, _LITTLE_PATIENCE
+                self._counters["left_behind"] += 1
+        self._purge()
 
     def _pending(self, proxy: _Proxy) -> bool:
         """Whether a reader has to be asked for an answer."""
@@ -262,13 +399,20 @@ class Writer:
 
     def _purge(self) -> None:
         """Remove what all reliable readers have, unless others may want it later."""
-        acked = (proxy.acked for proxy in self._proxies.values() if proxy.reliable)
+        acked = (proxy.acked for proxy in self._proxies.values() if proxy.waits)
         lowest = min(acked, default=self.last)
-        for number in [number for number in self._changes if number <= lowest]:
-            if not self._durable or self._changes[number].passing:
-                del self._changes[number]
+        gone = []
+        for number, change in self._changes.items():
+            if self._durable and not change.passing:
+                continue
+            if number > lowest and change.to is None:
+                break
+            if not any(proxy.lacks(number, change) for proxy in self._proxies.values()):
+                gone.append(number)
+        for number in gone:
+            del self._changes[number]
 
-    def _heartbeat_with(self, proxy: _Proxy, change: _Change, now: float) -> tuple[Heartbeat, ...]:
+    def _heartbeat_with(self, proxy: _Proxy, change: Change, now: float) -> tuple[Heartbeat, ...]:
         """Return the heartbeat that goes with a sample.
 
         It tells a reader at once what is lost. Now and then it asks for an acknowledgement, too,
@@ -286,7 +430,7 @@ class Writer:
 
     def _heartbeat(self, proxy: _Proxy, final: bool) -> Heartbeat:
         self._count = (self._count + 1) & 0x7FFF_FFFF
-        lowest = next(iter(self._changes), self.last + 1)
+        lowest = min((next(iter(self._changes), self.last + 1), *proxy.skipped[:1]))
         return Heartbeat(
             reader=proxy.guid.entity,
             writer=self.guid.entity,
@@ -296,31 +440,75 @@ class Writer:
             final=final,
         )
 
-    def _ask(self, proxy: _Proxy, now: float, final: bool = False) -> None:
+    def _ask(self, proxy: _Proxy, now: float, final: bool = False, is_answer: bool = True) -> None:
         """Send a heartbeat by itself, which a reader has to answer unless it is `final`."""
         proxy.unanswered += not proxy.heard
         proxy.heartbeat_at = now + proxy.period
         if not final:
             proxy.asked_at = now
-        self._post(proxy, (self._heartbeat(proxy, final),))
+        self._post(proxy, (self._heartbeat(proxy, final),), is_answer)
 
-    def _transmit(self, proxy: _Proxy, change: _Change, behind: tuple[Submessage, ...]) -> None:
-        """Send a sample to a reader, in fragments if it is large."""
+    def _transmit(self, proxy: _Proxy, change: Change, behind: tuple[Submessage, ...]) -> None:
+        """Send a sample to a reader for the first time, in fragments if it is large."""
         size = len(change.data.payload or b"")
         if size > self._fragment_bytes:
-            count = fragment_count(size, self._fragment_bytes)
-            self._fragments(proxy, change, range(1, count + 1))
+            for each in self._fragments(proxy, change, range(1, self._count_of(size) + 1)):
+                self._post(proxy, each, is_answer=False)
             if behind:
-                self._post(proxy, behind)
+                self._post(proxy, behind, is_answer=False)
             return
-        data = replace(change.data, reader=proxy.guid.entity)
-        self._post(proxy, (InfoTimestamp(change.timestamp), data, *behind))
+        self._post(proxy, (*self._whole(proxy, change), *behind), is_answer=False)
 
-    def _fragments(self, proxy: _Proxy, change: _Change, numbers: Iterable[int]) -> None:
+    def _repair(
+        self, proxy: _Proxy, change: Change, numbers: Collection[int] | None = None
+    ) -> bool:
+        """Send a sample, or fragments of it, that a reader asked for.
+
+        Returns
+        -------
+        bool
+            Whether the reader's participant had the credit for at least a part of it.
+        """
+        size = len(change.data.payload or b"")
+        if size > self._fragment_bytes or numbers is not None:
+            every = range(1, self._count_of(size) + 1) if numbers is None else numbers
+            parts = self._fragments(proxy, change, every)
+        else:
+            parts = iter((self._whole(proxy, change),))
+        sent = False
+        for each in parts:
+            if proxy.route.peer.credit <= 0:
+                self._counters["withheld"] += 1
+                break
+            self._post(proxy, each)
+            sent = True
+        return sent
+
+    def _whole(self, proxy: _Proxy, change: Change) -> tuple[Submessage, ...]:
+        data = replace(change.data, reader=proxy.guid.entity)
+        return InfoTimestamp(change.timestamp), data
+
+    def _fragments(
+        self, proxy: _Proxy, change: Change, numbers: Iterable[int]
+    ) -> Iterator[tuple[Submessage, ...]]:
         data = replace(change.data, reader=proxy.guid.entity)
         stamp = InfoTimestamp(change.timestamp)
         for number in numbers:
-            self._post(proxy, (stamp, fragment(data, number, self._fragment_bytes)))
+            yield stamp, fragment(data, number, self._fragment_bytes)
+
+    def _count_of(self, size: int) -> int:
+        return fragment_count(size, self._fragment_bytes)
+
+    def _is_for(self, proxy: _Proxy, number: int, change: Change) -> bool:
+        return number >= proxy.first and change.is_for(proxy.guid)
+
+    def _skip(self, proxy: _Proxy) -> None:
+        """Say that the newest sample is not for a reader."""
+        if proxy.reliable:
+            if proxy.acked == self.last - 1:
+                proxy.acked = self.last
+            proxy.skipped = [*proxy.skipped[1 - NumberSet.MAX_SIZE :], self.last]
+            self._gap(proxy, (self.last,), is_answer=False)
 
     def _resend(self, proxy: _Proxy, numbers: tuple[int, ...], now: float) -> None:
         """Send samples again; those that are no longer there, or never were, by a GAP."""
@@ -329,31 +517,32 @@ class Writer:
             change = self._changes.get(number)
             if number > self.last:
                 continue
-            if change is None or number < proxy.first:
+            if change is None or not self._is_for(proxy, number, change):
                 gone.append(number)
             elif now - proxy.resent.get(number, float("-inf")) >= _SUPPRESSION:
+                if not self._repair(proxy, change):
+                    break
                 proxy.resent[number] = now
-                self._transmit(proxy, change, ())
                 sent = True
+        if len(proxy.resent) > 2 * len(self._changes) + NumberSet.MAX_SIZE:
+            proxy.resent = {n: at for n, at in proxy.resent.items() if n in self._changes}
         if gone:
             self._gap(proxy, gone)
         if sent:
             self._ask(proxy, now)
 
-    def _gap(self, proxy: _Proxy, numbers: Iterable[int]) -> None:
+    def _gap(self, proxy: _Proxy, numbers: Iterable[int], is_answer: bool = True) -> None:
         """Say that samples are not to be had (8.3.8.4)."""
         start, *rest = numbers
-        self._post(
-            proxy,
-            (
-                Gap(
-                    reader=proxy.guid.entity,
-                    writer=self.guid.entity,
-                    start=start,
-                    numbers=NumberSet.of(start + 1, rest),
-                ),
-            ),
+        gap = Gap(
+            reader=proxy.guid.entity,
+            writer=self.guid.entity,
+            start=start,
+            numbers=NumberSet.of(start + 1, rest),
         )
+        self._post(proxy, (gap,), is_answer)
 
-    def _post(self, proxy: _Proxy, submessages: tuple[Submessage, ...]) -> None:
-        self._send(Outgoing(proxy.address, proxy.guid.prefix, submessages))
+    def _post(
+        self, proxy: _Proxy, submessages: tuple[Submessage, ...], is_answer: bool = True
+    ) -> None:
+        self._send(Outgoing(proxy.route, proxy.guid.prefix, submessages, is_answer))

@@ -10,6 +10,7 @@ import time
 import pytest
 
 from firm_hdl.rtps import Durability, Qos, Reliability
+from firm_hdl.rtps.ros import graph
 from tests.live import samples
 from tests.live.lossy import LossyTransport
 from tests.live.peer import Peer
@@ -20,6 +21,10 @@ RELEASES = pytest.mark.parametrize("release", ["jazzy", "kilted"])
 IMU, BLOCK, STRING = "sensor_msgs/msg/Imu", "std_msgs/msg/UInt8MultiArray", "std_msgs/msg/String"
 SET_BOOL = "std_srvs/srv/SetBool"
 STRING_HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
+SET_BOOL_HASHES = (
+    "RIHS01_c62fbb99d94e1b25e8ef9e109f9581956bb1b3361a45a4e5810c36a90d29932e",
+    "RIHS01_d0814e7f7b4880ab77e9c57426c7aa1562ab69f11eef8e2e968812f9cbd0b059",
+)
 KEEP_ALL = Qos(depth=0)
 
 
@@ -126,9 +131,11 @@ def test_a_peer_sees_our_node_by_name_and_we_see_its(release, node):
     node.publisher("chatter", STRING, type_hash=STRING_HASH)
     node.publisher("~/imu", IMU)
     node.subscription("/scan", BLOCK, print)
-    node.service("mode", SET_BOOL, lambda request: request)
+    hashes = {"request_hash": SET_BOOL_HASHES[0], "response_hash": SET_BOOL_HASHES[1]}
+    node.service("mode", SET_BOOL, lambda request: request, **hashes)
     node.client("/other", SET_BOOL)
-    wanted = {"node": "board", "namespace": "/fpga", "publishers": 2, "topics": ["/fpga/chatter"]}
+    topics = ["/fpga/chatter", "rq/fpga/modeRequest", "rr/fpga/modeReply", graph.TOPIC]
+    wanted = {"node": "board", "namespace": "/fpga", "publishers": 2, "topics": topics}
     with Peer(release, "graph", own="watcher", **wanted) as peer:
         assert node.context.wait_for_node("watcher")
         seen = peer.result()
@@ -137,7 +144,10 @@ def test_a_peer_sees_our_node_by_name_and_we_see_its(release, node):
     assert seen["subscriptions"] == [["/scan", [BLOCK]]]
     assert seen["services"] == [["/fpga/mode", [SET_BOOL]]]
     assert seen["clients"] == [["/other", [SET_BOOL]]]
-    assert seen["hashes"] == [STRING_HASH]
+    # The participant's own topic has a writer and a reader of ours, which belong to no node there.
+    assert seen["hashes"][:3] == [STRING_HASH, *SET_BOOL_HASHES]
+    assert seen["owners"][:3] == [["board", "/fpga"]] * 3
+    assert set(seen["hashes"][3:]) == {graph.TYPE_HASH}
 
 
 @RELEASES

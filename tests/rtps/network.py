@@ -4,22 +4,31 @@ from __future__ import annotations
 
 import heapq
 import random
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import count
 
 from firm_hdl.rtps import Qos
-from firm_hdl.rtps.core import Core, Settings
+from firm_hdl.rtps.core import Core
 from firm_hdl.rtps.discovery import ParticipantData
 from firm_hdl.rtps.events import Arrived, Event, Sample
+from firm_hdl.rtps.peers import Peer, Route
 from firm_hdl.rtps.reader import Reader
+from firm_hdl.rtps.settings import Settings
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.writer import Writer
 
-__all__ = ["GROUP", "Network", "Station"]
+__all__ = ["GROUP", "TOPIC", "TYPE", "Network", "Station", "route_to"]
 
 GROUP = Address("239.255.0.1", 7400)
 TOPIC, TYPE = "rt/t", "p::msg::dds_::T_"
+
+
+def route_to(address: Address) -> Route:
+    """Return a way to a peer that may ask for whatever it likes."""
+    data = ParticipantData(prefix=bytes(12), discovery=(address,), user=(address,), lease=10.0)
+    return Route(Peer(data, address.host, None, credit=float("inf")))
 
 
 @dataclass
@@ -33,6 +42,14 @@ class Station:
     dead: bool = False
     # Not a member of the multicast group.
     deaf: bool = False
+
+    @property
+    def host(self) -> str:
+        return self.core.settings.host
+
+    def take_events(self) -> None:
+        while (event := self.core.next_event()) is not None:
+            self.events.append(event)
 
     @property
     def samples(self) -> list[Sample]:
@@ -73,24 +90,29 @@ class Network:
         self.now = 0.0
         self.stations: list[Station] = []
         self.sent: list[bytes] = []
+        self.bytes_to: Counter[str] = Counter()
         self._order = count()
-        self._flying: list[tuple[float, int, Address, bytes]] = []
+        self._flying: list[tuple[float, int, Address, bytes, str]] = []
 
     def station(
-        self, prefix: bytes | None = None, domain: int | None = 0, **options: object
+        self,
+        prefix: bytes | None = None,
+        domain: int | None = 0,
+        elsewhere: tuple[str, ...] = (),
+        **options: object,
     ) -> Station:
-        """Add a participant."""
+        """Add a participant. It also names hosts `elsewhere`, where nobody is."""
         number = len(self.stations) + 1
-        addresses = (Address(f"10.0.0.{number}", 7411),)
+        hosts = (*elsewhere, f"10.0.0.{number}")
         lease = float(options.pop("lease", 10.0))
         own = ParticipantData(
             prefix=prefix or b"\x01\xff" + bytes(9) + bytes([number]),
-            discovery=(Address(f"10.0.0.{number}", 7410),),
-            user=addresses,
+            discovery=tuple(Address(host, 7410) for host in hosts),
+            user=tuple(Address(host, 7411) for host in hosts),
             lease=lease,
             domain=domain,
         )
-        settings = Settings(own=own, host=addresses[0].host, targets=(GROUP,), **options)
+        settings = Settings(own=own, host=hosts[-1], targets=(GROUP,), **options)
         station = Station(self, Core(settings))
         self.stations.append(station)
         return station
@@ -107,29 +129,28 @@ class Network:
             flight = self._flying[0][0] if self._flying else end
             self.now = min(end, max(self.now + 1e-6, min(due, flight)))
             while self._flying and self._flying[0][0] <= self.now:
-                _, _, address, datagram = heapq.heappop(self._flying)
-                self._arrive(address, datagram)
+                _, _, address, datagram, host = heapq.heappop(self._flying)
+                self._arrive(address, datagram, host)
         self._collect()
         return until()
 
     def _collect(self) -> None:
         for station in self.stations:
-            station.events.extend(station.core.events)
-            station.core.events.clear()
+            station.take_events()
             while station.core.outbox:
                 address, datagram = station.core.pop()
                 if station.dead:
                     continue
                 self.sent.append(datagram)
+                self.bytes_to[address.host] += len(datagram)
                 for _ in range(1 + (self.random.random() < self.repeat)):
                     if self.random.random() >= self.loss:
                         at = self.now + self.random.uniform(1e-6, self.delay)
-                        item = (at, next(self._order), address, datagram)
+                        item = (at, next(self._order), address, datagram, station.host)
                         heapq.heappush(self._flying, item)
 
-    def _arrive(self, address: Address, datagram: bytes) -> None:
+    def _arrive(self, address: Address, datagram: bytes, host: str) -> None:
         for station in self.stations:
-            own = station.core.settings.own
-            group = () if station.deaf else (GROUP,)
-            if not station.dead and address in (*group, *own.discovery, *own.user):
-                station.core.receive(datagram, self.now)
+            is_here = address.host == station.host or (address == GROUP and not station.deaf)
+            if is_here and not station.dead:
+                station.core.receive(datagram, self.now, host)

@@ -256,6 +256,51 @@ def test_a_peer_that_starts_again_is_a_new_one():
     assert writer.acknowledged and len(writer.matched) == 1
 
 
+@pytest.mark.parametrize("qos", [KEEP_ALL, BEST_EFFORT], ids=["reliable", "best effort"])
+def test_a_peer_that_starts_again_under_its_old_name_is_heard_from_its_beginning(qos):
+    network = Network(seed=1, delay=0.2)
+    prefix = b"\x01\x10" + bytes(9) + b"\x07"
+    one = network.station()
+    one.reader(qos)
+    sent = payloads([8] * 30)
+    for begin in (0, 20):
+        two = network.station(prefix)
+        writer = two.writer(KEEP_ALL)
+        # Endpoints that it had before have other numbers now.
+        two.writer(KEEP_ALL, topic=f"rt/{begin}")
+        assert network.run(10, lambda two=two: bool(two.named("Matched")))
+        # The reader's participant finds out after a second.
+        network.run(3)
+        for each in sent[begin : begin + 20]:
+            two.write(writer, each)
+            network.run(0.3)
+        network.run(2)
+        two.dead = True
+        network.stations.remove(two)
+    assert one.payloads == sent[:20] + sent[20:]
+    topics = [each.topic for each in one.core.remotes(writers=True)]
+    assert sorted(topics) == ["rt/20", "rt/t"]
+    assert one.core.counters["restarted"] >= 1
+
+
+def test_a_sample_may_be_for_some_readers_alone():
+    network = Network(seed=4, loss=0.2)
+    one, two, three = (network.station() for _ in range(3))
+    writer = one.writer(KEEP_ALL)
+    own, other = two.reader(KEEP_ALL), three.reader(KEEP_ALL)
+    network.run(5)
+    sent = payloads([8] * 40)
+    for number, each in enumerate(sent):
+        to = (own, other)[number % 2].guid
+        one.core.write(writer, each, network.now, None, to=[to])
+        network.run(0.01)
+    assert network.run(20, lambda: writer.acknowledged)
+    # Each got its own, and waited for nothing else.
+    assert (two.payloads, three.payloads) == (sent[::2], sent[1::2])
+    assert own.lost == other.lost == 0
+    assert not [each for each in sent_to(three, Data) if each.payload in sent[::2]]
+
+
 def test_endpoints_come_and_go():
     network = Network(seed=5, loss=0.2)
     one, two, writer = pair(network)
@@ -290,7 +335,7 @@ def test_a_peer_that_did_not_listen_yet():
     network = Network()
     one, two = network.station(), network.station()
     two.deaf = True
-    two.core.receive, listening = lambda datagram, now: None, two.core.receive
+    two.core.receive, listening = lambda *_: None, two.core.receive
     assert network.run(1, lambda: len(one.core.peers) == 1)
     network.run(0.01)
     two.core.receive = listening

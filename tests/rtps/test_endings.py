@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 
 import pytest
 
-from firm_hdl.rtps import HistoryFullError, Participant, Qos
+from firm_hdl.rtps import ClosedError, Participant, Qos
 from tests.rtps.test_participant import OPTIONS, TOPIC, TYPE, wait
 
 HOUR = 3600.0
@@ -39,7 +40,7 @@ def test_nobody_waits_longer_than_a_participant_is_open(pair, monkeypatch):
     two.reader(TOPIC, TYPE, lambda sample: None, Qos(depth=0))
     assert writer.wait_for_match()
     # Nothing is acknowledged any more, so the first sample takes all room.
-    monkeypatch.setattr(two._core, "receive", lambda datagram, now: None)
+    monkeypatch.setattr(two._core, "receive", lambda *_: None)
     writer.write(b"1234")
     waiting = [
         started(lambda: writer.write(b"1234", timeout=HOUR)),
@@ -49,7 +50,7 @@ def test_nobody_waits_longer_than_a_participant_is_open(pair, monkeypatch):
     one.close()
     assert wait(lambda: all(waiting))
     (failed,), *others = waiting
-    assert isinstance(failed, HistoryFullError) and others == [[False], [False]]
+    assert isinstance(failed, ClosedError) and others == [[False], [False]]
 
 
 def test_a_callback_may_close_its_participant(pair, caplog):
@@ -61,6 +62,41 @@ def test_a_callback_may_close_its_participant(pair, caplog):
         writer.write(b"1234")
         assert wait(lambda: not two._thread.is_alive())
     assert not caplog.records
+
+
+def test_what_was_written_arrives_before_its_writer_leaves(pair):
+    """Though it takes a while: 300 kB at 1 MB/s."""
+    _, two = pair
+    got = []
+    two.reader(TOPIC, TYPE, got.append, Qos(depth=0))
+    for close_all in (True, False):
+        got.clear()
+        one = Participant(**OPTIONS, bytes_per_second=1e6)
+        writer = one.writer(TOPIC, TYPE, Qos(depth=0))
+        assert writer.wait_for_match()
+        for number in range(15):
+            writer.write(bytes([number]) * 20_000)
+        (one if close_all else writer).close()
+        assert wait(lambda: len(got) == 15)
+        assert [each.payload[0] for each in got] == list(range(15))
+        assert not (one.counters["unsent"] or one.counters["unacknowledged"])
+        one.close()
+
+
+def test_closing_waits_for_a_second_at_most_and_counts_what_is_left(pair, monkeypatch):
+    one, two = pair
+    writer = one.writer(TOPIC, TYPE)
+    two.reader(TOPIC, TYPE, lambda sample: None)
+    assert writer.wait_for_match()
+    monkeypatch.setattr(two._core, "receive", lambda *_: None)
+    for _ in range(12):
+        writer.write(b"1234")
+    begin = time.monotonic()
+    one.close()
+    assert 0.9 < time.monotonic() - begin < 10
+    # Two of them had given way before.
+    assert writer.overwritten == one.counters["overwritten"] == 2
+    assert one.counters["unacknowledged"] == 10
 
 
 def test_a_participant_that_has_left_says_nothing_more(pair):

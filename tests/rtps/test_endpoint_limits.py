@@ -5,17 +5,17 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.rtps import Durability, Guid, Qos
-from firm_hdl.rtps.fragments import Budget
+from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, NackFrag
 from firm_hdl.rtps.wire.samples import Data
 from firm_hdl.rtps.writer import Writer
 from tests.rtps.test_endpoints import (
-    ADDRESS,
     BEST_EFFORT,
     HERE,
     KEEP_ALL,
+    ROUTE,
     THERE,
     Outbox,
     ack,
@@ -36,7 +36,7 @@ def listening(sent, qos=KEEP_ALL, limit=1 << 20):
     got, budget = [], Budget(limit)
     deliver = lambda writer, data, timestamp: got.append(data.sequence_number)  # noqa: E731
     reader = Reader(THERE, qos, sent.append, deliver, budget)
-    reader.match(endpoint(HERE, qos), ADDRESS, 0.0)
+    reader.match(endpoint(HERE, qos), ROUTE, 0.0)
     reader.on_heartbeat(HERE, heartbeat(1, 0), 0.0)
     return reader, got, budget
 
@@ -48,11 +48,11 @@ def test_nobody_waits_for_the_other_side_unless_both_are_reliable(sent, own, oth
     got = []
     deliver = lambda writer, data, timestamp: got.append(data.sequence_number)  # noqa: E731
     reader = Reader(THERE, own, sent.append, deliver, Budget(1 << 20))
-    reader.match(endpoint(HERE, other), ADDRESS, 0.0)
+    reader.match(endpoint(HERE, other), ROUTE, 0.0)
     reader.on_data(HERE, data(2), None, 1.0)
     assert got == ([] if both else [2])
     writer = Writer(HERE, own, sent.append)
-    writer.match(endpoint(THERE, other), ADDRESS, 0.0)
+    writer.match(endpoint(THERE, other), ROUTE, 0.0)
     writer.write(b"abcd", 1.0)
     assert writer.acknowledged is not both
 
@@ -89,8 +89,9 @@ def test_early_samples_without_memory_are_dropped_and_asked_for(sent):
 
 def test_fragments_of_a_sample_that_will_not_come_are_forgotten(sent):
     reader, got, budget = listening(sent)
+    # The fragment that is missing before this one takes a byte.
     reader.on_data_frag(HERE, part(1, 2), None, 1.0)
-    assert budget.used == 204
+    assert budget.used == 205
     reader.on_gap(HERE, Gap(reader=0, writer=0x103, start=1, numbers=NumberSet(2)), 1.0)
     assert (got, budget.used) == ([], 0)
     # One that waits for another one is not put together again.
@@ -163,17 +164,36 @@ def test_a_reader_that_gets_on_asks_as_often_again(sent):
     assert totals[1] == totals[0] + 5
 
 
-def test_an_old_heartbeat_takes_nothing_back(sent):
-    reader, _, _ = listening(sent)
-    for count, last in ((2, 3), (3, 1)):
-        reader.on_heartbeat(HERE, heartbeat(1, last, count=count), 1.0)
-        (answer,) = sent.take(AckNack)
-        assert answer.missing == NumberSet(1, (1, 2, 3))
+def test_a_heartbeat_that_is_late_takes_nothing_back(sent):
+    reader, got, _ = listening(sent)
+    reader.on_data(HERE, data(1), None, 1.0)
+    reader.on_heartbeat(HERE, heartbeat(1, 3, count=2), 1.0)
+    for last in (1, 0):
+        assert not reader.on_heartbeat(HERE, heartbeat(1, last, count=1), 1.9)
+    reader.on_data(HERE, data(1), None, 1.9)
+    reader.on_data(HERE, data(2), None, 1.9)
+    assert got == [1, 2] and [each.missing.base for each in sent.take(AckNack)] == [2]
+
+
+@pytest.mark.parametrize("qos", [KEEP_ALL, BEST_EFFORT])
+def test_a_writer_that_begins_anew_under_its_old_name_is_heard_from_its_beginning(sent, qos):
+    reader, got, budget = listening(sent, qos)
+    for number in (1, 2, 3, 5):
+        reader.on_data(HERE, data(number), None, 1.0)
+    # The last number of the new one went back, and nothing else came for a second.
+    assert not reader.on_heartbeat(HERE, heartbeat(1, 1, count=1), 1.9)
+    reader.on_data(HERE, data(1), None, 1.9)
+    assert reader.on_heartbeat(HERE, heartbeat(1, 2, count=2), 2.0)
+    assert budget.used == 0
+    for number in (1, 2, 3):
+        reader.on_data(HERE, data(number), None, 2.1)
+    assert got == [1, 2, 3, *([5] if qos is BEST_EFFORT else []), 1, 2, 3]
+    assert reader.lost == (1 if qos is BEST_EFFORT else 0)
 
 
 def test_a_writer_that_says_nothing_is_asked_ever_more_seldom(sent):
     reader = Reader(THERE, KEEP_ALL, sent.append, lambda *_: None, Budget(1 << 20))
-    reader.match(endpoint(HERE), ADDRESS, 1.0)
+    reader.match(endpoint(HERE), ROUTE, 1.0)
     now, times = 1.0, []
     while now < float("inf"):
         due = reader.tick(now)
@@ -184,7 +204,7 @@ def test_a_writer_that_says_nothing_is_asked_ever_more_seldom(sent):
 
 def test_an_old_answer_takes_no_acknowledgement_back(sent):
     writer = Writer(HERE, KEEP_ALL, sent.append)
-    writer.match(endpoint(THERE), ADDRESS, 0.0)
+    writer.match(endpoint(THERE), ROUTE, 0.0)
     writer.write(b"abcd", 1.0)
     writer.write(b"abcd", 1.0)
     for count, base in ((1, 2), (2, 3), (3, 2)):
@@ -196,7 +216,7 @@ def test_a_sample_is_kept_until_the_slowest_reader_has_it(sent):
     slow = Guid(bytes(11) + b"\1", 0x204)
     writer = Writer(HERE, KEEP_ALL, sent.append)
     for each in (THERE, slow):
-        writer.match(endpoint(each), ADDRESS, 0.0)
+        writer.match(endpoint(each), ROUTE, 0.0)
     writer.write(b"abcd", 1.0)
     writer.on_ack_nack(THERE, ack(2), 1.1)
     sent.clear()
@@ -215,7 +235,7 @@ def test_a_durable_writer_whose_history_is_empty(sent):
         writer.write(b"abcd", 1.0)
     for number in (1, 2, 3):
         writer.forget(number)
-    writer.match(endpoint(THERE, durable), ADDRESS, 2.0)
+    writer.match(endpoint(THERE, durable), ROUTE, 2.0)
     (first,) = sent.take(Heartbeat)
     assert (first.first, first.last) == (4, 3)
     assert writer.acknowledged
@@ -227,12 +247,12 @@ def test_a_durable_writer_forgets_the_end_of_an_instance_that_all_have(
 ):
     durable = Qos(depth=0, durability=Durability.TRANSIENT_LOCAL)
     writer = Writer(HERE, durable, sent.append)
-    writer.match(endpoint(THERE, durable), ADDRESS, 0.0)
+    writer.match(endpoint(THERE, durable), ROUTE, 0.0)
     for is_end in (False, True, False):
         writer.write(b"abcd", 1.0, key=is_end)
     writer.on_ack_nack(THERE, ack(acknowledged + 1), 1.1)
     late = Guid(bytes(11) + b"\1", 0x204)
-    writer.match(endpoint(late, durable), ADDRESS, 2.0)
+    writer.match(endpoint(late, durable), ROUTE, 2.0)
     sent.clear()
     writer.on_ack_nack(late, ack(1, (1, 2, 3)), 2.1)
     assert [each.sequence_number for each in sent.take(Data, late.prefix)] == sent_again
@@ -251,7 +271,7 @@ def test_a_durable_writer_forgets_the_end_of_an_instance_that_all_have(
 )
 def test_which_samples_ask_for_an_acknowledgement(sent, qos, large, asks):
     writer = Writer(HERE, qos, sent.append, fragment_bytes=8)
-    writer.match(endpoint(THERE, qos), ADDRESS, 1.0)
+    writer.match(endpoint(THERE, qos), ROUTE, 1.0)
     asking = []
     for number in range(1, 9):
         sent.clear()
@@ -263,7 +283,7 @@ def test_which_samples_ask_for_an_acknowledgement(sent, qos, large, asks):
 
 def test_further_samples_do_not_put_the_next_heartbeat_off(sent):
     writer = Writer(HERE, KEEP_ALL, sent.append)
-    writer.match(endpoint(THERE), ADDRESS, 0.0)
+    writer.match(endpoint(THERE), ROUTE, 0.0)
     for now in (1.0, 1.02, 1.04):
         writer.write(b"abcd", now)
         assert writer.tick(now) == pytest.approx(1.05)
@@ -276,7 +296,7 @@ def test_further_samples_do_not_put_the_next_heartbeat_off(sent):
 @pytest.mark.parametrize("kind", ["acknowledges", "asks for fragments"])
 def test_a_reader_that_was_silent_is_asked_again_once_it_says_something(sent, kind):
     writer = Writer(HERE, KEEP_ALL, sent.append, fragment_bytes=4)
-    writer.match(endpoint(THERE), ADDRESS, 0.0)
+    writer.match(endpoint(THERE), ROUTE, 0.0)
     writer.write(b"abcdefgh", 1.0)
     now = 1.0
     for _ in range(99):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.rtps import Durability, Guid, Qos, Reliability
+from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.discovery import EndpointData, key_of
-from firm_hdl.rtps.fragments import Budget
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire.guid import PUBLICATIONS_READER
 from firm_hdl.rtps.wire.locators import Address
@@ -15,9 +15,10 @@ from firm_hdl.rtps.wire.parameters import ParameterList, Pid
 from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
 from firm_hdl.rtps.wire.samples import Data, DataFrag
 from firm_hdl.rtps.writer import Writer
+from tests.rtps.network import route_to
 
 HERE, THERE = Guid(bytes(12), 0x103), Guid(bytes(range(12)), 0x204)
-ADDRESS = Address("10.0.0.1", 7411)
+ROUTE = route_to(Address("10.0.0.1", 7411))
 KEEP_ALL = Qos(depth=0)
 BEST_EFFORT = Qos(reliability=Reliability.BEST_EFFORT)
 
@@ -49,7 +50,7 @@ def sent():
 @pytest.fixture
 def writer(sent):
     made = Writer(HERE, KEEP_ALL, sent.append)
-    made.match(endpoint(THERE), ADDRESS, 0.0)
+    made.match(endpoint(THERE), ROUTE, 0.0)
     sent.clear()
     return made
 
@@ -70,7 +71,7 @@ def reader(sent, got):
         got.append(data.sequence_number)
 
     made = Reader(THERE, KEEP_ALL, sent.append, deliver, Budget(1 << 20))
-    made.match(endpoint(HERE), ADDRESS, 0.0)
+    made.match(endpoint(HERE), ROUTE, 0.0)
     return made
 
 
@@ -97,8 +98,8 @@ def part(number, first, count=1):
 
 def test_heartbeats_go_on_for_each_reader_that_has_not_acknowledged(writer, sent):
     others = [Guid(bytes(11) + bytes([n]), 0x204) for n in (1, 2)]
-    writer.match(endpoint(others[0], BEST_EFFORT), ADDRESS, 0.0)
-    writer.match(endpoint(others[1]), ADDRESS, 0.0)
+    writer.match(endpoint(others[0], BEST_EFFORT), ROUTE, 0.0)
+    writer.match(endpoint(others[1]), ROUTE, 0.0)
     writer.write(b"abcd", 1.0)
     writer.on_ack_nack(THERE, ack(2), 1.001)
     sent.clear()
@@ -169,7 +170,7 @@ def test_old_samples_are_a_gap_for_a_late_volatile_reader(sent):
     writer = Writer(HERE, Qos(durability=Durability.TRANSIENT_LOCAL), sent.append)
     for _ in range(5):
         writer.write(b"abcd", 1.0)
-    writer.match(endpoint(THERE), ADDRESS, 2.0)
+    writer.match(endpoint(THERE), ROUTE, 2.0)
     (first,) = sent.take(Heartbeat)
     assert (first.first, first.last) == (6, 5)
     writer.on_ack_nack(THERE, ack(1, (1, 3, 5)), 2.1)
@@ -180,7 +181,7 @@ def test_old_samples_are_a_gap_for_a_late_volatile_reader(sent):
 def test_fragments_of_old_samples_are_a_gap_for_a_late_volatile_reader(sent):
     writer = Writer(HERE, Qos(durability=Durability.TRANSIENT_LOCAL), sent.append)
     writer.write(bytes(5000), 1.0)
-    writer.match(endpoint(THERE), ADDRESS, 2.0)
+    writer.match(endpoint(THERE), ROUTE, 2.0)
     writer.write(bytes(5000), 2.0)
     sent.clear()
     for number, kind in ((1, Gap), (2, DataFrag)):
@@ -206,16 +207,23 @@ def test_fragments_that_are_asked_for(writer, sent):
     for _ in range(2):
         writer.on_nack_frag(THERE, asked, 1.1)
     assert [each.first for each in sent.take(DataFrag)] == [2, 4]
-    gone = NackFrag(
-        reader=0x204, writer=0x103, sequence_number=7, missing=NumberSet(1, (1,)), count=2
-    )
-    writer.on_nack_frag(THERE, gone, 1.2)
-    assert [each.start for each in sent.take(Gap)] == [7]
+    writer.forget(1)
+    for number, count, gaps in ((1, 2, [1]), (7, 3, [])):
+        # What is gone is a gap; what is still to come is none.
+        gone = NackFrag(
+            reader=0x204,
+            writer=0x103,
+            sequence_number=number,
+            missing=NumberSet(1, (1,)),
+            count=count,
+        )
+        writer.on_nack_frag(THERE, gone, 1.2)
+        assert [each.start for each in sent.take(Gap)] == gaps
 
 
 def test_answers_of_strangers_and_best_effort_readers_are_ignored(writer, sent):
     other = Guid(bytes(12), 0x304)
-    writer.match(endpoint(other, BEST_EFFORT), ADDRESS, 0.0)
+    writer.match(endpoint(other, BEST_EFFORT), ROUTE, 0.0)
     writer.write(bytes(5000), 1.0)
     sent.clear()
     asked = NackFrag(
@@ -272,7 +280,7 @@ def test_what_a_gap_named_and_is_then_given_up_is_not_lost(reader, got):
 def test_a_writer_that_goes_gives_all_memory_back(sent, got):
     budget = Budget(1 << 20)
     reader = Reader(THERE, KEEP_ALL, sent.append, lambda *_: got.append(1), budget)
-    reader.match(endpoint(HERE), ADDRESS, 0.0)
+    reader.match(endpoint(HERE), ROUTE, 0.0)
     reader.on_heartbeat(HERE, heartbeat(1, 0), 1.0)
     for number in (3, 4):
         reader.on_data(HERE, data(number), None, 1.0)
@@ -285,7 +293,7 @@ def test_a_writer_that_goes_gives_all_memory_back(sent, got):
 def test_fragments_far_ahead_take_no_memory(sent, got):
     budget = Budget(1 << 20)
     reader = Reader(THERE, KEEP_ALL, sent.append, lambda *_: got.append(1), budget)
-    reader.match(endpoint(HERE), ADDRESS, 0.0)
+    reader.match(endpoint(HERE), ROUTE, 0.0)
     reader.on_heartbeat(HERE, heartbeat(1, 0), 1.0)
     for number, takes in ((4097, False), (1 << 40, False), (4096, True)):
         reader.on_data_frag(HERE, part(number, 2), None, 1.0)
@@ -320,7 +328,7 @@ def test_a_reader_repeats_its_request_while_there_is_progress(reader, sent, got)
 
 def test_a_reader_is_called_again_for_each_of_its_writers(reader, sent):
     other = Guid(bytes(11) + b"\1", 0x103)
-    reader.match(endpoint(other), ADDRESS, 1.0)
+    reader.match(endpoint(other), ROUTE, 1.0)
     for writer, at in ((HERE, 1.0), (other, 1.5)):
         reader.on_heartbeat(writer, heartbeat(1, 3, final=True), at)
     assert len(sent.take(AckNack)) == 2

@@ -8,10 +8,13 @@ import socket
 import threading
 import time
 from concurrent.futures import Future
+from contextlib import ExitStack
 
 import pytest
 
 from firm_hdl.rtps import (
+    ClosedError,
+    Durability,
     HistoryFullError,
     Participant,
     Qos,
@@ -49,7 +52,7 @@ def test_samples_between_two_participants(pair):
     writer = one.writer(TOPIC, TYPE, Qos(depth=0), on_match=lambda *args: matches.append(args))
     reader = two.reader(TOPIC, TYPE, got.append, Qos(depth=0))
     assert writer.wait_for_match() and reader.wait_for_match()
-    sent = [number.to_bytes(4, "big") * size for number, size in enumerate((2, 400, 250_000, 2))]
+    sent = [number.to_bytes(4, "big") * size for number, size in enumerate((1, 400, 250_000, 2))]
     before = time.time_ns()
     assert [writer.write(each) for each in sent] == [1, 2, 3, 4]
     assert writer.wait_for_acknowledgments()
@@ -81,11 +84,11 @@ def test_a_callback_may_write_and_may_fail(pair, caplog):
     one.reader("rt/back", TYPE, back.append)
     assert writer.wait_for_match() and answers.wait_for_match()
     with caplog.at_level(logging.ERROR, "firm_hdl.rtps"):
-        writer.write(b"one")
-        writer.write(b"two")
+        writer.write(b"...one")
+        writer.write(b"...two")
         assert wait(lambda: len(back) == 2)
         assert wait(lambda: len(caplog.records) == 2)
-    assert [each.payload for each in back] == [b"one!", b"two!"]
+    assert [each.payload for each in back] == [b"...one!", b"...two!"]
     assert "an error of the user" in caplog.text
 
 
@@ -123,7 +126,7 @@ def test_waiting_ends_when_all_is_there_and_not_before(pair, monkeypatch):
     assert writer.wait_for_match() and not writer.wait_for_match(2, timeout=0.01)
     second = two.reader(TOPIC, TYPE, got.append)
     assert writer.wait_for_match(2) and len(writer.matched) == 2
-    monkeypatch.setattr(two._core, "receive", lambda datagram, now: None)
+    monkeypatch.setattr(two._core, "receive", lambda *_: None)
     writer.write(b"1234")
     assert not writer.wait_for_acknowledgments(timeout=0.01)
     monkeypatch.undo()
@@ -138,6 +141,14 @@ def test_the_loopback_interface_needs_neither_multicast_nor_peers():
         assert wait(lambda: len(one.peers) == len(two.peers) == 1)
 
 
+def test_all_participants_of_a_host_find_each_other_without_multicast():
+    """Of which there may be 120; most peers try the first five alone."""
+    with ExitStack() as stack:
+        options = {"domain": DOMAIN, "interface": "127.0.0.1", "multicast": False}
+        made = [stack.enter_context(Participant(**options)) for _ in range(9)]
+        assert wait(lambda: all(len(each.peers) == 8 for each in made))
+
+
 def test_writes_of_several_threads(pair):
     one, two = pair
     got = []
@@ -147,7 +158,7 @@ def test_writes_of_several_threads(pair):
 
     def write(thread):
         for number in range(100):
-            writer.write(bytes([thread, number]), timeout=10)
+            writer.write(bytes([thread, number, 0, 0]), timeout=10)
 
     threads = [threading.Thread(target=write, args=(each,)) for each in range(4)]
     for each in threads:
@@ -210,6 +221,67 @@ def test_closing_twice_and_using_what_is_closed(pair):
     assert wait(lambda: "PeerLost" in lost)
 
 
+def test_nothing_is_written_by_what_is_closed(pair):
+    one, two = pair
+    got = []
+    first, second = one.writer(TOPIC, TYPE), one.writer(TOPIC, TYPE)
+    two.reader(TOPIC, TYPE, got.append)
+    assert first.wait_for_match() and second.wait_for_match()
+    first.close()
+    with pytest.raises(ClosedError, match=r"^the writer is closed$"):
+        first.write(b"abcd")
+    one.close()
+    for use in (
+        lambda: second.write(b"abcd"),
+        lambda: one.writer(TOPIC, TYPE),
+        lambda: one.reader(TOPIC, TYPE, print),
+    ):
+        with pytest.raises(ClosedError, match=r"^the participant is closed$"):
+            use()
+    node = Node("one", **OPTIONS)
+    node.close()
+    with pytest.raises(ClosedError, match=r"^the node 'one' is closed$"):
+        node.publisher("chatter", STRING)
+    assert got == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ((TOPIC, TYPE, 10), TypeError, r"^qos is a Qos, not 10: Qos\(depth=10\) is one with"),
+        ((TOPIC, TYPE, "reliable"), TypeError, r"^qos is a Qos, not 'reliable'$"),
+        ((TOPIC, TYPE, Qos(durability=Durability.TRANSIENT)), ValueError, " is TRANSIENT$"),
+        ((5, TYPE), TypeError, r"^the name of a topic is a str, not 5$"),
+        (("", TYPE), ValueError, r"^the name of a topic has from 1 to 256 bytes, not 0$"),
+        ((TOPIC, "\N{EURO SIGN}" * 86), ValueError, r"^the name of a type .*, not 258$"),
+    ],
+)
+def test_what_no_endpoint_can_be_made_of(pair, arguments, error, message):
+    one, _ = pair
+    with pytest.raises(error, match=message):
+        one.writer(*arguments)
+    topic, type_name, *qos = arguments
+    with pytest.raises(error, match=message):
+        one.reader(topic, type_name, print, *qos)
+    with pytest.raises(TypeError, match=r"^on_sample is called with each sample, so it cannot be"):
+        one.reader(TOPIC, TYPE, Qos())
+    assert one._core._sedp.locals == {}
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"depth": "10"}, "^depth is of type int, and is '10'$"),
+        ({"depth": True}, "^depth is of type int, and is True$"),
+        ({"reliability": 1}, "^reliability is of type Reliability, and is 1$"),
+        ({"durability": "volatile"}, "^durability is of type Durability, and is 'volatile'$"),
+    ],
+)
+def test_policies_that_are_none(options, message):
+    with pytest.raises(TypeError, match=message):
+        Qos(**options)
+
+
 def test_a_fault_of_ours_does_not_end_the_participant(pair, caplog, monkeypatch):
     one, two = pair
     writer = one.writer(TOPIC, TYPE)
@@ -218,7 +290,7 @@ def test_a_fault_of_ours_does_not_end_the_participant(pair, caplog, monkeypatch)
     assert writer.wait_for_match()
     receive = two._core.receive
 
-    def fail_once(datagram, now):
+    def fail_once(*_):
         monkeypatch.undo()
         raise KeyError("a fault")
 
@@ -265,8 +337,8 @@ def test_nodes_topics_and_services():
         two.subscription("/ns/chatter", STRING, got.append)
         two.service("/go", "std_srvs/srv/SetBool", lambda request: request + b"!")
         client = one.client("/go", "std_srvs/srv/SetBool")
-        assert [client.call(bytes([n])) for n in range(20)] == [
-            bytes([n]) + b"!" for n in range(20)
+        assert [client.call(bytes([n] * 4)) for n in range(20)] == [
+            bytes([n] * 4) + b"!" for n in range(20)
         ]
         assert two.context.wait_for_node("one")
         nodes = {(each.namespace, each.name): each for each in two.context.nodes()}
@@ -304,9 +376,9 @@ def test_a_client_that_names_no_reader_of_replies():
         replies = board.reader("rr/goReply", f"{kind}_Response_", got.append)
         assert requests.wait_for_match() and replies.wait_for_match()
         assert wait(lambda: node._writers[0].matched)
-        number = requests.write(b"go")
+        number = requests.write(b"go...")
         assert wait(lambda: got)
-        assert got[0].payload == b"go!"
+        assert got[0].payload == b"go...!"
         assert got[0].related == SampleIdentity(requests.guid, number)
 
 
@@ -346,15 +418,61 @@ def test_replies_that_come_later_from_another_thread():
         two.service("/go", "std_srvs/srv/SetBool", handle)
         client = one.client("/go", "std_srvs/srv/SetBool")
         assert client.wait_for_service()
-        calls = [client.call_async(bytes([n])) for n in range(4)]
+        calls = [client.call_async(bytes([n] * 4)) for n in range(4)]
         assert wait(lambda: len(waiting) == 4)
         # In any order; a request that is given up, or fails, gets none.
         waiting[3][1].cancel()
         waiting[2][1].set_exception(ValueError("broken"))
         for request, future in reversed(waiting[:2]):
             future.set_result(request + b"!")
-        assert [call.result(20) for call in calls[:2]] == [b"\0!", b"\1!"]
+        assert [call.result(20) for call in calls[:2]] == [b"\0\0\0\0!", b"\1\1\1\1!"]
         assert not calls[2].done() and not calls[3].done()
+
+
+def test_nodes_of_one_participant_hear_each_other():
+    got, matches = [], []
+    with Context(**OPTIONS) as context:
+        first, second = Node("first", context=context), Node("second", context=context)
+        durable = Qos(durability=Durability.TRANSIENT_LOCAL, depth=2)
+        chatter = first.publisher(
+            "chatter", STRING, durable, on_match=lambda remote, came: matches.append(came)
+        )
+        for number in range(3):
+            chatter.write(b"%04d" % number)
+        late = second.subscription("chatter", STRING, got.append, durable)
+        # A late reader gets the history; one whose policies do not fit gets nothing.
+        second.subscription("/chatter", STRING, got.append, Qos(depth=1))
+        assert wait(lambda: len(got) == 2)
+        chatter.write(b"last")
+        assert wait(lambda: len(got) == 4)
+        assert [each.payload for each in got] == [b"0001", b"0002", b"last", b"last"]
+        assert [each.sequence_number for each in got] == [2, 3, 4, 4]
+        assert {each.guid.prefix for each in chatter.matched} == {context.participant.prefix}
+        second.service("go", "std_srvs/srv/SetBool", lambda request: request + b"!")
+        assert first.client("/go", "std_srvs/srv/SetBool").call(b"abcd") == b"abcd!"
+        assert {each.name for each in context.nodes()} == {"first", "second"}
+        assert len(context.nodes()) == 2
+        late.close()
+        assert wait(lambda: matches == [True, True, False])
+        second.close()
+        assert wait(lambda: not chatter.matched)
+
+
+def test_a_reply_goes_only_to_the_reader_that_asked():
+    """Whose history of ten replies is not filled by those that are for others."""
+    with Node("board", **OPTIONS) as board, Node("one", **OPTIONS) as one:
+        board.service("go", "std_srvs/srv/SetBool", lambda request: request)
+        with Participant(**OPTIONS) as other:
+            overheard = []
+            replies = other.reader(
+                "rr/goReply", "std_srvs::srv::dds_::SetBool_Response_", overheard.append
+            )
+            assert replies.wait_for_match()
+            client = one.client("go", "std_srvs/srv/SetBool")
+            for number in range(50):
+                assert client.call(b"%04d" % number) == b"%04d" % number
+            # What is not for it is no loss.
+            assert overheard == [] and replies.lost == 0
 
 
 def test_nodes_that_share_a_participant():

@@ -10,15 +10,17 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.rtps import Durability, Qos, Reliability, TransportError
-from firm_hdl.rtps.core import Settings
+from firm_hdl.rtps.backlog import Backlog
+from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData
-from firm_hdl.rtps.fragments import Budget, Reassembly, fragment, fragment_count
+from firm_hdl.rtps.fragments import fragment, fragment_count
 from firm_hdl.rtps.pacing import Pacer
 from firm_hdl.rtps.qos import duration, seconds
+from firm_hdl.rtps.settings import Settings
 from firm_hdl.rtps.transport import address_of
 from firm_hdl.rtps.wire import locators
 from firm_hdl.rtps.wire.guid import Guid, is_keyed, new_prefix, user_reader, user_writer
-from firm_hdl.rtps.wire.locators import Address, Ports, nearest
+from firm_hdl.rtps.wire.locators import Address, Ports
 from firm_hdl.rtps.wire.octets import Cursor, MalformedError
 from firm_hdl.rtps.wire.parameters import ParameterList
 from firm_hdl.rtps.wire.samples import Data, DataFrag
@@ -37,8 +39,8 @@ def test_samples_are_put_together_in_any_order(payload, size, random):
     parts = [fragment(sample, number, size) for number in range(1, count + 1)]
     random.shuffle(parts)
     budget = Budget(1 << 20)
-    reassembly = Reassembly(budget)
-    done = [reassembly.add(each) for each in [*parts[:-1], *parts[:-1], parts[-1]]]
+    backlog = Backlog(GUID.prefix, budget)
+    done = [backlog.add(each) for each in [*parts[:-1], *parts[:-1], parts[-1]]]
     assert done[:-1] == [None] * (len(done) - 1)
     assert done[-1] == sample
     assert budget.used == 0
@@ -46,69 +48,95 @@ def test_samples_are_put_together_in_any_order(payload, size, random):
 
 def test_several_fragments_in_one_submessage():
     new = {"reader": 1, "writer": 2, "sequence_number": 3, "fragment_bytes": 4, "sample_bytes": 10}
-    reassembly = Reassembly(Budget(1 << 20))
-    assert reassembly.add(DataFrag(first=2, count=2, payload=b"efghij", **new)) is None
-    assert reassembly.missing(3) == [1]
+    backlog = Backlog(GUID.prefix, Budget(1 << 20))
+    assert backlog.add(DataFrag(first=2, count=2, payload=b"efghij", **new)) is None
+    assert backlog.missing(3) == [1]
     # Other sizes than before: not of this sample.
     wrong = {**new, "fragment_bytes": 5}
-    assert reassembly.add(DataFrag(first=1, count=1, payload=b"abcde", **wrong)) is None
-    whole = reassembly.add(DataFrag(first=1, count=1, payload=b"abcd", **new))
+    assert backlog.add(DataFrag(first=1, count=1, payload=b"abcde", **wrong)) is None
+    whole = backlog.add(DataFrag(first=1, count=1, payload=b"abcd", **new))
     assert whole is not None and whole.payload == b"abcdefghij"
-    assert 3 not in reassembly
+    assert not backlog and not backlog.has_part(3)
 
 
-def test_the_oldest_incomplete_sample_makes_room():
-    budget = Budget(3000)
-    reassembly = Reassembly(budget)
+@pytest.mark.parametrize(("in_order", "left"), [(True, [1, 2]), (False, [4, 5])])
+def test_the_incomplete_sample_that_counts_least_makes_room(in_order, left):
+    """Of a reliable writer, the first ones count most; of a best-effort one, the last ones."""
+    budget = Budget(2 * (1000 + 200))
+    backlog = Backlog(GUID.prefix, budget, in_order)
     for number in range(1, 6):
         sample = Data(reader=1, writer=2, sequence_number=number, payload=bytes(2000))
-        assert reassembly.add(fragment(sample, 1, 1000)) is None
-    assert [number in reassembly for number in range(1, 6)] == [False, False, False, True, True]
-    reassembly.drop_all()
+        assert backlog.add(fragment(sample, 1, 1000)) is None
+    assert [number for number in range(1, 6) if backlog.has_part(number)] == left
+    backlog.clear()
     assert budget.used == 0
 
 
-def test_a_budget_counts_what_values_take_besides_their_bytes():
-    budget = Budget(2 * (1000 + 200))
-    assert [budget.take(1000) for _ in range(3)] == [True, True, False]
-    budget.give_back(1000)
-    assert not budget.take(1001)
-    assert budget.take(1000)
-    budget.give_back(2000, 2)
-    assert budget.used == 0
+class Holder:
+    """Memory of a peer, in values of 100 bytes, of which it gives one back."""
+
+    def __init__(self, budget, peer):
+        self.budget, self.prefix = budget, bytes([peer])
+
+    def take(self, count):
+        return sum(self.budget.take(self, 100) for _ in range(count))
+
+    def shrink(self):
+        self.budget.give_back(self, 100)
+
+    @property
+    def values(self):
+        return self.budget.of(self) / 300
+
+
+def test_peers_get_their_shares_of_memory_whoever_takes_first():
+    budget = Budget(12 * 300)
+    first, second, third = (Holder(budget, peer) for peer in (1, 2, 3))
+    also_third = Holder(budget, 3)
+    assert first.take(99) == 12
+    assert (second.take(99), first.values) == (6, 6)
+    # What counts is the peer, however many endpoints it has.
+    assert third.take(99) == 4 and also_third.take(99) == 2
+    assert [each.values for each in (first, second, third, also_third)] == [4, 4, 2, 2]
+    for each in (first, second, third, also_third):
+        for _ in range(int(each.values)):
+            each.shrink()
+    assert budget.used == 0 and first.take(99) == 12
 
 
 def test_incomplete_samples_are_limited():
-    """64 of them; the oldest goes. 64 MiB of each, and 131,072 fragments."""
-    reassembly = Reassembly(Budget(1 << 20))
-    for number in range(1, 66):
-        sample = Data(reader=1, writer=2, sequence_number=number, payload=bytes(8))
-        assert reassembly.add(fragment(sample, 2, 4)) is None
-    assert [number in reassembly for number in (1, 2, 65)] == [False, True, True]
+    """64 of them, or 4 if they are not sent again; 64 MiB of each, and 131,072 fragments."""
+    for in_order, left in ((True, [*range(1, 65)]), (False, [62, 63, 64, 65])):
+        backlog = Backlog(GUID.prefix, Budget(1 << 20), in_order)
+        for number in range(1, 66):
+            sample = Data(reader=1, writer=2, sequence_number=number, payload=bytes(8))
+            assert backlog.add(fragment(sample, 2, 4)) is None
+        assert [number for number in range(1, 66) if backlog.has_part(number)] == left
     # There is no fragment beyond the last one, whatever a heartbeat says.
-    assert reassembly.missing(65, last=9) == [1]
+    assert backlog.missing(65, last=9) == [1]
     part = fragment(Data(reader=1, writer=2, sequence_number=99, payload=bytes(8)), 1, 4)
     for size, whole, begun in (
         (1024, 64 << 20, True),
         (1024, (64 << 20) + 1, False),
         (4, 4 << 17, True),
         (4, (4 << 17) + 1, False),
+        (1024, (1 << 32) - 1, False),
     ):
         new = replace(part, fragment_bytes=size, sample_bytes=whole, payload=bytes(size))
-        assert reassembly.add(new) is None
-        assert (99 in reassembly) is begun
-        reassembly.drop(99)
+        assert backlog.add(new) is None
+        assert backlog.has_part(99) is begun
+        backlog.drop(99)
 
 
 def test_samples_below_a_number_are_forgotten():
     budget = Budget(1 << 20)
-    reassembly = Reassembly(budget)
+    backlog = Backlog(GUID.prefix, budget)
     for number in (7, 3, 5, 4):
         sample = Data(reader=1, writer=2, sequence_number=number, payload=bytes(2000))
-        assert reassembly.add(fragment(sample, 1, 1000)) is None
+        assert backlog.add(fragment(sample, 1, 1000)) is None
     whole = budget.used
-    reassembly.drop_below(5)
-    assert [number in reassembly for number in (3, 4, 5, 7)] == [False, False, True, True]
+    backlog.take_below(5)
+    assert [backlog.has_part(number) for number in (3, 4, 5, 7)] == [False, False, True, True]
     assert budget.used == whole // 2
 
 
@@ -285,15 +313,10 @@ def test_ports_of_the_standard():
             Ports.of(domain, participant)
 
 
-def test_the_nearest_of_several_addresses():
-    here, there, loop = (Address(each, 1) for each in ("10.1.2.3", "192.168.1.7", "127.0.0.1"))
-    assert nearest((there, here, loop), "10.1.2.9") == here
-    assert nearest((here, there, loop), "192.168.1.2") == there
-    assert nearest((here, there, loop), "127.0.0.1") == loop
-    assert nearest((), "127.0.0.1") is None
-    # Of one network are those that begin alike, not those whose numbers are near.
-    near, far = Address("10.0.2.0", 1), Address("10.0.1.1", 1)
-    assert nearest((near, far), "10.0.1.255") == far
+def test_a_domain_has_ports_for_120_participants_of_a_host():
+    assert [len(Ports.all_of(domain)) for domain in (0, 231, 232)] == [120, 120, 63]
+    assert Ports.all_of(231)[-1].user < Ports.of(232, 0).discovery_multicast
+    assert Ports.all_of(232)[-1].user == 65535
 
 
 def test_addresses_of_other_transports_are_left_out():

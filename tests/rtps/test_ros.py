@@ -185,23 +185,27 @@ def test_a_reply_names_the_writer_of_its_request_or_the_reader_of_replies(names_
 
 
 class Replies:
-    """A writer of replies, which writes down what it sends."""
+    """A writer of replies, which writes down what it sends, and to whom."""
 
     def __init__(self):
         self.matched, self.sent = (), []
 
-    def write(self, reply, identity):
-        self.sent.append((reply, identity))
+    def write(self, reply, identity, to):
+        self.sent.append((reply, identity, tuple(to)))
 
 
-def request(number, related=None):
+def reader(guid):
+    return SimpleNamespace(guid=guid)
+
+
+def request(number, related=None, writer=GUIDS[1]):
     payload = b"%d" % number
-    return Sample(payload=payload, writer=GUIDS[1], sequence_number=number, related=related)
+    return Sample(payload=payload, writer=writer, sequence_number=number, related=related)
 
 
 def serving(handler=lambda payload: payload):
-    service, replies = Service(None, handler), Replies()
-    service.open(SimpleNamespace(), replies)
+    service, replies = Service(handler), Replies()
+    service.open(replies)
     return service, replies
 
 
@@ -209,39 +213,78 @@ def serving(handler=lambda payload: payload):
 READER = SampleIdentity(GUIDS[3], -1 << 32)
 
 
-def test_a_reply_has_the_name_of_its_request():
+def test_a_reply_has_the_name_of_its_request_and_goes_to_the_reader_that_asked():
     service, replies = serving()
+    beside, elsewhere = GUIDS[2], Guid(bytes(12), 0x204)
+    replies.matched = tuple(map(reader, (elsewhere, beside, READER.writer)))
+    service.on_request(request(5, READER))
+    assert replies.sent == [(b"5", SampleIdentity(READER.writer, 5), (READER.writer,))]
+    # A client that names no reader has one in its own participant.
+    replies.sent.clear()
     nobody = SampleIdentity(Guid(bytes(12), 0), 9)
     for number, related in ((3, None), (4, nobody)):
         service.on_request(request(number, related))
-    assert [each.sequence_number for _, each in replies.sent] == [3, 4]
-    assert {each.writer for _, each in replies.sent} == {GUIDS[1]}
-    replies.matched = (SimpleNamespace(guid=READER.writer),)
-    service.on_request(request(5, READER))
-    assert replies.sent[2:] == [(b"5", SampleIdentity(READER.writer, 5))]
+    assert replies.sent == [
+        (b"%d" % number, SampleIdentity(GUIDS[1], number), (beside, READER.writer))
+        for number in (3, 4)
+    ]
 
 
 def test_a_reply_waits_for_its_reader():
     service, replies = serving()
     service.on_request(request(1, READER))
-    other, own = (SimpleNamespace(guid=each) for each in (GUIDS[2], READER.writer))
-    for reader, came in ((other, True), (own, False)):
-        service.on_match(reader, came)
-        assert replies.sent == []
+    service.on_match(reader(GUIDS[2]), True)
+    assert replies.sent == []
+    replies.matched = (reader(READER.writer),)
     for _ in range(2):
-        service.on_match(own, True)
-        assert replies.sent == [(b"1", SampleIdentity(READER.writer, 1))]
+        service.on_match(reader(READER.writer), True)
+        assert replies.sent == [(b"1", SampleIdentity(READER.writer, 1), (READER.writer,))]
 
 
-@pytest.mark.parametrize(("patience", "left"), [(100.0, [b"2", b"3"]), (-1.0, [])])
-def test_replies_wait_neither_long_nor_in_great_number(monkeypatch, patience, left):
-    monkeypatch.setattr(services, "_MOST_WAITING", 2)
-    monkeypatch.setattr(services, "_PATIENCE", patience)
+def test_a_reply_does_not_wait_for_ever(monkeypatch):
+    monkeypatch.setattr(services, "_PATIENCE", -1.0)
     service, replies = serving()
-    for number in (1, 2, 3):
-        service.on_request(request(number, READER))
-    service.on_match(SimpleNamespace(guid=READER.writer), True)
-    assert [reply for reply, _ in replies.sent] == left
+    service.on_request(request(1, READER))
+    replies.matched = (reader(READER.writer),)
+    service.on_match(reader(READER.writer), True)
+    assert replies.sent == [] and service.dropped == 1
+
+
+@pytest.mark.parametrize("size", [4, 1 << 18])
+def test_a_flood_of_requests_leaves_the_replies_of_others_alone(size):
+    """Whose readers nobody knows; 64 MiB of their replies may wait at most."""
+    service, replies = serving(lambda payload: payload.ljust(size))
+    service.on_request(request(1, READER))
+    for number in range(5000):
+        guid = Guid(bytes(11) + bytes([number % 20]), number << 8 | 0x04)
+        service.on_request(request(2, SampleIdentity(guid, number), Guid(guid.prefix, 0x103)))
+    prefixes = {READER.writer.prefix, *(bytes(11) + bytes([number]) for number in range(20))}
+    waiting = [r.payload for prefix in prefixes for r in service._waiting.of(prefix)]
+    assert len(waiting) <= 1024 and sum(map(len, waiting)) <= 64 << 20
+    assert service.dropped == 5001 - len(waiting)
+    replies.matched = (reader(READER.writer),)
+    service.on_match(reader(READER.writer), True)
+    assert [identity.sequence_number for _, identity, _ in replies.sent] == [1]
+
+
+def test_a_flood_of_requests_leaves_open_requests_of_others_alone():
+    """The oldest of those who ask most are given up."""
+    futures = []
+
+    def handle(payload):
+        futures.append(Future())
+        return futures[-1]
+
+    service, replies = serving(handle)
+    replies.matched = (reader(READER.writer),)
+    service.on_request(request(1, READER))
+    for number in range(3000):
+        service.on_request(request(number, writer=Guid(bytes([number % 7]) * 12, 0x103)))
+    assert sum(not each.done() for each in futures) <= 1024
+    assert service.dropped == sum(each.cancelled() for each in futures)
+    assert futures[-1].cancel() and not futures[0].done()
+    futures[0].set_result(b"good")
+    assert [reply for reply, _, _ in replies.sent] == [b"good"]
 
 
 def test_a_reply_is_sent_if_its_reader_comes_while_it_is_put_aside():
@@ -250,16 +293,16 @@ def test_a_reply_is_sent_if_its_reader_comes_while_it_is_put_aside():
 
         def __getattribute__(self, name):
             if name == "matched":
-                found, self.readers = self.readers, (SimpleNamespace(guid=READER.writer),)
+                found, self.readers = self.readers, (reader(READER.writer),)
                 return found
             return super().__getattribute__(name)
 
-    service, replies = serving()
+    service = Service(lambda payload: payload)
     replies = Late()
     replies.readers = ()
-    service.open(SimpleNamespace(), replies)
+    service.open(replies)
     service.on_request(request(1, READER))
-    assert replies.sent == [(b"1", SampleIdentity(READER.writer, 1))]
+    assert [reply for reply, _, _ in replies.sent] == [b"1"]
 
 
 def test_calls_that_are_given_up_are_forgotten():
@@ -295,18 +338,10 @@ def test_a_call_waits_for_its_server_and_its_reply_together(monkeypatch):
     assert waited == [10.0, 2.5, "cancelled", 5.0, 0.0, "cancelled"]
 
 
-def test_requests_that_come_before_the_service_is_open_are_answered_in_order():
-    service, replies = Service(None, lambda payload: payload), Replies()
-    for number in (1, 2):
-        service.on_request(request(number))
-    for _ in range(2):
-        service.open(SimpleNamespace(), replies)
-        assert [reply for reply, _ in replies.sent] == [b"1", b"2"]
-
-
 def test_replies_of_futures(caplog):
     futures = [Future() for _ in range(3)]
     service, replies = serving(lambda payload: futures[int(payload)])
+    replies.matched = (reader(GUIDS[2]),)
     for number in range(3):
         service.on_request(request(number))
     futures[0].cancel()
@@ -314,7 +349,7 @@ def test_replies_of_futures(caplog):
     futures[1].set_exception(ValueError("no"))
     assert replies.sent == [] and [each.message for each in caplog.records] == ["a service failed"]
     futures[2].set_result(b"!")
-    assert replies.sent == [(b"!", SampleIdentity(GUIDS[1], 2))]
+    assert replies.sent == [(b"!", SampleIdentity(GUIDS[1], 2), (GUIDS[2],))]
 
 
 def test_a_context_has_a_node_of_each_complete_name_once():

@@ -7,7 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from firm_hdl.rtps.fragments import Budget, Reassembly, fragment
+from firm_hdl.rtps.backlog import Backlog
+from firm_hdl.rtps.budget import Budget
+from firm_hdl.rtps.fragments import fragment
 from firm_hdl.rtps.ros import Context, names
 from firm_hdl.rtps.transport import Transport
 from firm_hdl.rtps.wire.locators import Address
@@ -32,14 +34,17 @@ class Socket:
     def __init__(self, *answers):
         self.answers = list(answers)
 
-    def recv(self, size):
+    def recvfrom(self, size):
+        return self._next(), ("10.0.0.5", 7411)
+
+    def sendto(self, datagram, address):
+        return self._next()
+
+    def _next(self):
         answer = self.answers.pop(0)
         if isinstance(answer, OSError):
             raise answer
         return answer
-
-    def sendto(self, datagram, address):
-        return self.recv(0)
 
     def close(self):
         return
@@ -65,9 +70,11 @@ def test_a_datagram_that_cannot_be_sent_is_kept_or_lost(transport, answer, is_ta
 
 def test_an_error_about_what_was_sent_ends_no_reading(transport):
     source = Socket(b"1", ConnectionRefusedError(), b"2", BlockingIOError(), b"3")
-    assert list(transport.receive(source)) == [b"1", b"2"]
-    assert list(transport.receive(Socket(*[b"x"] * 70))) == [b"x"] * 64
-    assert list(transport.receive(Socket(b"1", OSError(), b"2", b"3"), limit=3)) == [b"1", b"2"]
+    there = "10.0.0.5"
+    assert list(transport.receive(source)) == [(b"1", there), (b"2", there)]
+    assert list(transport.receive(Socket(*[b"x"] * 70))) == [(b"x", there)] * 64
+    late = Socket(b"1", OSError(), b"2", b"3")
+    assert list(transport.receive(late, limit=3)) == [(b"1", there), (b"2", there)]
 
 
 def test_datagrams_reach_the_ports_that_are_announced(transport):
@@ -86,7 +93,7 @@ def test_the_largest_datagram_is_received_whole(transport):
         sender.sendto(datagram, transport.user)
     _, user = transport._unicast
     user.settimeout(10)
-    assert list(transport.receive(user, limit=1)) == [datagram]
+    assert list(transport.receive(user, limit=1)) == [(datagram, "127.0.0.1")]
 
 
 def test_topics_of_peers_are_those_of_writers_and_readers(monkeypatch):
@@ -131,54 +138,54 @@ def test_a_fragment_has_all_that_its_sample_has():
 
 
 def test_a_sample_that_was_cut_has_all_that_it_had():
-    reassembly = Reassembly(Budget(1 << 20))
-    found = [reassembly.add(fragment(SAMPLE, number, 4)) for number in (3, 1, 2)]
+    backlog = Backlog(bytes(12), Budget(1 << 20))
+    found = [backlog.add(fragment(SAMPLE, number, 4)) for number in (3, 1, 2)]
     assert found == [None, None, SAMPLE]
 
 
 def test_fragments_that_are_announced_and_missing_may_still_come():
-    reassembly = Reassembly(Budget(1 << 20))
+    backlog = Backlog(bytes(12), Budget(1 << 20))
     # It says that there are three, and has one.
-    assert reassembly.add(part(1, b"abcd", count=3)) is None
-    assert reassembly.missing(7) == [2, 3]
-    assert reassembly.add(part(2, b"efghij", count=2)) == SAMPLE
+    assert backlog.add(part(1, b"abcd", count=3)) is None
+    assert backlog.missing(7) == [2, 3]
+    assert backlog.add(part(2, b"efghij", count=2)) == SAMPLE
 
 
 @pytest.mark.parametrize("change", [{"fragment_bytes": 5}, {"sample_bytes": 11}])
 def test_fragments_of_other_sizes_are_of_another_sample(change):
-    reassembly = Reassembly(Budget(1 << 20))
-    reassembly.add(part(1, b"abcd"))
-    assert reassembly.add(part(2, b"EFGHI", **change)) is None
-    assert reassembly.missing(7) == [2, 3]
-    assert reassembly.add(part(2, b"efghij", count=2)) == SAMPLE
+    backlog = Backlog(bytes(12), Budget(1 << 20))
+    backlog.add(part(1, b"abcd"))
+    assert backlog.add(part(2, b"EFGHI", **change)) is None
+    assert backlog.missing(7) == [2, 3]
+    assert backlog.add(part(2, b"efghij", count=2)) == SAMPLE
 
 
 def test_a_sample_without_memory_is_not_put_together():
     # A fragment of 4 bytes takes 204.
     for limit, found in ((203, None), (204, b"abcd")):
         budget = Budget(limit)
-        reassembly = Reassembly(budget)
-        whole = reassembly.add(part(1, b"abcd", sample_bytes=4))
+        backlog = Backlog(bytes(12), budget)
+        whole = backlog.add(part(1, b"abcd", sample_bytes=4))
         assert (whole and whole.payload) == found and budget.used == 0
-        assert 7 not in reassembly
+        assert not backlog
 
 
 def test_a_sample_that_outgrows_the_memory_is_given_up_and_may_begin_again():
     for fitting in (1, 2):
         # A byte too few for one more.
         budget = Budget(204 * fitting + 203)
-        reassembly = Reassembly(budget)
+        backlog = Backlog(bytes(12), budget)
         for first in range(1, fitting + 1):
-            assert reassembly.add(part(first, b"abcd")) is None
+            assert backlog.add(part(first, b"abcd")) is None
         assert budget.used == 204 * fitting
-        assert reassembly.add(part(fitting + 1, b"efgh")) is None
-        assert 7 not in reassembly and budget.used == 0
-        assert reassembly.add(part(3, b"ij")) is None
-        assert reassembly.missing(7) == [1, 2] and budget.used == 202
+        assert backlog.add(part(fitting + 1, b"efgh")) is None
+        assert not backlog and budget.used == 0
+        assert backlog.add(part(3, b"ij")) is None
+        assert backlog.missing(7) == [1, 2] and budget.used == 204
 
 
 def test_no_more_fragments_are_missing_than_one_answer_can_name():
-    reassembly = Reassembly(Budget(1 << 20))
-    reassembly.add(part(1, b"abcd", sample_bytes=4 * 1000))
-    assert reassembly.missing(7) == list(range(2, 258))
-    assert reassembly.missing(7, 4) == [2, 3, 4]
+    backlog = Backlog(bytes(12), Budget(1 << 20))
+    backlog.add(part(1, b"abcd", sample_bytes=4 * 1000))
+    assert backlog.missing(7) == list(range(2, 258))
+    assert backlog.missing(7, 4) == [2, 3, 4]

@@ -12,6 +12,7 @@ from firm_hdl.identity import type_hash
 from firm_hdl.node.description import Description, Qos, Topic
 from firm_hdl.node.graphs.graph import FutureGraph, GraphError, OnMessage
 from firm_hdl.rtps import (
+    ClosedError,
     DataReader,
     DataWriter,
     Durability,
@@ -82,7 +83,14 @@ class RtpsGraph(FutureGraph):
                 on_message(topic, request, answer)
                 return answer
 
-            node.service(topic.name, topic.type, handle)
+            hashes = {direction: type_hash(store.message) for direction, store in topic.stores}
+            node.service(
+                topic.name,
+                topic.type,
+                handle,
+                request_hash=hashes["in"],
+                response_hash=hashes["out"],
+            )
             return
         (_, store), qos = topic.stores[0], _qos(topic.qos)
         options = {"type_hash": type_hash(store.message)}
@@ -106,6 +114,11 @@ class RtpsGraph(FutureGraph):
         except HistoryFullError:
             self._full.add(topic.id)
             return False
+        except ValueError:
+            # Such as a packet without an encapsulation header.
+            return False
+        except ClosedError:
+            raise GraphError("the participant is closed") from None
         self._full.discard(topic.id)
         return True
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import threading
+from contextlib import suppress
 from dataclasses import replace
 from types import TracebackType
 from typing import Any
 
+from firm_hdl.rtps.endpoints import ClosedError
 from firm_hdl.rtps.events import Event, PeerLost, Sample
 from firm_hdl.rtps.participant import OnEvent, Participant
 from firm_hdl.rtps.ros import graph, names
@@ -59,9 +61,15 @@ class Context:
         self.participant = Participant(
             domain, name=enclave, user_data=names.enclave(enclave), on_event=self._event, **options
         )
-        self._writer = self.participant.writer(graph.TOPIC, graph.TYPE, graph.QOS)
+        data = names.user_data(graph.TYPE_HASH)
+        self._writer = self.participant.writer(graph.TOPIC, graph.TYPE, graph.QOS, user_data=data)
         self._reader = self.participant.reader(
-            graph.TOPIC, graph.TYPE, self._on_graph, replace(graph.QOS, depth=0)
+            graph.TOPIC,
+            graph.TYPE,
+            self._on_graph,
+            replace(graph.QOS, depth=0),
+            user_data=data,
+            most_bytes=graph.MOST_BYTES,
         )
         self._publish()
 
@@ -132,12 +140,14 @@ class Context:
 
     def _publish(self) -> None:
         guid = Guid(self.participant.prefix, PARTICIPANT)
-        with self._publishing:
+        with self._publishing, suppress(ClosedError):
             with self._lock:
                 nodes = tuple(self._own.values())
             self._writer.write(GraphInfo(participant=guid, nodes=nodes).encode(self._gid_bytes))
 
     def _on_graph(self, sample: Sample) -> None:
+        if sample.writer.prefix == self.participant.prefix:
+            return
         try:
             info = GraphInfo.decode(sample.payload)
         except MalformedError:

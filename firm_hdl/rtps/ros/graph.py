@@ -14,13 +14,28 @@ from firm_hdl.rtps.qos import Durability, Qos
 from firm_hdl.rtps.wire.guid import Guid
 from firm_hdl.rtps.wire.octets import Cursor, MalformedError
 
-__all__ = ["GID_BYTES", "QOS", "TOPIC", "TYPE", "GraphInfo", "NodeInfo"]
+__all__ = [
+    "GID_BYTES",
+    "MOST_BYTES",
+    "QOS",
+    "TOPIC",
+    "TYPE",
+    "TYPE_HASH",
+    "GraphInfo",
+    "NodeInfo",
+]
 
 TOPIC = "ros_discovery_info"
 """The topic, which has no prefix."""
 
 TYPE = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
 """Its type on the wire."""
+
+TYPE_HASH = "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"
+"""Its type hash since Iron; before, there was none."""
+
+MOST_BYTES = 1 << 16
+"""The largest sample of a peer: nodes with 4,000 endpoints."""
 
 QOS = Qos(durability=Durability.TRANSIENT_LOCAL, depth=1)
 """Policies of its writers and readers."""

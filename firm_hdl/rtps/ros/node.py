@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from types import TracebackType
-from typing import Any, TypeVar
+from typing import Any
 
-from firm_hdl.rtps.endpoints import DataReader, DataWriter, OnSample
+from firm_hdl.rtps.endpoints import ClosedError, DataReader, DataWriter, OnSample
 from firm_hdl.rtps.qos import Qos
 from firm_hdl.rtps.ros import names
 from firm_hdl.rtps.ros.context import Context
@@ -16,7 +16,8 @@ from firm_hdl.rtps.ros.services import Client, Handler, Service
 __all__ = ["Node"]
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-_Closes = TypeVar("_Closes", DataReader, DataWriter)
+# A burst of requests gets its replies also where some datagrams are lost.
+_SERVICE_QOS = Qos(depth=256)
 
 
 class Node:
@@ -66,6 +67,7 @@ class Node:
             raise ValueError(f"there is a node '{name}' in '{namespace}' already")
         self._readers: list[DataReader] = []
         self._writers: list[DataWriter] = []
+        self._closed = False
         self._update()
 
     def __enter__(self) -> Node:
@@ -130,7 +132,13 @@ class Node:
         )
 
     def service(
-        self, name: str, type_name: str, handler: Handler, *, type_hash: str | None = None
+        self,
+        name: str,
+        type_name: str,
+        handler: Handler,
+        *,
+        request_hash: str | None = None,
+        response_hash: str | None = None,
     ) -> Service:
         """Create a service.
 
@@ -141,50 +149,71 @@ class Node:
         handler : callable
             Takes the payload of a request, and returns that of the reply. Called in the thread of
             the participant.
+        request_hash, response_hash : str or None
+            Type hashes of its two messages.
         """
-        full, data = self._expanded(name), names.user_data(type_hash)
-        service = Service(self.context.participant, handler)
-        replies = self._writer(
-            names.reply_topic(full),
-            names.type_name(type_name, "_Response"),
-            user_data=data,
-            on_match=service.on_match,
+        full, service = self._expanded(name), Service(handler)
+        service.open(
+            self._writer(
+                names.reply_topic(full),
+                names.type_name(type_name, "_Response"),
+                _SERVICE_QOS,
+                user_data=names.user_data(response_hash),
+                on_match=service.on_match,
+            )
         )
-        requests = self._reader(
-            names.request_topic(full),
-            names.type_name(type_name, "_Request"),
-            service.on_request,
-            user_data=data,
+        service.listen(
+            self._reader(
+                names.request_topic(full),
+                names.type_name(type_name, "_Request"),
+                service.on_request,
+                _SERVICE_QOS,
+                user_data=names.user_data(request_hash),
+            )
         )
-        service.open(requests, replies)
         return service
 
-    def client(self, name: str, type_name: str, *, type_hash: str | None = None) -> Client:
-        """Create a client of a service; the names are as those of :meth:`service`."""
-        full, data = self._expanded(name), names.user_data(type_hash)
-        client = Client(self.context.participant)
+    def client(
+        self,
+        name: str,
+        type_name: str,
+        *,
+        request_hash: str | None = None,
+        response_hash: str | None = None,
+    ) -> Client:
+        """Create a client of a service; the parameters are as those of :meth:`service`."""
+        full, client = self._expanded(name), Client(self.context.participant)
         replies = self._reader(
             names.reply_topic(full),
             names.type_name(type_name, "_Response"),
             client.on_reply,
-            user_data=data,
+            _SERVICE_QOS,
+            user_data=names.user_data(response_hash),
         )
         requests = self._writer(
-            names.request_topic(full), names.type_name(type_name, "_Request"), user_data=data
+            names.request_topic(full),
+            names.type_name(type_name, "_Request"),
+            _SERVICE_QOS,
+            user_data=names.user_data(request_hash),
         )
         client.open(requests, replies)
         return client
 
     def close(self) -> None:
-        """Remove the node with all that it has."""
+        """Remove the node with all that it has; see :meth:`Participant.remove`."""
+        if self._closed:
+            return
+        self._closed = True
         self.context.remove(self.name, self.namespace)
         if self._owns_context:
             self.context.close()
             return
-        for each in (*self._readers, *self._writers):
-            each.close()
+        guids = [each.guid for each in (*self._readers, *self._writers)]
+        self.context.participant.remove(*guids)
 
     def _expanded(self, name: str) -> str:
+        if self._closed:
+            raise ClosedError(f"the node '{self.name}' is closed")
         return names.expanded(name, self.name, self.namespace)
 
     def _writer(self, *args: Any, **options: Any) -> DataWriter:

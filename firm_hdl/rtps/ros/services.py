@@ -10,17 +10,18 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections import OrderedDict
+from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NoReply
-from typing import TypeAlias
+from dataclasses import dataclass
+from typing import Generic, TypeAlias, TypeVar
 
 from firm_hdl.rtps.discovery import EndpointData
-from firm_hdl.rtps.endpoints import DataReader, DataWriter
+from firm_hdl.rtps.endpoints import ClosedError, DataReader, DataWriter
 from firm_hdl.rtps.events import Sample
 from firm_hdl.rtps.participant import Participant
-from firm_hdl.rtps.wire.guid import SampleIdentity
+from firm_hdl.rtps.wire.guid import Guid, SampleIdentity
 
 __all__ = ["Client", "Handler", "Service"]
 
@@ -30,86 +31,173 @@ _LOG = logging.getLogger("firm_hdl.rtps")
 _UNKNOWN_NUMBER = -1 << 32
 # The bit of an entity identifier's kind that readers have, and writers have not (9.3.1.5).
 _READER_BIT = 0x04
-# Seconds for which a reply waits for its reader, and how many replies may wait.
-_PATIENCE, _MOST_WAITING = 5.0, 256
+# Seconds for which a reply waits for its reader.
+_PATIENCE = 5.0
+# Requests without a reply, or replies that wait for their reader: of all participants, and of one.
+# A reply counts once more for each 64 KiB.
+_MOST, _MOST_OF_PEER, _UNIT_BYTES = 1024, 256, 1 << 16
+
+_T = TypeVar("_T")
 
 Handler: TypeAlias = Callable[[bytes], "bytes | Future[bytes]"]
 """Takes the payload of a request, and returns that of the reply, or a future that will have it, in
 any thread. A request whose future is cancelled gets no reply."""
 
 
-class Service:
-    """A service; see :meth:`firm_hdl.rtps.ros.node.Node.service`."""
+class _Queue(Generic[_T]):
+    """What waits of each participant, within limits. Users have a lock."""
 
-    def __init__(self, participant: Participant, handler: Handler):
-        self._participant = participant
+    def __init__(self) -> None:
+        self._of_peer: dict[bytes, dict[object, tuple[int, _T]]] = {}
+        self._sizes: Counter[bytes] = Counter()
+
+    def add(self, prefix: bytes, key: object, size: int, value: _T) -> list[_T]:
+        """Add a value that counts `size`; return those that give way.
+
+        They are the oldest of a participant that has too many, or of the one that has most.
+        """
+        self._of_peer.setdefault(prefix, {})[key] = (size, value)
+        self._sizes[prefix] += size
+        given_up = []
+        while self._sizes.total() > _MOST or self._sizes[prefix] > _MOST_OF_PEER:
+            largest = max(self._sizes, key=self._sizes.__getitem__)
+            oldest = next(iter(self._of_peer[largest]))
+            given_up.append(self._of_peer[largest][oldest][1])
+            self.pop(largest, oldest)
+        return given_up
+
+    def pop(self, prefix: bytes, key: object) -> bool:
+        """Remove a value; return whether it was there."""
+        size, _ = self._of_peer.get(prefix, {}).pop(key, (0, None))
+        self._sizes[prefix] -= size
+        if not self._sizes[prefix]:
+            self._of_peer.pop(prefix, None)
+            del self._sizes[prefix]
+        return size > 0
+
+    def of(self, prefix: bytes) -> list[_T]:
+        """Return what waits of a participant, the oldest first."""
+        return [value for _, value in self._of_peer.get(prefix, {}).values()]
+
+
+@dataclass(frozen=True, slots=True)
+class _Reply:
+    """A reply that waits for its reader, until a time in seconds."""
+
+    identity: SampleIdentity
+    payload: bytes
+    deadline: float
+
+
+class Service:
+    """A service; see :meth:`firm_hdl.rtps.ros.node.Node.service`.
+
+    Attributes
+    ----------
+    dropped : int
+        How many requests and replies gave way to others, as too many waited, or came too late.
+    """
+
+    def __init__(self, handler: Handler):
         self._handler = handler
         self._replies: DataWriter | None = None
         self._requests: DataReader | None = None
-        self._early: list[Sample] = []
         # Replies may come from any thread.
         self._lock = threading.Lock()
         # Replies whose reader is not known yet: discovery may bring the request's writer first.
-        self._waiting: OrderedDict[SampleIdentity, tuple[float, bytes]] = OrderedDict()
+        self._waiting: _Queue[_Reply] = _Queue()
+        # Requests that the handler has not answered yet.
+        self._open: _Queue[Future[bytes]] = _Queue()
+        self.dropped = 0
 
-    def open(self, requests: DataReader, replies: DataWriter) -> None:
-        """Begin to serve."""
-        self._requests, self._replies = requests, replies
-        early, self._early = self._early, []
-        for request in early:
-            self.on_request(request)
+    def open(self, replies: DataWriter) -> None:
+        """Take the writer of replies. After that, requests may come."""
+        self._replies = replies
+
+    def listen(self, requests: DataReader) -> None:
+        """Take the reader of requests."""
+        self._requests = requests
 
     def on_request(self, request: Sample) -> None:
         """Answer a request."""
-        if self._replies is None:
-            self._early.append(request)
-            return
-        identity = request.identity
+        identity, prefix = request.identity, request.writer.prefix
         if request.related is not None and any(bytes(request.related.writer)):
             identity = SampleIdentity(request.related.writer, request.sequence_number)
         reply = self._handler(request.payload)
-        if isinstance(reply, bytes):
+        if not isinstance(reply, Future):
             self._reply(identity, reply)
             return
-        reply.add_done_callback(lambda done: self._reply_of(identity, done))
+        with self._lock:
+            given_up = self._open.add(prefix, reply, 1, reply)
+            self.dropped += len(given_up)
+        for each in given_up:
+            each.cancel()
+        reply.add_done_callback(lambda done: self._reply_of(prefix, identity, done))
 
-    def _reply_of(self, identity: SampleIdentity, done: Future[bytes]) -> None:
+    def _reply_of(self, prefix: bytes, identity: SampleIdentity, done: Future[bytes]) -> None:
+        with self._lock:
+            self._open.pop(prefix, done)
         if done.cancelled():
             return
         if (problem := done.exception()) is not None:
             _LOG.error("a service failed", exc_info=problem)
             return
-        self._reply(identity, done.result())
+        try:
+            self._reply(identity, done.result())
+        except ClosedError:
+            # Nobody waits for it any more.
+            return
+        except (TypeError, ValueError) as problem:
+            _LOG.error("a service failed: %s", problem)
 
-    def _reply(self, identity: SampleIdentity, reply: bytes) -> None:
+    def _reply(self, identity: SampleIdentity, payload: bytes) -> None:
         """Send a reply, or keep it until its reader is known."""
         assert self._replies is not None
-        is_reader = bool(identity.writer.entity & _READER_BIT)
-        known = {each.guid for each in self._replies.matched}
-        if not is_reader or identity.writer in known:
-            self._replies.write(reply, identity)
+        readers = self._readers_of(identity)
+        if readers:
+            self._replies.write(payload, identity, to=readers)
+            return
+        reply = _Reply(identity, payload, time.monotonic() + _PATIENCE)
+        size, prefix = 1 + len(payload) // _UNIT_BYTES, identity.writer.prefix
+        with self._lock:
+            self.dropped += len(self._waiting.add(prefix, identity, size, reply))
+        # The reader may have come since.
+        self._try(reply)
+
+    def _readers_of(self, identity: SampleIdentity) -> list[Guid]:
+        """Return the reader that asked, if it is known.
+
+        A client that names no reader has one in the participant that its request came from.
+        """
+        assert self._replies is not None
+        asked, is_named = identity.writer, bool(identity.writer.entity & _READER_BIT)
+        return [
+            each.guid
+            for each in self._replies.matched
+            if each.guid == asked or (not is_named and each.guid.prefix == asked.prefix)
+        ]
+
+    def _try(self, reply: _Reply) -> None:
+        """Send a reply that waits, if its reader is known."""
+        assert self._replies is not None
+        is_late = reply.deadline < time.monotonic()
+        readers = self._readers_of(reply.identity)
+        if not is_late and not readers:
             return
         with self._lock:
-            self._waiting[identity] = (time.monotonic() + _PATIENCE, reply)
-            while len(self._waiting) > _MOST_WAITING:
-                self._waiting.popitem(last=False)
-        # The reader may have come since.
-        for each in self._replies.matched:
-            self.on_match(each, True)
+            # Another thread may have sent it.
+            waits = self._waiting.pop(reply.identity.writer.prefix, reply.identity)
+            self.dropped += waits and is_late
+        if waits and not is_late:
+            self._replies.write(reply.payload, reply.identity, to=readers)
 
     def on_match(self, reader: EndpointData, came: bool) -> None:
         """Send the replies that wait for a reader."""
-        now, found = time.monotonic(), []
-        with self._lock:
-            for identity, (deadline, reply) in list(self._waiting.items()):
-                if deadline < now:
-                    del self._waiting[identity]
-                elif came and identity.writer == reader.guid and self._replies is not None:
-                    del self._waiting[identity]
-                    found.append((identity, reply))
-        for identity, reply in found:
-            assert self._replies is not None
-            self._replies.write(reply, identity)
+        if came:
+            with self._lock:
+                waiting = self._waiting.of(reader.guid.prefix)
+            for reply in waiting:
+                self._try(reply)
 
     def close(self) -> None:
         """Remove the service."""

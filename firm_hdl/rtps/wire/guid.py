@@ -19,6 +19,7 @@ __all__ = [
     "VENDOR",
     "Guid",
     "SampleIdentity",
+    "is_builtin",
     "is_keyed",
     "new_prefix",
     "user_reader",
@@ -108,3 +109,8 @@ def user_reader(key: int) -> int:
 def is_keyed(entity: int) -> bool:
     """Whether an endpoint's topic has a key. Topics of ROS 2 have none."""
     return entity & 0x3F in (_WRITER_WITH_KEY, _READER_WITH_KEY)
+
+
+def is_builtin(entity: int) -> bool:
+    """Whether an endpoint is one of the standard's own, such as those of discovery (table 9.1)."""
+    return entity & 0xC0 == 0xC0

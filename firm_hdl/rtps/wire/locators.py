@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from firm_hdl.rtps.wire.octets import Cursor
 
-__all__ = ["MULTICAST_GROUP", "Address", "Ports", "decode", "encode", "nearest"]
+__all__ = ["MULTICAST_GROUP", "Address", "Ports", "decode", "distance", "encode"]
 
 MULTICAST_GROUP = "239.255.0.1"
 """The group of SPDP announcements (9.6.1.4.1)."""
@@ -18,6 +18,9 @@ _UDP_V4 = 1
 # Parameters of 9.6.1.1: base, gain of the domain, gain of the participant, offsets.
 _PB, _DG, _PG, _D0, _D1, _D3 = 7400, 250, 2, 0, 10, 11
 _MAX_DOMAIN = 232
+_MOST_ADDRESSES = 16
+# Participants of a domain on one host: all their ports are below those of the next domain.
+_MOST_PARTICIPANTS = 120
 
 
 class Address(NamedTuple):
@@ -59,6 +62,12 @@ class Ports(NamedTuple):
             raise ValueError(f"Domain {domain} has no ports for participant {participant}")
         return ports
 
+    @classmethod
+    def all_of(cls, domain: int) -> tuple[Ports, ...]:
+        """Return the ports of all participants that a domain may have on one host."""
+        most = min(_MOST_PARTICIPANTS, (0xFFFF - cls.of(domain, 0).user) // _PG + 1)
+        return tuple(cls.of(domain, number) for number in range(most))
+
 
 def encode(address: Address) -> bytes:
     """Return the 24 bytes of a locator, little-endian."""
@@ -66,25 +75,27 @@ def encode(address: Address) -> bytes:
 
 
 def decode(values: Iterable[Cursor]) -> tuple[Address, ...]:
-    """Read locators, without those of other transports, such as shared memory or IPv6."""
-    found = []
+    """Read locators, without those of other transports, such as shared memory or IPv6.
+
+    A host has an address per interface. More than 16 are left out.
+    """
+    found: dict[Address, None] = {}
     for value in values:
         kind, port = value.i32(), value.u32()
         address = value.take(16)
         host = socket.inet_ntoa(address[12:])
         if kind == _UDP_V4 and 0 < port <= 0xFFFF and host != "0.0.0.0" and _is_unicast(host):
-            found.append(Address(host, port))
-    return tuple(found)
+            found[Address(host, port)] = None
+    return tuple(found)[:_MOST_ADDRESSES]
 
 
-def nearest(addresses: Iterable[Address], own: str) -> Address | None:
-    """Return the address to send to from the interface `own`.
+def distance(address: Address, own: str) -> int:
+    """Return how far an address is from the interface `own`.
 
     A peer announces an address per interface, and may announce one of its loopback interface. The
     one that has the most leading bits in common with ours is on our network, or on our host.
     """
-    here = _number(own)
-    return min(addresses, key=lambda each: here ^ _number(each.host), default=None)
+    return _number(own) ^ _number(address.host)
 
 
 def _number(host: str) -> int:

@@ -38,11 +38,11 @@ class NumberSet:
     def bitmap(self, order: str) -> bytes:
         """Return the count of bits, and the bits: the first is the highest of a word (9.4.2.6)."""
         size = self.members[-1] - self.base + 1 if self.members else 0
-        words = [0] * ((size + 31) // 32)
-        for each in self.members:
-            word, bit = divmod(each - self.base, 32)
-            words[word] |= 1 << (31 - bit)
-        return struct.pack(f"{order}I{len(words)}I", size, *words)
+        count = (size + 31) // 32
+        top = self.base + 32 * count - 1
+        bits = sum(1 << (top - each) for each in self.members)
+        words = struct.unpack(f">{count}I", bits.to_bytes(4 * count, "big"))
+        return struct.pack(f"{order}I{count}I", size, *words)
 
     @classmethod
     def decode(cls, cursor: Cursor, base: int) -> NumberSet:

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import struct
 
-__all__ = ["Cursor", "MalformedError", "padded"]
+__all__ = ["MOST_NAME_BYTES", "Cursor", "MalformedError", "padded"]
+
+MOST_NAME_BYTES = 256
+"""Most bytes of the name of a topic, a type, a partition or a participant (8.5.4.4, 9.6.2.2)."""
 
 
 class MalformedError(Exception):
@@ -89,9 +92,13 @@ class Cursor:
     def string(self) -> str:
         """Read a string of CDR: a count of bytes with the final zero, and the bytes.
 
-        Bytes that are not UTF-8 become replacement characters.
+        All strings of RTPS are names, of at most 256 bytes. Bytes that are not UTF-8 become
+        replacement characters.
         """
-        text = self.take(self.u32())
+        size = self.u32()
+        if size > MOST_NAME_BYTES + 1:
+            raise MalformedError(f"a name of {size - 1} bytes")
+        text = self.take(size)
         return text.split(b"\0", 1)[0].decode("utf-8", "replace")
 
     def _number(self, code: str, size: int) -> int:

@@ -156,12 +156,15 @@ def graph(node, options):
         publishers = node.get_publisher_names_and_types_by_node(name, namespace)
         if len(publishers) >= options["publishers"]:
             break
-    infos = [
-        info
-        for topic in options.get("topics", [])
-        for info in node.get_publishers_info_by_topic(topic)
-    ]
+    infos = []
+    for topic in options.get("topics", []):
+        # Names without a slash are those of DDS.
+        raw = not topic.startswith("/")
+        infos += node.get_publishers_info_by_topic(topic, no_mangle=raw)
+        infos += node.get_subscriptions_info_by_topic(topic, no_mangle=raw)
+    infos = [info for info in infos if info.node_name != node.get_name()]
     say(
+        owners=[[info.node_name, info.node_namespace] for info in infos],
         nodes=node.get_node_names_and_namespaces(),
         publishers=node.get_publisher_names_and_types_by_node(name, namespace),
         subscriptions=node.get_subscriber_names_and_types_by_node(name, namespace),

@@ -7,6 +7,7 @@ import json
 import os
 import sys
 import time
+from pathlib import Path
 from types import ModuleType
 
 import pytest
@@ -19,7 +20,8 @@ from firm_hdl.node.graphs.ros1 import definitions
 from firm_hdl.node.graphs.ros2 import RclpyGraph, has_rclpy
 from firm_hdl.node.graphs.rtps import RtpsGraph
 from firm_hdl.rtps import HistoryFullError, Qos
-from firm_hdl.rtps.ros import Node
+from firm_hdl.rtps.ros import Node, names
+from firm_hdl.rtps.ros.graph import TYPE_HASH
 from tests.node.accelerators import echo_text
 from tests.node.bridge.fakes import CAL, ECHO, HEARD, SAID, STAMP
 from tests.node.samples import read
@@ -141,18 +143,20 @@ def test_our_own_participant():
                 "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
             }
             for number in range(20):
-                writer.write(b"%d" % number)
+                writer.write(b"%04d" % number)
             assert wait(lambda: len(got) == 20)
-            assert got == [("/heard", b"%d" % number, None) for number in range(20)]
+            assert got == [("/heard", b"%04d" % number, None) for number in range(20)]
             assert wait(lambda: graph._writers[said.id].matched)
             assert graph.publish(said, b"hello")
             assert wait(lambda: heard_by_peer == [b"hello"])
-            calls = [client.call_async(b"%d" % number) for number in range(3)]
+            # A message that the board has damaged is no sample.
+            assert not graph.publish(said, b"")
+            calls = [client.call_async(b"%04d" % number) for number in range(3)]
             assert wait(lambda: len(got) == 23)
             graph.abandon(cal, got[22][2])
             for _, packet, caller in got[20:22]:
                 assert graph.respond(cal, caller, packet + b"!")
-            assert [call.result(20) for call in calls[:2]] == [b"0!", b"1!"]
+            assert [call.result(20) for call in calls[:2]] == [b"0000!", b"0001!"]
             assert not graph.respond(cal, got[22][2], b"late") and not calls[2].done()
             graph.check()
             assert graph.counters == {"lost": 0}
@@ -160,6 +164,31 @@ def test_our_own_participant():
         graph.close()
     with pytest.raises(GraphError, match="the participant is closed"):
         graph.publish(said, b"")
+
+
+def test_endpoints_of_a_service_have_the_hashes_of_its_messages():
+    """As rmw_fastrtps of Kilted announces them for SetBool."""
+    packages = Path(__file__).parents[3] / "examples" / "nodes" / "packages"
+    serve = "{/mode: {type: std_srvs/srv/SetBool, memory_bytes: 64}}"
+    text = f"node: n\ndistro: jazzy\npaths: {packages}\nserve: {serve}\n"
+    graph = RtpsGraph(read_description_text(text), **OPTIONS)
+    graph.open(lambda *message: None)
+    try:
+        with Node("peer", **OPTIONS) as peer:
+            there = peer.context.participant
+            assert wait(lambda: len([*there.remotes(True), *there.remotes(False)]) == 4)
+            hashes = {
+                each.topic: names.type_hash_of(each.user_data)
+                for is_writer in (True, False)
+                for each in there.remotes(is_writer)
+            }
+    finally:
+        graph.close()
+    assert hashes == {
+        "rr/modeReply": "RIHS01_d0814e7f7b4880ab77e9c57426c7aa1562ab69f11eef8e2e968812f9cbd0b059",
+        "rq/modeRequest": "RIHS01_c62fbb99d94e1b25e8ef9e109f9581956bb1b3361a45a4e5810c36a90d29932e",
+        "ros_discovery_info": TYPE_HASH,
+    }
 
 
 def test_a_dead_reader_does_not_hold_up_others():
@@ -171,7 +200,7 @@ def test_a_dead_reader_does_not_hold_up_others():
         graph._full.add(said.id)
         begin = time.monotonic()
         # Nobody reads, so there is room again at once.
-        assert graph.publish(said, b"") and said.id not in graph._full
+        assert graph.publish(said, b"1234") and said.id not in graph._full
         assert time.monotonic() - begin < 5
     finally:
         graph.close()

@@ -46,13 +46,36 @@ def writer(owner):
 
 
 def test_a_sample_is_written_with_what_it_answers(owner, writer):
-    assert writer.write(b"abc", IDENTITY, timeout=2.5) == 17
-    assert writer.write(b"d") == 17
+    assert writer.write(bytearray(b"abcd"), IDENTITY, timeout=2.5) == 17
+    assert writer.write(b"efgh", to=[GUID]) == 17
     assert owner.asked == [
-        (writer._writer, b"abc", IDENTITY, 2.5),
+        (writer._writer, b"abcd", IDENTITY, 2.5, None),
         # ROS 2 waits for 100 ms.
-        (writer._writer, b"d", None, 0.1),
+        (writer._writer, b"efgh", None, 0.1, [GUID]),
     ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        (("text",), TypeError, "^a sample is bytes, not str$"),
+        ((None,), TypeError, "^a sample is bytes, not NoneType$"),
+        ((5,), TypeError, "^a sample is bytes, not int$"),
+        (
+            (b"",),
+            ValueError,
+            "^a sample has at least the 4 bytes of .* 67108864 bytes; this one has 0$",
+        ),
+        ((b"\0\1\0",), ValueError, "; this one has 3$"),
+        ((bytes((64 << 20) + 1),), ValueError, "; this one has 67108865$"),
+        ((b"abcd", 5), TypeError, "^a sample is related to a SampleIdentity, not to 5$"),
+        ((b"abcd", None, "soon"), ValueError, "soon"),
+    ],
+)
+def test_what_is_no_sample_is_not_written(owner, writer, arguments, error, message):
+    with pytest.raises(error, match=message):
+        writer.write(*arguments)
+    assert owner.asked == []
 
 
 @pytest.mark.parametrize(

@@ -12,11 +12,12 @@ from firm_hdl.rtps.wire.parameters import ParameterList, Pid
 from firm_hdl.rtps.wire.reliability import Gap, Heartbeat, NackFrag
 from firm_hdl.rtps.wire.samples import Data, DataFrag
 from firm_hdl.rtps.writer import HistoryFullError, Writer
+from tests.rtps.network import route_to
 from tests.rtps.test_endpoints import (
-    ADDRESS,
     BEST_EFFORT,
     HERE,
     KEEP_ALL,
+    ROUTE,
     THERE,
     Outbox,
     ack,
@@ -36,7 +37,7 @@ def sent():
 def serving(sent, qos=KEEP_ALL, reader=KEEP_ALL, fragment_bytes=8):
     """Return a writer with one reader, which has answered."""
     writer = Writer(HERE, qos, sent.append, fragment_bytes)
-    writer.match(endpoint(THERE, reader), ADDRESS, 0.0)
+    writer.match(endpoint(THERE, reader), ROUTE, 0.0)
     writer.on_ack_nack(THERE, ack(1, count=0), 0.0)
     sent.clear()
     return writer
@@ -59,7 +60,7 @@ def test_a_sample_is_sent_with_its_time_and_a_heartbeat(sent):
     writer = serving(sent)
     writer.write(b"abcdefgh", 1.0, 77, INLINE, key=True)
     (outgoing,) = sent
-    assert (outgoing.to, outgoing.prefix) == (ADDRESS, THERE.prefix)
+    assert (outgoing.route, outgoing.prefix) == (ROUTE, THERE.prefix)
     assert outgoing.submessages == (
         InfoTimestamp(77),
         Data(
@@ -99,12 +100,12 @@ def test_a_large_sample_is_sent_in_fragments_with_its_time(sent):
 
 def test_a_reader_that_has_moved_is_served_at_its_new_address(sent):
     writer = serving(sent)
-    moved = Address("10.0.0.9", 7500)
+    moved = route_to(Address("10.0.0.9", 7500))
     writer.match(endpoint(THERE), moved, 2.0)
     # It is known: it is not asked anew.
     assert not sent
     writer.write(b"abcd", 2.0)
-    assert [each.to for each in sent] == [moved]
+    assert [each.route for each in sent] == [moved]
 
 
 @pytest.mark.parametrize(("last", "first"), [(0, 1), (2, 3)])
@@ -158,7 +159,7 @@ def test_a_durable_writer_keeps_samples_that_nobody_reads_yet(sent):
     writer = Writer(HERE, DURABLE, sent.append)
     for _ in range(3):
         writer.write(b"abcd", 1.0)
-    writer.match(endpoint(OTHER, DURABLE), ADDRESS, 2.0)
+    writer.match(endpoint(OTHER, DURABLE), ROUTE, 2.0)
     (beat,) = sent.take(Heartbeat)
     assert (beat.first, beat.last, beat.final) == (1, 3, False)
 
@@ -185,7 +186,7 @@ def test_a_full_history_has_as_many_samples_as_it_may(sent):
 
 def test_best_effort_readers_keep_no_sample_from_being_forgotten(sent):
     writer = serving(sent)
-    writer.match(endpoint(OTHER, BEST_EFFORT), ADDRESS, 0.0)
+    writer.match(endpoint(OTHER, BEST_EFFORT), ROUTE, 0.0)
     writer.write(b"abcd", 1.0)
     writer.on_ack_nack(THERE, ack(2), 1.0)
     assert not writer._changes
@@ -193,7 +194,7 @@ def test_best_effort_readers_keep_no_sample_from_being_forgotten(sent):
 
 def test_samples_for_a_reader_that_goes_are_forgotten(sent):
     writer = serving(sent)
-    writer.match(endpoint(OTHER), ADDRESS, 0.0)
+    writer.match(endpoint(OTHER), ROUTE, 0.0)
     for _ in range(3):
         writer.write(b"abcd", 1.0)
     writer.on_ack_nack(OTHER, ack(3), 1.0)
@@ -214,13 +215,13 @@ def test_a_best_effort_reader_gets_the_history_once(sent, forgotten):
     for number in range(forgotten):
         writer.forget(number + 1)
     sent.clear()
-    writer.match(endpoint(OTHER, lossy), ADDRESS, 2.0)
+    writer.match(endpoint(OTHER, lossy), ROUTE, 2.0)
     assert numbers(sent, prefix=OTHER.prefix) == [1, 2, 3][forgotten:]
     # One that is volatile begins with the next one.
     volatile = Guid(bytes(11) + b"\2", 0x304)
-    writer.match(endpoint(volatile, BEST_EFFORT), ADDRESS, 2.0)
+    writer.match(endpoint(volatile, BEST_EFFORT), ROUTE, 2.0)
     assert not sent
-    writer.match(endpoint(Guid(bytes(11) + b"\3", 0x304), DURABLE), ADDRESS, 2.0)
+    writer.match(endpoint(Guid(bytes(11) + b"\3", 0x304), DURABLE), ROUTE, 2.0)
     kinds = [type(each) for outgoing in sent for each in outgoing.submessages]
     assert kinds == [Heartbeat]
 
@@ -250,7 +251,7 @@ def test_pauses_are_short_again_after_progress(sent):
 
 def test_pauses_are_short_for_the_first_sample_of_a_reader_that_has_said_nothing(sent):
     writer = Writer(HERE, KEEP_ALL, sent.append)
-    writer.match(endpoint(THERE), ADDRESS, 0.0)
+    writer.match(endpoint(THERE), ROUTE, 0.0)
     for now in (1.0, 2.0, 3.0, 4.0):
         writer.tick(now)
     # Nothing is missing, so the pauses have grown. The sample begins anew.
@@ -262,7 +263,7 @@ def test_pauses_are_short_for_the_first_sample_of_a_reader_that_has_said_nothing
 @pytest.mark.parametrize("answer", ["ack", "fragments"])
 def test_a_reader_that_has_answered_once_is_asked_for_ever(sent, answer):
     writer = Writer(HERE, KEEP_ALL, sent.append)
-    writer.match(endpoint(THERE), ADDRESS, 0.0)
+    writer.match(endpoint(THERE), ROUTE, 0.0)
     writer.write(b"abcd", 0.0)
     for now in range(1, 11):
         writer.tick(float(now))
@@ -278,7 +279,7 @@ def test_a_reader_that_has_answered_once_is_asked_for_ever(sent, answer):
 
 def test_a_reader_that_has_answered_with_fragments_is_not_asked_without_need(sent):
     writer = Writer(HERE, KEEP_ALL, sent.append)
-    writer.match(endpoint(THERE), ADDRESS, 0.0)
+    writer.match(endpoint(THERE), ROUTE, 0.0)
     assert writer.tick(0.0) < float("inf")
     writer.on_nack_frag(THERE, nack_frag(1, NumberSet(1, (1,))), 0.0)
     assert writer.tick(9.0) == float("inf")
@@ -308,7 +309,7 @@ def test_a_heartbeat_that_asked_nobody_leaves_the_next_one_to_ask(sent):
 
 def test_samples_are_sent_again_to_each_reader_by_itself(sent):
     writer = serving(sent)
-    writer.match(endpoint(OTHER), ADDRESS, 0.0)
+    writer.match(endpoint(OTHER), ROUTE, 0.0)
     for _ in range(3):
         writer.write(b"abcd", 1.0, 50)
     sent.clear()
