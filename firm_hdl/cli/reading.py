@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from firm_hdl.arguments import add_types_or_all, add_wire
-from firm_hdl.cli.types import library_of, names_of
+from firm_hdl.cli.types import library_of, names_of, print_unusable
 
 __all__ = ["add_hash", "add_list", "add_md5", "add_metrics", "add_proto", "add_show"]
 
@@ -16,8 +16,10 @@ def add_list(command: argparse.ArgumentParser) -> None:
 
 
 def _list(args: argparse.Namespace) -> None:
-    for name in library_of(args).interfaces():
+    library = library_of(args)
+    for name in library.interfaces():
         print(name)
+    print_unusable(library)
 
 
 def add_show(command: argparse.ArgumentParser) -> None:
@@ -93,9 +95,9 @@ def _metrics(args: argparse.Namespace) -> None:
     from firm_hdl.frontend import open_library
     from firm_hdl.metrics.command import metrics_text
 
-    if args.all and not args.types:
+    if args.all and not args.types and not args.bag:
         # Include the distribution's types, so that users can compare their own types with them.
-        names = open_library(args.distro, args.path, args.bag).interfaces()
+        names = open_library(args.distro, args.path).interfaces()
     else:
         names = names_of(args)
     text, wrong = metrics_text(library_of(args), names, args.format, args.wire, bar=args.all)

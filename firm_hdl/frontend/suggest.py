@@ -25,9 +25,12 @@ _NOT_EMBEDDED = frozenset(
 def unknown_type(sources: Sources, package: str, name: str) -> str:
     """Give the message for a type that is not defined."""
     if package in sources.types:
-        return f"type '{clip(name)}' is not defined in package '{clip(package)}'"
-    message = f"package '{clip(package)}' is not found"
-    if package in _NOT_EMBEDDED:
+        message = f"type '{clip(name)}' is not defined in package '{clip(package)}'"
+    else:
+        message = f"package '{clip(package)}' is not found"
+    if sources.has_implied:
+        return f"{message}; the recording lacks it: name a folder that has it with --depends"
+    if package not in sources.types and package in _NOT_EMBEDDED:
         message += (
             "; this ROS package does not come with firm-hdl: name a folder that has it with "
             "--path, or source the setup file of an installation that does"

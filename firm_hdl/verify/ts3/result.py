@@ -113,8 +113,10 @@ def command_of(options: Options, distro: str, name: str) -> str:
     return command_again(
         name,
         distro=distro,
-        path=options.paths,
+        path=() if options.bags else options.paths,
         bag=options.bags,
+        # With recordings, the folders are those of the types that the recordings lack.
+        depends=options.paths if options.bags else (),
         max_message_bytes=None if options.longest == LONGEST else options.longest,
         simulator=None if options.simulator == "python" else options.simulator,
         bus_bytes=options.bus_bytes,

@@ -71,6 +71,9 @@ def _bag(folder: Path, count: int, compression: str, open_: Callable[..., Any]) 
     with writer:
         connection = writer.add_connection("/t", "p/msg/A", msgdef="int8 a\n", md5sum="0" * 32)
         writer.write(connection, 1, b"\1")
+    data = path.read_bytes()
+    place = data.index(b"size=") + len(b"size=")
+    path.write_bytes(data[:place] + struct.pack("<I", count) + data[place + 4 :])
     return path
 
 
