@@ -189,8 +189,8 @@ class RecordingOrigin:
             self._define(name, "idl" if is_idl else "msg", text)
         else:
             # Under the name of a message of a service or an action may be the text of all of it.
-            whole = [*self._owners(name), name][1]
-            self._define(whole, "idl" if is_idl else whole[1], text)
+            _, *wholes = self._owners(name)
+            self._define(wholes[0] if wholes else name, "idl" if is_idl else name[1], text)
 
     def _define(self, name: _Name, language: Language, text: str) -> None:
         """Keep a definition, unless one of that name was found before."""

@@ -29,7 +29,10 @@ def unknown_type(sources: Sources, package: str, name: str) -> str:
     else:
         message = f"package '{clip(package)}' is not found"
     if sources.has_implied:
-        return f"{message}; the recording lacks it: name a folder that has it with --depends"
+        return (
+            f"{message}; the recording lacks it: name a folder that has it with --depends, or a "
+            "distribution with --distro"
+        )
     if package not in sources.types and package in _NOT_EMBEDDED:
         message += (
             "; this ROS package does not come with firm-hdl: name a folder that has it with "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from io import BytesIO
 from typing import BinaryIO
 
@@ -13,6 +13,7 @@ from firm_hdl.recordings.limits import (
     Budget,
     Cursor,
     UnreadableError,
+    word_of,
 )
 from firm_hdl.recordings.topics import Schema, Topic
 
@@ -21,6 +22,8 @@ __all__ = ["MAGIC", "BagFile"]
 MAGIC = b"#ROSBAG V"
 
 _VERSION = b"2.0\n"
+# Records have up to seven.
+_MOST_FIELDS = 100
 _MESSAGE, _BAG, _CHUNK, _CONNECTION = b"\x02", b"\x03", b"\x05", b"\x07"
 
 
@@ -62,22 +65,21 @@ class BagFile:
         self.topics: dict[int, Topic] = {}
         for header, data in self._records(index):
             if header.get(b"op") == _CONNECTION:
-                self._add(_number(header, b"conn"), _word(header, b"topic"), _fields(data))
+                self._add(_number(header, b"conn"), word_of(header.get(b"topic")), _fields(data))
 
-    def messages(self) -> Iterator[tuple[int, int, bytes]]:
-        """Yield connection, time in nanoseconds and bytes of each message."""
+    def messages(self, numbers: Container[int]) -> Iterator[tuple[int, int, bytes]]:
+        """Yield connection, time in nanoseconds and bytes of each message of some connections."""
         for header, data in self._records(len(MAGIC) + len(_VERSION)):
-            if header.get(b"op") == _MESSAGE:
+            if header.get(b"op") == _MESSAGE and (conn := _number(header, b"conn")) in numbers:
                 nanoseconds, seconds = divmod(_number(header, b"time"), 1 << 32)
-                time = seconds * 10**9 + nanoseconds
-                yield _number(header, b"conn"), time, data.take(data.left)
+                yield conn, seconds * 10**9 + nanoseconds, data.take(data.left)
 
     def _add(self, number: int, topic: str, fields: dict[bytes, bytes | None]) -> None:
         if len(self.topics) == MAX_TOPICS:
             raise UnreadableError(f"it has more than {MAX_TOPICS} connections")
-        type_ = _word(fields, b"type")
+        type_ = word_of(fields.get(b"type"))
         # A subscriber to any type has `*` for its sum.
-        digest = _word(fields, b"md5sum").replace("*", "")
+        digest = word_of(fields.get(b"md5sum")).replace("*", "")
         text = fields.get(b"message_definition", b"")
         self._budget.keep(len(text or b""))
         self.schemas.append(Schema(type=type_, encoding="ros1msg", data=text))
@@ -98,7 +100,7 @@ def _records(
         if _value(header, b"op") == _CHUNK:
             if is_in_chunk:
                 raise UnreadableError("it is damaged: it has a chunk in a chunk")
-            block, compression = data.take(data.left), _word(header, b"compression")
+            block, compression = data.take(data.left), word_of(header.get(b"compression"))
             if compression != "none":
                 block = budget.expand(block, compression, _number(header, b"size"))
             yield from _records(Cursor(BytesIO(block), len(block)), budget, is_in_chunk=True)
@@ -116,8 +118,8 @@ def _fields(cursor: Cursor) -> dict[bytes, bytes | None]:
         is_long = field.left > MAX_TEXT_BYTES + 64
         name, is_field, value = field.take(64 if is_long else field.left).partition(b"=")
         field.skip()
-        if not is_field:
-            raise UnreadableError("it is damaged: a record has no fields")
+        if not is_field or len(found) == _MOST_FIELDS:
+            raise UnreadableError("it is damaged: a record has no fields, or too many")
         found[name] = None if is_long or len(value) > MAX_TEXT_BYTES else value
     return found
 
@@ -125,10 +127,6 @@ def _fields(cursor: Cursor) -> dict[bytes, bytes | None]:
 def _number(header: dict[bytes, bytes | None], name: bytes) -> int:
     """Return an unsigned number of any size."""
     return int.from_bytes(_value(header, name), "little")
-
-
-def _word(header: dict[bytes, bytes | None], name: bytes) -> str:
-    return _value(header, name).decode("utf-8", "replace")
 
 
 def _value(header: dict[bytes, bytes | None], name: bytes) -> bytes:

@@ -7,7 +7,7 @@ have endlessly many rows, so the steps of SQLite and the bytes of messages are c
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, BinaryIO
 
 import apsw
@@ -19,6 +19,7 @@ from firm_hdl.recordings.limits import (
     MAX_WORD_BYTES,
     Budget,
     UnreadableError,
+    word_of,
 )
 from firm_hdl.recordings.topics import Schema, Topic
 
@@ -77,10 +78,12 @@ class Database:
         self._connection.close()
         self._vfs.unregister()
 
-    def messages(self) -> Iterator[tuple[int, int, bytes]]:
-        """Yield number of the topic, time in nanoseconds and bytes of each message."""
-        for topic, time, data in self._rows("SELECT topic_id, timestamp, data FROM messages"):
-            # SQLite does not enforce the types of columns.
+    def messages(self, numbers: Iterable[int]) -> Iterator[tuple[int, int, bytes]]:
+        """Yield number, time in nanoseconds and bytes of each message of some topics."""
+        # SQLite does not enforce the types of columns.
+        topics = ", ".join(str(number) for number in numbers if isinstance(number, int))
+        query = f"SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({topics})"
+        for topic, time, data in self._rows(query):
             if not isinstance(time, int) or not isinstance(data, bytes):
                 raise UnreadableError("it is damaged: a message has no time or no bytes")
             self._budget.count(len(data))
@@ -102,15 +105,15 @@ class Database:
         for number, *texts in self._texts(
             "topics", "id", "name", "type", "serialization_format", "type_description_hash"
         ):
-            name, type_, encoding, digest = map(_word, texts)
+            name, type_, encoding, digest = map(word_of, texts)
             self.topics[number] = Topic(name=name, type=type_, encoding=encoding, digest=digest)
         self.schemas: list[Schema] = []
         for _, type_, encoding, data in self._texts(
             "message_definitions", "id", "topic_type", "encoding", "encoded_message_definition"
         ):
             self._budget.keep(len(data or b""))
-            self.schemas.append(Schema(type=_word(type_), encoding=_word(encoding), data=data))
-        names = [_word(name) for _, name in self._texts("schema", "schema_version", "ros_distro")]
+            self.schemas.append(Schema(type=word_of(type_), encoding=word_of(encoding), data=data))
+        names = [word_of(name) for _, name in self._texts("schema", "schema_version", "ros_distro")]
         self.distro = names[0] if names else ""
 
     def _texts(self, table: str, key: str, *columns: str) -> Iterator[tuple[Any, ...]]:
@@ -120,12 +123,11 @@ class Database:
         """
         if (table, key) not in self._columns:
             return
-        texts = [
-            f"CASE WHEN octet_length({column}) <= {MAX_TEXT_BYTES} THEN CAST({column} AS BLOB) END"
-            if (table, column) in self._columns
-            else "x''"
-            for column in columns
-        ]
+        texts = []
+        for column in columns:
+            most = MAX_TEXT_BYTES if column == "encoded_message_definition" else MAX_WORD_BYTES
+            text = f"CASE WHEN octet_length({column}) <= {most} THEN CAST({column} AS BLOB) END"
+            texts.append(text if (table, column) in self._columns else "x''")
         rows = self._rows(f"SELECT {key}, {', '.join(texts)} FROM {table}")
         for count, row in enumerate(rows):
             if count == MAX_TOPICS:
@@ -150,10 +152,6 @@ class Database:
     def _is_over(self) -> bool:
         self._calls -= 1
         return self._calls < 0
-
-
-def _word(text: bytes | None) -> str:
-    return "" if text is None or len(text) > MAX_WORD_BYTES else text.decode("utf-8", "replace")
 
 
 class _Vfs(apsw.VFS):

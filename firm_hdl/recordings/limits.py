@@ -31,6 +31,7 @@ __all__ = [
     "Budget",
     "Cursor",
     "UnreadableError",
+    "word_of",
 ]
 
 MIN_BUDGET_BYTES = 1 << 28
@@ -61,6 +62,13 @@ _OPEN: dict[str, Callable[..., Any]] = {"bz2": bz2.open, "lz4": lz4.frame.open, 
 
 class UnreadableError(Exception):
     """A recording cannot be read. The message is the reason: a clause about the recording."""
+
+
+def word_of(data: bytes | None) -> str:
+    """Read a name. If it is too long, it is empty; what is not UTF-8 is replaced by signs."""
+    if data is None or len(data) > MAX_WORD_BYTES:
+        return ""
+    return data.decode("utf-8", "replace")
 
 
 class Cursor:
@@ -94,11 +102,12 @@ class Cursor:
         return int.from_bytes(self.take(size), "little")
 
     def word(self) -> str:
-        """Read a name after its length. Bytes that are not UTF-8 become replacement characters."""
+        """Read a name after its length, as `word_of` does."""
         size = self.number(4)
         if size > MAX_WORD_BYTES:
-            raise UnreadableError(f"it has a name of more than {MAX_WORD_BYTES} bytes")
-        return self.take(size).decode("utf-8", "replace")
+            self.part(size).skip()
+            return ""
+        return word_of(self.take(size))
 
     def part(self, count: int) -> Cursor:
         """Return a cursor for the next bytes. It has to be at its end before this one goes on."""

@@ -7,7 +7,7 @@ index are read like others, and a wrong index does no harm.
 from __future__ import annotations
 
 from binascii import crc32
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from contextlib import suppress
 from io import BytesIO
 from typing import BinaryIO
@@ -72,11 +72,11 @@ class McapFile:
             type_ = schemas[schema].type if schema in schemas else ""
             self.topics[number] = Topic(name=name, type=type_, encoding=encoding, digest=digest)
 
-    def messages(self) -> Iterator[tuple[int, int, bytes]]:
-        """Yield channel, time in nanoseconds and bytes of each message."""
+    def messages(self, numbers: Container[int]) -> Iterator[tuple[int, int, bytes]]:
+        """Yield channel, time in nanoseconds and bytes of each message of some channels."""
         for kind, record in self._records(len(MAGIC), self._end):
-            if kind == _MESSAGE:
-                channel, _, time, _ = (record.number(size) for size in (2, 4, 8, 8))
+            if kind == _MESSAGE and (channel := record.number(2)) in numbers:
+                _, time, _ = record.number(4), record.number(8), record.number(8)
                 yield channel, time, record.take(record.left)
 
     def _read(

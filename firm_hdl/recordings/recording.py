@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from contextlib import closing, contextmanager
 from pathlib import PurePath
 from typing import BinaryIO, Literal, TypeAlias
@@ -73,8 +73,13 @@ class Recording:
         is_ros1 = "ros1msg" in encodings and not encodings & {"ros2msg", "ros2idl"}
         self.dialect: Literal["ros1", "ros2"] = "ros1" if has_bag or is_ros1 else "ros2"
 
-    def messages(self) -> Iterator[tuple[Topic, int, bytes]]:
+    def messages(self, topics: Container[Topic]) -> Iterator[tuple[Topic, int, bytes]]:
         """Yield topic, time in nanoseconds and bytes of each message, in the order of the files.
+
+        Parameters
+        ----------
+        topics : container of Topic
+            Those whose messages are read.
 
         Raises
         ------
@@ -83,11 +88,12 @@ class Recording:
         """
         with self._reported():
             for file, budget in self._opened():
-                for number, time, data in file.messages():
-                    if number in file.topics:
-                        is_whole = self._compression != "message"
-                        plain = data if is_whole else budget.expand(data, "zstd")
-                        yield file.topics[number], time, plain
+                wanted = {number: each for number, each in file.topics.items() if each in topics}
+                for number, time, data in file.messages(wanted):
+                    if self._compression == "message":
+                        yield wanted[number], time, budget.expand(data, "zstd")
+                    else:
+                        yield wanted[number], time, data
 
     def _read_metadata(self) -> None:
         """Look up which files a folder has, and how they are compressed."""

@@ -9,7 +9,18 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 
-__all__ = ["TABLES", "Channel", "bag_record", "mcap_record", "write_bag", "write_db3", "write_mcap"]
+from firm_hdl.recordings import Recording, Topic
+
+__all__ = [
+    "TABLES",
+    "Channel",
+    "bag_record",
+    "mcap_record",
+    "messages",
+    "write_bag",
+    "write_db3",
+    "write_mcap",
+]
 
 _MAGIC = b"\x89MCAP0\r\n"
 
@@ -45,6 +56,12 @@ class Channel:
     schema: str | None = None
     metadata: Mapping[str, str] = field(default_factory=dict)
     messages: tuple[tuple[int, bytes], ...] = ()
+
+
+def messages(path: Path) -> list[tuple[Topic, int, bytes]]:
+    """Read all messages of a recording."""
+    recording = Recording(path)
+    return list(recording.messages(recording.topics))
 
 
 def _text(value: str | bytes) -> bytes:

@@ -8,19 +8,20 @@ import pytest
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.recordings import MAX_TEXT_BYTES, MAX_TOPICS, Recording
-from tests.recordings.files import Channel, write_bag
+from tests.recordings.files import Channel, messages, write_bag
 
 GOOD = Channel(type="std_msgs/String", messages=((1_500_000_000, b"\1\0\0\0a"), (3, b"\0\0\0\0")))
 
 
 def test_connections_and_messages_are_read_in_the_order_of_the_file(tmp_path: Path) -> None:
-    recording = Recording(write_bag(tmp_path / "x.bag", GOOD, Channel(topic="/any", type="*")))
+    path = write_bag(tmp_path / "x.bag", GOOD, Channel(topic="/any", type="*"))
+    recording = Recording(path)
     assert recording.dialect == "ros1"
     assert [(topic.name, topic.type) for topic in recording.topics] == [
         ("/s", "std_msgs/String"),
         ("/any", "*"),
     ]
-    assert [(time, data) for _, time, data in recording.messages()] == [*GOOD.messages]
+    assert [(time, data) for _, time, data in messages(path)] == [*GOOD.messages]
 
 
 def test_the_kind_of_a_file_is_in_its_first_bytes(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.recordings import MAX_TEXT_BYTES, MAX_TOPICS, Recording
-from tests.recordings.files import TABLES, Channel, write_db3
+from tests.recordings.files import TABLES, Channel, messages, write_db3
 
 GOOD = Channel(messages=((1, b"\0\1\0\0"),))
 ENDLESS = "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT x"
@@ -24,7 +24,7 @@ def change(path: Path, script: str) -> Path:
 
 def refused(path: Path) -> str:
     with pytest.raises(DefinitionError) as caught:
-        list(Recording(path).messages())
+        messages(path)
     return str(caught.value)
 
 
@@ -121,7 +121,7 @@ def test_databases_of_old_releases_have_fewer_tables_and_columns(tmp_path: Path)
     for distro in ("humble", ""):
         recording = Recording(path)
         assert (recording.distro, recording.schemas) == (distro, [])
-        assert [data for _, _, data in recording.messages()] == [b"\0\1\0\0"]
+        assert [data for _, _, data in messages(path)] == [b"\0\1\0\0"]
         change(path, "DROP TABLE IF EXISTS schema")
 
 
@@ -157,5 +157,5 @@ def test_nothing_is_written_beside_the_file(tmp_path: Path) -> None:
     # A journal that SQLite would roll back, into the file.
     (tmp_path / "x.db3-journal").write_bytes(b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7" + bytes(1000))
     before = {each.name: each.read_bytes() for each in tmp_path.iterdir()}
-    assert len(list(Recording(path).messages())) == 1
+    assert len(messages(path)) == 1
     assert {each.name: each.read_bytes() for each in tmp_path.iterdir()} == before

@@ -11,13 +11,14 @@ import pytest
 from firm_hdl.errors import DefinitionError
 from firm_hdl.recordings import Recording, limits
 from tests.recordings.bombs import BOMBS
+from tests.recordings.files import messages
 
 MIB = 1 << 20
 
 
 def sizes(path: Path) -> list[int]:
     """Read a recording; return the sizes of its messages."""
-    return [len(data) for _, _, data in Recording(path).messages()]
+    return [len(data) for _, _, data in messages(path)]
 
 
 @pytest.fixture
@@ -102,4 +103,4 @@ def test_rosbags_is_left_as_it_is() -> None:
 
     assert rosbag1.decompressors["bz2"] is bz2.decompress
     for decompress in storage_mcap.DECOMPRESSORS.values():
-        assert decompress.__module__ == storage_mcap.__name__
+        assert not str(decompress.__module__).startswith("firm_hdl")

@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.recordings import MAX_TEXT_BYTES, MAX_TOPICS, Recording
-from tests.recordings.files import Channel, mcap_record, write_mcap
+from tests.recordings.files import Channel, mcap_record, messages, write_mcap
 
 GOOD = Channel(messages=((1, b"\0\1\0\0"),))
 
@@ -27,9 +27,7 @@ def test_definitions_are_found_with_and_without_a_summary(
     recording = Recording(path)
     assert types(recording) == ["std_msgs/msg/String", "p/msg/A"]
     assert [schema.data for schema in recording.schemas] == [b"string data\n", b"int8 a\n"]
-    assert [(topic.name, *rest) for topic, *rest in recording.messages()] == [
-        ("/s", 1, b"\0\1\0\0")
-    ]
+    assert [(topic.name, *rest) for topic, *rest in messages(path)] == [("/s", 1, b"\0\1\0\0")]
 
 
 def test_a_summary_without_definitions_is_no_matter(tmp_path: Path) -> None:
@@ -42,7 +40,7 @@ def test_a_summary_without_definitions_is_no_matter(tmp_path: Path) -> None:
         path.write_bytes(data[:start] + kept + end)
         recording = Recording(path)
         assert types(recording) == ["std_msgs/msg/String"]
-        assert len(list(recording.messages())) == 1
+        assert len(messages(path)) == 1
 
 
 @pytest.mark.parametrize("qos", ["- depth: x", "[" * 1_000_000, "&a [*a]", "\0"])
@@ -59,6 +57,14 @@ def test_metadata_of_a_channel_that_has_no_end_is_left_out(tmp_path: Path) -> No
     data = path.read_bytes()
     path.write_bytes(data.replace(b"\x0f\0\0\0topic_type_hash", b"\xff\0\0\0topic_type_hash"))
     assert [topic.digest for topic in Recording(path).topics] == ["", ""]
+
+
+def test_names_that_are_too_long_are_empty(tmp_path: Path) -> None:
+    long = Channel(type="p/msg/" + "A" * 5000)
+    assert types(Recording(write_mcap(tmp_path / "x.mcap", long, GOOD))) == [
+        "",
+        "std_msgs/msg/String",
+    ]
 
 
 def test_channels_without_a_schema_have_no_type(tmp_path: Path) -> None:
@@ -98,4 +104,4 @@ def test_damaged_files_are_refused(tmp_path: Path, damage: object) -> None:
     path = write_mcap(tmp_path / "x.mcap", GOOD)
     path.write_bytes(damage(path.read_bytes()))  # type: ignore[operator]
     with pytest.raises(DefinitionError, match=r"it is (damaged|incomplete)"):
-        list(Recording(path).messages())
+        messages(path)

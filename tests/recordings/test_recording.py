@@ -10,7 +10,7 @@ import pytest
 from firm_hdl.errors import DefinitionError
 from firm_hdl.recordings import Recording
 from tests.frontend.workspace import make_files
-from tests.recordings.files import Channel, write_db3, write_mcap
+from tests.recordings.files import Channel, messages, write_db3, write_mcap
 
 KEY = "rosbag2_bagfile_information"
 
@@ -33,9 +33,12 @@ def refused(path: Path) -> str:
 def test_the_files_of_a_folder_are_those_of_its_metadata(tmp_path: Path) -> None:
     good = f"{KEY}:\n  relative_file_paths: [x/b.mcap, a.mcap, b.mcap]\n  ros_distro: humble\n"
     channels = {name: Channel(topic=f"/{name}", messages=((1, b"x"),)) for name in "abc"}
-    recording = Recording(folder(tmp_path / "r", good, **channels))
+    path = folder(tmp_path / "r", good, **channels)
+    recording = Recording(path)
     assert [topic.name for topic in recording.topics] == ["/b", "/a"]
-    assert [topic.name for topic, _, _ in recording.messages()] == ["/b", "/a"]
+    assert [topic.name for topic, _, _ in messages(path)] == ["/b", "/a"]
+    alone = recording.messages(recording.topics[1:])
+    assert [topic.name for topic, _, _ in alone] == ["/a"]
     assert recording.distro == "humble"
 
 

@@ -162,9 +162,8 @@ def _messages(bag: str, topics: Iterable[Topic]) -> Iterator[tuple[str, int, byt
         for each in topics
         if each.bag == bag
     }
-    for topic, nanoseconds, data in Recording(bag).messages():
-        if topic in wanted:
-            yield topic.name, nanoseconds, data
+    for topic, nanoseconds, data in Recording(bag).messages(wanted):
+        yield topic.name, nanoseconds, data
 
 
 def _sizes(bag: str, topics: Sequence[Topic]) -> Iterator[tuple[str, array[int], array[int]]]:

@@ -106,8 +106,9 @@ def test_what_else_is_missing_comes_from_a_folder(tmp_path, capsys):
         open_library(bags=[path]).message("p/A")
     assert str(error.value) == (
         f"<{path}>/p/msg/A.msg:1:1: error: package 'q' is not found; the recording lacks it: name "
-        "a folder that has it with --depends\nq/B b\n^^^"
+        "a folder that has it with --depends, or a distribution with --distro\nq/B b\n^^^"
     )
+    assert open_library(bags=[path], paths=[folder]).message("p/A")
     for command in ("show", "metrics", "plan"):
         assert main([command, "p/A", "--bag", str(path), "--depends", str(folder)]) == 0
     # The folder's types are not those of the recording.
@@ -205,6 +206,12 @@ def test_the_header_of_roslib_is_that_of_std_msgs(tmp_path, written, recorded):
     ours = open_library(bags=[path])
     assert ours.names() == ["p/A", "std_msgs/Header"]
     assert fields(ours, "p/A") == [("header", "std_msgs/Header")]
+
+
+def test_mcap_of_ros1_has_types_of_ros1(tmp_path):
+    channel = Channel(type="std_msgs/String", language="ros1msg", wire="ros1")
+    ours = open_library(bags=[write_mcap(tmp_path / "x.mcap", channel, profile="ros1")])
+    assert (ours.dialect, ours.distro, ours.names()) == ("ros1", "noetic", ["std_msgs/String"])
 
 
 def test_the_names_in_a_recording_have_a_limit(tmp_path, monkeypatch):
