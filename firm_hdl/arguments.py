@@ -104,7 +104,8 @@ def add_origins(command: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="FILE",
-        help="recording (.bag, .mcap, .db3) whose types are used, and no others; repeatable",
+        help="recording (.bag, .mcap, .db3) whose types are used; what it lacks comes from "
+        "--depends, or from --distro if given; repeatable",
     )
     add_depends(command)
 
@@ -144,8 +145,8 @@ def add_depends(command: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="DIR",
-        help="folder with ROS packages that others depend on, searched after --path; not part of "
-        "--all; repeatable",
+        help="folder with ROS packages that others depend on, searched after --path or --bag; not "
+        "part of --all; repeatable",
     )
 
 

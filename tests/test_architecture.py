@@ -20,6 +20,7 @@ MAY_IMPORT = {
     "garbage": set[str](),
     "jobs": {"errors"},
     "names": set[str](),
+    "recordings": {"errors", "files"},
     "rtlil": {"names"},
     "vhdl": {"names", "rtlil"},
     # `errors`, `jobs`: Yosys may have too little memory; its process ends with this one.
@@ -28,7 +29,7 @@ MAY_IMPORT = {
     # Know messages.
     "model": {"errors"},
     # `wire`: a type that no wire can carry is refused when it is loaded.
-    "frontend": {"errors", "files", "model", "wire"},
+    "frontend": {"errors", "files", "recordings", "model", "wire"},
     "identity": {"errors", "model", "frontend"},
     "wire": {"errors", "model"},
     "metrics": {"errors", "model", "frontend", "identity", "wire"},
@@ -55,7 +56,8 @@ MAY_IMPORT["covering"] = {
 }
 MAY_IMPORT["verify"] = {
     *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil"}),
-    *("arguments", "drawing", "export", "identity", "metrics", "node", "sim", "terminal"),
+    *("arguments", "drawing", "export", "identity", "metrics", "node", "recordings", "sim"),
+    "terminal",
 }
 MAY_IMPORT["equivalence"] = {
     *("arguments", "errors", "jobs", "names", "terminal", "vhdl", "verilog"),

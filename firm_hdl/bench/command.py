@@ -182,7 +182,11 @@ def _run_software(given: argparse.Namespace) -> int:
 def bench_tasks(given: argparse.Namespace) -> list[BenchTask]:
     """Return a task for each type, bus width and direction."""
     library = open_library(given.distro, given.path, given.bag, depends=given.depends)
-    names = all_names(given.distro, given.path, given.bag) if given.all else given.types
+    names = (
+        all_names(given.distro, given.path, given.bag, depends=given.depends)
+        if given.all
+        else given.types
+    )
     messages = load_all(library, names)
     stated = replace(STATED, count=given.messages, seed=given.message_seed)
     widths: Sequence[int] = given.bus_bytes or [8]

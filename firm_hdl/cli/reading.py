@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from firm_hdl.arguments import add_types_or_all, add_wire
-from firm_hdl.cli.types import library_of, names_of
+from firm_hdl.cli.types import library_of, names_of, print_unusable
 from firm_hdl.errors import DefinitionError
 
 __all__ = ["add_hash", "add_list", "add_md5", "add_metrics", "add_proto", "add_show"]
@@ -19,6 +19,7 @@ def add_list(command: argparse.ArgumentParser) -> None:
 def _list(args: argparse.Namespace) -> None:
     library = library_of(args)
     problems = library.problems()
+    print_unusable(library)
     _print_all(library.interfaces(), DefinitionError(problems) if problems else None)
 
 

@@ -73,7 +73,9 @@ def run_cover(given: argparse.Namespace) -> int:
     if given.types:
         messages = load_all(library, given.types)
     else:
-        messages = _usable(library, all_names(given.distro, given.path, given.bag))
+        messages = _usable(
+            library, all_names(given.distro, given.path, given.bag, depends=given.depends)
+        )
     types: dict[str, frozenset[str]] = {}
     costs, shapes = {}, set()
     for message in tqdm(messages, unit="type", desc="features", disable=None):

@@ -33,6 +33,13 @@ class Library:
         first copy of a package hides all others, also that of the distribution.
     origins : iterable of Origin or None
         Origins to search after the folders. By default, the distribution's own types.
+    implied : iterable of Origin
+        Origins to search last, whose types are not listed.
+
+    Attributes
+    ----------
+    unusable : dict of str to str
+        Types of recorded topics that cannot be used, with sentences that say why.
 
     Raises
     ------
@@ -48,12 +55,14 @@ class Library:
         paths: Iterable[str | os.PathLike[str]] = (),
         *,
         origins: Iterable[Origin] | None = None,
+        implied: Iterable[Origin] = (),
     ) -> None:
         if distro not in DISTROS:
             raise ValueError(f"Distribution must be one of {', '.join(DISTROS)}, not {distro!r}")
         self._distro = distro
         others = [EmbeddedOrigin(distro)] if origins is None else origins
-        self._sources = Sources([*_folders(paths), *others])
+        self._sources = Sources([*_folders(paths), *others], implied)
+        self.unusable: dict[str, str] = {}
         distribution = DISTROS[distro]
         self._resolver = Resolver(
             self._sources,

@@ -12,12 +12,21 @@ from dataclasses import dataclass
 
 from firm_hdl.frontend.names import KINDS, PARTS, Kind
 
-__all__ = ["structs_of"]
+__all__ = ["MAX_COPIED", "structs_of"]
 
-_TEXT_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
+MAX_COPIED = 1 << 25
+"""Characters of all copies of the sections of a recording."""
+
+# What is not closed, ends with the line or with the text.
+_TEXT_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"?|//[^\n]*|/\*.*?(?:\*/|\Z)', re.DOTALL)
 _MARK = re.compile(r"\bmodule\s+(?P<module>\w+)\s*\{|\bstruct\s+(?P<struct>\w+)\s*\{|[{}]")
 _EMPTY = re.compile(r"\bmodule\s+\w+\s*\{\s*\}\s*;?")
+_END = re.compile(r"\s*;?")
+# A type of a member, or the element of a sequence.
+_PLACE = re.compile(r"(?<![\w:])(\w+)(?=\s+\w+\s*[;,\[])|(?<=<)\s*(\w+)(?=\s*[>,])")
 _SUFFIXES = PARTS["ros2", "srv"] + PARTS["ros2", "action"]
+# Modules may be in modules: ROS has a package and a folder.
+_MOST_LEVELS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,14 +39,16 @@ class _Struct:
     end: int
 
 
-def structs_of(text: str) -> dict[tuple[str, Kind, str], str]:
+def structs_of(text: str, most: int = MAX_COPIED) -> dict[tuple[str, Kind, str], str]:
     """Cut a section into texts of one message each, by package, folder and name.
 
     The result is empty if there is nothing to cut: the section has one message, a service or an
-    action.
+    action. It is also empty if the copies together would have more than `most` characters.
     """
     found = _find(_blank(text))
     if len(found) < 2 or any(each.name.endswith(_SUFFIXES) for each in found):
+        return {}
+    if len(found) * len(text) > most:
         return {}
     texts: dict[tuple[str, Kind, str], str] = {}
     for each in found:
@@ -60,46 +71,61 @@ def _blanks(text: str) -> str:
 def _find(code: str) -> list[_Struct]:
     found: list[_Struct] = []
     scopes: list[tuple[str, str, int]] = []
+    before = 0
     for mark in _MARK.finditer(code):
         if mark[0] != "}":
             # The part starts after the previous declaration, so that it includes annotations.
-            start = max(code.rfind(sign, 0, mark.start()) for sign in ";{}") + 1
+            start = max(before, code.rfind(";", before, mark.start()) + 1)
             kind = "module" if mark["module"] else "struct" if mark["struct"] else ""
             scopes.append((kind, mark["module"] or mark["struct"] or "", start))
         elif scopes:
             kind, name, start = scopes.pop()
             if kind == "struct":
-                terminator = re.compile(r"\s*;?").match(code, mark.end())
+                terminator = _END.match(code, mark.end())
                 assert terminator is not None
                 modules = tuple(each for what, each, _ in scopes if what == "module")
                 found.append(_Struct(modules, name, start, terminator.end()))
+        before = mark.end()
     return found
 
 
 def _isolated(text: str, struct: _Struct, structs: list[_Struct]) -> str:
-    for other in structs:
-        if other is not struct:
-            inside = text[other.start : other.end]
-            text = text[: other.start] + _blanks(inside) + text[other.end :]
+    text = _without(text, [(each.start, each.end) for each in structs if each is not struct])
     code = _blank(text)
-    while (empty := _EMPTY.search(code)) is not None:
-        start, end = empty.span()
-        text = text[:start] + _blanks(text[start:end]) + text[end:]
-        code = _blank(text)
+    for _ in range(_MOST_LEVELS):
+        empty = [match.span() for match in _EMPTY.finditer(code)]
+        if not empty:
+            break
+        text, code = _without(text, empty), _without(code, empty)
     return _with_scopes(text, code, struct, structs)
+
+
+def _without(text: str, spans: list[tuple[int, int]]) -> str:
+    """Replace parts by blanks. A part may be in another one."""
+    parts: list[tuple[int, int, str]] = []
+    for start, end in sorted(spans):
+        if not parts or start >= parts[-1][1]:
+            parts.append((start, end, _blanks(text[start:end])))
+    return _replaced(text, parts)
+
+
+def _replaced(text: str, parts: list[tuple[int, int, str]]) -> str:
+    """Replace parts, in the order of the text, by others."""
+    pieces, position = [], 0
+    for start, end, new in parts:
+        pieces += [text[position:start], new]
+        position = end
+    return "".join([*pieces, text[position:]])
 
 
 def _with_scopes(text: str, code: str, struct: _Struct, structs: list[_Struct]) -> str:
     """Write the names of structs in the same module in full, as ROS does."""
     others = (each for each in structs if each is not struct)
-    siblings = [each.name for each in others if each.modules == struct.modules]
-    if not siblings:
-        return text
-    name = f"(?:{'|'.join(map(re.escape, siblings))})"
-    # As the type of a member, or as the element of a sequence.
-    places = re.compile(rf"(?<![\w:]){name}(?=\s+\w+\s*[;,\[])|(?<=<)\s*{name}(?=\s*[>,])")
-    for match in reversed([*places.finditer(code)]):
-        start = match.end() - len(match[0].lstrip())
-        full = "::".join([*struct.modules, text[start : match.end()]])
-        text = text[:start] + full + text[match.end() :]
-    return text
+    siblings = {each.name for each in others if each.modules == struct.modules}
+    parts = []
+    for match in _PLACE.finditer(code):
+        name = match[1] or match[2]
+        if name in siblings:
+            full = "::".join([*struct.modules, name])
+            parts.append((match.end() - len(name), match.end(), full))
+    return _replaced(text, parts)

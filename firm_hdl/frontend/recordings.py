@@ -2,56 +2,52 @@
 
 A ``.bag`` of ROS 1 has the definition of every topic's type, followed by those of all types in it.
 An ``.mcap`` of ROS 2 and, since iron, a ``.db3`` have them, too. The format of these definitions is
-described in ros2/rosbag2, ``docs/message_definition_encoding.md``. rosbags reads the files; the
-texts are then processed like the texts of definition files.
+described in ros2/rosbag2, ``docs/message_definition_encoding.md``. Their texts are processed like
+those of definition files.
 """
 
 from __future__ import annotations
 
-import errno
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator
-from pathlib import Path
-from typing import TypeAlias, TypeVar
-
-from rosbags.interfaces import Connection, MessageDefinitionFormat
-from rosbags.rosbag1 import Reader as Reader1
-from rosbags.rosbag1 import ReaderError as ReaderError1
-from rosbags.rosbag2 import Reader as Reader2
-from rosbags.rosbag2 import ReaderError as ReaderError2
+from collections.abc import Iterable, Iterator
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source
-from firm_hdl.files import check_file
 from firm_hdl.frontend.embedded import DISTROS
-from firm_hdl.frontend.expansion import Budget, bounded
-from firm_hdl.frontend.names import Kind
-from firm_hdl.frontend.recorded_idl import structs_of
-from firm_hdl.frontend.sources import Definition, Language, PackagePlace
+from firm_hdl.frontend.explain import clip
+from firm_hdl.frontend.names import Kind, TypeName, owners
+from firm_hdl.frontend.parse import is_type_name
+from firm_hdl.frontend.recorded_idl import MAX_COPIED, structs_of
+from firm_hdl.frontend.sources import Definition, Language, Origin, PackagePlace
 from firm_hdl.model import Dialect
+from firm_hdl.recordings import MAX_TEXT_BYTES, MAX_TOPICS, Recording, Schema
 
-__all__ = ["Reader", "RecordingOrigin", "use_recording"]
-
-Reader: TypeAlias = "Reader1 | Reader2"
-"""rosbags' reader of a recording."""
-
-# Limit on the metadata file, because rosbags reads the whole file.
-_MAX_METADATA_BYTES = 1 << 20
-_MAGIC, _MAGIC_BYTES = b"#ROSBAG V", 64
+__all__ = ["RecordingOrigin"]
 
 _Name = tuple[str, Kind, str]
-_T = TypeVar("_T")
 
-_KINDS: dict[str, Kind] = {"msg": "msg", "srv": "srv", "action": "action"}
+_LANGUAGES: dict[Dialect, tuple[str, ...]] = {"ros1": ("ros1msg",), "ros2": ("ros2msg", "ros2idl")}
+# What recorders write as the language of a definition that they did not find.
+_NO_LANGUAGES = "", "unknown"
+_NOT_RECORDED = (
+    "none was recorded; name a folder that has it with --depends, or a distribution with --distro"
+)
 
-# The separator between the definitions of a topic: a line of ``=``, and the next type's name.
-_NEXT = re.compile(r"^={3,}[ \t]*\r?\n(MSG|SRV|IDL):[ \t]*(\S+)[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
-# Schema encodings of MCAP's registry that are not read here.
-_OTHER_LANGUAGES = "omgidl", "protobuf", "flatbuffer", "jsonschema"
+# The heading of a definition: a line of ``=``, and the name of its type.
+_HEADING = re.compile(
+    r"^={3,}[ \t]*\r?\n(?:MSG|SRV|ACTION|IDL):[ \t]*(\S+)[ \t]*(?:\r?\n|\Z)", re.MULTILINE
+)
+_COMMENT = re.compile(r"#.*")
 _INDENTED = re.compile(r"^[ \t]+(?=[^\s#])", re.MULTILINE)
 _FULL_NAME = re.compile(r"^([A-Za-z]\w*)/msg/(?=[A-Z])", re.MULTILINE)
+# Before std_msgs had it; genmsg reads both names as one.
+_OLD_HEADER = re.compile(r"^roslib/Header(?=\s)", re.MULTILINE)
 _STRUCT = re.compile(r"\bstruct\s+\w+\s*\{")
-_SERVICE_PARTS = re.compile(r"^---", re.MULTILINE)
+_SEPARATOR = re.compile(r"^---", re.MULTILINE)
+
+# Names that are checked, legal or not.
+_MOST_NAMES = 2 * MAX_TOPICS
+_MOST_REASONS = 20
 
 
 class RecordingOrigin:
@@ -62,6 +58,8 @@ class RecordingOrigin:
     Parameters
     ----------
     path : str or path
+    others : iterable of Origin
+        Have the types of topics that were recorded without their definitions.
 
     Attributes
     ----------
@@ -69,237 +67,197 @@ class RecordingOrigin:
     dialect : "ros1" or "ros2"
     distro : str or None
         The distribution that the recording names as its origin, if it is one of `DISTROS`.
+    unusable : dict of str to str
+        The types of topics that cannot be used, by their recorded names, with a sentence that says
+        why.
 
     Raises
     ------
     DefinitionError
-        If the file cannot be read, or has no definitions. It has no span.
+        If the file cannot be read, or if no type in it can be used. It has no span.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = os.fspath(path)
-        self.dialect: Dialect = _dialect(self.path)
-        self.distro: str | None = None
+    def __init__(self, path: str | os.PathLike[str], others: Iterable[Origin] = ()) -> None:
+        recording = Recording(path)
+        self.path, self.dialect = recording.path, recording.dialect
+        distro = DISTROS.get(recording.distro)
+        is_known = distro is not None and distro.dialect == self.dialect
+        self.distro = recording.distro if is_known else None
         # Parts of packages: their types hide no others.
         self.packages: dict[str, PackagePlace] = {}
         self._definitions: dict[_Name, Definition] = {}
-        self._missing: set[_Name] = set()
-        # Messages without fields have definitions without text.
-        self._empty: set[_Name] = set()
-        # Names of topics' types that do not have ROS's form.
-        self._not_ros: set[str] = set()
-        # Types in OMG IDL as DDS tools write it: all types in one text, without headings.
-        self._of_dds: set[_Name] = set()
-        for connection in self._connections():
-            self._add(connection)
-        for name in sorted(self._empty):
-            self._define(name, "msg", "")
-        self._missing -= self._definitions.keys()
-        self._of_dds -= self._definitions.keys()
+        self._copied = 0
+        self._names: dict[str, _Name | None] = {}
+        # A message without fields has no text. The text that another topic has counts before none.
+        reasons: dict[str, str] = {}
+        for schema in sorted(recording.schemas, key=lambda schema: schema.data == b""):
+            reasons.setdefault(schema.type, self._read(schema))
+        others = list(others)
+        self.unusable: dict[str, str] = {}
+        self._refused: dict[_Name, str] = {}
+        for type_ in dict.fromkeys(topic.type for topic in recording.topics):
+            name, reason = self._name(type_), reasons.get(type_, _NOT_RECORDED)
+            if name is not None and not self._has(name) and reason == _NOT_RECORDED:
+                reason = self._look_up(name, others)
+            if name is None or not self._has(name):
+                self.unusable[type_] = self._sentence(type_, name, reason)
+                # DDS tools write scopes of IDL, which users would not.
+                name = self._name(type_.replace("::", "/"))
+                if name is not None:
+                    self._refused[name] = self.unusable[type_]
         if not self._definitions:
-            raise _refusal(self._why_empty())
+            raise DefinitionError(self._nothing(bool(others)))
 
     def names(self) -> Iterable[_Name]:
         """List the types that the recording defines."""
         return self._definitions
 
     def find(self, package: str, kind: Kind, name: str) -> Definition | None:
-        """Give a definition; raise `DefinitionError` for a topic's type without one."""
-        if (package, kind, name) in self._missing:
-            raise _refusal(
-                f"'{self.path}' has a topic of type '{package}/{kind}/{name}', but not its "
-                "definition"
-            )
-        if (package, kind, name) in self._of_dds:
-            raise _refusal(self._in_omgidl(f"{package}/{kind}/{name}"))
+        """Give a definition; raise `DefinitionError` for a topic's type that cannot be used."""
+        if (package, kind, name) in self._refused:
+            raise _refusal(self._refused[package, kind, name])
         return self._definitions.get((package, kind, name))
 
-    def _in_omgidl(self, name: str) -> str:
-        return f"'{self.path}' defines '{name}' in 'omgidl', and only ros2msg and ros2idl are read"
+    def _name(self, text: str) -> _Name | None:
+        """Split the name of a type, once; `None` if it is no such name."""
+        if text not in self._names:
+            if len(self._names) == _MOST_NAMES:
+                raise _refusal(f"'{self.path}' has more than {_MOST_NAMES} names of types")
+            self._names[text] = self._split(text)
+        return self._names[text]
 
-    def _connections(self) -> list[Connection]:
-        def look(recording: Reader) -> list[Connection]:
-            distro = getattr(recording, "ros_distro", None)
-            known = DISTROS.get(distro) if isinstance(distro, str) else None
-            if known is not None and known.dialect == self.dialect:
-                self.distro = distro
-            connections = list(recording.connections)
-            for each in connections:
-                # SQLite does not enforce the types of columns.
-                if not isinstance(each.msgtype, str) or not isinstance(each.msgdef.data, str):
-                    raise TypeError
-            return connections
+    def _split(self, text: str) -> _Name | None:
+        match text.split("/"):
+            case [package, base]:
+                kind: Kind = "msg"
+            case [package, "msg" | "srv" | "action" as kind, base]:
+                pass
+            case _:
+                return None
+        if self.dialect == "ros1" and (package, base) == ("roslib", "Header"):
+            package = "std_msgs"
+        name: _Name = package, kind, base
+        is_legal = any(is_type_name(f"{p}/{b}", self.dialect) for p, _, b in self._owners(name))
+        return name if is_legal else None
 
-        return use_recording(self.path, look)
-
-    def _add(self, connection: Connection) -> None:
-        text, language = connection.msgdef.data, connection.msgdef.format
-        is_idl = language == MessageDefinitionFormat.IDL
-        # In omgidl, names have the scope operator of IDL.
-        name = _parse(connection.msgtype.replace("::", "/") if is_idl else connection.msgtype)
+    def _read(self, schema: Schema) -> str:
+        """Define the types in a definition; return why it is not usable, or nothing."""
+        languages = _LANGUAGES[self.dialect]
+        if schema.encoding in _NO_LANGUAGES:
+            return _NOT_RECORDED
+        if schema.encoding not in languages:
+            known = " and ".join(languages)
+            return f"it is in '{clip(schema.encoding)}', and only {known} are read"
+        if schema.data is None:
+            return f"it has more than {MAX_TEXT_BYTES} bytes"
+        try:
+            text = schema.data.decode("utf-8")
+        except UnicodeDecodeError:
+            return "it is not UTF-8 text"
+        is_idl = schema.encoding == "ros2idl"
+        if is_idl and ("::" in schema.type or _is_of_dds(text)):
+            return "it is in 'omgidl', and only ros2msg and ros2idl are read"
+        name = self._name(schema.type)
         if name is None:
-            self._not_ros.add(connection.msgtype)
-        elif language == MessageDefinitionFormat.NONE or (is_idl and not text):
-            self._missing.add(name)
-        elif not text and self.dialect == "ros2":
-            self._empty.add(name)
-        elif is_idl and _is_of_dds(connection.msgtype, text):
-            self._of_dds.add(name)
+            return ""
+        if not text and (is_idl or name[1] != "msg"):
+            return _NOT_RECORDED
+        marks = list(_HEADING.finditer(text))
+        if len(marks) > MAX_TOPICS:
+            return f"it has more than {MAX_TOPICS} headings"
+        starts = [0, *(mark.end() for mark in marks)]
+        ends = [*(mark.start() for mark in marks), len(text)]
+        parts = [name, *(self._name(mark[1]) for mark in marks)]
+        for part, start, end in zip(parts, starts, ends, strict=True):
+            # Writers add an empty line, or at least a line end, before a heading.
+            body = text[start:end] if end == len(text) else text[start:end].removesuffix("\n")
+            is_before_headings = bool(marks) and start == 0
+            if part is None or (is_before_headings and not _COMMENT.sub("", body).strip()):
+                continue
+            self._declare(part, body if not body or body.endswith("\n") else f"{body}\n", is_idl)
+        return "" if self._has(name) else "the recorded text defines other types"
+
+    def _declare(self, name: _Name, text: str, is_idl: bool) -> None:
+        """Define what the text under a heading declares."""
+        if is_idl:
+            copies = structs_of(text, MAX_COPIED - self._copied)
+            self._copied += len(copies) * len(text)
+            for each, copy in (copies if name in copies else {}).items():
+                self._define(each, "idl", copy)
+            is_message = re.search(rf"\bstruct\s+{name[2]}\b", text) is not None
         else:
-            for part, kind, body in _split(name, text, is_idl):
-                self._define(part, kind, body)
+            is_message = _SEPARATOR.search(text) is None
+        if name[1] == "msg" or is_message:
+            self._define(name, "idl" if is_idl else "msg", text)
+        else:
+            # Under the name of a message of a service or an action may be the text of all of it.
+            _, *wholes = self._owners(name)
+            self._define(wholes[0] if wholes else name, "idl" if is_idl else name[1], text)
 
     def _define(self, name: _Name, language: Language, text: str) -> None:
         """Keep a definition, unless one of that name was found before."""
+        if name in self._definitions:
+            return
+        if language != "idl":
+            # Some writers indent the text, or write full names of types.
+            text = _FULL_NAME.sub(r"\1/", _INDENTED.sub("", text))
+        if self.dialect == "ros1":
+            text = _OLD_HEADER.sub("std_msgs/Header", text)
         source = Source(name=f"<{self.path}>/{'/'.join(name)}.{language}", text=text)
-        self._definitions.setdefault(name, Definition(source=source, language=language))
+        self._definitions[name] = Definition(source=source, language=language)
 
-    def _why_empty(self) -> str:
-        if self._of_dds:
-            return self._in_omgidl("/".join(min(self._of_dds)))
-        if self._not_ros and not self._missing:
-            name = min(self._not_ros)
-            return f"'{self.path}' has a topic of type {name!r}, which is not a ROS name"
-        if not self._missing:
-            return f"'{self.path}' has no topics, and so no definitions"
-        return (
-            f"'{self.path}' has no definitions of its types, like all recordings made before ROS 2 "
-            "iron; name folders that have them with --path, or a distribution with --distro, "
-            "instead of --bag"
-        )
+    def _has(self, name: _Name) -> bool:
+        """Tell whether a message or its service or action is defined."""
+        return any(key in self._definitions for key in self._owners(name))
 
+    def _owners(self, name: _Name) -> list[_Name]:
+        """List a type, and the services or actions that may have it."""
+        package, kind, base = name
+        found = owners(TypeName(package, kind, base, self.dialect))
+        return [name, *((package, kind, owner.name) for owner in found)]
 
-def use_recording(path: str, use: Callable[[Reader], _T]) -> _T:
-    """Open a recording, call a function with its reader, and return the function's result.
+    def _look_up(self, name: _Name, others: list[Origin]) -> str:
+        """Define a type as another origin does; return why it cannot be, or nothing."""
+        for key in self._owners(name):
+            for origin in others:
+                try:
+                    found = origin.find(*key)
+                except DefinitionError as error:
+                    return error.diagnostics[0].message
+                if found is not None:
+                    self._definitions[key] = found
+                    return ""
+        return _NOT_RECORDED
 
-    Parameters
-    ----------
-    use : callable
-        Called with rosbags' reader. It must only read, because any exception in it is reported as
-        an unreadable file.
+    def _sentence(self, type_: str, name: _Name | None, reason: str) -> str:
+        """Say why the type of a topic cannot be used."""
+        start = f"'{self.path}' has a topic of type '{clip(type_)}'"
+        if name is None and reason in ("", _NOT_RECORDED):
+            return f"{start}, which is not the name of a type"
+        return f"{start}, but not its definition: {reason or 'the recorded text is of other types'}"
 
-    Raises
-    ------
-    DefinitionError
-        If the file cannot be read. It has no span.
-    """
-    if not os.path.exists(path):
-        raise _refusal(f"'{path}' does not exist")
-    if os.path.isdir(path) and not os.path.exists(os.path.join(path, "metadata.yaml")):
-        raise _refusal(f"'{path}' is a folder without the metadata.yaml of a recording")
-    try:
-        _check_files(path)
-        with bounded(path) as budget:
-            return _use(path, use, budget)
-    except OSError as error:
-        raise _refusal(f"'{error.filename}' cannot be read: {error.strerror}") from None
-
-
-def _use(path: str, use: Callable[[Reader], _T], budget: Budget) -> _T:
-    reader = Reader1 if _dialect(path) == "ros1" else Reader2
-    try:
-        if reader is Reader1 and not _is_bag(path):
-            raise ReaderError1("File magic is invalid.")
-        with reader(Path(path)) as recording:
-            return use(recording)
-    except OSError as error:
-        # A damaged file has offsets that no file can have.
-        reason = "it is damaged" if error.errno == errno.EINVAL else error.strerror or str(error)
-    except (ReaderError1, ReaderError2) as error:
-        # rosbags wraps exceptions from data that it does not check. Their messages do not help.
-        unchecked = TypeError | AttributeError | KeyError | ValueError
-        reason = "it is damaged" if isinstance(error.__context__, unchecked) else str(error)
-    except KeyError as error:
-        # Such as the language of the definitions.
-        reason = f"rosbags does not support {error}"
-        if error.args[:1] in [(language,) for language in _OTHER_LANGUAGES]:
-            reason = f"its definitions are in {error}, and only ros2msg and ros2idl are read"
-    except MemoryError:
-        reason = "it needs more memory than is available"
-    except Exception:
-        # A damaged file can make a reader fail in any way.
-        reason = "it is damaged"
-    reason = budget.excess or reason
-    raise _refusal(f"'{path}' cannot be read as a recording: {reason}")
+    def _nothing(self, is_looked_up: bool) -> Iterator[Diagnostic]:
+        """Say why no type can be used."""
+        reasons = list(self.unusable.values())
+        if not reasons:
+            reasons = [f"'{self.path}' has no topics, and so no definitions"]
+        elif not is_looked_up and all(each.endswith(_NOT_RECORDED) for each in reasons):
+            distro = f"--distro {self.distro}" if self.distro else "--distro"
+            reasons = [
+                f"'{self.path}' has no definitions of its types, like all recordings made before "
+                "ROS 2 iron; name folders that have them with --depends, or the distribution with "
+                f"{distro}"
+            ]
+        for reason in reasons[:_MOST_REASONS]:
+            yield Diagnostic(message=reason)
+        if len(reasons) > _MOST_REASONS:
+            yield Diagnostic(message=f"{len(reasons) - _MOST_REASONS} more types cannot be used")
 
 
-def _check_files(path: str) -> None:
-    """Check, before rosbags opens them, that no file blocks its reader, such as a pipe."""
-    if not os.path.isdir(path):
-        check_file(path)
-        return
-    with os.scandir(path) as entries:
-        for entry in entries:
-            if entry.name == "metadata.yaml":
-                check_file(entry.path, _MAX_METADATA_BYTES)
-            elif not entry.is_dir():
-                check_file(entry.path)
-
-
-def _is_bag(path: str) -> bool:
-    """Tell whether a file starts like a bag of ROS 1; rosbags would read a line of any length."""
-    with open(path, "rb") as file:
-        start = file.read(_MAGIC_BYTES)
-    return start.startswith(_MAGIC) and b"\n" in start
-
-
-def _dialect(path: str) -> Dialect:
-    is_bag = path.lower().endswith(".bag") and not os.path.isdir(path)
-    return "ros1" if is_bag else "ros2"
+def _is_of_dds(text: str) -> bool:
+    """Tell whether DDS tools wrote a definition in IDL: without headings."""
+    return not text.startswith("===") and len(_STRUCT.findall(text)) > 1
 
 
 def _refusal(message: str) -> DefinitionError:
     return DefinitionError([Diagnostic(message=message)])
-
-
-def _parse(name: str) -> _Name | None:
-    match name.split("/"):
-        case [package, base] if package and base:
-            return package, "msg", base
-        case [package, kind, base] if package and base and kind in _KINDS:
-            return package, _KINDS[kind], base
-    return None
-
-
-def _is_of_dds(name: str, text: str) -> bool:
-    """Tell whether DDS tools wrote a definition in IDL: without headings."""
-    return "::" in name or (not text.startswith("===") and len(_STRUCT.findall(text)) > 1)
-
-
-def _split(name: _Name, text: str, is_idl: bool) -> Iterator[tuple[_Name, Language, str]]:
-    """Cut a topic's definition into the definitions of the types in it."""
-    marks = list(_NEXT.finditer(text))
-    starts = [0, *(mark.end() for mark in marks)]
-    ends = [*(mark.start() for mark in marks), len(text)]
-    names = [name, *(_parse(mark[2]) for mark in marks)]
-    for index, (part, start, end) in enumerate(zip(names, starts, ends, strict=True)):
-        body = text[start:end]
-        if part is None or (is_idl and index == 0 and not body.strip() and marks):
-            continue  # In IDL, the first definition has a heading, too.
-        if index < len(marks) and body.endswith("\n"):
-            # Writers add an empty line, or at least a line end, after each definition.
-            body = body[:-1]
-        if body and not body.endswith("\n"):
-            body += "\n"
-        if is_idl:
-            for each, isolated in ({part: body} | _messages(part, body)).items():
-                yield each, "idl", isolated
-        else:
-            yield part, _language(part, body), _normalized(body)
-
-
-def _messages(name: _Name, text: str) -> dict[_Name, str]:
-    """Give the texts of all messages of an IDL section that declares `name` and other messages."""
-    found = structs_of(text)
-    return found if name in found else {}
-
-
-def _normalized(text: str) -> str:
-    """Write a definition as in its file: some writers indent it, or write full names of types."""
-    return _FULL_NAME.sub(r"\1/", _INDENTED.sub("", text))
-
-
-def _language(name: _Name, text: str) -> Language:
-    # A message of a service or of an action may be defined by itself.
-    is_whole = name[1] != "msg" and _SERVICE_PARTS.search(text) is not None
-    return name[1] if is_whole else "msg"

@@ -30,6 +30,9 @@ __all__ = [
 ENVIRONMENT: dict[Dialect, str] = {"ros1": "ROS_PACKAGE_PATH", "ros2": "AMENT_PREFIX_PATH"}
 """The variable that says where packages are."""
 
+# What the messages that ROS adds to services and actions are made of.
+_IMPLIED = frozenset({"builtin_interfaces", "service_msgs", "unique_identifier_msgs"})
+
 
 def open_library(
     distro: str | None = None,
@@ -50,7 +53,9 @@ def open_library(
         Folders with ROS packages. They are searched first, then those of the environment, then
         the distribution's own types.
     bags : iterable of str or path
-        Recordings. If there are any, definitions come only from them and from `depends`.
+        Recordings. If there are any, the types of the library are theirs. What they lack comes from
+        folders, from the distribution if it is named, and what ROS itself adds to services and
+        actions from any distribution.
     depends : iterable of str or path
         Folders with packages that others depend on, searched after `paths` or the recordings.
     environment : mapping or None
@@ -58,16 +63,12 @@ def open_library(
 
     Raises
     ------
-    ValueError
-        If there are both recordings and paths.
     DefinitionError
         If a folder or a recording cannot be used. It has no span.
     """
-    folders, files, needed = list(paths), list(bags), map(FolderOrigin, depends)
+    folders, files, needed = list(paths), list(bags), [FolderOrigin(path) for path in depends]
     if files:
-        if folders:
-            raise ValueError("Recordings are read without any other definitions")
-        return _of_recordings(distro, [RecordingOrigin(file) for file in files], list(needed))
+        return _of_recordings(distro, files, [*map(FolderOrigin, folders), *needed])
     distro = distro or DEFAULT_DISTRO
     found = environment_origins(
         DISTROS[distro].dialect, os.environ if environment is None else environment
@@ -79,6 +80,8 @@ def all_names(
     distro: str | None,
     paths: Iterable[str | os.PathLike[str]],
     bags: Iterable[str | os.PathLike[str]],
+    *,
+    depends: Iterable[str | os.PathLike[str]] = (),
 ) -> list[str]:
     """List all types: those of the folders or recordings, or else those of all origins.
 
@@ -87,7 +90,7 @@ def all_names(
     folders = list(paths)
     if folders:
         return Library(distro or DEFAULT_DISTRO, folders, origins=()).interfaces()
-    return open_library(distro, (), bags).interfaces()
+    return open_library(distro, (), bags, depends=depends).interfaces()
 
 
 def environment_origins(dialect: Dialect, environment: Mapping[str, str]) -> Iterator[FolderOrigin]:
@@ -118,8 +121,11 @@ def workspace_folders(
 
 
 def _of_recordings(
-    distro: str | None, recordings: list[RecordingOrigin], needed: list[FolderOrigin]
+    distro: str | None, paths: Iterable[str | os.PathLike[str]], needed: list[FolderOrigin]
 ) -> Library:
+    # A distribution is asked for more only if it is named: a recording need not say which it is of.
+    others: list[Origin] = [*needed, *([] if distro is None else [EmbeddedOrigin(distro)])]
+    recordings = [RecordingOrigin(path, others) for path in paths]
     first = recordings[0]
     for other in recordings:
         if other.dialect != first.dialect:
@@ -135,7 +141,11 @@ def _of_recordings(
             f"'{first.path}' is a recording of {_ros(first.dialect)}, and {distro} is "
             f"{_ros(DISTROS[distro].dialect)}"
         )
-    return Library(distro, origins=[*recordings, *needed])
+    implied: list[Origin] = [*others, EmbeddedOrigin(distro, _IMPLIED)]
+    library = Library(distro, origins=recordings, implied=implied)
+    for recording in recordings:
+        library.unusable |= recording.unusable
+    return library
 
 
 def _newest(dialect: Dialect) -> str:

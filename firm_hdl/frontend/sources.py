@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, Protocol, TypeAlias
@@ -92,25 +92,30 @@ class EmbeddedOrigin:
     ----------
     distro : str
         A key of `DISTROS`.
+    packages : collection of str or None
+        `None`: all packages.
     """
 
-    def __init__(self, distro: str) -> None:
-        self._distro = distro
+    def __init__(self, distro: str, packages: Collection[str] | None = None) -> None:
+        self._distro, self._packages = distro, packages
 
     @cached_property
     def packages(self) -> Mapping[str, PackagePlace]:
         """The packages of the distribution."""
         place = PackagePlace(where=self._distro)
-        return {package: place for package, _ in embedded_names(self._distro)}
+        return {package: place for package, _, _ in self.names()}
 
     def names(self) -> Iterator[tuple[str, Kind, str]]:
-        """List every message type of the distribution."""
+        """List every message type of the packages."""
         for package, name in embedded_names(self._distro):
-            yield package, "msg", name
+            if self._packages is None or package in self._packages:
+                yield package, "msg", name
 
     def find(self, package: str, kind: Kind, name: str) -> Definition | None:
         """Write out the definition of an embedded type."""
-        source = embedded_source(self._distro, package, name) if kind == "msg" else None
+        if kind != "msg" or (self._packages is not None and package not in self._packages):
+            return None
+        source = embedded_source(self._distro, package, name)
         return None if source is None else Definition(source=source, language="msg")
 
 
@@ -213,10 +218,19 @@ class Sources:
     ----------
     origins : iterable of Origin
         The first one that has a package hides the package in those after it.
+    implied : iterable of Origin
+        Origins after these, whose types are found but not listed.
+
+    Attributes
+    ----------
+    has_implied : bool
+        Whether there are such origins, as behind a recording.
     """
 
-    def __init__(self, origins: Iterable[Origin]) -> None:
-        self._origins = tuple(origins)
+    def __init__(self, origins: Iterable[Origin], implied: Iterable[Origin] = ()) -> None:
+        listed, more = tuple(origins), tuple(implied)
+        self._origins, self._listed = listed + more, len(listed)
+        self.has_implied = bool(more)
 
     def _having(self, package: str) -> Iterator[Origin]:
         """Yield the origins that may have types of a package: all without the hidden copies."""
@@ -274,8 +288,8 @@ class Sources:
 
     @cached_property
     def names(self) -> frozenset[tuple[str, Kind, str]]:
-        """Package, kind and name of every definition."""
-        return frozenset().union(*self._names)
+        """Package, kind and name of every definition that is listed."""
+        return frozenset().union(*self._names[: self._listed])
 
     def by_origin(self, names: Iterable[TypeName]) -> list[TypeName]:
         """Sort names by the first origin that defines them; leave out those without one."""
@@ -292,7 +306,8 @@ class Sources:
         """Kinds and names of the definitions of every package, both sorted; messages first."""
         found: dict[str, list[tuple[Kind, str]]] = {}
         order = {kind: index for index, kind in enumerate(KINDS)}
-        for package, kind, name in sorted(self.names, key=lambda n: (n[0], order[n[1]], n[2])):
+        names = frozenset[tuple[str, Kind, str]]().union(*self._names)
+        for package, kind, name in sorted(names, key=lambda n: (n[0], order[n[1]], n[2])):
             found.setdefault(package, []).append((kind, name))
         return found
 

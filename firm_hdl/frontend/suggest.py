@@ -44,9 +44,15 @@ def unknown_type(sources: Sources, names: Sequence[TypeName]) -> str:
                 f", which is taken from '{place.where}' and hides that of '{hidden.where}', where "
                 "the type is; as in ROS, a package comes from one place as a whole"
             )
-        return message + _unread(sources, place)
-    message = f"package '{clip(package)}' is not found"
-    if package in _NOT_EMBEDDED:
+        message += _unread(sources, place)
+    else:
+        message = f"package '{clip(package)}' is not found"
+    if sources.has_implied:
+        return (
+            f"{message}; the recording lacks it: name a folder that has it with --depends, or a "
+            "distribution with --distro"
+        )
+    if package not in sources.types and package in _NOT_EMBEDDED:
         message += (
             "; this ROS package does not come with firm-hdl: name a folder that has it with "
             "--path, or source the setup file of an installation that does"

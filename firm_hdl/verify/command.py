@@ -83,8 +83,8 @@ def _request(given: argparse.Namespace) -> Request:
         given.usage_error("name types, or all of them with --all")
     if given.report is not None and given.results is None:
         given.usage_error("--report needs --results")
-    if given.depends and not given.path:
-        given.usage_error("--depends needs --path")
+    if given.depends and not (given.path or given.bag):
+        given.usage_error("--depends needs --path or --bag")
     references = None
     if given.reference:
         references = tuple(name for name in dict.fromkeys(given.reference) if name != NO_REFERENCE)
@@ -247,9 +247,9 @@ def _add_replay(group: argparse._ArgumentGroup) -> None:
         action="append",
         default=[],
         metavar="FILE",
-        help="replay the messages of a recording (.bag, .mcap, .db3), with its definitions and no "
-        f"others, at most {MOST_MESSAGES} of each type (--cases N: N of each); without TYPE, of "
-        "all types that have topics; repeatable",
+        help="replay the messages of a recording (.bag, .mcap, .db3) with its definitions, at "
+        f"most {MOST_MESSAGES} of each type (--cases N: N of each); without TYPE, of all types "
+        "that have topics; repeatable",
     )
     group.add_argument(
         "--max-message-bytes",

@@ -93,6 +93,7 @@ def _collect(request: Request, problems: dict[str, Diagnostic]) -> list[TypeUnde
             request.bags,
             wire=request.wire,
             problems=problems,
+            depends=request.depends,
         )
     if request.paths:
         # An invalid type does not keep the others from being tested.

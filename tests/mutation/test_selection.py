@@ -149,4 +149,4 @@ def test_every_test_file_is_of_one_system_or_of_the_rest():
     assert test_files(ROOT, ["tests/wire"]) == [name for name in names if "tests/wire/" in name]
     assert mirrors("tests/frontend/idl/test_parse.py", "firm_hdl/frontend/idl/idl.lark")
     assert not mirrors("tests/frontend/test_parse.py", "firm_hdl/frontend/idl/idl.lark")
-    assert mirrors("tests/frontend/hostile/test_expansion.py", "firm_hdl/frontend/expansion.py")
+    assert mirrors("tests/frontend/hostile/test_fuzz.py", "firm_hdl/frontend/fuzz.py")

@@ -1,7 +1,7 @@
 """The messages of recordings: their types, and a selection of messages that are spread evenly.
 
-Files are read twice. The first pass keeps only the sizes of all messages, however long the
-recording is. The messages are selected by these sizes. The second pass reads the bytes of the
+Files are read twice. The first pass keeps only the times and sizes of all messages, however long
+the recording is. The messages are selected by these. The second pass keeps the bytes of the
 selected messages.
 """
 
@@ -11,15 +11,15 @@ from array import array
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from itertools import islice
+from operator import le
 from typing import TypeAlias
-
-from rosbags.interfaces import Connection
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import open_library
-from firm_hdl.frontend.recordings import Reader, use_recording
 from firm_hdl.model import WIRE_OF
+from firm_hdl.recordings import Recording
+from firm_hdl.recordings import Topic as RecordedTopic
 from firm_hdl.verify.systems.tasks import TypeUnderTest, UnknownTypeError
 from firm_hdl.wire import Wire, too_large
 
@@ -38,7 +38,9 @@ class Topic:
     bag : str
     name : str
     type : str
-        ``package/msg/Type``, the name that rosbags uses for ROS 1 and ROS 2.
+        As it was recorded.
+    encoding : str
+        The wire format of the messages: ``ros1``, ``cdr`` or any other word.
     digest : str
         The recorded md5 sum or type hash; empty if there is none.
     """
@@ -46,6 +48,7 @@ class Topic:
     bag: str
     name: str
     type: str
+    encoding: str
     digest: str
 
 
@@ -108,8 +111,10 @@ def topics_of(bag: str) -> list[Topic]:
     DefinitionError
         If the recording cannot be read.
     """
-    found = use_recording(bag, lambda reader: [_topic(bag, each) for each in reader.connections])
-    return list(dict.fromkeys(found))
+    return [
+        Topic(bag=bag, name=each.name, type=each.type, encoding=each.encoding, digest=each.digest)
+        for each in Recording(bag).topics
+    ]
 
 
 def select(
@@ -134,12 +139,15 @@ def select(
         If a recording cannot be read to its end.
     """
     sizes: dict[tuple[str, str], Sequence[int]] = {}
+    # Where the messages of a topic are in the file, in the order of their times.
+    orders: dict[tuple[str, str], Sequence[int]] = {}
     for bag in dict.fromkeys(topic.bag for topic in topics):
-        found = use_recording(bag, partial(_sizes, bag=bag, topics=topics))
-        sizes.update(((bag, name), each) for name, each in found.items())
+        for name, times, each in _sizes(bag, topics):
+            orders[bag, name] = order = _sorted(times)
+            sizes[bag, name] = array("Q", [each[place] for place in order])
     places, sparse = _choose(sizes, most, longest, most_bytes)
     return Selection(
-        messages=tuple(_fetch(places, topics)),
+        messages=tuple(_fetch(places, orders, topics)),
         total=sum(map(len, sizes.values())),
         topics=len(sizes),
         too_long=tuple(size for each in sizes.values() for size in each if size > longest),
@@ -147,31 +155,33 @@ def select(
     )
 
 
-def _topic(bag: str, connection: Connection) -> Topic:
-    # DDS tools write names with ``::``. Whether the definition can be read is checked elsewhere.
-    name = connection.msgtype.replace("::", "/")
-    return Topic(bag=bag, name=connection.topic, type=name, digest=connection.digest or "")
+def _messages(bag: str, topics: Iterable[Topic]) -> Iterator[tuple[str, int, bytes]]:
+    """Yield topic, time and bytes of each message of some topics, in the order of the file."""
+    wanted = {
+        RecordedTopic(name=each.name, type=each.type, encoding=each.encoding, digest=each.digest)
+        for each in topics
+        if each.bag == bag
+    }
+    for topic, nanoseconds, data in Recording(bag).messages(wanted):
+        yield topic.name, nanoseconds, data
 
 
-def _messages(
-    reader: Reader, bag: str, topics: Sequence[Topic]
-) -> Iterator[tuple[str, int, int, bytes]]:
-    """Yield topic, number, time and bytes of each message of some topics."""
-    connections = [each for each in reader.connections if _topic(bag, each) in topics]
-    # rosbags takes an empty list for all connections.
-    if not connections:
-        return
-    numbers: Counter[str] = Counter()
-    for connection, nanoseconds, data in reader.messages(connections=connections):
-        yield connection.topic, numbers[connection.topic], nanoseconds, bytes(data)
-        numbers[connection.topic] += 1
+def _sizes(bag: str, topics: Sequence[Topic]) -> Iterator[tuple[str, array[int], array[int]]]:
+    """Yield the name of each topic, and the times and sizes of its messages."""
+    found: dict[str, tuple[array[int], array[int]]] = {}
+    for topic, nanoseconds, data in _messages(bag, topics):
+        times, sizes = found.setdefault(topic, (array("q"), array("Q")))
+        times.append(min(nanoseconds, (1 << 63) - 1))
+        sizes.append(len(data))
+    for topic, (times, sizes) in found.items():
+        yield topic, times, sizes
 
 
-def _sizes(reader: Reader, bag: str, topics: Sequence[Topic]) -> dict[str, Sequence[int]]:
-    found: dict[str, array[int]] = {}
-    for topic, _, _, data in _messages(reader, bag, topics):
-        found.setdefault(topic, array("Q")).append(len(data))
-    return dict(found)
+def _sorted(times: Sequence[int]) -> Sequence[int]:
+    """Return the places of some times, the earliest first."""
+    if all(map(le, times, islice(times, 1, None))):
+        return range(len(times))
+    return array("Q", sorted(range(len(times)), key=times.__getitem__))
 
 
 def _choose(
@@ -218,32 +228,31 @@ def _spread(numbers: Sequence[int], count: int) -> list[int]:
     return [numbers[index * (len(numbers) - 1) // (count - 1)] for index in range(count)]
 
 
-def _fetch(places: Iterable[_Place], topics: Sequence[Topic]) -> Iterator[RecordedMessage]:
-    wanted = set(places)
-    for bag in dict.fromkeys(topic.bag for topic in topics):
-        mine = {place[1:] for place in wanted if place[0] == bag}
-        if mine:
-            yield from use_recording(bag, partial(_take, bag=bag, topics=topics, wanted=mine))
-
-
-def _take(
-    reader: Reader, bag: str, topics: Sequence[Topic], wanted: set[tuple[str, int]]
-) -> list[RecordedMessage]:
-    found: list[RecordedMessage] = []
-    for topic, number, nanoseconds, data in _messages(reader, bag, topics):
-        if (topic, number) in wanted:
+def _fetch(
+    places: Iterable[_Place],
+    orders: Mapping[tuple[str, str], Sequence[int]],
+    topics: Sequence[Topic],
+) -> Iterator[RecordedMessage]:
+    """Yield messages, recording by recording, in the order of their times."""
+    wanted: dict[str, dict[tuple[str, int], int]] = {}
+    for bag, topic, number in places:
+        wanted.setdefault(bag, {})[topic, orders[bag, topic][number]] = number
+    for bag, numbers in wanted.items():
+        found: list[RecordedMessage] = []
+        seen: Counter[str] = Counter()
+        for topic, nanoseconds, data in _messages(bag, topics):
+            place = topic, seen[topic]
+            seen[topic] += 1
+            if place not in numbers:
+                continue
             found.append(
                 RecordedMessage(
-                    bag=bag,
-                    topic=topic,
-                    number=number,
-                    nanoseconds=nanoseconds,
-                    data=data,
+                    bag=bag, topic=topic, number=numbers[place], nanoseconds=nanoseconds, data=data
                 )
             )
-            if len(found) == len(wanted):
+            if len(found) == len(numbers):
                 break
-    return found
+        yield from sorted(found, key=lambda message: message.nanoseconds)
 
 
 def collect_recorded(
@@ -253,6 +262,7 @@ def collect_recorded(
     *,
     wire: Wire | None,
     problems: dict[str, Diagnostic],
+    depends: Sequence[str] = (),
 ) -> list[TypeUnderTest]:
     """List the types to replay: those that are named, or all types that have topics.
 
@@ -265,7 +275,10 @@ def collect_recorded(
     wire : Wire or None
         The wire format that is asked for.
     problems : dict
-        Receives errors in definitions, by their texts, if no type is named.
+        Receives errors in definitions, by their texts, if no type is named. A type without a
+        definition that can be read is no error, and is only named in the output.
+    depends : sequence of str
+        Folders with the types that the recordings lack.
 
     Raises
     ------
@@ -275,17 +288,21 @@ def collect_recorded(
     UnknownTypeError
         If a named type has no topic, or if the recording has another wire format.
     """
-    library = open_library(distro, bags=bags)
+    library = open_library(distro, bags=bags, depends=depends)
     recorded_wire = WIRE_OF[library.dialect]
     if wire not in (None, recorded_wire):
         raise UnknownTypeError(f"'{bags[0]}' has messages of {recorded_wire}, not of {wire}")
+    if not names:
+        for sentence in library.unusable.values():
+            print(f"note: {sentence}")
     found: dict[str, None] = {}
     wrong: dict[str, Diagnostic] = {} if names else problems
     for kind in dict.fromkeys(topic.type for bag in bags for topic in topics_of(bag)):
         try:
             found[library.message(kind).name] = None
         except DefinitionError as error:
-            wrong.update((str(problem), problem) for problem in error.diagnostics)
+            if kind not in library.unusable:
+                wrong.update((str(problem), problem) for problem in error.diagnostics)
     wanted = list(dict.fromkeys(library.message(name).name for name in names)) or list(found)
     if missing := [name for name in wanted if name not in found]:
         raise UnknownTypeError(

@@ -110,7 +110,8 @@ def _topics(
 ) -> tuple[list[Topic], list[str]]:
     """Return the topics of a type, and lines about topics that are left out.
 
-    A topic is left out if its digest differs from the first digest of the type's topics.
+    A topic is left out if its messages are in another wire format, or if its digest differs from
+    the first digest of the type's topics.
     """
 
     def is_meant(topic: Topic) -> bool:
@@ -120,11 +121,21 @@ def _topics(
             # A definition that cannot be used belongs to another type.
             return False
 
-    mine = [topic for bag in bags for topic in topics_of(bag) if is_meant(topic)]
+    found = [topic for bag in bags for topic in topics_of(bag) if is_meant(topic)]
+    mine = [topic for topic in found if topic.encoding == message.wire]
+    foreign = [
+        f"{topic.name} left out: its messages are in '{topic.encoding}', not in {message.wire}"
+        for topic in found
+        if topic not in mine
+    ]
     digest = next((topic.digest for topic in mine if topic.digest), "")
     others = [topic for topic in mine if topic.digest not in ("", digest)]
     return [topic for topic in mine if topic not in others], [
-        f"{topic.name} left out: its definition is another one ({topic.digest})" for topic in others
+        *foreign,
+        *(
+            f"{each.name} left out: its definition is another one ({each.digest})"
+            for each in others
+        ),
     ]
 
 

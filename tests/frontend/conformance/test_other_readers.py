@@ -57,7 +57,6 @@ STRUCTS = "module p { module msg { struct B { long b; }; struct A { B b; }; }; }
 
 
 def test_schemas_of_other_tools_are_named(tmp_path):
-    # rosbags takes omgidl for ros2idl, and refuses it in a database.
     folder = make_recording(tmp_path, "db3")
     (file,) = folder.glob("*.db3")
     database = sqlite3.connect(file)
@@ -71,7 +70,9 @@ def test_schemas_of_other_tools_are_named(tmp_path):
         # The format is recognised by the heading, so it is removed.
         head = f"{'=' * 80}\nIDL: p/msg/A\n".encode()
         each.write_bytes(each.read_bytes().replace(head, b" " * len(head)))
-    with pytest.raises(DefinitionError, match="defines 'p/msg/A' in 'omgidl', and only ros2msg"):
+    with pytest.raises(
+        DefinitionError, match="'p/msg/A', but not its definition: it is in 'omgidl'"
+    ):
         open_library(bags=[path])
 
 
@@ -79,7 +80,7 @@ def test_scopes_of_idl_in_the_name_of_a_topics_type_are_those_of_omgidl(tmp_path
     (path,) = recorded(tmp_path / "r", "struct W { long b; };", "p/msg//Long").glob("*.mcap")
     data = path.read_bytes().replace(b"p/msg//Long", b"p::msg::Lon")
     path.write_bytes(data.replace(b"ros2msg", b"ros2idl"))
-    message = "defines 'p/msg/Lon' in 'omgidl', and only ros2msg"
+    message = "'p::msg::Lon', but not its definition: it is in 'omgidl', and only ros2msg"
     with pytest.raises(DefinitionError, match=message):
         open_library(bags=[path])
     other = recorded(tmp_path / "other", "int8 a\n")

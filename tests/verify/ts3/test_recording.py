@@ -14,6 +14,7 @@ from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts3 import recording
 from firm_hdl.verify.ts3.recording import Selection, Topic, collect_recorded, select, topics_of
 from firm_hdl.verify.ts3.replay import replay
+from tests.recordings.files import Channel, write_mcap
 from tests.tools import need
 from tests.verify.judged import assert_passed
 from tests.verify.robot import FORMATS, robot, write
@@ -41,7 +42,8 @@ def test_bytes_are_those_that_were_recorded(tmp_path: Path, form: str) -> None:
     messages = robot(form)
     bag = str(write(tmp_path / "run", form, messages))
     name = "my_msgs/msg/Wheels"
-    topics = [topic for topic in topics_of(bag) if topic.type == name]
+    recorded = name.replace("msg/", "") if form.startswith("bag") else name
+    topics = [topic for topic in topics_of(bag) if topic.type == recorded]
     found = select(topics, most=100, longest=EVERYTHING)
     want = [each for each in messages if each[1] == name]
     assert [(m.topic, name, m.nanoseconds, m.data) for m in found.messages] == want
@@ -120,18 +122,21 @@ def test_messages_of_another_type_on_the_same_topic_are_left_out(tmp_path: Path)
     assert (found.total, found.topics) == (2, 1)
 
 
+def test_messages_are_numbered_by_their_times(tmp_path: Path) -> None:
+    times = (30, 10, 20, 1 << 63, 10)
+    messages = tuple((time, bytes([number])) for number, time in enumerate(times))
+    path = write_mcap(tmp_path / "run.mcap", Channel(topic="/a", messages=messages))
+    found = select(topics_of(str(path)), most=9, longest=9)
+    assert [(m.number, m.nanoseconds, m.data[0]) for m in found.messages] == [
+        (0, 10, 1), (1, 10, 4), (2, 20, 2), (3, 30, 0), (4, 1 << 63, 3),
+    ]  # fmt: skip
+
+
 def test_a_topic_without_messages_is_not_counted(tmp_path: Path) -> None:
     messages = [("/a", STRING, number, bytes(5)) for number in range(2)]
     topics = topics_of(str(write(tmp_path / "run", "mcap", messages, [("/never", STRING)])))
     found = select(topics, most=9, longest=9)
     assert (len(topics), found.topics, found.total) == (2, 1, 2)
-
-
-def test_names_of_dds_tools_are_those_of_ros(monkeypatch: pytest.MonkeyPatch) -> None:
-    connection = SimpleNamespace(topic="/a", msgtype="p::msg::A", digest=None)
-    reader = SimpleNamespace(connections=[connection, connection])
-    monkeypatch.setattr(recording, "use_recording", lambda bag, take: take(reader))
-    assert topics_of("x") == [Topic(bag="x", name="/a", type="p/msg/A", digest="")]
 
 
 def test_types_of_all_recordings_are_found_once(tmp_path: Path) -> None:
@@ -166,9 +171,12 @@ def test_what_is_wrong_with_other_types_is_kept(
             raise DefinitionError(wrong[kind])
         return SimpleNamespace(name=kind)
 
-    library = SimpleNamespace(distro="lyrical", dialect="ros2", message=message)
-    topics = [Topic(bag="b", name=f"/{n}", type=n, digest="") for n in (*wrong, "p/msg/Good")]
-    monkeypatch.setattr(recording, "open_library", lambda distro, *, bags: library)
+    library = SimpleNamespace(distro="lyrical", dialect="ros2", message=message, unusable={})
+    topics = [
+        Topic(bag="b", name=f"/{n}", type=n, encoding="cdr", digest="")
+        for n in (*wrong, "p/msg/Good")
+    ]
+    monkeypatch.setattr(recording, "open_library", lambda distro, *, bags, depends: library)
     monkeypatch.setattr(recording, "topics_of", lambda bag: topics)
     monkeypatch.setattr(recording, "too_large", lambda message: [])
     before = Diagnostic(message="it was before")

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import sqlite3
 import struct
+from contextlib import closing
 
 import pytest
 
@@ -18,6 +20,8 @@ from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.ts3.recording import Topic
 from firm_hdl.verify.ts3.replay import replay
 from tests.frontend.recordings import make_old_db3
+from tests.frontend.workspace import make_files
+from tests.recordings.files import Channel, write_db3, write_mcap
 from tests.verify.judged import assert_passed
 from tests.verify.robot import FORMATS, robot, write
 from tests.verify.ts3.test_acceptance import BadByte, BadLeaf
@@ -42,6 +46,59 @@ def strings(tmp_path, *packets, name=STRING, topic="/text", form="mcap"):
 
 def replayed(bag, name=STRING, distro="lyrical", **options):
     return replay(distro, name, Options(bags=(str(bag),), **options))
+
+
+def test_events_are_replayed_and_topics_that_cannot_be_are_named(capsys, tmp_path):
+    event = struct.pack("<I", 256) + struct.pack(
+        "<B3xiI16s4xqI4xqqI", 1, 5, 6, bytes(range(16)), 7, 1, 2, 3, 0
+    )
+    assert len(event) == 72
+    bag = write_db3(
+        tmp_path / "run.db3",
+        # rosbag2 names the definition by the service.
+        Channel(
+            topic="/add/_service_event",
+            type="p/srv/Add_Event",
+            schema="p/srv/Add",
+            text="int64 a\nint64 b\n---\nint64 sum\n",
+            messages=((1, event),),
+        ),
+        Channel(topic="/scene", type="foxglove.SceneUpdate", language="protobuf", text=b"\xff"),
+        Channel(topic="/s", messages=((2, TEXT),)),
+        Channel(topic="/json", wire="json", messages=((3, b"{}"),)),
+    )
+    status, output = run(capsys, "--bag", bag)
+    assert (status, output.err) == (0, "")
+    assert (
+        f"note: '{bag}' has a topic of type 'foxglove.SceneUpdate', but not its definition: it is "
+        "in 'protobuf', and only ros2msg and ros2idl are read\n"
+    ) in output.out
+    assert "p/srv/Add_Event (jazzy): 1 of 1 messages of 1 topic replayed\n" in output.out
+    assert (
+        "std_msgs/msg/String (jazzy): 1 of 1 messages of 1 topic replayed; /json left out: its "
+        "messages are in 'json', not in cdr\n"
+    ) in output.out
+
+
+def test_types_that_a_recording_lacks_come_from_a_distribution_and_a_folder(capsys, tmp_path):
+    bag = make_old_db3(tmp_path / "old.db3", [STRING, "p/msg/A", "p/msg/B"])
+    with closing(sqlite3.connect(bag)) as database, database:
+        rows = [(1, 1, TEXT), (2, 2, TEXT), (3, 3, TEXT)]
+        database.executemany(
+            "INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)", rows
+        )
+    folder = make_files(tmp_path / "p", {"msg/A.msg": "string text\n"})
+    given = ["--distro", "humble", "--depends", folder]
+    status, output = run(capsys, "--bag", bag, *given)
+    assert (status, output.err) == (0, "")
+    assert "type 'p/msg/B', but not its definition: none was recorded; " in output.out
+    assert "humble      2 of    2 types pass" in output.out
+    # What repeats a test names the folder, too.
+    options = Options(bags=(str(bag),), paths=(str(folder),))
+    command = replay("humble", "p/msg/B", options).command
+    assert command.startswith(f"firm-hdl verify --distro humble --bag {bag} --depends {folder} ")
+    status, output = run(capsys, "--bag", bag, *given, "p/msg/B")
+    assert status == 1 and "name a folder that has it with --depends" in output.err
 
 
 @pytest.mark.parametrize("form", FORMATS)
@@ -263,27 +320,23 @@ def test_several_recordings_are_replayed_together(capsys, tmp_path):
     assert f"    {two}: /b message 0 at 0.000000002: its 11 bytes do not fit" in output.out
 
 
-def test_topics_with_another_definition_are_left_out(monkeypatch, tmp_path):
-    messages = [("/a", STRING, 1, TEXT), ("/b", STRING, 2, b"other")]
-    bag = write(tmp_path / "run", "mcap", messages)
-    original = replay_module.topics_of
-
-    def topics_of(path):
-        a, b = original(path)
-        return [a, type(b)(bag=b.bag, name=b.name, type=b.type, digest="RIHS01_other")]
-
-    monkeypatch.setattr(replay_module, "topics_of", topics_of)
+def test_topics_with_another_definition_are_left_out(tmp_path):
+    one, other = ({"topic_type_hash": f"RIHS01_{number}"} for number in (1, 2))
+    bag = write_mcap(
+        tmp_path / "run.mcap",
+        Channel(topic="/a", metadata=one, messages=((1, TEXT),)),
+        Channel(topic="/b", metadata=other, messages=((2, b"other"),)),
+    )
     result = replayed(bag)
     assert_passed(result)
     assert result.note == (
-        "1 of 1 messages of 1 topic replayed; /b left out: its definition is another one "
-        "(RIHS01_other)"
+        "1 of 1 messages of 1 topic replayed; /b left out: its definition is another one (RIHS01_2)"
     )
 
 
 def test_a_topic_without_a_digest_has_the_definition_of_the_others(monkeypatch):
     def topic(name, digest):
-        return Topic(bag="b", name=name, type=STRING, digest=digest)
+        return Topic(bag="b", name=name, type=STRING, encoding="cdr", digest=digest)
 
     topics = [topic("/a", ""), topic("/b", "RIHS01_1"), topic("/c", ""), topic("/d", "RIHS01_2")]
     monkeypatch.setattr(replay_module, "topics_of", lambda bag: topics)
@@ -362,7 +415,9 @@ def test_longest_message_is_of_recordings(capsys):
 def test_unusable_recordings_are_an_error(capsys, tmp_path):
     bag = strings(tmp_path, TEXT)
     missing = tmp_path / "none.bag"
-    assert run(capsys, "--bag", missing)[1].err == f"error: '{missing}' does not exist\n"
+    assert run(capsys, "--bag", missing)[1].err == (
+        f"error: '{missing}' cannot be read: No such file or directory\n"
+    )
     old = make_old_db3(tmp_path / "old.db3", [STRING])
     status, output = run(capsys, "--bag", old)
     assert status == 1 and output.out == ""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bz2
 import sqlite3
 import struct
+import sys
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
@@ -12,16 +13,18 @@ from typing import Any
 
 import lz4.frame
 from rosbags.rosbag1 import Writer as Writer1
-from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, storage_mcap
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
+
+if sys.version_info >= (3, 14):
+    from compression import zstd
+else:
+    from backports import zstd
 
 __all__ = ["BOMBS"]
 
 _MAGIC = b"\x89MCAP0\r\n"
 _PIECE = bytes(1 << 20)
-
-# The module that rosbags uses; it depends on the version of Python.
-_zstd: Any = storage_mcap.zstd
 
 
 def _zeros(open_: Callable[..., Any], count: int) -> bytes:
@@ -49,13 +52,13 @@ def _mcap(path: Path, chunks: list[bytes], size: int, compression: str) -> Path:
 
 
 def _zstd_mcap(folder: Path, count: int) -> Path:
-    return _mcap(folder / "x.mcap", [_zeros(_zstd.open, count)], count, "zstd")
+    return _mcap(folder / "x.mcap", [_zeros(zstd.open, count)], count, "zstd")
 
 
 def _chunked_mcap(folder: Path, count: int) -> Path:
     # A record of no known kind, filled with zeros.
     chunk = b"\xff" + struct.pack("<Q", (1 << 20) - 9) + bytes((1 << 20) - 9)
-    return _mcap(folder / "x.mcap", [_zstd.compress(chunk)] * (count >> 20), 1 << 20, "zstd")
+    return _mcap(folder / "x.mcap", [zstd.compress(chunk)] * (count >> 20), 1 << 20, "zstd")
 
 
 def _lz4_mcap(folder: Path, count: int) -> Path:
@@ -71,6 +74,9 @@ def _bag(folder: Path, count: int, compression: str, open_: Callable[..., Any]) 
     with writer:
         connection = writer.add_connection("/t", "p/msg/A", msgdef="int8 a\n", md5sum="0" * 32)
         writer.write(connection, 1, b"\1")
+    data = path.read_bytes()
+    place = data.index(b"size=") + len(b"size=")
+    path.write_bytes(data[:place] + struct.pack("<I", count) + data[place + 4 :])
     return path
 
 
@@ -90,7 +96,7 @@ def _compressed_database(folder: Path, count: int) -> Path:
     (file,) = path.glob("*.zstd")
     # A database may have any bytes after its end.
     with file.open("ab") as end:
-        end.write(_zeros(_zstd.open, count))
+        end.write(_zeros(zstd.open, count))
     return path
 
 
@@ -98,7 +104,7 @@ def _compressed_message(folder: Path, count: int) -> Path:
     path = _database(folder, CompressionMode.MESSAGE)
     (file,) = path.glob("*.db3")
     with sqlite3.connect(file) as database:
-        database.execute("UPDATE messages SET data = ?", (_zeros(_zstd.open, count),))
+        database.execute("UPDATE messages SET data = ?", (_zeros(zstd.open, count),))
     database.close()
     return path
 
