@@ -55,7 +55,7 @@ class McapFile:
         end = Cursor(file, size - max(0, footer))
         head, summary, _, magic = end.take(9), end.number(8), end.take(12), end.take(end.left)
         if head != _FOOTER or magic != MAGIC:
-            raise UnreadableError("it is incomplete: it does not end like an MCAP file")
+            raise UnreadableError("it is incomplete, which 'mcap recover' may mend")
         if summary and not len(MAGIC) <= summary <= footer:
             raise UnreadableError("it is damaged or incomplete")
         self._end = summary or footer
