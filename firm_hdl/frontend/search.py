@@ -14,7 +14,7 @@ from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.library import Library
 from firm_hdl.frontend.recordings import RecordingOrigin
-from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin
+from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Origin
 from firm_hdl.model import Dialect, Message
 from firm_hdl.wire import refusals
 

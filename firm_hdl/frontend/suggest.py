@@ -44,9 +44,8 @@ def unknown_type(sources: Sources, names: Sequence[TypeName]) -> str:
                 f", which is taken from '{place.where}' and hides that of '{hidden.where}', where "
                 "the type is; as in ROS, a package comes from one place as a whole"
             )
-        message += _unread(sources, place)
     else:
-        message = f"package '{clip(package)}' is not found"
+        message, place = f"package '{clip(package)}' is not found", None
     if sources.has_implied:
         return (
             f"{message}; the recording lacks it: name a folder that has it with --depends, or a "
@@ -57,7 +56,7 @@ def unknown_type(sources: Sources, names: Sequence[TypeName]) -> str:
             "; this ROS package does not come with firm-hdl: name a folder that has it with "
             "--path, or source the setup file of an installation that does"
         )
-    return message + _unread(sources, None)
+    return message + _unread(sources, place)
 
 
 def _unread(sources: Sources, place: PackagePlace | None) -> str:
