@@ -10,7 +10,7 @@
 3. ``unfinished`` has the sums of our files from before. So the next build after a kill knows all
    our files, old or new, and completes the folder.
 4. Only the path that the user named may have links. Below, each folder is opened in the one above
-   it, without following links, and a design's subfolders have to be on the mount of its folder.
+   it, without following links, and on the same mount.
 5. A manifest may come from anyone: it deletes no file whose name is not like those of firm-hdl.
 6. One build at a time writes. The lock is on the folder itself: it leaves no file, and ends with
    its process. Folders are never replaced, so programs in them can stay there.
@@ -44,6 +44,7 @@ LOCK_SECONDS = 60.0
 _UNFINISHED = "unfinished"
 _TEMPORARY = re.compile(r"\.firm-hdl-[0-9a-f]{16}\.tmp")
 _MOST_BYTES = 1 << 28
+_MOST_NAME = 300
 
 _OURS = (
     r"((vhdl|systemverilog)/)?(Makefile|((tb_)?DESIGN\w*|firm_hdl_\w+|\w+_(cdr|ros1)_\d+\w*_pkg|"
@@ -193,7 +194,8 @@ def _known(old: Mapping[str, Any], new: Mapping[str, str], design: str) -> dict[
     known: dict[str, set[str]] = {}
     for key in ("files", _UNFINISHED):
         for name, value in old.get(key, {}).items():
-            if name in new or (ours.fullmatch(name) and name.casefold() not in folded):
+            is_ours = len(name) <= _MOST_NAME and ours.fullmatch(name)
+            if name in new or (is_ours and name.casefold() not in folded):
                 known.setdefault(name, set()).add(value)
     return known
 
@@ -235,8 +237,10 @@ def _opened(out: Path, folder: Path, *, make: bool = False) -> Iterator[int]:
         root = os.open(out, os.O_RDONLY | os.O_DIRECTORY)
         stack.callback(os.close, root)
         for part in folder.relative_to(out).parts:
-            root = _enter(root, part, make=make)
+            above, root = root, _enter(root, part, make=make)
             stack.callback(os.close, root)
+            if _mount(root) != _mount(above):
+                raise _InTheWayError(part)
         yield root
 
 
@@ -319,6 +323,10 @@ def _manifest_to_replace(root: int, folder: Path) -> dict[str, Any]:
     is_new = all(_TEMPORARY.fullmatch(name) for name in os.listdir(root))
     found = _manifest(root)
     if found is None and not is_new:
+        with suppress(FileNotFoundError):
+            is_file = stat.S_ISREG(os.stat(MANIFEST, dir_fd=root, follow_symlinks=False).st_mode)
+            if is_file and not os.access(MANIFEST, os.R_OK, dir_fd=root):
+                raise PermissionError(errno.EACCES, "its manifest cannot be read", MANIFEST)
         raise BuildError(f"'{folder}' is not a folder that firm-hdl made; move it away")
     return found or {}
 

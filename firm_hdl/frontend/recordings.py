@@ -20,7 +20,7 @@ from firm_hdl.frontend.parse import is_type_name
 from firm_hdl.frontend.recorded_idl import MAX_COPIED, structs_of
 from firm_hdl.frontend.sources import Definition, Language, Origin, PackagePlace
 from firm_hdl.model import Dialect
-from firm_hdl.recordings import MAX_TEXT_BYTES, MAX_TOPICS, Recording, Schema
+from firm_hdl.recordings import MAX_TEXT_BYTES, MAX_TOPICS, Recording, Schema, Topic
 
 __all__ = ["RecordingOrigin"]
 
@@ -95,12 +95,15 @@ class RecordingOrigin:
         others = list(others)
         self.unusable: dict[str, str] = {}
         self._refused: dict[_Name, str] = {}
-        for type_ in dict.fromkeys(topic.type for topic in recording.topics):
+        first: dict[str, Topic] = {}
+        for topic in recording.topics:
+            first.setdefault(topic.type, topic)
+        for type_, topic in first.items():
             name, reason = self._name(type_), reasons.get(type_, _NOT_RECORDED)
             if name is not None and not self._has(name) and reason == _NOT_RECORDED:
                 reason = self._look_up(name, others)
             if name is None or not self._has(name):
-                self.unusable[type_] = self._sentence(type_, name, reason)
+                self.unusable[type_] = self._sentence(topic, name, reason)
                 # DDS tools write scopes of IDL, which users would not.
                 name = self._name(type_.replace("::", "/"))
                 if name is not None:
@@ -229,9 +232,11 @@ class RecordingOrigin:
                     return ""
         return _NOT_RECORDED
 
-    def _sentence(self, type_: str, name: _Name | None, reason: str) -> str:
+    def _sentence(self, topic: Topic, name: _Name | None, reason: str) -> str:
         """Say why the type of a topic cannot be used."""
-        start = f"'{self.path}' has a topic of type '{clip(type_)}'"
+        if not topic.type:
+            return f"'{self.path}' has a topic '{clip(topic.name)}' without a type"
+        start = f"'{self.path}' has a topic of type '{clip(topic.type)}'"
         if name is None and reason in ("", _NOT_RECORDED):
             return f"{start}, which is not the name of a type"
         return f"{start}, but not its definition: {reason or 'the recorded text is of other types'}"

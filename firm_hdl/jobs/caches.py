@@ -30,6 +30,8 @@ __all__ = ["cache_folder", "kept_program", "private_folder"]
 _KEPT_SECONDS = 30 * 24 * 3600.0
 # Programs, and those that were being written when a process was killed.
 _NAME = re.compile(r"[a-z]+-[0-9a-f]{64}(\.[a-z0-9_]+)?")
+# Folders of tools that keep what they have compiled, and run it, where we say.
+_OF_OTHERS = "wasmtime", "zig"
 _OTHERS = stat.S_IWGRP | stat.S_IWOTH
 _log = logging.getLogger(__name__)
 
@@ -79,13 +81,18 @@ def private_folder(folder: Path) -> Path:
 def cache_folder() -> Path:
     """Return the user's folder of compiled programs, or a temporary one if it cannot be used."""
     base = os.environ.get("XDG_CACHE_HOME", "")
-    # By the specification of XDG, a relative path does not count.
-    if not os.path.isabs(base):
-        base = os.path.expanduser("~/.cache")
     try:
+        # By the specification of XDG, a relative path does not count.
         if not os.path.isabs(base):
-            raise FileNotFoundError(errno.ENOENT, "there is no such folder", base)
-        return private_folder(Path(base, "firm-hdl", "programs"))
+            home = os.environ.get("HOME", os.path.expanduser("~"))
+            if not (os.path.isabs(home) and os.path.isdir(home)):
+                # A home is never made.
+                raise FileNotFoundError(errno.ENOENT, "there is no such folder", home or "HOME")
+            base = os.path.join(home, ".cache")
+        folder = private_folder(Path(base, "firm-hdl", "programs"))
+        for name in _OF_OTHERS:
+            private_folder(folder / name)
+        return folder
     except OSError as error:
         return _temporary_folder(f"{error.filename}: {error.strerror}")
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from difflib import get_close_matches
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import yaml
 from yaml.constructor import SafeConstructor
@@ -38,6 +38,9 @@ _MOST_DIGITS = 64
 """Most characters of a number. None that is in range needs more."""
 
 _MOST_SHOWN = 400
+
+_MOST_LEVELS = 100
+_TOO_DEEP = "nested too deep"
 """Most characters of a message, which may quote any text."""
 
 
@@ -266,6 +269,26 @@ def _shortened(message: str) -> str:
     return message if len(message) <= _MOST_SHOWN else f"{message[:half]} ... {message[-half:]}"
 
 
+class _Loader(yaml.SafeLoader):
+    """The loader in Python, which counts characters, as spans do.
+
+    Each level of a nested text costs time for each token in it, so their number is limited.
+    """
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self._levels = 0
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        self._levels += 1
+        if self._levels > _MOST_LEVELS:
+            mark = self.peek_event().start_mark
+            raise yaml.MarkedYAMLError(problem=_TOO_DEEP, problem_mark=mark)
+        node = super().compose_node(parent, index)
+        self._levels -= 1
+        return node
+
+
 def parse(source: Source) -> tuple[Marked, yaml.Node]:
     """Parse a text.
 
@@ -276,8 +299,7 @@ def parse(source: Source) -> tuple[Marked, yaml.Node]:
     """
     marked = Marked(source)
     try:
-        # The loader in Python: it counts characters, as spans do.
-        loader = yaml.SafeLoader(source.text)
+        loader = _Loader(source.text)
     except yaml.reader.ReaderError as error:
         raise _failure(source, error.position, f"not YAML: {error.reason}") from None
     try:
@@ -285,15 +307,11 @@ def parse(source: Source) -> tuple[Marked, yaml.Node]:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         at = loader.index if mark is None else mark.index
-        raise _failure(source, at, f"not YAML: {error.problem}") from None
+        what = "not a description" if error.problem == _TOO_DEEP else "not YAML"
+        raise _failure(source, at, f"{what}: {error.problem}") from None
     except (ValueError, OverflowError):
         # Python's own, such as for a character with a code that there is not.
         raise _failure(source, loader.index, "not YAML: a number is out of range") from None
-    except RecursionError:
-        # The scanner is ahead.
-        event = loader.current_event
-        at = loader.index if event is None else event.start_mark.index
-        raise _failure(source, at, "not a description: nested too deep") from None
     if node is None:
         raise _failure(source, 0, "a description must not be empty")
     return marked, node

@@ -79,6 +79,9 @@ class BagFile:
             raise UnreadableError(f"it has more than {MAX_TOPICS} connections")
         type_ = word_of(fields.get(b"type"))
         # A subscriber to any type has `*` for its sum.
+        if type_ == "roslib/Header":
+            # Before std_msgs had it; genmsg reads both names as one.
+            type_ = "std_msgs/Header"
         digest = word_of(fields.get(b"md5sum")).replace("*", "")
         text = fields.get(b"message_definition", b"")
         self._budget.keep(len(text or b""))

@@ -198,6 +198,8 @@ def test_a_manifest_of_others_deletes_only_what_firm_hdl_could_have_written(fold
     (folder / "loop").symlink_to(folder.parent)
     names += ["../thesis.tex", str(outside), "vhdl/../../thesis.tex", "loop/thesis.tex"]
     names += ["vhdl//T.vhd", "./plan.yaml", "..", ".", "", "/", "T\0.v", "T\ud800.v", "T" * 300]
+    # Such a name would keep the pattern of our names busy for hours.
+    names += [f"a_cdr_{'1' * 500_000}!"]
     made = json.loads((folder / "manifest.json").read_text())
     made["files"] |= dict.fromkeys(names, digest("mine"))
     (folder / "manifest.json").write_text(json.dumps(made))
@@ -236,6 +238,8 @@ def test_mounts_in_a_folder_are_not_entered(folder, tmp_path):
         mount --bind {other} {folder}/vhdl
         mount --bind {other}/../plan.yaml {folder}/plan.yaml
         mount -t tmpfs none {folder}/systemverilog
+        mkdir {folder}/../whole
+        mount --bind {other} {folder}/../whole
         exec {python} -c "
         from pathlib import Path
         from tests.export.strikes import build, write
@@ -245,6 +249,10 @@ def test_mounts_in_a_folder_are_not_entered(folder, tmp_path):
             except Exception as error:
                 print(str(error).rpartition(' ')[2])
         print(write(Path('{folder}'), {{}}))
+        try:
+            build(Path('{folder}').with_name('whole'), 0)
+        except Exception as error:
+            print(error)
         "
     """
     other = tmp_path / "other"
@@ -254,9 +262,10 @@ def test_mounts_in_a_folder_are_not_entered(folder, tmp_path):
     unshare = shutil.which("unshare")
     if unshare is None or subprocess.run([unshare, "-rm", "true"], check=False).returncode:
         pytest.skip("nothing can be mounted here")
-    *named, kept = run(unshare, "-rm", "sh", "-ec", text).splitlines()
+    *named, kept, whole = run(unshare, "-rm", "sh", "-ec", text).splitlines()
     assert named == ["vhdl", "plan.yaml", "systemverilog"]
     assert kept == "('plan.yaml', 'systemverilog', 'vhdl')"
+    assert whole.endswith("cannot be written: something of yours is in the way ('whole')")
     assert tree(other) == {"T.vhd": texts(0)["vhdl/T.vhd"], "T_old.vhd": texts(0)["vhdl/T_old.vhd"]}
 
 

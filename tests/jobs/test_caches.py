@@ -158,8 +158,11 @@ def test_programs_are_kept_in_the_home_of_the_user(home, monkeypatch, variable):
 @pytest.mark.parametrize(
     ("variables", "named"),
     [
-        ({"HOME": "/dev/null"}, "/dev/null: it is not a folder"),
-        ({"HOME": "nowhere"}, "nowhere/.cache: there is no such folder"),
+        ({"HOME": "/dev/null"}, "/dev/null: there is no such folder"),
+        ({"HOME": "nowhere"}, "nowhere: there is no such folder"),
+        # A home is never made.
+        ({"HOME": "{folder}/nowhere"}, "{folder}/nowhere: there is no such folder"),
+        ({"HOME": ""}, "HOME: there is no such folder"),
         ({"XDG_CACHE_HOME": "/proc/nowhere"}, "/proc/nowhere: No such file or directory"),
         (
             {"XDG_CACHE_HOME": "{folder}/open"},
@@ -177,6 +180,15 @@ def test_without_a_home_programs_are_kept_until_the_process_ends(
     assert program.is_relative_to(home.parent / "temporary")
     (message,) = caplog.messages
     assert message.endswith(named.format(folder=home.parent))
+
+
+@pytest.mark.parametrize("tool", ["wasmtime", "zig"])
+def test_the_caches_of_tools_are_no_links(home, caplog, tool):
+    private_folder(home / ".cache" / "firm-hdl" / "programs")
+    link = home / ".cache" / "firm-hdl" / "programs" / tool
+    link.symlink_to(home.parent / "open")
+    assert cache_folder().is_relative_to(home.parent / "temporary")
+    assert caplog.messages[0].endswith(f"{link}: it is a link")
 
 
 def test_a_program_that_cannot_be_kept_is_returned_all_the_same(kept, home, caplog):

@@ -111,7 +111,7 @@ def test_names_are_completed_as_ros_does():
         ("", "1:1: error: a description must not be empty"),
         ("- x", "1:1: error: a description must be a mapping of names to values, not a list"),
         ("a: [", "1:5: error: not YAML"),
-        ("[" * 9999, "error: not a description: nested too deep\n...[[["),
+        ("[" * 99_999, "1:101: error: not a description: nested too deep\n[[["),
         ('"\\UFFFFFFFF"', "1:4: error: not YAML: a number is out of range"),
         (f"%YAML {'1' * 5000}.1\n---\n", "1:7: error: not YAML: a number is out of range"),
         ("node: \x01", "1:7: error: not YAML: special characters are not allowed"),

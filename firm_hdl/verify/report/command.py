@@ -77,6 +77,9 @@ def write_report(
     if form not in FORMATS:
         ends = ", ".join(f".{name}" for name in FORMATS)
         raise BuildError(f"'{out}': the name of a report must end in {ends}, or give --format")
+    for each in results:
+        if path.exists() and path.samefile(each):
+            raise BuildError(f"'{out}' is one of the results; the report needs another name")
     text = _made(results, form, title)
     write_file(path, text)
 

@@ -172,7 +172,7 @@ def test_one_topic_does_not_make_the_others_unusable(tmp_path, write, language, 
         assert str(error.value) == f"error: {sentence}"
 
 
-@pytest.mark.parametrize("name", ["*", "", "String", "std_msgs/*", "p/msg/a-b", "-/x", "a/b/c/d"])
+@pytest.mark.parametrize("name", ["*", "String", "std_msgs/*", "p/msg/a-b", "-/x", "a/b/c/d"])
 def test_names_that_are_no_types_are_listed_as_unusable(tmp_path, capsys, name):
     path = write_bag(
         tmp_path / "x.bag", Channel(type="std_msgs/String"), Channel(type=name, text="")
@@ -206,6 +206,21 @@ def test_the_header_of_roslib_is_that_of_std_msgs(tmp_path, written, recorded):
     ours = open_library(bags=[path])
     assert ours.names() == ["p/A", "std_msgs/Header"]
     assert fields(ours, "p/A") == [("header", "std_msgs/Header")]
+
+
+def test_a_topic_of_the_header_of_roslib(tmp_path):
+    path = write_bag(tmp_path / "x.bag", Channel(type="roslib/Header", text="uint32 seq"))
+    ours = open_library(bags=[path])
+    assert ours.names() == ["std_msgs/Header"]
+    assert fields(ours, "std_msgs/Header") == [("seq", "uint32")]
+
+
+def test_a_topic_without_a_type_is_named(tmp_path):
+    channel = Channel(type="", topic="/chat", language="")
+    path = write_mcap(tmp_path / "x.mcap", channel, Channel(type="std_msgs/msg/String"))
+    assert list(open_library(bags=[path]).unusable.values()) == [
+        f"'{path}' has a topic '/chat' without a type"
+    ]
 
 
 def test_mcap_of_ros1_has_types_of_ros1(tmp_path):

@@ -7,6 +7,7 @@ import math
 
 import pytest
 
+from firm_hdl.export.build import BuildError
 from firm_hdl.verify.report import html, markdown
 from firm_hdl.verify.report.as_json import to_json
 from firm_hdl.verify.report.command import write_report
@@ -217,6 +218,8 @@ def test_the_form_of_a_report_is_that_of_its_name_in_any_case(tmp_path):
     out.symlink_to("elsewhere")
     write_report([path], out)
     assert out.is_symlink() and (tmp_path / "elsewhere").read_text().startswith("{")
+    with pytest.raises(BuildError, match="is one of the results; the report needs another name"):
+        write_report([path], path, "md")
 
 
 def test_a_bar_is_in_pages_only_and_a_number_may_have_a_colour():
