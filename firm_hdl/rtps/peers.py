@@ -20,6 +20,8 @@ __all__ = ["Peer", "Route"]
 _PER_BYTE, _MOST_CREDIT = 3, 1 << 20
 # Histories that late readers of one peer get at once, and how many more in a second.
 _HISTORIES, _HISTORIES_PER_SECOND = 64, 1.0
+# Choices among addresses that are remembered: most endpoints name the same ones.
+_MOST_FOUND = 64
 # Addresses that are tried as long as none of them is known to be the peer's.
 _MOST_ADDRESSES = 4
 # Seconds without a sign of life by one way before another one is taken.
@@ -106,6 +108,8 @@ class Peer:
         """
         found = self._found.get(addresses)
         if found is None:
+            if len(self._found) >= _MOST_FOUND:
+                self._found.clear()
             found = self._found[addresses] = self._choose(addresses)
         return found
 
