@@ -12,14 +12,23 @@ from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.octets import Cursor, MalformedError
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid, string
 
-__all__ = ["EndpointData", "ParticipantData", "key_of", "key_payload"]
+__all__ = [
+    "MOST_USER_DATA",
+    "EndpointData",
+    "ParticipantData",
+    "check_owner",
+    "key_of",
+    "key_payload",
+]
+
+MOST_USER_DATA = 4096
+"""Most bytes of what a participant or an endpoint announces in addition."""
 
 # 9.3.2, BuiltinEndpointSet_t: writer and reader of SPDP, and of SEDP's publications and
 # subscriptions. Those of publications and of subscriptions are bits 2 to 5.
 _BUILTIN_ENDPOINTS = 0x3F
 # 9.6.2.2.2: the lease of a participant that announces none.
 _DEFAULT_LEASE = 100.0
-_MAX_USER_DATA = 4096
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -170,6 +179,18 @@ class EndpointData:
         )
 
 
+def check_owner(prefix: bytes, source: bytes) -> None:
+    """Check that a participant announces, or ends, only what is its own.
+
+    Raises
+    ------
+    MalformedError
+        The GUID prefix of what it speaks of is not that of `source`.
+    """
+    if prefix != source:
+        raise MalformedError(f"an announcement of {prefix.hex()} by {source.hex()}")
+
+
 def key_of(payload: bytes | None, inline: ParameterList, pid: int) -> Guid | None:
     """Return the GUID that a DATA without sample is about, such as the end of an endpoint.
 
@@ -202,6 +223,6 @@ def _read_user_data(parameters: ParameterList) -> bytes:
     if value is None:
         return b""
     size = value.u32()
-    if size > _MAX_USER_DATA:
+    if size > MOST_USER_DATA:
         raise MalformedError(f"user data of {size} bytes")
     return value.take(size)

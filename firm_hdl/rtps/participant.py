@@ -18,7 +18,7 @@ from typing import TypeAlias
 
 from firm_hdl.rtps.backlog import MOST_SAMPLE_BYTES
 from firm_hdl.rtps.core import Core
-from firm_hdl.rtps.discovery import EndpointData, ParticipantData
+from firm_hdl.rtps.discovery import MOST_USER_DATA, EndpointData, ParticipantData
 from firm_hdl.rtps.endpoints import (
     ClosedError,
     DataReader,
@@ -173,6 +173,11 @@ class Participant:
         """What came and went, and what was refused; docs/rtps.md explains each of them."""
         with self._lock:
             return Counter(self._core.counters)
+
+    def count(self, name: str) -> None:
+        """Add one to a counter."""
+        with self._lock:
+            self._core.counters[name] += 1
 
     def remotes(self, writers: bool) -> tuple[EndpointData, ...]:
         """Return the writers or the readers of all peers."""
@@ -377,6 +382,9 @@ class Participant:
     def _flush(self, everything: bool = False) -> float:
         """Send what may be sent now. Return seconds until more may be."""
         now = time.monotonic()
+        if self._core.events and not self._in_callback():
+            # Such as a sample for a reader of this participant.
+            self._wake()
         while self._core.outbox:
             wait = 0.0 if everything else self._pacer.wait(now)
             if wait > 0:
@@ -478,6 +486,8 @@ def _checked(topic: str, type_name: str, qos: Qos | None, user_data: bytes) -> Q
             )
     if not isinstance(user_data, bytes):
         raise TypeError(f"user data is bytes, not {user_data!r}")
+    if len(user_data) > MOST_USER_DATA:
+        raise ValueError(f"user data has at most {MOST_USER_DATA} bytes, not {len(user_data)}")
     if qos is not None and not isinstance(qos, Qos):
         hint = f": Qos(depth={qos}) is one with a depth" if isinstance(qos, int) else ""
         raise TypeError(f"qos is a Qos, not {qos!r}{hint}")

@@ -2,8 +2,8 @@
 
 A peer names its own addresses, and nobody proves that they are its own. So a peer has a credit:
 what it asks for is sent as long as it is not many times what it has sent itself. RFC 9000, 8.1, has
-the same rule for QUIC. Samples that a writer sends without being asked cost nothing; they add the
-credit for their repair.
+the same rule for QUIC. Samples that a writer sends without being asked cost nothing, and readers
+may ask for them again, but not without end (:mod:`firm_hdl.rtps.writer`).
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from firm_hdl.rtps.wire.locators import Address, distance
 
 __all__ = ["Peer", "Route"]
 
-# Bytes that a peer may cost for each byte that came from it, and for each byte of a sample.
-_PER_BYTE, _PER_SAMPLE_BYTE = 3, 2
-# Credit that is kept for later, unless a single sample is larger.
-_MOST_CREDIT = 1 << 20
+# Bytes that a peer may cost for each byte that came from it, and how many are kept for later.
+_PER_BYTE, _MOST_CREDIT = 3, 1 << 20
 # Histories that late readers of one peer get at once, and how many more in a second.
 _HISTORIES, _HISTORIES_PER_SECOND = 64, 1.0
+# Choices among addresses that are remembered: most endpoints name the same ones.
+_MOST_FOUND = 64
 # Addresses that are tried as long as none of them is known to be the peer's.
 _MOST_ADDRESSES = 4
 # Seconds without a sign of life by one way before another one is taken.
@@ -67,7 +67,7 @@ class Peer:
     def hear(self, host: str | None, size: int, now: float) -> None:
         """Note that a datagram of `size` bytes came from it, and from which host."""
         self.heard_at = now
-        self._earn(_PER_BYTE * size)
+        self.credit = min(self.credit + _PER_BYTE * size, max(self.credit, _MOST_CREDIT))
         if host == self._way or self._way is None or now - self._way_at >= _PATIENCE:
             named = (*self.data.discovery, *self.data.user)
             if any(each.host == host for each in named):
@@ -85,18 +85,15 @@ class Peer:
         self.credit -= size
         return True
 
-    def allow_sample(self, size: int) -> None:
-        """Allow it to ask for a sample of `size` bytes again."""
-        self._earn(_PER_SAMPLE_BYTE * size)
-
-    def allow_history(self, size: int, now: float) -> None:
-        """Allow one of its readers to ask for a history of `size` bytes."""
+    def may_have_history(self, now: float) -> bool:
+        """Whether one more of its readers may ask for a history."""
         gained = (now - self._histories_at) * _HISTORIES_PER_SECOND
         self._histories = min(_HISTORIES, self._histories + gained)
         self._histories_at = now
-        if self._histories >= 1:
-            self._histories -= 1
-            self.allow_sample(size)
+        if self._histories < 1:
+            return False
+        self._histories -= 1
+        return True
 
     def ways(self, addresses: tuple[Address, ...]) -> Ways:
         """Choose among its addresses, or those of one of its endpoints.
@@ -111,6 +108,8 @@ class Peer:
         """
         found = self._found.get(addresses)
         if found is None:
+            if len(self._found) >= _MOST_FOUND:
+                self._found.clear()
             found = self._found[addresses] = self._choose(addresses)
         return found
 
@@ -124,9 +123,6 @@ class Peer:
         if self.host is None or self.host.startswith("127."):
             return tuple(nearest[:1]), True
         return tuple(nearest[:_MOST_ADDRESSES]), False
-
-    def _earn(self, size: int) -> None:
-        self.credit = min(self.credit + size, max(self.credit, _MOST_CREDIT, size))
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,13 +147,3 @@ class Route:
         """Return where to send, and whether that is known to be the peer's; see `Peer.ways`."""
         data = self.peer.data
         return self.peer.ways(self.own or (data.discovery if self.discovery else data.user))
-
-    def allow_sample(self, size: int) -> None:
-        """Allow the peer to ask for a sample again, if it is where it says."""
-        if self.ways()[1]:
-            self.peer.allow_sample(size)
-
-    def allow_history(self, size: int, now: float) -> None:
-        """Allow the peer to ask for a history, if it is where it says."""
-        if self.ways()[1]:
-            self.peer.allow_history(size, now)

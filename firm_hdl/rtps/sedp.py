@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from firm_hdl.rtps.budget import Budget
-from firm_hdl.rtps.discovery import EndpointData, key_of, key_payload
+from firm_hdl.rtps.discovery import EndpointData, check_owner, key_of, key_payload
 from firm_hdl.rtps.events import Event, Incompatible, Matched, PeerFound, PeerLost, Unmatched
 from firm_hdl.rtps.outgoing import Send
 from firm_hdl.rtps.peers import Peer, Route
@@ -266,12 +266,11 @@ class Sedp:
         if data.payload is None or data.key:
             gone = key_of(data.payload, data.inline, Pid.ENDPOINT_GUID)
             if gone is not None:
+                check_owner(gone.prefix, source)
                 self._forget(known, gone)
             return
         remote = EndpointData.decode(data.payload, writer)
-        # A participant announces its own endpoints alone.
-        if remote.guid.prefix != source:
-            return
+        check_owner(remote.guid.prefix, source)
         new = remote.guid not in known.endpoints
         size = _ENDPOINT_BYTES + len(data.payload)
         if new and len(known.endpoints) >= _MAX_ENDPOINTS:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
+from itertools import islice
 from typing import Protocol, TypeAlias
 
-from firm_hdl.rtps.discovery import ParticipantData, key_of, key_payload
+from firm_hdl.rtps.discovery import ParticipantData, check_owner, key_of, key_payload
 from firm_hdl.rtps.peers import Peer, Route
 from firm_hdl.rtps.settings import Settings
 from firm_hdl.rtps.wire.guid import PARTICIPANT, SPDP_READER, SPDP_WRITER, Guid
@@ -20,6 +21,8 @@ DISPOSED = b"\0\0\0\x03"
 """Status of an instance that its writer disposed of and left (9.6.4.9), always big-endian."""
 
 _MOST_PEERS = 256
+# Strangers whose endpoints are asked for at once. The next ones have to say something more first.
+_MOST_STRANGERS = 32
 # A domain has ports for 120 participants of a host (9.6.1.1).
 _MOST_PEERS_OF_HOST = 120
 # Our first announcements come quickly, as some may be lost.
@@ -27,10 +30,10 @@ _QUICK, _QUICK_COUNT = 0.1, 5
 # Seconds of silence after which a peer has no better place than a stranger.
 _QUIET = 10.0
 # An address where a peer may be is tried once in so many announcements.
-_SELDOM = 20
-# A lease of days would keep a dead peer for days; one of microseconds would lose it at once. Peers
-# without endpoints are kept for shorter than others.
-_LEAST_LEASE, _MOST_LEASE, _MOST_LEASE_OF_STRANGER = 1.0, 300.0, 30.0
+_SELDOM = 10
+# A lease of days would keep a dead peer for days; one of microseconds would lose it at once. The
+# default is 100 s (9.6.2.2.2). Peers without endpoints are kept for shorter than others.
+_LEAST_LEASE, _MOST_LEASE, _MOST_LEASE_OF_STRANGER = 1.0, 100.0, 30.0
 # Seconds for which a participant that left is not found again: its farewell may have overtaken an
 # announcement; and how many are remembered.
 _GONE, _MOST_GONE = 1.0, 256
@@ -84,6 +87,17 @@ class Spdp:
         self._tell = tell
         self._counters = Counter[str]() if counters is None else counters
         self._peers: dict[bytes, Peer] = {}
+        # How many there are of each host, and which ones the listener was not told of yet.
+        self._of_host: Counter[str | None] = Counter()
+        self._unmet: set[bytes] = set()
+        # 8.5.3.3.1: a best-effort stateless writer sends its only sample again and again.
+        self._announcement = Data(
+            reader=SPDP_READER,
+            writer=SPDP_WRITER,
+            sequence_number=1,
+            payload=settings.own.encode(),
+            inline=NO_PARAMETERS,
+        )
         self._left: dict[bytes, float] = {}
         self._announce_at = float("-inf")
         self._announced = 0
@@ -102,38 +116,60 @@ class Spdp:
         known = self._peers.get(prefix)
         if known is not None:
             known.hear(host, size, now)
+            if prefix in self._unmet:
+                self._unmet.remove(prefix)
+                self._listener.on_peer(known, now)
 
     def on_data(self, source: bytes, data: Data, host: str | None, now: float) -> None:
-        """Take an announcement, or the news that a participant leaves (8.5.3.3)."""
+        """Take an announcement, or the news that a participant leaves (8.5.3.3).
+
+        Raises
+        ------
+        MalformedError
+            It is not valid, or is about another participant.
+        """
         if data.payload is None or data.key:
             gone = key_of(data.payload, data.inline, Pid.PARTICIPANT_GUID)
-            if gone is not None and gone.prefix == source:
+            if gone is not None:
+                check_owner(gone.prefix, source)
                 if source in self._peers and len(self._left) < _MOST_GONE:
                     self._left[source] = now
                 self._drop(source, expired=False)
             return
         announced = ParticipantData.decode(data.payload)
-        # A participant announces itself alone; another domain may have the same port.
-        if announced.prefix != source or announced.domain not in (None, self._own.domain):
+        check_owner(announced.prefix, source)
+        # Another domain may have the same port.
+        if announced.domain not in (None, self._own.domain):
             return
         known = self._peers.get(source)
-        if known is not None and known.data == announced:
+        if known is None:
+            self._meet(announced, host, _HEAD_BYTES + len(data.payload), now)
+        elif known.data == announced:
             if self._listener.rank(source) < 2:
                 self._answer(known, now)
-            return
-        if known is None:
-            if source in self._left:
-                return
-            if not self._has_place(host, now):
-                self._counters["no_place"] += 1
-                return
-            known = self._peers[source] = Peer(announced, self._settings.host, host)
-            known.hear(host, _HEAD_BYTES + len(data.payload), now)
         else:
             known.renew(announced)
             known.hear(host, 0, now)
-        self._answer(known, now)
-        self._listener.on_peer(known, now)
+            self._answer(known, now)
+            self._listener.on_peer(known, now)
+
+    def _meet(self, announced: ParticipantData, host: str | None, size: int, now: float) -> None:
+        """Take a participant that is not known yet, if there is a place for it."""
+        prefix = announced.prefix
+        if prefix in self._left:
+            return
+        if not self._has_place(host, now):
+            self._counters["no_place"] += 1
+            return
+        peer = self._peers[prefix] = Peer(announced, self._settings.host, host)
+        self._of_host[host] += 1
+        peer.hear(host, size, now)
+        self._answer(peer, now)
+        strangers = (each for each in self._peers if not self._listener.rank(each))
+        if next(islice(strangers, _MOST_STRANGERS, None), None) is not None:
+            self._unmet.add(prefix)
+        else:
+            self._listener.on_peer(peer, now)
 
     def tick(self, now: float) -> float:
         """Announce if it is time; drop silent peers. Return when to call again, at the latest."""
@@ -145,7 +181,7 @@ class Spdp:
             period, quick = self._settings.period, self._announced < _QUICK_COUNT
             self._announce_at = now + (min(_QUICK, period) if quick else period)
             matched = [p for prefix, p in self._peers.items() if self._listener.rank(prefix) == 2]
-            self._tell_all(self._announcement(), some, matched)
+            self._tell_all(self._announcement, some, matched)
         self._left = {prefix: at for prefix, at in self._left.items() if now < at + _GONE}
         due = self._announce_at
         for prefix, peer in list(self._peers.items()):
@@ -183,16 +219,6 @@ class Spdp:
         for target in dict.fromkeys((*self._settings.targets, *some, *known)):
             self._tell(target, data)
 
-    def _announcement(self) -> Data:
-        # 8.5.3.3.1: a best-effort stateless writer sends its only sample again and again.
-        return Data(
-            reader=SPDP_READER,
-            writer=SPDP_WRITER,
-            sequence_number=1,
-            payload=self._own.encode(),
-            inline=NO_PARAMETERS,
-        )
-
     def _answer(self, peer: Peer, now: float) -> None:
         """Answer the announcement of a peer by our own, and again if it is new.
 
@@ -206,40 +232,46 @@ class Spdp:
         self._tell_peer(peer)
 
     def _tell_peer(self, peer: Peer) -> None:
-        announcement = self._announcement()
-        size = _HEAD_BYTES + len(announcement.payload or b"")
+        size = _HEAD_BYTES + len(self._announcement.payload or b"")
         for way in Route(peer, discovery=True).ways()[0]:
             if peer.spend(size):
-                self._tell(way, announcement)
+                self._tell(way, self._announcement)
             else:
                 self._counters["withheld"] += 1
 
     def _has_place(self, host: str | None, now: float) -> bool:
         """Make sure that one more peer has a place.
 
-        Strangers give way: first those without endpoints or without a sign of life, then those
-        that are not matched with us; of these, the one that was silent for longest. No host takes
-        the places of all others.
+        Strangers give way: first those that only announced themselves or are silent, then those
+        without endpoints, then those that are not matched with us; of these, the first. No host
+        takes the places of all others.
         """
-        of_host = [p for p, peer in self._peers.items() if peer.host == host and host is not None]
-        if len(of_host) < _MOST_PEERS_OF_HOST and len(self._peers) < _MOST_PEERS:
+        of_host = host is not None and self._of_host[host] >= _MOST_PEERS_OF_HOST
+        if not of_host and len(self._peers) < _MOST_PEERS:
             return True
-
-        def worth(prefix: bytes) -> tuple[int, float]:
-            heard_at = self._peers[prefix].heard_at
-            return self._listener.rank(prefix) if now - heard_at < _QUIET else 0, heard_at
-
-        first = min(of_host if len(of_host) >= _MOST_PEERS_OF_HOST else self._peers, key=worth)
-        if worth(first)[0] == 2:
-            return False
-        self._counters["displaced"] += 1
-        self._drop(first, expired=True)
-        return True
+        for most in (-1, 0, 1):
+            for prefix, peer in self._peers.items():
+                if of_host and peer.host != host:
+                    continue
+                rank = -1 if prefix in self._unmet else self._listener.rank(prefix)
+                if rank <= most or now - peer.heard_at >= _QUIET:
+                    self._counters["displaced"] += 1
+                    self._drop(prefix, expired=True)
+                    return True
+        return False
 
     def _lease(self, peer: ParticipantData) -> float:
         most = _MOST_LEASE if self._listener.rank(peer.prefix) else _MOST_LEASE_OF_STRANGER
         return min(max(peer.lease, _LEAST_LEASE), most)
 
     def _drop(self, prefix: bytes, expired: bool) -> None:
-        if self._peers.pop(prefix, None) is not None:
+        peer = self._peers.pop(prefix, None)
+        if peer is None:
+            return
+        self._of_host[peer.host] -= 1
+        if not self._of_host[peer.host]:
+            del self._of_host[peer.host]
+        if prefix in self._unmet:
+            self._unmet.remove(prefix)
+        else:
             self._listener.on_peer_lost(prefix, expired)

@@ -38,6 +38,8 @@ _HEARTBEAT, _MAX_HEARTBEAT = 0.05, 1.0
 _HEARTBEAT_WHEN_FULL = 0.002
 # Heartbeats to a reader that never answered.
 _MOST_UNANSWERED = 12
+# Seconds after which a reader that does not answer is sent heartbeats alone, and between these.
+_SILENCE, _SILENT_HEARTBEAT = 10.0, 2.0
 # Seconds before a sample is sent once more: nackSuppressionDuration of 8.4.7.1.
 _SUPPRESSION = 0.01
 # Seconds after which a full history no longer waits for a reader that does not get on: that has not
@@ -49,6 +51,8 @@ _MOST_ENDS = 256
 _MOST_LATE = 1.0
 # Bytes of a datagram besides the payload, about.
 _HEAD_BYTES = 100
+# How often a reader may ask for all that it was sent. More costs the credit of its participant.
+_MOST_REPAIRS = 2
 
 
 class HistoryFullError(Exception):
@@ -106,6 +110,8 @@ class _Proxy:
     # Up to where it has said that it has all, and when it last answered.
     stated: int = 0
     answered_at: float = float("-inf")
+    # Bytes of samples that it may ask for without the credit of its participant.
+    repairs: int = 0
     heard: bool = False
     unanswered: int = 0
     last_count: int | None = None
@@ -125,6 +131,11 @@ class _Proxy:
     def waits(self) -> bool:
         """Whether samples are kept for it."""
         return self.reliable and self.waited_for
+
+    def is_silent(self, last: int, now: float) -> bool:
+        """Whether it has not answered for long, though it lacks samples up to `last`."""
+        heard_at = max(self.answered_at, self.progress_at)
+        return self.reliable and self.acked < last and now - heard_at >= _SILENCE
 
 
 class Writer:
@@ -166,6 +177,8 @@ class Writer:
         self._fragment_bytes = fragment_bytes
         self._counters = Counter[str]() if counters is None else counters
         self._changes: dict[int, Change] = {}
+        # Bytes that it takes to send all of them.
+        self._size = 0
         self._proxies: dict[Guid, _Proxy] = {}
         self._count = 0
         self.last = 0
@@ -224,6 +237,7 @@ class Writer:
                 self._overwrite(number)
         if self._durable or any(p.lacks(self.last, change) for p in self._proxies.values()):
             self._changes[self.last] = change
+            self._size += change.size
         for proxy in self._proxies.values():
             if not change.is_for(proxy.guid):
                 self._skip(proxy)
@@ -231,13 +245,20 @@ class Writer:
             if proxy.acked >= self.last - 1:
                 proxy.progress_at = now
                 proxy.period, proxy.heartbeat_at = _HEARTBEAT, now + _HEARTBEAT
-            proxy.route.allow_sample(change.size)
+            if proxy.route.ways()[1]:
+                repairs = proxy.repairs + _MOST_REPAIRS * change.size
+                proxy.repairs = min(repairs, _MOST_REPAIRS * self._size)
+            if proxy.is_silent(self.last - 1, now):
+                # It asks for what it missed once it answers again.
+                self._counters["withheld"] += 1
+                continue
             self._transmit(proxy, change, self._heartbeat_with(proxy, change, now))
         return self.last
 
     def forget(self, number: int) -> None:
         """Remove a sample from the history. Readers that ask for it get a GAP."""
-        self._changes.pop(number, None)
+        change = self._changes.pop(number, None)
+        self._size -= 0 if change is None else change.size
 
     def match(self, reader: EndpointData, route: Route, now: float) -> None:
         """Begin to serve a reader, or note the new way to it.
@@ -255,7 +276,8 @@ class Writer:
         proxy = _Proxy(reader.guid, route, reliable, first, first - 1, now, first - 1)
         self._proxies[reader.guid] = proxy
         old = [each for number, each in self._changes.items() if number >= first]
-        route.allow_history(sum(each.size for each in old), now)
+        if old and route.ways()[1] and route.peer.may_have_history(now):
+            proxy.repairs = _MOST_REPAIRS * sum(each.size for each in old)
         if reliable:
             self._ask(proxy, now)
             return
@@ -304,7 +326,7 @@ class Writer:
         proxy = self._proxies.get(reader)
         if proxy is None or not proxy.reliable or answer.count == proxy.last_fragment_count:
             return
-        proxy.last_fragment_count = answer.count
+        proxy.last_fragment_count, proxy.answered_at = answer.count, now
         proxy.heard, proxy.unanswered = True, 0
         number = answer.sequence_number
         if number > self.last:
@@ -326,7 +348,8 @@ class Writer:
             if not self._pending(proxy):
                 continue
             if now >= proxy.heartbeat_at:
-                proxy.period = min(2 * proxy.period, _MAX_HEARTBEAT)
+                most = _SILENT_HEARTBEAT if proxy.is_silent(self.last, now) else _MAX_HEARTBEAT
+                proxy.period = min(2 * proxy.period, most)
                 self._ask(proxy, now, is_answer=not proxy.heard)
             due = min(due, proxy.heartbeat_at)
         return due
@@ -365,7 +388,8 @@ class Writer:
             raise HistoryFullError(f"{self.qos.max_samples} samples are not acknowledged")
 
     def _overwrite(self, number: int) -> None:
-        change = self._changes.pop(number)
+        change = self._changes[number]
+        self.forget(number)
         if any(proxy.lacks(number, change) for proxy in self._proxies.values()):
             self.overwritten += 1
             self._counters["overwritten"] += 1
@@ -410,7 +434,7 @@ class Writer:
             if not any(proxy.lacks(number, change) for proxy in self._proxies.values()):
                 gone.append(number)
         for number in gone:
-            del self._changes[number]
+            self.forget(number)
 
     def _heartbeat_with(self, proxy: _Proxy, change: Change, now: float) -> tuple[Heartbeat, ...]:
         """Return the heartbeat that goes with a sample.
@@ -467,7 +491,7 @@ class Writer:
         Returns
         -------
         bool
-            Whether the reader's participant had the credit for at least a part of it.
+            Whether at least a part of it could be sent.
         """
         size = len(change.data.payload or b"")
         if size > self._fragment_bytes or numbers is not None:
@@ -476,11 +500,14 @@ class Writer:
         else:
             parts = iter((self._whole(proxy, change),))
         sent = False
+        part_bytes = min(size, self._fragment_bytes) + _HEAD_BYTES
         for each in parts:
-            if proxy.route.peer.credit <= 0:
+            is_free = proxy.repairs > 0
+            if not is_free and proxy.route.peer.credit <= 0:
                 self._counters["withheld"] += 1
                 break
-            self._post(proxy, each)
+            proxy.repairs -= part_bytes if is_free else 0
+            self._post(proxy, each, is_answer=not is_free)
             sent = True
         return sent
 

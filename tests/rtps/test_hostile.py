@@ -72,9 +72,10 @@ def test_damaged_datagrams_raise_nothing(seed):
         TARGET.core.receive(datagram, TARGET.network.now)
     TARGET.core.tick(TARGET.network.now)
     assert TARGET.core._budget.used <= TARGET.core._budget.limit
-    TARGET.core.outbox.clear()
-    TARGET.core._outbox_bytes = 0
-    TARGET.core.events.clear()
+    while TARGET.core.outbox:
+        TARGET.core.pop()
+    TARGET.take_events()
+    TARGET.events.clear()
 
 
 @given(st.binary(max_size=200))

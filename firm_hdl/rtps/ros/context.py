@@ -151,6 +151,7 @@ class Context:
         try:
             info = GraphInfo.decode(sample.payload)
         except MalformedError:
+            self.participant.count("malformed")
             return
         with self._lock:
             self._others[sample.writer.prefix] = info

@@ -18,6 +18,7 @@ from firm_hdl.rtps.settings import Settings
 from firm_hdl.rtps.spdp import Spdp
 from firm_hdl.rtps.wire.guid import PARTICIPANT, SPDP_WRITER
 from firm_hdl.rtps.wire.locators import Address
+from firm_hdl.rtps.wire.octets import MalformedError
 from firm_hdl.rtps.wire.parameters import Pid
 from firm_hdl.rtps.wire.samples import Data
 from firm_hdl.rtps.writer import Writer
@@ -84,11 +85,13 @@ class Announcer(Spdp):
 def test_nobody_speaks_for_another_participant():
     announcer = Announcer()
     announcer.listen(ONE, 0.0)
-    announcer.listen(TWO, 0.0, source=ONE.prefix)
-    announcer.listen_farewell(ONE, 0.0, source=TWO.prefix)
+    for tell in (announcer.listen, announcer.listen_farewell):
+        with pytest.raises(MalformedError, match=r"^an announcement of 0{23}3 by 0{23}2$"):
+            tell(TWO, 0.0, source=ONE.prefix)
     assert announcer.peers == (ONE,) and announcer.found == [ONE.prefix]
     announcer.listen(TWO, 0.0)
-    announcer.listen_farewell(ONE, 0.0, source=TWO.prefix)
+    with pytest.raises(MalformedError):
+        announcer.listen_farewell(ONE, 0.0, source=TWO.prefix)
     assert announcer.peers == (ONE, TWO) and not announcer.lost
     announcer.listen_farewell(ONE, 0.0)
     assert announcer.peers == (TWO,) and announcer.lost == [(ONE.prefix, False)]
@@ -128,10 +131,10 @@ def test_an_address_where_a_peer_may_be_is_told_at_first_and_then_seldom():
     announcer = Announcer(seldom=many)
     announcer.tick(0.0)
     assert [address for address, _ in announcer.sent] == [GROUP, *many]
-    assert announcer.times(0.1, 41.0, many[7]) == [3.4, 23.4]
+    assert announcer.times(0.1, 41.0, many[7]) == [3.4, 13.4, 23.4, 33.4]
     announcer.sent.clear()
     announcer.tick(42.0)
-    assert len(announcer.sent) == 1 + len(many) // 20
+    assert len(announcer.sent) == 1 + len(many) // 10
 
 
 def test_an_address_is_told_once():
@@ -165,14 +168,25 @@ def test_strangers_give_way_to_those_who_come_later():
         announcer.listen(each, 0.001 * number)
     assert len(announcer.peers) == 256 and {ONE, TWO} <= set(announcer.peers)
     assert announcer._counters == {"displaced": 1000 - 254}
-    # The oldest of them went.
-    assert announcer.peers[2:] == tuple(flood[-254:])
+    # The first 32 were met at once. Of the others, who said nothing more, the last ones are left.
+    assert announcer.peers[2:] == (*flood[:32], *flood[-222:])
+    assert announcer.found == [each.prefix for each in (ONE, TWO, *flood[:32])]
+    # Whoever says something more is met then, and stays for longer than they do.
+    announcer.hear(flood[-222].prefix, None, 100, 1.0)
+    assert announcer.found[-1] == flood[-222].prefix
+    for each in strangers(300, host=8):
+        announcer.listen(each, 1.0)
+    assert announcer.peers[34] == flood[-222] and len(announcer.peers) == 256
     # One that is matched stays as long as it says something.
     announcer.ranks |= {each.prefix: 2 for each in flood}
+    announcer.ranks |= {each.prefix: 2 for each in announcer.peers if each != TWO}
     late = participant(200)
+    for peer in announcer.peers:
+        announcer.hear(peer.prefix, None, 100, 1.0)
     announcer.listen(late, 1.0)
     assert late in announcer.peers and TWO not in announcer.peers
     announcer.ranks[late.prefix] = 2
+    announcer.hear(late.prefix, None, 100, 1.0)
     other = participant(201)
     announcer.listen(other, 9.0)
     assert other not in announcer.peers and announcer._counters["no_place"] == 1
@@ -248,13 +262,15 @@ WRITER, READER, KEYED_WRITER, KEYED_READER = 0x103, 0x204, 0x302, 0x407
 
 def test_nobody_announces_endpoints_of_another_participant():
     matcher = Matcher()
-    matcher.listen(remote(ONE, WRITER), True, source=TWO.prefix)
+    with pytest.raises(MalformedError, match=r"^an announcement of 0{23}2 by 0{23}3$"):
+        matcher.listen(remote(ONE, WRITER), True, source=TWO.prefix)
     assert list(matcher.remotes(True)) == []
     matcher.listen(remote(ONE, WRITER), True)
     assert [each.guid for each in matcher.remotes(True)] == [Guid(ONE.prefix, WRITER)]
     assert list(matcher.remotes(False)) == []
     gone = said(key_payload(Guid(ONE.prefix, WRITER), Pid.ENDPOINT_GUID), key=True)
-    matcher._on_announcement(TWO.prefix, gone, True)
+    with pytest.raises(MalformedError):
+        matcher._on_announcement(TWO.prefix, gone, True)
     assert len(list(matcher.remotes(True))) == 1
     matcher._on_announcement(ONE.prefix, gone, True)
     assert list(matcher.remotes(True)) == []
