@@ -217,15 +217,16 @@ def _writes(packet: Packet) -> Iterator[_Write]:
     # A last step that only takes a rest is skipped if a length says that there is no rest.
     if count > 1 and not visits[-1].bytes and only_ends(plan.steps[visits[-1].step]):
         count -= plan.steps[visits[-2].step].begin is not None
+    first, may_be_last = first_step(plan), may_end_empty(plan)
     for index in range(count):
         begin = plan.steps[visits[index].step].begin
         is_last = index == count - 1
         end = packet.beats * bus if is_last else packet.next_start(index)
         full = end
-        if visits[index].step < first_step(plan):
+        if visits[index].step < first:
             # Beats wait for the first leaf.
             full = 0
-        elif may_end_empty(plan) and not is_last:
+        elif may_be_last and not is_last:
             # A full beat may be the last one.
             full = max(0, end - 1)
         yield _Write(

@@ -13,11 +13,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil
+from typing import TypeAlias
 
-from firm_hdl.plan.interpret import decode
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginLoop, Claim, Fixed, Plan, RunStep
+from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginLoop, Claim, Plan, RunStep
 from firm_hdl.plan.offsets import Span, loop_spans
-from firm_hdl.wire.alignment import LENGTH
 
 __all__ = ["Recovery", "recovery"]
 
@@ -34,8 +33,11 @@ END_CYCLES = 1
 FEW = 2
 """Elements after which each further one has as many bytes: it starts as the one before it."""
 
-MOST_STEPS = 1 << 14
-"""Most steps of such a packet. Padding matters little in larger elements."""
+_ALIGNMENTS = 8
+"""Offsets that differ by this many bytes, the largest alignment, have the same padding."""
+
+_Region: TypeAlias = tuple[int, int, int]
+"""A range of steps inside loops: the first one, the last one, and the number of loops."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,19 +66,31 @@ class _Level:
 
     Attributes
     ----------
-    length : int
-        Leaf of the length.
     most : int
         Largest legal count on the wire.
     steps : Fraction
         Steps of an element whose lengths are 0, or of an item.
-    claim : Claim or None
+    begin : Begin
+    body : _Region
+        The steps of an element, or of a word.
+    offset : int
+        The offset behind the length, if the sequences around have one element each, and all other
+        lengths are 0. It counts from the end of the header.
+    after : tuple of _Region and int
+        What follows the sequence in the packet, and how often.
     """
 
-    length: int
     most: int
     steps: Fraction
-    claim: Claim | None
+    begin: Begin
+    body: _Region
+    offset: int
+    after: tuple[tuple[_Region, int], ...]
+
+    @property
+    def claim(self) -> Claim | None:
+        """What the length claims, if it is counted."""
+        return self.begin.claim
 
 
 def recovery(plan: Plan, shortest_cycles: int) -> Recovery:
@@ -89,12 +103,13 @@ def recovery(plan: Plan, shortest_cycles: int) -> Recovery:
         Cycles of the shortest packet.
     """
     steps = _Steps(plan)
-    shortest = steps.of_region(0, len(plan.steps) - 1, 0)
-    chains = list(steps.chains(0, len(plan.steps) - 1, 0, ()))
+    whole = (0, len(plan.steps) - 1, 0)
+    chains = list(steps.chains(whole, -plan.header_bytes, (), ()))
     worst = max(map(_most_steps, chains), default=Fraction(0))
-    longest = max(map(_Longest(plan, shortest).cycles, chains), default=0)
+    legal = [chain[-1] for chain in chains if all(level.most for level in chain)]
+    longest = max(map(steps.longest, legal), default=0)
     return Recovery(
-        cycles=ERROR_CYCLES + shortest + ceil(worst) + END_CYCLES,
+        cycles=ERROR_CYCLES + steps.of_region(*whole) + ceil(worst) + END_CYCLES,
         longest_packet=shortest_cycles + longest,
     )
 
@@ -107,6 +122,8 @@ class _Steps:
     spans: dict[Span, int] = field(init=False)
     # Constant counts by level (or "run") and first step.
     counts: dict[tuple[int | str, int], int] = field(default_factory=dict)
+    # Bytes of regions, for each offset of their start modulo `_ALIGNMENTS`.
+    sizes: dict[_Region, tuple[int, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.spans = loop_spans(self.plan)
@@ -148,27 +165,118 @@ class _Steps:
                 total += 1
         return total
 
+    def skip(self, region: _Region, offset: int) -> int:
+        """Return the offset behind a range of steps that starts at an offset."""
+        first, last, depth = region
+        if first > last:
+            return offset
+        if region not in self.sizes:
+            # From the end, so that the sizes of all ends of the range are known, too.
+            found = (0,) * _ALIGNMENTS
+            for place in reversed(list(self.places(*region))):
+                ends = [self.skip_place(place, depth, start) for start in range(_ALIGNMENTS)]
+                found = tuple(
+                    end - start + found[end % _ALIGNMENTS] for start, end in enumerate(ends)
+                )
+                self.sizes[place[0], last, depth] = found
+        return offset + self.sizes[region][offset % _ALIGNMENTS]
+
+    def skip_place(self, place: tuple[int, int, int], depth: int, offset: int) -> int:
+        index, end, count = place
+        if count:
+            return self.repeat((index, end, depth + 1), count, offset)
+        step = self.plan.steps[index]
+        offset += -offset % step.align
+        if isinstance(step, RunStep):
+            items = self.counts[RUN_COUNTER, index]
+            return offset + items * self.plan.item_bytes(step.run)
+        return offset + step.bytes
+
+    def repeat(self, region: _Region, count: int, offset: int) -> int:
+        """Return the offset behind a range of steps that is repeated."""
+        # Where an element starts as one before it, the elements between them are a period.
+        seen: dict[int, tuple[int, int]] = {}
+        while count:
+            count -= 1
+            left, start = seen.setdefault(offset % _ALIGNMENTS, (count, offset))
+            if left > count:
+                rounds, count = divmod(count + 1, left - count)
+                offset += rounds * (offset - start)
+                seen.clear()
+            else:
+                offset = self.skip(region, offset)
+        return offset
+
     def chains(
-        self, first: int, last: int, depth: int, around: tuple[_Level, ...]
+        self,
+        region: _Region,
+        offset: int,
+        around: tuple[_Level, ...],
+        after: tuple[tuple[_Region, int], ...],
     ) -> Iterator[tuple[_Level, ...]]:
-        """Yield each sequence of a range after the sequences around it, outermost first."""
-        for index, end, count in self.places(first, last, depth):
+        """Yield each sequence of a range after the sequences around it, outermost first.
+
+        Parameters
+        ----------
+        region : _Region
+        offset : int
+            Where the range starts.
+        around : tuple of _Level
+        after : tuple of _Region and int
+            What follows the range, and how often.
+        """
+        _, last, depth = region
+        for place in self.places(*region):
+            index, end, count = place
             begin = self.plan.steps[index].begin
+            rest = (((end + 1, last, depth), 1), *after)
+            body = (index, end, depth + 1)
             if count:
-                yield from self.chains(index, end, depth + 1, around)
-            elif begin is not None:
-                chain = (*around, self.level(begin, index, end, depth))
+                yield from self.chains(body, offset, around, ((body, count - 1), *rest))
+            offset = self.skip_place(place, depth, offset)
+            if begin is not None and not count:
+                body = (index + 1, end, depth + 1)
+                chain = (*around, self.level(begin, body, offset, rest))
                 yield chain
                 if isinstance(begin, BeginLoop):
-                    yield from self.chains(index + 1, end, depth + 1, chain)
+                    yield from self.chains(body, offset, chain, rest)
 
-    def level(self, begin: Begin, index: int, end: int, depth: int) -> _Level:
+    def level(
+        self, begin: Begin, body: _Region, offset: int, after: tuple[tuple[_Region, int], ...]
+    ) -> _Level:
         if isinstance(begin, BeginLoop):
-            steps = Fraction(self.of_region(index + 1, end, depth + 1))
+            steps = Fraction(self.of_region(*body))
         else:
             steps = Fraction(1, self.plan.items_leaf(begin.run).lanes)
         most = self.plan.max_count(begin)
-        return _Level(length=begin.length, most=most, steps=steps, claim=begin.claim)
+        return _Level(most=most, steps=steps, begin=begin, body=body, offset=offset, after=after)
+
+    def longest(self, level: _Level) -> int:
+        """Return the cycles of the longest legal packet with many elements in one sequence.
+
+        The packet has `max_message_bytes`, or the sequence its largest length. The cycles of the
+        shortest packet are not counted.
+        """
+        if level.most <= FEW:
+            return ceil(level.most * level.steps)
+        size = self.size(level, FEW)
+        each = self.size(level, FEW + 1) - size
+        if not each:
+            return ceil(level.most * level.steps)
+        count = min(level.most, FEW + max(0, self.plan.max_message_bytes - size) // each)
+        return ceil(count * max(level.steps, Fraction(each, self.plan.bus_bytes)))
+
+    def size(self, level: _Level, count: int) -> int:
+        """Return the bytes of a packet in which a sequence has some elements."""
+        begin = level.begin
+        if isinstance(begin, BeginLoop):
+            offset = self.repeat(level.body, count, level.offset)
+        else:
+            offset = level.offset + -level.offset % begin.align
+            offset += count * self.plan.item_bytes(begin.run)
+        for region, times in level.after:
+            offset = self.repeat(region, times, offset)
+        return offset + self.plan.header_bytes
 
 
 def _most_steps(chain: tuple[_Level, ...]) -> Fraction:
@@ -192,62 +300,3 @@ def _most_steps(chain: tuple[_Level, ...]) -> Fraction:
         extra = min(claim.least - 1, most - taken // claim.bytes)
         steps += taken * rate + extra * level.steps
     return steps
-
-
-@dataclass(slots=True)
-class _Longest:
-    """The longest legal packets.
-
-    Attributes
-    ----------
-    plan : Plan
-    shortest : int
-        Steps of the shortest packet.
-    starts : dict of int to bytes
-        A packet up to a length, by its leaf: the sequences around it have one element each, and all
-        other lengths are 0.
-    """
-
-    plan: Plan
-    shortest: int
-    starts: dict[int, bytes] = field(default_factory=dict)
-
-    def cycles(self, chain: tuple[_Level, ...]) -> int:
-        """Return the cycles of a packet in which the last sequence of a chain is the longest.
-
-        The packet has `max_message_bytes`, or the sequence its largest length. The cycles of the
-        shortest packet are not counted. The chain around the sequence was asked for before.
-        """
-        level = chain[-1]
-        start = self.starts[level.length] = self._start(chain)
-        most = ceil(level.most * level.steps)
-        if level.most <= FEW or self.shortest + (FEW + 1) * level.steps > MOST_STEPS:
-            return most
-        size = self._size(start, FEW)
-        each = self._size(start, FEW + 1) - size
-        if not each:
-            return most
-        count = min(level.most, FEW + max(0, self.plan.max_message_bytes - size) // each)
-        return ceil(count * max(level.steps, Fraction(each, self.plan.bus_bytes)))
-
-    def _start(self, chain: tuple[_Level, ...]) -> bytes:
-        """Return a packet up to the length of the last sequence of a chain."""
-        if len(chain) > 1:
-            packet = self.starts[chain[-2].length] + _number(1)
-        else:
-            fixed = (item for step in self.plan.steps for item in step.slices)
-            packet = b"".join(item.data for item in fixed if isinstance(item, Fixed))
-        begin = self.plan.begins[chain[-1].length]
-        # The packet ends before the length, so the interpreter continues with lengths of 0. The
-        # length is the end of its step.
-        visits = decode(self.plan, packet).steps
-        end = next(visit.end for visit in visits if self.plan.steps[visit.step].begin is begin)
-        return packet.ljust(end - LENGTH.bytes, b"\0")
-
-    def _size(self, start: bytes, count: int) -> int:
-        """Return the bytes of a packet after whose start a length is `count`."""
-        return decode(self.plan, start + _number(count)).steps[-1].end
-
-
-def _number(count: int) -> bytes:
-    return count.to_bytes(LENGTH.bytes, "little")

@@ -10,6 +10,7 @@ from firm_hdl.plan import build_plan
 from firm_hdl.plan.recovery import Recovery
 from firm_hdl.plan.timing import Cost, Timing, clock_mhz, describe, recovery_text, timing
 from firm_hdl.wire import lay_out
+from tests.steps import calls_at_most
 from tests.strategies import make
 
 PAIR = make("ros1", {"x": "uint16", "y": "uint16"}, "Pair")
@@ -166,3 +167,13 @@ def test_a_recovery_has_a_time_in_its_unit(cycles, text):
     figures = timing(plan_of({"a": "uint32"}, 4))
     found = replace(figures, recovery=Recovery(cycles=cycles, longest_packet=7))
     assert f"{text} 100 MHz); the longest legal packet takes 7" in recovery_text(found)
+
+
+def test_hundreds_of_fields_of_variable_length_take_no_minutes():
+    item = make("ros2", {"a": "string", "b": "float64[]"}, "Item")
+    kinds = ["string", "uint8[]", (item, "[]"), "uint8"]
+    message = make("ros2", {f"f{n}": kinds[n % 4] for n in range(200)})
+    plan = build_plan(lay_out(message))
+    # Ten packets are followed, 451 steps each.
+    with calls_at_most(3_000_000):
+        timing(plan)
