@@ -1,8 +1,8 @@
 """A design of one's own in a fast simulation: up to a million cycles per second.
 
 The design reads Imu messages, counts the good ones, and writes them again. It runs in each engine
-of `firm_hdl.sim.fast`, and the example prints how fast. CXXRTL needs a C++ compiler, which takes
-some seconds in the first run. Run it with ``python examples/fast_simulation.py``.
+of `firm_hdl.sim.fast`, and the example prints how fast. Verilator needs a C++ compiler, which
+takes some seconds in the first run. Run it with ``python examples/fast_simulation.py``.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ __all__ = ["Counted", "main"]
 
 IMU = load_message("sensor_msgs/msg/Imu")
 STORE = get_typestore(Stores.ROS2_LYRICAL)
-PACKETS: dict[Literal["cxxrtl", "amaranth"], int] = {"cxxrtl": 50_000, "amaranth": 50}
+PACKETS: dict[Literal["verilator", "amaranth"], int] = {"verilator": 50_000, "amaranth": 50}
 
 
 class Counted(wiring.Component):
@@ -76,7 +76,7 @@ def main() -> int:
         try:
             simulation = FastSimulation(Counted(), engine=engine)
         except ProgramMissingError as error:
-            print(f"{engine:8}  left out: {error}")
+            print(f"{engine:9}  left out: {error}")
             continue
         with simulation:
             begin = time.perf_counter()
@@ -85,11 +85,11 @@ def main() -> int:
             seconds = time.perf_counter() - begin
             is_right = simulation.receive_packets("packets_out") == packets
             if not is_right or simulation.get("good") != count:
-                print(f"{engine:8}  wrong bytes")
+                print(f"{engine:9}  wrong bytes")
                 return 1
             rate = simulation.cycle / seconds
             print(
-                f"{engine:8}  {count:6} packets  {simulation.cycle:8} cycles  "
+                f"{engine:9}  {count:6} packets  {simulation.cycle:8} cycles  "
                 f"{rate:10,.0f} cycles/s  after {begin - started:.1f} s"
             )
     return 0

@@ -130,10 +130,10 @@ def add_engine(command: argparse._ActionsContainer, use: str) -> None:
     """
     command.add_argument(
         "--engine",
-        choices=["auto", "cxxrtl", "amaranth"],
+        choices=["auto", "verilator", "amaranth"],
         default="auto",
-        help=f"for {use}: compiled by CXXRTL, or Amaranth's slow simulator (%(default)s: "
-        "the former if there is a C++ compiler)",
+        help=f"for {use}: compiled with Verilator, or Amaranth's slow simulator (%(default)s: "
+        "the former if there are Verilator and a C++ compiler)",
     )
 
 

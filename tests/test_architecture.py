@@ -36,14 +36,16 @@ MAY_IMPORT = {
     "estimates": {"plan"},
     "gateware": {"model", "wire", "plan"},
     # `jobs`: compilers.
-    "sim": {"errors", "garbage", "jobs", "model", "wire", "plan", "gateware"},
+    "sim": {
+        *("errors", "garbage", "jobs", "rtlil", "verilog", "model", "wire", "plan", "gateware"),
+    },
 }
 MAY_IMPORT["export"] = {
-    *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "vhdl", "verilog"),
+    *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl", "verilog"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
-    *("firm_hdl", "errors", "files", "garbage", "names", "rtps", "vhdl"),
+    *("firm_hdl", "errors", "files", "garbage", "names", "rtlil", "rtps", "vhdl"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
     *("sim", "export"),
 }
@@ -52,7 +54,7 @@ MAY_IMPORT["covering"] = {
     *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
 }
 MAY_IMPORT["verify"] = {
-    *(MAY_IMPORT["export"] - {"estimates", "garbage"}),
+    *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil"}),
     *("arguments", "drawing", "export", "identity", "metrics", "node", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {

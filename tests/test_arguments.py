@@ -70,6 +70,6 @@ def test_the_help_tells_the_defaults():
     assert "longest message to accept; default: 16777216" in text
     assert "wire format; default: the distribution's own" in text
     assert (
-        "for run: compiled by CXXRTL, or Amaranth's slow simulator (auto: the former if there is "
-        "a C++ compiler)" in text
+        "for run: compiled with Verilator, or Amaranth's slow simulator (auto: the former if there "
+        "are Verilator and a C++ compiler)" in text
     )

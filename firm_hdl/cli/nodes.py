@@ -32,6 +32,9 @@ def add_node(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument("--force", action="store_true", help="also write a folder that is current")
     command.add_argument(
+        "--sim", action="store_true", help="for build: also compile the simulation, for run"
+    )
+    command.add_argument(
         "--board",
         default="sim",
         metavar="BOARD",
@@ -49,7 +52,7 @@ def add_node(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--seconds", type=seconds, help="for run: end after so long (default: at Ctrl-C)"
     )
-    add_engine(command, "run --board sim")
+    add_engine(command, "run --board sim and build --sim")
     command.add_argument("--quiet", action="store_true", help="for run: print no figures")
     command.set_defaults(run=_node)
 
@@ -103,4 +106,15 @@ def _act(args: argparse.Namespace, description: Description) -> None:
         print(f"{'current' if built.was_current else 'wrote':8}{built.folder}", flush=True)
         for old, new in sorted(built.renamed.items()):
             print(f"        your file {old} is now {new}", flush=True)
+        if args.sim:
+            _compile(description, args)
     print(summary(description))
+
+
+def _compile(description: Description, args: argparse.Namespace) -> None:
+    from firm_hdl.node.boards.simulated import SimulatedBoard
+
+    def report(stage: str) -> None:
+        print(f"board sim: {stage}", file=sys.stderr, flush=True)
+
+    SimulatedBoard(description, engine=args.engine, report=report).compile()

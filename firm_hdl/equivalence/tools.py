@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from firm_hdl.jobs import ProgramMissingError, ToolError, TooSlowError, made_by, run_tool
-from firm_hdl.jobs.programs import find_ghdl, find_yosys
+from firm_hdl.jobs.programs import find_ghdl, find_package, find_yosys
 from firm_hdl.verilog import is_out_of_memory, out_of_memory
 
 __all__ = ["Tools", "answer_of", "find_tools"]
@@ -86,7 +85,7 @@ def find_tools(*, ghdl: bool = True) -> Tools:
         missing.append(str(error))
     except ToolError as error:
         # Only a package that fails is an error; a command on the PATH that fails does not count.
-        is_wasm = importlib.util.find_spec("pyosys") is None
+        is_wasm = find_package("pyosys") is None
         raise _failed("Yosys", str(error), is_wasm=is_wasm) from None
     if missing or yosys is None:
         raise ProgramMissingError("; ".join(missing))
@@ -101,7 +100,7 @@ def _run(command: Sequence[str], folder: Path, name: str, timeout: float | None)
     except TooSlowError:
         raise TooSlowError(f"{name} was stopped after {timeout:.0f} s") from None
     except ToolError as error:
-        raise _failed(name, str(error), is_wasm=any("yowasp" in word for word in command)) from None
+        raise _failed(name, str(error), is_wasm="import yowasp" in " ".join(command)) from None
     except OSError as error:
         raise ToolError(f"{name} cannot be run: {error.strerror or error}") from None
 

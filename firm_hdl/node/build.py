@@ -8,9 +8,8 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from amaranth.back import rtlil
-
 import firm_hdl
+from firm_hdl import rtlil
 from firm_hdl.errors import UserError
 from firm_hdl.export.design import (
     BuiltDesign,
@@ -151,7 +150,7 @@ def _designed(
             # The plain ports are there all the same.
             reason = str(error)
     with conflicts_reported(description), search_put_off():
-        circuit = rtlil.convert(NodeTop(node), name=name, emit_src=False)
+        circuit = rtlil.rtlil_of(NodeTop(node), name=name)
     return _Design(
         description=description,
         name=name,

@@ -259,10 +259,13 @@ class _Parser:
             elif high is not None:
                 chunks[-1:] = [self._cut(chunks[-1] if chunks else None, high, low)]
             elif bits is not None:
-                if int(size) != len(bits):
+                missing = int(size) - len(bits)
+                if missing < 0 or (missing and not bits):
                     self._fail(f"constant {size}'{bits} has {len(bits)} bits")
                 if bits:
-                    chunks.append(Bits(bits))
+                    # Missing digits are the first one, but 0 for 1.
+                    fill = "0" if bits[0] == "1" else bits[0]
+                    chunks.append(Bits(fill * missing + bits))
             else:
                 wire = self._wires.get(name or generated)
                 if wire is None:

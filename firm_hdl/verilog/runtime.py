@@ -12,17 +12,18 @@ import atexit
 import json
 import os
 import subprocess
-import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory, TemporaryFile
 from threading import Lock
 from typing import Any
 
-from firm_hdl.jobs.processes import hang_up, with_end
+from firm_hdl.jobs.processes import answered, hang_up, start_program, with_end
+from firm_hdl.jobs.programs import python_command
 
 __all__ = ["YosysError", "run_yosys"]
 
 _SCRIPT = Path(__file__).with_name("yosys_script.py")
+_MOST_ERROR_BYTES = 1 << 16
 
 
 class YosysError(Exception):
@@ -73,14 +74,11 @@ class _Process:
         self._lock = Lock()
         self._errors = TemporaryFile()  # noqa: SIM115
         try:
-            self._process = subprocess.Popen(
-                [sys.executable, str(_SCRIPT)],
+            # The process ends with its input, and not on Ctrl-C.
+            self._process = start_program(
+                python_command(f"import runpy; runpy.run_path({str(_SCRIPT)!r}, None, '__main__')"),
                 stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
                 stderr=self._errors,
-                text=True,
-                # The process ends with its input, and not on Ctrl-C.
-                start_new_session=True,
             )
         except OSError as error:
             self._errors.close()
@@ -92,15 +90,12 @@ class _Process:
 
     def ask(self, folder: Path) -> dict[str, Any]:
         """Let Yosys run the script in a folder; an interruption ends the process."""
-        assert self._process.stdin is not None and self._process.stdout is not None
         with self._lock:
             try:
-                self._process.stdin.write(f"{folder}\n")
-                self._process.stdin.flush()
-                return dict(json.loads(self._process.stdout.readline()))
+                return answered(self._process, json.dumps(str(folder)))
             except (OSError, ValueError):
                 self._errors.seek(0)
-                said = self._errors.read().decode("utf-8", "replace")
+                said = self._errors.read(_MOST_ERROR_BYTES).decode("utf-8", "replace")
                 self.close()
                 said = f"the process with Yosys died; {said}".rstrip("; ")
                 raise YosysError(with_end(said, self._process.poll() or 0)) from None

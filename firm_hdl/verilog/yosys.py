@@ -22,7 +22,7 @@ from firm_hdl.errors import UserError
 from firm_hdl.names.identifiers import first_free
 from firm_hdl.names.keywords import KEYWORDS, VERILOG
 from firm_hdl.rtlil import rtlil_of, without_indices
-from firm_hdl.verilog.memories import settled_memories, short_initials
+from firm_hdl.verilog.memories import settled_memories, with_initials
 from firm_hdl.verilog.ports import named_ports
 from firm_hdl.verilog.runtime import YosysError, run_yosys
 from firm_hdl.verilog.vectors import whole_vectors
@@ -154,7 +154,7 @@ def convert(
     # The first line names the version of Yosys, which is in the manifest.
     _, _, body = text.partition("\n")
     # A wire of width 0 is never used, and Verilog would read its range as two bits.
-    body = short_initials(_named_choices(_EMPTY_WIRE.sub("", body)))
+    body = with_initials(_named_choices(_EMPTY_WIRE.sub("", body)))
     comment = "".join(f"// {line}".rstrip() + "\n" for line in header.splitlines())
     return f"{comment}{body}"
 

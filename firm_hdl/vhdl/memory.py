@@ -90,6 +90,9 @@ class MemoryText:
         width, words = self._memory.width, []
         for cell in self._contents:
             bits = bits_of(cell.ports["DATA"]) or ""
+            if "1" not in bits:
+                # A memory of a megabyte is not cut into words.
+                continue
             words = [bits[end - width : end] for end in range(len(bits), 0, -width)]
         return words
 

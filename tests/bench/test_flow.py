@@ -115,7 +115,7 @@ def write_script(folder: Path, name: str, script: str) -> Path:
 def test_missing_tools_are_named_with_the_command_that_installs_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(programs, "find_package", lambda name: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(
         ProgramMissingError,
@@ -137,7 +137,7 @@ def test_missing_tools_are_named_with_the_command_that_installs_them(
 def test_program_without_a_version_is_not_the_tool(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, script: str
 ) -> None:
-    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(programs, "find_package", lambda name: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     write_script(tmp_path, "yosys", script)
     with pytest.raises(ProgramMissingError, match=r"^Yosys 0\.40 or newer is not installed"):
@@ -148,7 +148,7 @@ def test_program_without_a_version_is_not_the_tool(
 def test_a_tool_that_writes_nothing_has_failed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(programs, "find_package", lambda name: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     write_script(tmp_path, "yosys", "echo 'Yosys 0.99 (git)'")
     write_script(tmp_path, "nextpnr-ecp5", "echo '\"nextpnr-ecp5\" (Version nextpnr-9)'")

@@ -83,7 +83,7 @@ def test_seconds_are_finite_and_above_zero(capsys):
 def test_choices_of_a_node_are_those_of_its_documentation(capsys):
     for option, values in (
         ("graph", ["ros2", "ros1", "rtps", "none"]),
-        ("engine", ["auto", "cxxrtl", "amaranth"]),
+        ("engine", ["auto", "verilator", "amaranth"]),
     ):
         for value in values:
             assert parsed("node", "run", "n.yaml", f"--{option}", value)[option] == value

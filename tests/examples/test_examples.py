@@ -88,7 +88,7 @@ def test_examples_run(workdir, capsys, name):
         example.EXAMPLES = by_depth(example.EXAMPLES[:1], example.EXAMPLES)
     if name == "fast_simulation":
         # Compiling takes long.
-        example.PACKETS = by_depth({"amaranth": 5}, {"cxxrtl": 1000, "amaranth": 5})
+        example.PACKETS = by_depth({"amaranth": 5}, {"verilator": 1000, "amaranth": 5})
     assert example.main() == 0
     printed = capsys.readouterr().out
     if name == "demo":

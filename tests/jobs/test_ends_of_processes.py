@@ -98,19 +98,14 @@ def test_missing_tool_is_file_not_found_error(tmp_path):
     assert processes._running == set()
 
 
-def test_interrupt_while_a_tool_runs_kills_the_tool(tmp_path, monkeypatch):
-    opened = []
-    real = subprocess.Popen
-
-    class Interrupted(real):
-        def communicate(self, *_, **__):
-            opened.append(self)
-            raise KeyboardInterrupt
-
-    monkeypatch.setattr(processes.subprocess, "Popen", Interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        run_tool(["sleep", "60"], tmp_path)
-    assert opened[0].returncode == -signal.SIGKILL
+def test_interrupt_while_a_tool_runs_kills_the_tool(tmp_path):
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run_tool(["sh", "-c", "echo $$ > me; kill -INT $PPID; exec sleep 60"], tmp_path)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert not Path(f"/proc/{(tmp_path / 'me').read_text().strip()}").exists()
     assert processes._running == set()
 
 

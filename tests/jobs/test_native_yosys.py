@@ -9,6 +9,7 @@ import sys
 
 import pytest
 
+from firm_hdl.jobs import native_yosys
 from tests.tools import need
 
 MODULE = "module top(input a, output b); assign b = ~a; endmodule\n"
@@ -21,7 +22,7 @@ def yosys(tmp_path):
     (tmp_path / "top.v").write_text(MODULE)
 
     def run(*arguments):
-        command = [sys.executable, "-m", "firm_hdl.jobs.native_yosys", *arguments]
+        command = [sys.executable, native_yosys.__file__, *arguments]
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
         return done.returncode, done.stdout, done.stderr
 

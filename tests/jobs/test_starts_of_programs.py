@@ -23,20 +23,6 @@ def test_a_program_leads_a_group_and_a_session_of_its_own(tmp_path):
     assert own == group == session != str(os.getpgrp())
 
 
-def test_a_program_has_ten_minutes_unless_it_is_given_another_limit(tmp_path, monkeypatch):
-    limits = []
-
-    class Noted(subprocess.Popen):
-        def communicate(self, *given, timeout):
-            limits.append(timeout)
-            return super().communicate(*given, timeout=timeout)
-
-    monkeypatch.setattr(processes.subprocess, "Popen", Noted)
-    for given in ({}, {"timeout": None}, {"timeout": 60.5}):
-        run_tool(["true"], tmp_path, **given)
-    assert limits == [600, None, 60.5]
-
-
 def test_programs_run_in_threads_too(tmp_path):
     """Only the main thread may set handlers of signals."""
     found = []

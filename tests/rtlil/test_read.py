@@ -87,6 +87,13 @@ def test_reads_processes() -> None:
     assert [case.patterns for case in switch.cases] == [("0-", "11"), ()]
 
 
+def test_a_constant_is_extended_by_its_first_digit() -> None:
+    text = "wire width 4 \\a\nconnect \\a 4'%s"
+    for digits, bits in [("01", "0001"), ("11", "0011"), ("0", "0000"), ("x1", "xxx1")]:
+        design = parse(f"attribute \\top 1\nmodule \\m\n{text % digits}\nend\n")
+        assert design.top.connections == (((Slice("a", 0, 4, True),), (Bits(bits),)),)
+
+
 def test_reads_what_amaranth_prints_of_an_instance() -> None:
     module, value = Module(), Signal(4)
     module.submodules.unit = Instance(
@@ -109,7 +116,7 @@ def test_reads_what_amaranth_prints_of_an_instance() -> None:
         ("connect \\a \\b [1:0]", r"^RTLIL line 6: widths 4 and 2 differ$"),
         ("connect \\a \\c [3:0]", r"^RTLIL line 6: no wire 'c'$"),
         ("connect \\a \\b [4:1]", r"^RTLIL line 6: slice \[4:1\] is out of range$"),
-        ("connect \\a 4'01", r"^RTLIL line 6: constant 4'01 has 2 bits$"),
+        ("connect \\a 1'01", r"^RTLIL line 6: constant 1'01 has 2 bits$"),
         ("process $2\nswitch \\a\ncase 2'01\nend\nend", r"^RTLIL line 8: pattern .* does not fit"),
         ("process $2\nsync always\nend", r"^RTLIL line 7: unexpected 'sync always' in a process$"),
         ("connect { \\a \\b", r"^RTLIL line 6: malformed signal '\{ \\\\a \\\\b'$"),

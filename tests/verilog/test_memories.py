@@ -12,8 +12,9 @@ import pytest
 
 from firm_hdl.equivalence import find_tools
 from firm_hdl.jobs import ProgramMissingError
+from firm_hdl.rtlil import rtlil_of as rtlil_text
 from firm_hdl.verilog import convert
-from firm_hdl.verilog.memories import settled_memories, short_initials
+from firm_hdl.verilog.memories import settled_memories, with_initials
 from tests.depth import by_depth
 from tests.rtlil.memory_designs import DESIGNS, WHOLE, Store, Stores, rtlil_of, simulated
 from tests.tools import need
@@ -148,13 +149,6 @@ def _cells_on_ecp5(text: str, folder: Path) -> list[str]:
     return [cell["type"] for cell in module["cells"].values()]
 
 
-def _words(count: int, last: str = "2'h0") -> str:
-    """Return a memory as Yosys writes it."""
-    words = [*["2'h0"] * (count - 1), last]
-    lines = "".join(f"    kept[{number}] = {word};\n" for number, word in enumerate(words))
-    return f"  reg [1:0] kept [{count - 1}:0];\n  initial begin\n{lines}  end\n"
-
-
 def _starts_at_zero(text: str, count: int, standard: str, folder: Path) -> bool:
     (folder / "t.v").write_text(
         f"module t;\n{text}  integer n, bad;\n  initial begin\n    #1 bad = 0;\n"
@@ -168,12 +162,25 @@ def _starts_at_zero(text: str, count: int, standard: str, folder: Path) -> bool:
 
 @pytest.mark.parametrize("standard", STANDARDS)
 def test_a_loop_sets_all_words_of_a_large_memory(standard: str, tmp_path: Path) -> None:
-    text = short_initials(_words(65))
+    text = with_initials("  reg [1:0] kept [64:0];\n")
     assert len(text.splitlines()) == 5
     assert _starts_at_zero(text, 65, standard, tmp_path)
     assert not _starts_at_zero(text.replace("< 65", "< 64"), 65, standard, tmp_path)
 
 
-@pytest.mark.parametrize("text", [_words(64), _words(65, last="2'h1")])
-def test_other_memories_have_a_line_for_each_word(text: str) -> None:
-    assert short_initials(text) == text
+@pytest.mark.parametrize("words", [64, 65])
+def test_memories_that_do_not_start_at_zero_have_a_line_for_each_word(words: int) -> None:
+    text = convert(Stores({"mem": Store(depth=words, init=[0] * (words - 1) + [1])}), name="m")
+    assert text.count("] = ") == words and "integer" not in text
+
+
+def test_a_memory_of_a_megabyte_is_a_few_lines() -> None:
+    """Each bit and each word would be a digit of RTLIL and a line of Verilog."""
+    store = Stores({"mem": Store(shape=64, depth=1 << 17)})
+    assert len(rtlil_text(store, name="m")) < 10_000
+    assert len(convert(store, name="m")) < 10_000
+
+
+def test_a_large_memory_with_an_escaped_name_starts_at_zero() -> None:
+    text = with_initials("  reg [1:0] \\mem$1  [99:0];\n")
+    assert "mem__1_at < 100" in text and "\\mem$1 [mem__1_at] = 2'h0;" in text

@@ -11,7 +11,6 @@ import time
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
@@ -59,6 +58,13 @@ def test_a_run_does_not_depend_on_those_before():
 
 def test_one_process_serves_all_runs():
     assert process() == process()
+
+
+def test_the_encoding_of_the_user_s_output_is_not_that_of_the_pipes(monkeypatch):
+    monkeypatch.setenv("PYTHONIOENCODING", "utf-16")
+    monkeypatch.setattr(runtime, "_started", [])
+    assert run_yosys(CHOICE)
+    runtime._started[-1].close()
 
 
 def test_mistakes_in_a_script_are_errors():
@@ -115,8 +121,8 @@ def test_what_the_runtime_says_is_the_error(monkeypatch, tmp_path):
 
 
 FAILS = """\
-import pathlib, sys
-folder = pathlib.Path(sys.stdin.readline().strip())
+import json, pathlib, sys
+folder = pathlib.Path(json.loads(sys.stdin.readline()))
 (folder / "out").write_text("half of a module")
 (folder / "errors").write_text({said!r})
 print({answer!r}, flush=True)
@@ -154,7 +160,7 @@ def test_an_interrupted_run_leaves_no_answer_for_the_next_one(monkeypatch, tmp_p
         raise KeyboardInterrupt
 
     process = runtime._process()
-    monkeypatch.setattr(runtime, "json", SimpleNamespace(loads=interrupted))
+    monkeypatch.setattr(runtime, "answered", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run_yosys("write_rtlil")
     assert not process.is_usable

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import struct
 import tempfile
 from functools import cache
@@ -14,6 +12,7 @@ from firm_hdl.bench.software.sample import NoFigureError, Sample, Timed
 from firm_hdl.bench.software.timing import RUN_SECONDS, RUNS
 from firm_hdl.bench.tools import BenchError
 from firm_hdl.jobs import ProgramMissingError, ToolError, run_tool
+from firm_hdl.jobs.programs import find_compiler
 
 __all__ = ["fastcdr_versions", "time_fastcdr"]
 
@@ -25,11 +24,8 @@ _HOW = "(Debian, Ubuntu: apt install g++ libfastcdr-dev)"
 
 
 @cache
-def _compiler() -> str:
-    compiler = shutil.which(os.environ.get("CXX") or "g++")
-    if compiler is None:
-        raise ProgramMissingError(f"there is no C++ compiler {_HOW}")
-    return compiler
+def _compiler() -> tuple[str, ...]:
+    return find_compiler("Fast CDR")
 
 
 @cache
@@ -43,7 +39,7 @@ def fastcdr_versions() -> dict[str, str]:
     question = "fastcdr FASTCDR_VERSION_STR\ncompiler __VERSION__\n"
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "a.cpp").write_text(question, encoding="utf-8")
-        command = [_compiler(), "-E", "-P", "-include", "fastcdr/Cdr.h", "a.cpp"]
+        command = [*_compiler(), "-E", "-P", "-include", "fastcdr/Cdr.h", "a.cpp"]
         try:
             lines = run_tool(command, Path(folder)).splitlines()
         except ToolError:
@@ -73,7 +69,7 @@ def time_fastcdr(sample: Sample, runs: int = RUNS, run_seconds: float = RUN_SECO
         (folder / "packets").write_bytes(
             b"".join(struct.pack("<I", len(packet)) + packet for packet in sample.packets)
         )
-        compile_ = [_compiler(), *OPTIONS, "-I.", "-o", "program", str(_SOURCE), "-lfastcdr"]
+        compile_ = [*_compiler(), *OPTIONS, "-I.", "-o", "program", str(_SOURCE), "-lfastcdr"]
         try:
             run_tool(compile_, folder)
             program = [str(folder / "program"), "packets", str(runs), str(run_seconds)]

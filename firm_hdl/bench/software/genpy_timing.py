@@ -1,6 +1,6 @@
 """Time genpy, in the Python for which it is installed. So this file imports nothing of firm-hdl.
 
-The request is JSON on standard input: ``name``, ``text`` (the type's definition), and ``packets``
+The request is a file with JSON: ``name``, ``text`` (the type's definition), and ``packets``
 as text in Latin-1. The answer has ``deserialize`` and ``serialize`` in ns per message, and
 ``versions``. Otherwise it has ``missing`` or ``wrong`` with the reason.
 """
@@ -21,7 +21,8 @@ __all__ = ["main"]
 
 def main() -> dict[str, Any]:
     """Answer the request; if it has no name, the answer has only the versions."""
-    request = json.load(sys.stdin)
+    with open(sys.argv[1], encoding="ascii") as file:
+        request = json.load(file)
     del sys.path[0]  # Our other modules have names that others may use, too.
     try:
         import genpy.dynamic  # type: ignore[import-not-found]

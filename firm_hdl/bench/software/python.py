@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import platform
-import subprocess
+import tempfile
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -13,7 +13,7 @@ from typing import Any
 from firm_hdl.bench.software.sample import NoFigureError, Sample, Timed, check_written
 from firm_hdl.bench.software.timing import best_ns
 from firm_hdl.bench.tools import BenchError
-from firm_hdl.jobs import ProgramMissingError
+from firm_hdl.jobs import ProgramMissingError, ToolError, run_tool
 from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.references.oracle import ROSBAGS_WIRES
 from firm_hdl.verify.references.user_oracle import oracle_name, resolved_oracle
@@ -101,19 +101,16 @@ def time_genpy(sample: Sample) -> Timed:
 
 
 def _ask(request: dict[str, Any]) -> dict[str, Any]:
-    try:
-        done = subprocess.run(
-            [ROS_PYTHON, str(_SCRIPT)],
-            input=json.dumps(request),
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-    except OSError as error:
-        raise ProgramMissingError(f"{ROS_PYTHON} cannot be run: {error.strerror}") from None
-    if done.returncode:
-        raise BenchError(f"genpy failed: {done.stderr.strip().splitlines()[-1:]}")
-    answer: dict[str, Any] = json.loads(done.stdout)
+    with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
+        file = Path(folder, "request.json")
+        file.write_text(json.dumps(request), encoding="ascii")
+        try:
+            said = run_tool([ROS_PYTHON, str(_SCRIPT), str(file)], with_errors=False)
+        except OSError as error:
+            raise ProgramMissingError(f"{ROS_PYTHON} cannot be run: {error.strerror}") from None
+        except ToolError as error:
+            raise BenchError(f"genpy failed: {str(error).splitlines()[-1]}") from None
+    answer: dict[str, Any] = json.loads(said)
     if "missing" in answer:
         raise ProgramMissingError(
             f"genpy cannot be used: {answer['missing']} (Debian: python3-genpy)"

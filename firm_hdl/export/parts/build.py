@@ -6,9 +6,8 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from amaranth.back import rtlil
-
 import firm_hdl
+from firm_hdl import rtlil
 from firm_hdl.export.design import (
     BuiltDesign,
     core_file,
@@ -48,7 +47,7 @@ def build_part(
     folder = design_folder(out, name)
     ports = part_ports(part)
     with search_put_off():
-        design = rtlil.convert(PartTop(part), name=name, emit_src=False)
+        design = rtlil.rtlil_of(PartTop(part), name=name)
     settings = ", ".join(f"{key} {value}" for key, value in part.parameters.items())
     what = f"packet {part.kind}: {settings}"
 

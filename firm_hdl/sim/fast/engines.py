@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Literal, TypeAlias
 
 from firm_hdl.jobs import ProgramMissingError
-from firm_hdl.jobs.programs import find_compiler
+from firm_hdl.jobs.programs import find_compiler, find_verilator
 from firm_hdl.sim.fast.amaranth_engine import AmaranthEngine
-from firm_hdl.sim.fast.compilers import program_of
-from firm_hdl.sim.fast.cxxrtl import cxxrtl_source
-from firm_hdl.sim.fast.process import CxxrtlEngine
+from firm_hdl.sim.fast.compilers import Report, program_of
+from firm_hdl.sim.fast.process import VerilatorEngine
 from firm_hdl.sim.fast.top import Top
+from firm_hdl.sim.fast.verilated import verilated_source
 
 __all__ = ["EngineName", "check_engine", "expected_engine", "start"]
 
-EngineName: TypeAlias = Literal["auto", "cxxrtl", "amaranth"]
+EngineName: TypeAlias = Literal["auto", "verilator", "amaranth"]
 
 
 def check_engine(engine: str) -> None:
     """Raise a ValueError unless there is an engine of that name."""
-    if engine not in ("auto", "cxxrtl", "amaranth"):
-        raise ValueError(f"Engine must be 'auto', 'cxxrtl' or 'amaranth', not {engine!r}")
+    if engine not in ("auto", "verilator", "amaranth"):
+        raise ValueError(f"Engine must be 'auto', 'verilator' or 'amaranth', not {engine!r}")
 
 
 def expected_engine(engine: EngineName) -> tuple[EngineName, str]:
@@ -31,27 +32,30 @@ def expected_engine(engine: EngineName) -> tuple[EngineName, str]:
     Raises
     ------
     ProgramMissingError
-        If the engine is ``"cxxrtl"`` and there is no compiler.
+        If the engine is ``"verilator"`` and there is no Verilator, or no compiler.
     """
     if engine == "amaranth":
         return engine, ""
     try:
+        find_verilator("A fast simulation")
         find_compiler("A fast simulation", with_zig=True)
     except ProgramMissingError as error:
-        if engine == "cxxrtl":
+        if engine == "verilator":
             raise
         return "amaranth", str(error)
-    return "cxxrtl", ""
+    return "verilator", ""
 
 
 def start(
-    top: Top, engine: EngineName, *, options: Sequence[str], cache: Path | None
-) -> CxxrtlEngine | AmaranthEngine:
+    top: Top,
+    engine: EngineName,
+    *,
+    options: Sequence[str],
+    cache: Path | None,
+    report: Report | None = None,
+) -> VerilatorEngine | AmaranthEngine:
     """Start an engine. Parameters and errors are those of :class:`.FastSimulation`."""
-    if engine != "amaranth":
-        try:
-            return CxxrtlEngine(program_of(cxxrtl_source(top), options=options, cache=cache))
-        except ProgramMissingError:
-            if engine == "cxxrtl":
-                raise
-    return AmaranthEngine(top)
+    if expected_engine(engine)[0] == "amaranth":
+        return AmaranthEngine(top)
+    source = partial(verilated_source, top)
+    return VerilatorEngine(program_of(source, options=options, cache=cache, report=report))

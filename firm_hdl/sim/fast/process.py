@@ -10,16 +10,17 @@ import weakref
 from contextlib import suppress
 from pathlib import Path
 
+from firm_hdl.jobs.processes import start_program
 from firm_hdl.sim.fast.channel import Channel
 from firm_hdl.sim.fast.compilers import BuildError
 
-__all__ = ["CxxrtlEngine"]
+__all__ = ["VerilatorEngine"]
 
 _END_SECONDS = 2.0
 
 
-class CxxrtlEngine(Channel):
-    """A process that simulates a design by CXXRTL.
+class VerilatorEngine(Channel):
+    """A process that simulates a design that Verilator has translated.
 
     The process ends when its socket is closed, or when the process that started it has died, half a
     second later at most. It is not interrupted by Ctrl-C, so that its parent may finish first.
@@ -39,7 +40,7 @@ class CxxrtlEngine(Channel):
         If the program cannot be started.
     """
 
-    engine = "cxxrtl"
+    engine = "verilator"
 
     def __init__(self, program: Path):
         self._program = program
@@ -47,7 +48,7 @@ class CxxrtlEngine(Channel):
         command = [str(program), str(os.getpid())]
         try:
             # Texts of `Print` and `Assert` go where those of this process go.
-            self.process = subprocess.Popen(command, stdin=other.fileno(), start_new_session=True)
+            self.process = start_program(command, stdin=other.fileno(), stdout=None, stderr=None)
         except OSError as error:
             own.close()
             raise BuildError(f"The program of a design cannot be started: {error}") from None
@@ -57,8 +58,8 @@ class CxxrtlEngine(Channel):
         # A simulation that nobody closed leaves no zombie.
         self._finalizer = weakref.finalize(self, _end, own, self.process)
 
-    def again(self) -> CxxrtlEngine:
-        return CxxrtlEngine(self._program)
+    def again(self) -> VerilatorEngine:
+        return VerilatorEngine(self._program)
 
     def close(self) -> None:
         self._finalizer()

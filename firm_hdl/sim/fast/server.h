@@ -1,8 +1,7 @@
-// Simulates a design that CXXRTL has compiled, by the messages of `protocol.py` on a socket.
+// Simulates a design that Verilator has translated, by the messages of `protocol.py` on a socket.
 //
 // A cycle begins when the inputs have been applied and all signals have settled. Then transfers are
-// sampled, the clock rises, and the inputs of the next cycle are applied. Registers sample in the
-// evaluation with the rising clock, so the next inputs and the falling clock need only one more.
+// sampled, the clock rises, and the inputs of the next cycle are applied with the falling clock.
 #pragma once
 
 #include <poll.h>
@@ -15,21 +14,17 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <type_traits>
 #include <vector>
 
 namespace firm_hdl {
 
 using Bytes = std::vector<uint8_t>;
 
-// Ports of the design, as words of 32 bits.
-template <size_t bits>
-uint32_t* words(cxxrtl::value<bits>& port) {
-    return port.data;
-}
-template <size_t bits>
-uint32_t* words(cxxrtl::wire<bits>& port) {
-    return port.curr.data;
+// A port of the design. Verilator keeps it in a number of 8 to 64 bits, or an array of words of 32
+// bits; the machine is little-endian, as the protocol is. Bits above the port's are 0.
+template <typename Port>
+uint8_t* bytes_of(Port& port) {
+    return reinterpret_cast<uint8_t*>(&port);
 }
 
 enum Order : uint8_t { SEND = 1, SET, GET, STALL, RUN, LIVE, HALT, RESET };
@@ -62,9 +57,6 @@ struct Reader {
     }
 };
 
-// The machine is little-endian, as that of the protocol; bits above the value are 0.
-inline void load(uint32_t* to, const uint8_t* from, size_t bytes) { std::memcpy(to, from, bytes); }
-
 struct Stalls {
     std::vector<bool> pattern;
 
@@ -74,9 +66,9 @@ struct Stalls {
 struct Stream {
     bool is_input;
     // `ready` of an output, `valid` of an input: what the outside drives. Null: it is constant.
-    uint32_t* valid;
-    uint32_t* ready;
-    uint32_t* payload;
+    uint8_t* valid;
+    uint8_t* ready;
+    uint8_t* payload;
     size_t bytes;
 
     Stalls stalls;
@@ -95,7 +87,7 @@ struct Stream {
             return;
         }
         if (!is_offered && first < queue.size() && !stalls.at(cycle)) {
-            load(payload, &queue[first], bytes);
+            std::memcpy(payload, &queue[first], bytes);
             is_offered = true;
         }
         *valid = is_offered;
@@ -115,7 +107,7 @@ struct Stream {
 };
 
 struct Plain {
-    uint32_t* value;
+    uint8_t* value;
     size_t bytes;
 };
 
@@ -126,7 +118,7 @@ struct Condition {
 
     void note(const Stream& moved) {
         if (&moved != stream || !count) return;
-        if (bit == ALL_TRANSFERS || stream->payload[bit / 32] >> bit % 32 & 1) --count;
+        if (bit == ALL_TRANSFERS || stream->payload[bit / 8] >> bit % 8 & 1) --count;
     }
 };
 
@@ -170,14 +162,14 @@ class Server {
             ports.streams[n].stalls = before.streams[n].stalls;
         for (size_t n = 0; n < set_values.size(); ++n)
             if (!set_values[n].empty())
-                load(ports.inputs[n].value, set_values[n].data(), set_values[n].size());
+                std::memcpy(ports.inputs[n].value, set_values[n].data(), set_values[n].size());
     }
 
     void apply() {
         if (is_applied) return;
         for (Stream& stream : ports.streams) stream.apply(cycle);
-        design->p_clk.template set<bool>(false);
-        design->step();
+        design->clk = 0;
+        design->eval();
         is_applied = true;
     }
 
@@ -194,9 +186,8 @@ class Server {
             else
                 record(stream);
         }
-        design->p_clk.template set<bool>(true);
+        design->clk = 1;
         design->eval();
-        design->commit();
         ++cycle;
         quiet_cycles = moved ? 0 : quiet_cycles + 1;
         is_applied = false;
@@ -281,8 +272,7 @@ class Server {
         apply();
         Bytes body;
         for (const Plain& output : ports.outputs) {
-            const auto* from = reinterpret_cast<const uint8_t*>(output.value);
-            body.insert(body.end(), from, from + output.bytes);
+            body.insert(body.end(), output.value, output.value + output.bytes);
         }
         send(VALUES, body);
     }
@@ -333,7 +323,7 @@ class Server {
                 Plain& input = ports.inputs.at(number);
                 set_values.resize(ports.inputs.size());
                 set_values[number].assign(body.at, body.end);
-                load(input.value, body.at, input.bytes);
+                std::memcpy(input.value, body.at, input.bytes);
                 wake();
                 break;
             }

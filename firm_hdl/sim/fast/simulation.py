@@ -15,7 +15,7 @@ from firm_hdl.sim.bench import DeadlineError
 from firm_hdl.sim.fast import protocol
 from firm_hdl.sim.fast.arrivals import Arrivals
 from firm_hdl.sim.fast.channel import Channel
-from firm_hdl.sim.fast.compilers import COMPILER_OPTIONS
+from firm_hdl.sim.fast.compilers import COMPILER_OPTIONS, Report
 from firm_hdl.sim.fast.engines import EngineName, check_engine, start
 from firm_hdl.sim.fast.packing import Packet, Transfer, packed, packed_packets
 from firm_hdl.sim.fast.ports import StreamPort, ports_of
@@ -33,7 +33,7 @@ _MOST_BYTES = 1 << 22
 
 
 class FastSimulation:
-    """A design that runs in an engine: CXXRTL, up to a million cycles per second, or Amaranth's.
+    """A design that runs in an engine: Verilator, up to a million cycles per second, or Amaranth's.
 
     The design is a component whose members are streams and plain values, in any nesting. A stream
     or value is named by the members on the way to it: ``"packets_in"``, ``"message.linear.x"``.
@@ -50,12 +50,12 @@ class FastSimulation:
     ----------
     design : wiring.Component
         It must not be a part of another design.
-    engine : {"auto", "cxxrtl", "amaranth"}
-        ``"cxxrtl"`` compiles the design with a C++ compiler: the environment's ``CXX``, g++,
-        clang++, or that of the Python package `ziglang`. That takes seconds to a minute, and once
-        only, because programs are kept (:mod:`firm_hdl.sim.fast.compilers`). ``"amaranth"`` is
-        Amaranth's simulator in a thread, hundreds of times slower. ``"auto"`` takes CXXRTL if
-        there is a compiler.
+    engine : {"auto", "verilator", "amaranth"}
+        ``"verilator"`` compiles the design with Verilator and a C++ compiler: the environment's
+        ``CXX``, g++, clang++, or that of the Python package `ziglang`. That takes seconds to a
+        minute, and once only, because programs are kept (:mod:`firm_hdl.sim.fast.compilers`).
+        ``"amaranth"`` is Amaranth's simulator in a thread, hundreds of times slower. ``"auto"``
+        takes Verilator if it and a compiler are installed.
     stalls : Stalls, mapping or None
         Stalls of all streams, or of streams by name. See :meth:`stall`.
     options : sequence of str
@@ -65,12 +65,14 @@ class FastSimulation:
     ignored : collection of str
         Output streams whose transfers are not kept. A stream that is not received in a live
         simulation would take more and more memory.
+    report : callable or None
+        Called with a line of text at each stage of a compilation.
 
     Attributes
     ----------
     ports : Ports
         Streams and plain values.
-    engine : {"cxxrtl", "amaranth"}
+    engine : {"verilator", "amaranth"}
         Which engine runs.
     cycle : int
         Number of the next cycle, as of the last run, halt or reset.
@@ -81,7 +83,7 @@ class FastSimulation:
     TypeError, ValueError
         If the design or a name is not what it has to be.
     ProgramMissingError
-        If the engine is ``"cxxrtl"`` and there is no compiler.
+        If the engine is ``"verilator"`` and there is no Verilator, or no compiler.
     BuildError
         If the design cannot be compiled.
     ClockDomainError
@@ -97,6 +99,7 @@ class FastSimulation:
         options: Sequence[str] = COMPILER_OPTIONS,
         cache: Path | None = None,
         ignored: Collection[str] = (),
+        report: Report | None = None,
     ):
         check_engine(engine)
         self.ports = ports_of(design)
@@ -107,8 +110,8 @@ class FastSimulation:
         self.is_live = False
         self._clear()
         self._stalls, top = stalls, Top(design, self.ports)
-        self._channel: Channel = start(top, engine, options=options, cache=cache)
-        self.engine: Literal["cxxrtl", "amaranth"] = self._channel.engine
+        self._channel: Channel = start(top, engine, options=options, cache=cache, report=report)
+        self.engine: Literal["verilator", "amaranth"] = self._channel.engine
         try:
             self._prepare(stalls)
         except BaseException:

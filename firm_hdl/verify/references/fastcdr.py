@@ -8,18 +8,17 @@ humble. Newer releases come from PyPI, and the names of their clients end in the
 
 from __future__ import annotations
 
-import hashlib
 import os
-import shutil
 import struct
 import subprocess
-import tempfile
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
-from firm_hdl.jobs.processes import ToolError, hang_up, made_by, run_tool
+from firm_hdl.jobs.caches import kept_program
+from firm_hdl.jobs.processes import ToolError, hang_up, made_by, run_tool, start_program
+from firm_hdl.jobs.programs import ProgramMissingError, find_compiler
 from firm_hdl.model import Array, FieldType, Message, Primitive, String, closure
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.references.client import (
@@ -166,14 +165,8 @@ class _Program:
         self._start()
 
     def _start(self) -> None:
-        self._process = subprocess.Popen(
-            [str(self._file)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            # The program ends at the end of its input, and not on Ctrl-C.
-            start_new_session=True,
-        )
+        # The program ends at the end of its input, and not on Ctrl-C.
+        self._process = start_program([str(self._file)], stdin=subprocess.PIPE)
         self._types = ""
         try:
             self.version = str(_text(self._read()))
@@ -243,10 +236,11 @@ def _compiled(release: Release | None) -> Path:
     ToolError
         If the program cannot be compiled; the text says what is missing and how to install it.
     """
-    compiler = shutil.which(os.environ.get("CXX") or "g++")
+    try:
+        compiler = find_compiler("Fast CDR")
+    except ProgramMissingError as error:
+        raise ToolError(str(error)) from None
     how = _HOW if release is None else release.how
-    if compiler is None:
-        raise ToolError(f"there is no C++ compiler {_HOW}")
     where: list[str] = []
     link = ["-lfastcdr"]
     if release is not None:
@@ -256,44 +250,31 @@ def _compiled(release: Release | None) -> Path:
         if not os.path.exists(f"{home}/include/fastcdr/Cdr.h"):
             # The compiler might find headers of another version in the system.
             raise ToolError(f"Fast CDR {release.fastcdr} is not installed {how}")
-    found = _found_headers([compiler, *where])
-    if b"FASTCDR" not in found:
+    found = _found_headers([*compiler, *where])
+    if "FASTCDR" not in found:
         raise ToolError(f"Fast CDR's headers are not installed {how}")
-    command = [compiler, "-std=c++14", "-O1", *where]
-    key = hashlib.sha256(_SOURCE.read_bytes())
-    key.update("\0".join([*command, *link]).encode() + b"\0" + found)
-    folder = _cache_folder()
-    program = folder / f"fastcdr-{key.hexdigest()[:16]}"
-    if program.exists():
-        return program
-    with tempfile.TemporaryDirectory(dir=folder) as scratch:
-        made = Path(scratch) / "program"
-        run_tool([*command, "-o", str(made), str(_SOURCE), *link], Path(scratch))
-        # If two processes compile the program at once, the second replaces it with an equal one.
-        os.replace(made_by(compiler, made), program)
-    return program
+    command = [*compiler, "-std=c++14", "-O1", *where]
+
+    def compiled(folder: Path) -> Path:
+        program = folder / "program"
+        run_tool([*command, "-o", str(program), str(_SOURCE), *link], folder)
+        return made_by(command[0], program)
+
+    return kept_program(
+        "fastcdr", [_SOURCE.read_text(encoding="utf-8"), *command, *link, found], compiled
+    )
 
 
-def _found_headers(compiler: Sequence[str]) -> bytes:
+def _found_headers(compiler: Sequence[str]) -> str:
     """Return the versions of the compiler and of the Fast CDR it finds; empty without them."""
-    done = subprocess.run(
-        [*compiler, "-E", "-dM", "-include", "fastcdr/Cdr.h", "-x", "c++", os.devnull],
-        capture_output=True,
-        check=False,
-    )
-    lines = done.stdout.splitlines()
-    return b"\n".join(
-        sorted(line for line in lines if b" FASTCDR_VERSION_" in line or b" __VERSION__ " in line)
-    )
-
-
-def _cache_folder() -> Path:
-    """Return the folder for compiled programs; a temporary one if the cache is not writable."""
-    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    folder = Path(base) / "firm-hdl"
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=folder).close()
-    except OSError:
-        return Path(tempfile.mkdtemp(prefix="firm-hdl-"))
-    return folder
+        said = run_tool(
+            [*compiler, "-E", "-dM", "-include", "fastcdr/Cdr.h", "-x", "c++", os.devnull],
+            with_errors=False,
+        )
+    except (ToolError, OSError):
+        return ""
+    lines = said.splitlines()
+    return "\n".join(
+        sorted(line for line in lines if " FASTCDR_VERSION_" in line or " __VERSION__ " in line)
+    )

@@ -11,7 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.jobs.processes import hang_up
+from firm_hdl.jobs.processes import answered, hang_up, start_program
 
 __all__ = ["DIED", "ROS_PYTHON", "Worker"]
 
@@ -42,8 +42,8 @@ class Worker:
         self, family: str, folder: str, *, modules: Path, python: str = ROS_PYTHON
     ) -> None:
         self._command = [python, str(_SCRIPT), family, folder, str(modules)]
-        self._process: subprocess.Popen[str] | None = None
-        self._end: weakref.finalize[[subprocess.Popen[str], float], Worker] | None = None
+        self._process: subprocess.Popen[bytes] | None = None
+        self._end: weakref.finalize[[subprocess.Popen[bytes], float], Worker] | None = None
         self.missing: str | None = None
         self.versions: dict[str, str] = {}
         self._start()
@@ -77,13 +77,10 @@ class Worker:
 
     def _start(self) -> None:
         try:
-            self._process = subprocess.Popen(
+            self._process = start_program(
                 self._command,
                 stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-                text=True,
-                env=_environment(self._command[0]),
+                environment=_environment(self._command[0]),
             )
         except OSError as error:
             self.missing = f"{self._command[0]} cannot be run: {error.strerror}"
@@ -97,24 +94,15 @@ class Worker:
             self.close()
 
     def _exchange(self, line: str | None) -> dict[str, Any] | None:
-        process = self._process
-        assert process is not None and process.stdin is not None and process.stdout is not None
-        try:
-            if line is not None:
-                process.stdin.write(line + "\n")
-                process.stdin.flush()
-            answer = json.loads(process.stdout.readline())
-        except (OSError, ValueError):
-            return None
-        # Another program than Python may have been started, which prints what it likes.
-        return answer if isinstance(answer, dict) else None
+        assert self._process is not None
+        with suppress(OSError, ValueError):
+            return answered(self._process, line)
+        return None
 
 
 def _environment(python: str) -> dict[str, str]:
     # Most users run ROS's tools in a UTF-8 environment. The hash seed is fixed, because the order
     # of sets decides how rosidl_parser 3.3.1 reads a text that lark can read in two ways.
-    found = {**os.environ, "LC_ALL": "C.UTF-8", "PYTHONUTF8": "1", "PYTHONHASHSEED": "0"}
-    if python != ROS_PYTHON:
-        # A sourced release of ROS must not replace the release that was asked for.
-        found.pop("PYTHONPATH", None)
-    return found
+    found = {"LC_ALL": "C.UTF-8", "PYTHONUTF8": "1", "PYTHONHASHSEED": "0"}
+    # A sourced release of ROS must not replace the release that was asked for.
+    return found if python == ROS_PYTHON else {**found, "PYTHONPATH": ""}

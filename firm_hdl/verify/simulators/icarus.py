@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from firm_hdl.export.top import Top
 from firm_hdl.jobs.processes import made_by, run_tool
-from firm_hdl.jobs.programs import ProgramMissingError, find_program, version_of
+from firm_hdl.jobs.programs import ProgramMissingError, find_program, version_of, which
 from firm_hdl.verify.simulators.benches import RESULTS, written
 from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.verify.simulators.verilog import modules_of, write_inputs
@@ -39,8 +37,7 @@ class Icarus:
         self.standard = standard
         self.path = find_program(self.title, "IVERILOG", ["iverilog"], PACKAGE)
         # The compiler and vvp belong together, so look for vvp beside the compiler first.
-        beside = os.pathsep.join([str(Path(self.path).parent), os.environ.get("PATH", "")])
-        run = shutil.which("vvp", path=beside)
+        run = which(str(Path(self.path).with_name("vvp"))) or which("vvp")
         if run is None:
             raise ProgramMissingError(f"{self.title} has no command vvp beside '{self.path}'")
         self.run_path = run

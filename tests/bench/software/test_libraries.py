@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from firm_hdl.bench.software.fastcdr import fastcdr_versions, time_fastcdr
 from firm_hdl.bench.software.python import genpy_versions, time_genpy, time_rosbags
 from firm_hdl.bench.software.sample import Sample, Timed
 from firm_hdl.frontend import load_message
-from firm_hdl.jobs import ProgramMissingError
+from firm_hdl.jobs import ProgramMissingError, ToolError, programs
 from firm_hdl.model import Message
 
 
@@ -49,7 +48,7 @@ def run_tool(monkeypatch: pytest.MonkeyPatch) -> list[Sequence[str]]:
         return "a remark\n200.5\n100.25\n"
 
     monkeypatch.setattr(fastcdr, "run_tool", answer)
-    monkeypatch.setattr(fastcdr.shutil, "which", lambda name: f"/bin/{name}")
+    monkeypatch.setattr(programs, "which", lambda name: f"/bin/{name}")
     return commands
 
 
@@ -108,15 +107,16 @@ ROS1 = Sample(
 
 @pytest.fixture
 def genpy(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """The process with genpy: ``answer``, ``stderr`` and ``code`` are set, ``request`` is seen."""
-    process: dict[str, Any] = {"answer": {}, "stderr": "", "code": 0}
+    """The process with genpy: ``answer`` or ``stderr`` is set, ``request`` is seen."""
+    process: dict[str, Any] = {"answer": {}, "stderr": ""}
 
-    def run(command: Sequence[str], *, input: str, **_: object) -> object:
-        process["request"] = json.loads(input)
-        text = json.dumps(process["answer"])
-        return subprocess.CompletedProcess(command, process["code"], text, process["stderr"])
+    def run(command: Sequence[str], **_: object) -> str:
+        process["request"] = json.loads(Path(command[-1]).read_text())
+        if process["stderr"]:
+            raise ToolError(process["stderr"])
+        return json.dumps(process["answer"])
 
-    monkeypatch.setattr(python.subprocess, "run", run)
+    monkeypatch.setattr(python, "run_tool", run)
     return process
 
 
@@ -135,7 +135,7 @@ def test_wrong_bytes_of_genpy_have_no_figure(genpy: dict[str, Any]) -> None:
 
 
 def test_a_process_with_genpy_that_fails_says_why_in_its_last_line(genpy: dict[str, Any]) -> None:
-    genpy.update(code=1, stderr="Traceback\nKeyError: 'x'\n")
+    genpy.update(stderr="Traceback\nKeyError: 'x'\n")
     with pytest.raises(BenchError, match=r"^genpy failed: .*KeyError: 'x'"):
         time_genpy(ROS1)
 

@@ -108,7 +108,11 @@ def test_a_signal_ends_the_start_of_a_board(file, capsys, monkeypatch, number):
         ("auto", "nothing-there", "a few messages per second (CXX is 'nothing-there' in the"),
         ("auto", "'g++", "a few messages per second (CXX is no command: No closing quotation"),
         ("amaranth", "", "board sim: starts; Amaranth's simulator takes a few messages per second"),
-        ("cxxrtl", "nothing-there", "error: CXX is 'nothing-there' in the environment, but there"),
+        (
+            "verilator",
+            "nothing-there",
+            "error: CXX is 'nothing-there' in the environment, but there",
+        ),
     ],
 )
 def test_the_engine_is_named(file, capsys, monkeypatch, engine, compiler, message):
@@ -237,7 +241,12 @@ def started(monkeypatch):
     ("options", "board", "graph", "seconds"),
     [
         ({}, {"engine": "auto"}, {"domain": None, "interface": None}, None),
-        ({"engine": "cxxrtl"}, {"engine": "cxxrtl"}, {"domain": None, "interface": None}, None),
+        (
+            {"engine": "verilator"},
+            {"engine": "verilator"},
+            {"domain": None, "interface": None},
+            None,
+        ),
         ({"domain": 0}, {"engine": "auto"}, {"domain": 0, "interface": None}, None),
         ({"interface": "lo"}, {"engine": "auto"}, {"domain": None, "interface": "lo"}, None),
         ({"seconds": 7.5}, {"engine": "auto"}, {"domain": None, "interface": None}, 7.5),

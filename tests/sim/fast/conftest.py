@@ -6,6 +6,7 @@ from __future__ import annotations
 import fcntl
 import os
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -13,9 +14,9 @@ import pytest
 from firm_hdl.sim import StallPlan
 from firm_hdl.sim.fast import EngineName, FastSimulation
 from firm_hdl.sim.fast.compilers import program_of
-from firm_hdl.sim.fast.cxxrtl import cxxrtl_source
 from firm_hdl.sim.fast.ports import ports_of
 from firm_hdl.sim.fast.top import Top
+from firm_hdl.sim.fast.verilated import verilated_source
 from tests.sim.fast.designs import Awkward
 
 OPTIONS = ("-O0",)
@@ -33,7 +34,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with (folder.parent / "programs.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         design = Awkward()
-        source = cxxrtl_source(Top(design, ports_of(design)))
+        source = partial(verilated_source, Top(design, ports_of(design)))
         program_of(source, options=OPTIONS, cache=folder)
     return folder
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections import deque
 from itertools import islice
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,9 +13,8 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl import PacketSignature
-from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.sim import DeadlineError, Stalls
-from firm_hdl.sim.fast import FastSimulation, engines, protocol, simulation
+from firm_hdl.sim.fast import FastSimulation, protocol, simulation
 from firm_hdl.sim.fast.arrivals import Arrivals
 from firm_hdl.sim.fast.packing import Packet, PacketJoiner, packed_packets
 from firm_hdl.sim.fast.ports import ports_of
@@ -330,44 +328,3 @@ def test_packets_are_joined_over_messages_of_any_size():
     wrong = [b"abcd\7", b"ef\0\0\x0a", b"gh\0\0\x0a"]
     found = joiner.add(b"".join(bytes(8) + beat for beat in wrong))
     assert found == [Packet(b"abcdef", 0), Packet(b"gh", 0)]
-
-
-@pytest.fixture
-def compiler(monkeypatch):
-    """Engines that say with what they were started, and a compiler that may be missing."""
-    state = SimpleNamespace(is_missing=False)
-
-    def find_compiler(what, *, with_zig):
-        if state.is_missing:
-            raise ProgramMissingError("there is none")
-        return ("c++",)
-
-    def program_of(source, *, options, cache):
-        find_compiler("", with_zig=True)
-        return source, options, cache
-
-    monkeypatch.setattr(engines, "find_compiler", find_compiler)
-    monkeypatch.setattr(engines, "program_of", program_of)
-    monkeypatch.setattr(engines, "cxxrtl_source", lambda top: f"source of {top}")
-    monkeypatch.setattr(engines, "CxxrtlEngine", lambda program: ("cxxrtl", *program))
-    monkeypatch.setattr(engines, "AmaranthEngine", lambda top: ("amaranth", top))
-    return state
-
-
-def test_the_engine_is_compiled_if_there_is_a_compiler(compiler):
-    def started(engine):
-        return engines.start("top", engine, options=["-O1"], cache="folder")
-
-    compiled = ("cxxrtl", "source of top", ["-O1"], "folder")
-    for engine, expected in (("auto", compiled), ("cxxrtl", compiled)):
-        assert engines.expected_engine(engine) == ("cxxrtl", "")
-        assert started(engine) == expected
-    compiler.is_missing = True
-    assert engines.expected_engine("auto") == ("amaranth", "there is none")
-    assert started("auto") == ("amaranth", "top")
-    for call in (engines.expected_engine, started):
-        with pytest.raises(ProgramMissingError, match="there is none"):
-            call("cxxrtl")
-    for compiler.is_missing in (True, False):
-        assert engines.expected_engine("amaranth") == ("amaranth", "")
-        assert started("amaranth") == ("amaranth", "top")

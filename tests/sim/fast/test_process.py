@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from firm_hdl.sim.fast import BuildError, SimulationError, process
-from firm_hdl.sim.fast.process import CxxrtlEngine
+from firm_hdl.sim.fast.process import VerilatorEngine
 
 
 @pytest.fixture
@@ -19,11 +19,11 @@ def start(tmp_path, request, monkeypatch):
     """Start a shell script in place of a compiled design; it has all the time that it needs."""
     monkeypatch.setattr(process, "_END_SECONDS", 60.0)
 
-    def started(text: str) -> CxxrtlEngine:
+    def started(text: str) -> VerilatorEngine:
         path = tmp_path / "program"
         path.write_text(f"#!/bin/sh\n{text}\n")
         path.chmod(0o755)
-        engine = CxxrtlEngine(path)
+        engine = VerilatorEngine(path)
         request.addfinalizer(engine.close)
         return engine
 
@@ -58,7 +58,7 @@ def test_a_program_that_does_not_end_is_killed(start, monkeypatch):
 def test_a_program_that_nobody_closed_is_ended(start, tmp_path):
     Path(tmp_path, "program").write_text(f"#!/bin/sh\n{WAITS}\n")
     Path(tmp_path, "program").chmod(0o755)
-    engine = CxxrtlEngine(tmp_path / "program")
+    engine = VerilatorEngine(tmp_path / "program")
     child = engine.process
     del engine
     gc.collect()
@@ -102,4 +102,4 @@ def test_an_end_without_a_name_is_told_as_a_number(start, status, reason):
 
 def test_a_program_that_is_not_there_cannot_be_started(tmp_path):
     with pytest.raises(BuildError, match=r"cannot be started: .*No such file"):
-        CxxrtlEngine(tmp_path / "missing")
+        VerilatorEngine(tmp_path / "missing")

@@ -54,9 +54,9 @@ def test_results_are_continued_with_the_same_cases_only(given, key):
 
 
 def test_results_of_a_simulation_are_continued_with_the_same_engine_only(monkeypatch):
-    description, engines = described(STRING), ["auto", "cxxrtl", "amaranth"]
+    description, engines = described(STRING), ["auto", "verilator", "amaranth"]
     with_compiler = [options_of(description, board="sim", engine=each) for each in engines]
-    assert [each["engine"] for each in with_compiler] == ["cxxrtl", "cxxrtl", "amaranth"]
+    assert [each["engine"] for each in with_compiler] == ["verilator", "verilator", "amaranth"]
 
     def find_compiler(*_, **more):
         raise ProgramMissingError("there is none")

@@ -106,8 +106,8 @@ SEED = "--seed 0 --reference none"
         # The file has the distribution and the bus.
         ({"node": "n.yaml"}, f"--node n.yaml {SEED}"),
         (
-            {"engine": "cxxrtl", "silent_seconds": 1.5},
-            f"--engine cxxrtl --silent-seconds 1.5 --distro lyrical --bus-bytes 8 {SEED}",
+            {"engine": "verilator", "silent_seconds": 1.5},
+            f"--engine verilator --silent-seconds 1.5 --distro lyrical --bus-bytes 8 {SEED}",
         ),
         (
             {"seed": 7, "broken": False, "most_cases": 2, "references": ("rosbags",)},

@@ -315,12 +315,12 @@ def test_packages_that_are_not_installed_are_missing(monkeypatch):
 
 @pytest.mark.parametrize(
     ("compiler", "output"),
-    [("/nowhere/c++", "there is no C++ compiler"), ("true", "headers are not installed")],
+    [("/nowhere/c++", "there is no such command"), ("true", "apt install g++ libfastcdr-dev")],
 )
 def test_without_compiler_or_library_fast_cdr_is_missing(monkeypatch, compiler, output):
     monkeypatch.setenv("CXX", compiler)
     why = FastCdr().missing()
-    assert output in why and "apt install g++ libfastcdr-dev" in why
+    assert output in why
 
 
 def test_without_its_python_genpy_is_missing(monkeypatch):

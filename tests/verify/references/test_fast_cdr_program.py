@@ -53,7 +53,7 @@ def compilations(folder):
 
 def test_the_program_is_compiled_once_and_kept(folder):
     program = module._compiled(None)
-    assert program.parent == folder / "cache" / "firm-hdl"
+    assert program.parent == folder / "cache" / "firm-hdl" / "programs"
     assert program.read_text() == "program\n"
     assert module._compiled(None) == program
     (call,) = compilations(folder)
@@ -112,23 +112,7 @@ def test_a_compiler_that_writes_nothing_has_failed(folder):
     executable(folder / "c++", (folder / "c++").read_text().replace('> "$2"', ""))
     with pytest.raises(ToolError, match="did not write program"):
         module._compiled(None)
-    assert list((folder / "cache" / "firm-hdl").iterdir()) == []
-
-
-def test_the_cache_is_the_user_s_or_a_temporary_folder(folder, monkeypatch):
-    monkeypatch.setenv("HOME", str(folder / "home"))
-    for cache in (None, ""):
-        if cache is None:
-            monkeypatch.delenv("XDG_CACHE_HOME")
-        else:
-            monkeypatch.setenv("XDG_CACHE_HOME", cache)
-        assert module._cache_folder() == folder / "home" / ".cache" / "firm-hdl"
-    (folder / "file").touch()
-    monkeypatch.setenv("XDG_CACHE_HOME", str(folder / "file"))
-    monkeypatch.setattr("tempfile.tempdir", str(folder))
-    temporary = module._cache_folder()
-    assert temporary.parent == folder and temporary.name.startswith("firm-hdl-")
-    assert temporary.is_dir() and temporary != module._cache_folder()
+    assert list((folder / "cache" / "firm-hdl" / "programs").iterdir()) == []
 
 
 # The program itself.

@@ -102,6 +102,19 @@ def test_requests_arrive_whole_and_what_is_printed_does_no_harm(mine, folder):
     assert math.isnan(nan) and str(others) == "[-inf, -0.0]"
 
 
+def test_the_encoding_of_the_user_s_output_is_not_that_of_the_pipes(folder, monkeypatch):
+    monkeypatch.setenv("PYTHONIOENCODING", "utf-16")
+    with closing(Worker("fake", "here", modules=folder, python=sys.executable)) as found:
+        assert found.ask({"oracle": "repeat", "text": "é"})["facts"]["request"]["text"] == "é"
+
+
+def test_a_program_that_prints_a_line_without_end_is_ended(folder):
+    (folder / "endless").write_text("#!/bin/sh\nexec cat /dev/zero\n")
+    (folder / "endless").chmod(0o755)
+    found = Worker("fake", "here", modules=folder, python=str(folder / "endless"))
+    assert found.missing == "its Python does not start" and found._process is None
+
+
 def test_what_a_reader_raises_is_a_refusal(mine):
     answer = mine.ask({"oracle": "fail"})["refused"]
     assert answer.startswith("ValueError: xxx") and len(answer) == 1000
@@ -162,7 +175,8 @@ def test_the_search_path_of_a_sourced_release_is_for_the_python_of_ros(folder, m
     monkeypatch.setattr(module, "ROS_PYTHON", sys.executable if is_own else "/usr/bin/ros")
     with closing(Worker("fake", "here", modules=folder, python=sys.executable)) as found:
         given = found.ask({"oracle": "environment"})["facts"]
-    assert given.get("PYTHONPATH") == ("/opt/ros" if is_own else None)
+    # An empty one is as good as none.
+    assert given["PYTHONPATH"] == ("/opt/ros" if is_own else "")
     assert (given["LC_ALL"], given["PYTHONUTF8"]) == ("C.UTF-8", "1")
     assert given["PYTHONHASHSEED"] == "0" and given["PATH"] == os.environ["PATH"]
 

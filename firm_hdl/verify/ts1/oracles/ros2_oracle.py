@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
+from firm_hdl.jobs.processes import ToolError, TooSlowError, run_tool
+from firm_hdl.jobs.programs import which
 from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle
 
@@ -26,7 +26,7 @@ class Ros2Proto(Oracle):
     judges_changes = False
 
     def missing(self) -> str | None:
-        return None if shutil.which("ros2") else "there is no command 'ros2'; source ROS 2's setup"
+        return None if which("ros2") else "there is no command 'ros2'; source ROS 2's setup"
 
     def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
         for case in cases:
@@ -35,15 +35,12 @@ class Ros2Proto(Oracle):
     def _judge(self, case: DefinitionCase) -> Answer:
         command = ["ros2", "interface", "proto", case.full_name]
         try:
-            done = subprocess.run(
-                command, capture_output=True, text=True, timeout=_MOST_SECONDS, check=False
-            )
-        except (OSError, subprocess.TimeoutExpired) as error:
+            said = run_tool(command, timeout=_MOST_SECONDS, with_errors=False)
+        except (TooSlowError, OSError) as error:
             return NotJudged(f"ros2 failed: {error}")
-        if done.returncode != 0:
-            lines = (done.stderr or done.stdout).strip().splitlines() or ["it does not say why"]
-            return NotJudged(f"ros2 does not have it: {lines[-1]}")
-        if not done.stdout.strip():
+        except ToolError as error:
+            return NotJudged(f"ros2 does not have it: {str(error).splitlines()[-1]}")
+        if not said.strip():
             return NotJudged("ros2 says nothing of it")
         # The command's `print` adds one line end.
-        return Accepted({"proto": done.stdout.removesuffix("\n")})
+        return Accepted({"proto": said.removesuffix("\n")})

@@ -5,16 +5,16 @@ from __future__ import annotations
 import os
 import signal
 import stat
-import subprocess
 from pathlib import Path
 
 import pytest
 
+from firm_hdl.jobs import TooSlowError
 from firm_hdl.verify.results.records import Test as Tested
 from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.ros_python.worker import Worker
 from firm_hdl.verify.ts1.judge import judge_case
-from firm_hdl.verify.ts1.oracles import debian
+from firm_hdl.verify.ts1.oracles import debian, ros2_oracle
 from firm_hdl.verify.ts1.oracles.debian import Genmsg
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, NotJudged, Refused
 from tests.verify.judged import assert_passed
@@ -246,9 +246,9 @@ def test_ros2_is_asked_in_its_own_words_and_not_for_ever(court, ros2_command, mo
 
     def run(command, **options):
         calls.append((command, options["timeout"]))
-        raise subprocess.TimeoutExpired(command, options["timeout"])
+        raise TooSlowError("it took too long")
 
-    monkeypatch.setattr(subprocess, "run", run)
+    monkeypatch.setattr(ros2_oracle, "run_tool", run)
     here = court("lyrical", ROS2)
     for type_, name in (("p/Do", "p/action/Do"), ("p/S", "p/srv/S"), ("p/A", "p/msg/A")):
         answer = here.answer("ros2", type_)
@@ -280,7 +280,7 @@ def test_ros2_without_output_has_not_judged(court, ros2_command):
         assert outcome.verdict == NotJudged("ros2 says nothing of it")
     (ros2_command / "ros2").write_text("#!/bin/sh\nexit 1\n")
     outcome = court("lyrical", ROS2).outcome("ros2", "q/B")
-    assert outcome.verdict == NotJudged("ros2 does not have it: it does not say why")
+    assert outcome.verdict == NotJudged("ros2 does not have it: exit status 1")
 
 
 def test_ros2_is_missing_where_it_is_not_installed(court, monkeypatch):

@@ -1,0 +1,101 @@
+"""Write RTLIL as `amaranth.back.rtlil` does, and quickly for designs with large memories.
+
+Amaranth writes a bit for each bit of a memory. For a memory of a megabyte, that takes half a minute
+and 8 MB of text. RTLIL extends a constant that has fewer digits than bits by its first digit, so
+``8388608'0`` is the same (Yosys, ``frontends/rtlil/rtlil_parser.y``).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amaranth.back import rtlil
+from amaranth.hdl import Elaboratable, Fragment, ValueCastable, _ir, _nir
+from amaranth.hdl._ir import PortDirection
+from amaranth.lib import wiring
+
+__all__ = ["convert_fragment", "rtlil_of"]
+
+
+def rtlil_of(design: Any, *, name: str, ports: Any = None, platform: Any = None) -> str:
+    """Return the RTLIL of a design, without source attributes, which have paths of the machine.
+
+    Parameters
+    ----------
+    design : elaboratable or str
+        A component or other elaboratable, or already RTLIL.
+    name : str
+        Name of the outermost module.
+    ports, platform
+        As for `amaranth.back.rtlil.convert`; a component needs no ports.
+
+    Raises
+    ------
+    TypeError
+        If the design or its name is none, or an elaboratable that is no component has no ports.
+    ValueError
+        If the name is no word.
+    """
+    if not isinstance(name, str):
+        raise TypeError(f"Name of a design must be a text, not {name!r}")
+    if [name] != name.split():
+        raise ValueError(f"Name of a design must be one word, not {name!r}")
+    if isinstance(design, str):
+        return design
+    if not isinstance(design, Elaboratable | Fragment):
+        raise TypeError(
+            "A design must be an Amaranth component or another elaboratable, or the text of its "
+            f"RTLIL, not {design!r}"
+        )
+    if ports is None and not isinstance(getattr(design, "signature", None), wiring.Signature):
+        raise TypeError(
+            f"{design!r} is no component of amaranth.lib.wiring, so its ports must be given: "
+            "ports=[...]"
+        )
+    fragment = Fragment.get(design, platform)
+    if ports is None:
+        ports = {
+            "__".join(map(str, path)): (
+                value.as_value() if isinstance(value, ValueCastable) else value,
+                PortDirection.Input if member.flow == wiring.In else PortDirection.Output,
+            )
+            for path, member, value in design.signature.flatten(design)
+        }
+    return convert_fragment(fragment, ports, name=name)
+
+
+def convert_fragment(fragment: Fragment, ports: Any, *, name: str) -> str:
+    """Return an elaborated design as RTLIL. Parameters are those of `amaranth.back.rtlil`."""
+    netlist = _ir.build_netlist(fragment, ports=ports, name=name)
+    empty = rtlil.EmptyModuleChecker(netlist)
+    design, names = rtlil.Design(emit_src=False), rtlil._ast.SignalDict()
+    for index, module in enumerate(netlist.modules):
+        if empty.is_empty(index):
+            continue
+        builder = design.module(".".join(module.name), src_loc=module.src_loc)
+        if index == 0:
+            builder.attribute("top", 1)
+        _Emitter(builder, netlist, module, names, empty_checker=empty).emit()
+    return str(design)
+
+
+class _Emitter(rtlil.ModuleEmitter):
+    def emit_memory(self, cell_idx: int, cell: _nir.Memory) -> None:
+        if any(cell.init):
+            super().emit_memory(cell_idx, cell)
+            return
+        self.builder.cell(
+            "$meminit_v2",
+            ports={
+                "ADDR": self.sigspec(),
+                "DATA": f"{cell.width * cell.depth}'0",
+                "EN": self.sigspec(_nir.Value.ones(cell.width)),
+            },
+            parameters={
+                "MEMID": self.memories[cell_idx].memid,
+                "ABITS": 0,
+                "WIDTH": cell.width,
+                "WORDS": cell.depth,
+                "PRIORITY": 0,
+            },
+        )

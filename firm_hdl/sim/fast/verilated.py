@@ -1,0 +1,100 @@
+"""A design as C++: what Verilator makes of its Verilog, with the table of its ports."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import jinja2
+from amaranth.hdl import Fragment
+
+from firm_hdl.garbage import search_put_off
+from firm_hdl.jobs import ToolError, made_by, run_tool
+from firm_hdl.rtlil import convert_fragment
+from firm_hdl.sim.fast.top import Top, check_domains
+from firm_hdl.verilog import convert
+
+__all__ = ["SERVER", "VerilatedSource", "translate", "verilated_source"]
+
+SERVER = Path(__file__).parent / "server.h"
+"""The part of the program that is the same for all designs."""
+
+_MODULE, _PREFIX = "firm_hdl_design", "Vdesign"
+_OPTIONS = (
+    *("--cc", "-Wno-lint", "-Wno-style", "-Wno-fatal", "--no-timing"),
+    # Amaranth's `Assert` and `Print`.
+    "--assert",
+    # Registers and memories have initial values, and wires have drivers.
+    *("--x-assign", "fast", "--x-initial", "fast", "-O3"),
+    # Several files, for the processors of the machine.
+    *("--output-split", "20000"),
+    *("--top-module", _MODULE, "--prefix", _PREFIX, "--Mdir", "."),
+)
+_templates = jinja2.Environment(
+    loader=jinja2.FileSystemLoader(Path(__file__).parent),
+    trim_blocks=True,
+    lstrip_blocks=True,
+    undefined=jinja2.StrictUndefined,
+)
+
+
+class VerilatedSource:
+    """The source of a program that simulates a design, before Verilator has run.
+
+    Attributes
+    ----------
+    verilog : str
+        It has no paths, so that it is the same for the same design.
+    main : str
+        C++ with the table of the ports.
+    """
+
+    def __init__(self, verilog: str, main: str):
+        self.verilog, self.main = verilog, main
+
+
+@search_put_off()
+def verilated_source(top: Top) -> VerilatedSource:
+    """Elaborate a design.
+
+    Raises
+    ------
+    ClockDomainError
+    """
+    fragment = Fragment.get(top, None)
+    check_domains(fragment)
+    netlist = convert_fragment(fragment, top.signals, name=_MODULE)
+    main = _templates.get_template("model.cc.j2").render(
+        prefix=_PREFIX, streams=top.ports.streams, plain=top.ports.plain
+    )
+    return VerilatedSource(convert(netlist, name=_MODULE), main)
+
+
+def translate(
+    source: VerilatedSource, verilator: tuple[str, ...], folder: Path
+) -> tuple[list[Path], Path]:
+    """Write the C++ of a design into a folder.
+
+    Returns
+    -------
+    list of Path, Path
+        The files that are to be compiled, those of Verilator's runtime included, and the folder
+        of its headers.
+
+    Raises
+    ------
+    ToolError
+    """
+    (folder / "design.v").write_text(source.verilog, encoding="utf-8")
+    (folder / "main.cpp").write_text(source.main, encoding="utf-8")
+    (folder / SERVER.name).write_bytes(SERVER.read_bytes())
+    run_tool([*verilator, *_OPTIONS, "design.v"], folder)
+    makefile = made_by("Verilator", folder / f"{_PREFIX}_classes.mk").read_text(encoding="utf-8")
+    # Which parts of the runtime a model needs depends on the version.
+    parts = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", makefile, re.MULTILINE)
+    root = run_tool([*verilator, "--getenv", "VERILATOR_ROOT"], folder).strip()
+    if not parts or not root:
+        raise ToolError("Verilator did not say where its runtime is, or which parts a model needs")
+    headers = Path(root, "include")
+    runtime = [headers / f"{part}.cpp" for part in parts[1].replace("\\", " ").split()]
+    return [*sorted(folder.glob("*.cpp")), *runtime], headers
