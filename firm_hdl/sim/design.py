@@ -25,6 +25,7 @@ from firm_hdl.gateware.component import Component
 __all__ = [
     "ClockDomainError",
     "Domain",
+    "Logic",
     "check_connections",
     "check_domain",
     "check_domains",
@@ -77,7 +78,7 @@ def check_domain(
     design: Design = ctx._design
     if design not in _logic:
         check_connections(design.fragment)
-        _logic[design] = _Logic(design)
+        _logic[design] = Logic(design)
     logic = _logic[design]
     clock = _resolved(design, domain)
     if id(clock.clk) not in logic.drivers and not _has_clock(ctx, clock):
@@ -167,7 +168,7 @@ def _has_clock(ctx: SimulatorContext, domain: ClockDomain) -> bool:
     return any(each.slot == slot for each in clocks)
 
 
-class _Logic:
+class Logic:
     """The assignments of a design, by the signals that they drive and read.
 
     Attributes
@@ -233,7 +234,7 @@ class _Logic:
         return domains
 
 
-_logic: WeakKeyDictionary[Design, _Logic] = WeakKeyDictionary()
+_logic: WeakKeyDictionary[Design, Logic] = WeakKeyDictionary()
 
 
 def _assigned(

@@ -14,7 +14,7 @@ from amaranth.hdl import Elaboratable, Fragment, Signal
 from amaranth.hdl._ast import Assign, Statement, Switch
 from amaranth.hdl._mem import MemoryInstance
 
-__all__ = ["divided"]
+__all__ = ["divide", "divided"]
 
 # Signals per process. With fewer signals, less is evaluated without need, but there are more
 # processes to generate.
@@ -24,13 +24,14 @@ PART = 12
 def divided(design: Elaboratable) -> Fragment:
     """Elaborate a design, and divide the combinational logic of each module by its depth."""
     fragment = Fragment.get(design, None)
-    _divide(fragment)
+    divide(fragment)
     return fragment
 
 
-def _divide(fragment: Fragment) -> None:
+def divide(fragment: Fragment) -> None:
+    """Divide the combinational logic of an elaborated design."""
     for child, *_ in fragment.subfragments:
-        _divide(child)
+        divide(child)
     statements = fragment.statements.get("comb")
     if not statements or isinstance(fragment, MemoryInstance):
         return

@@ -26,6 +26,7 @@ from firm_hdl import (
 )
 from firm_hdl.export import Top
 from firm_hdl.node import Node
+from firm_hdl.sim.fast import FastSimulation
 
 TWIST = load_message("geometry_msgs/msg/Twist")
 
@@ -67,6 +68,14 @@ def test_a_constructor_that_raises_leaves_no_warning(
     def make() -> None:
         with pytest.raises((TypeError, ValueError)):
             kind(*arguments, **options)
+
+    assert unused(make) == []
+
+
+def test_a_simulation_that_cannot_start_leaves_no_warning_of_its_design() -> None:
+    def make() -> None:
+        with pytest.raises(ValueError, match=r"^Engine must be"):
+            FastSimulation(PacketWidth(4, 8), engine="quick")  # type: ignore[arg-type]
 
     assert unused(make) == []
 

@@ -38,7 +38,7 @@ MISTAKES = {
     ),
     "no such field": (
         ("number.data", "number.dat"),
-        "raised AttributeError at FILE:13: 'PureInterface' object has no attribute 'dat'",
+        "at FILE:13: Message std_msgs/msg/Int32 has no member 'dat'; it has data",
     ),
     "returns nothing": (
         ("        return m", ""),

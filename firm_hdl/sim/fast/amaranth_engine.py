@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import select
 import socket
 import threading
@@ -9,14 +10,14 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from amaranth.hdl import Cat, Signal
+from amaranth.hdl import Cat, Fragment, Signal
+from amaranth.hdl._ir import Design
 from amaranth.sim import Simulator, SimulatorContext
 
 from firm_hdl.sim.fast import protocol
 from firm_hdl.sim.fast.channel import Channel
 from firm_hdl.sim.fast.protocol import Answer, Done, Order, Reason
-from firm_hdl.sim.fast.top import Top, check_domains
-from firm_hdl.sim.levels import divided
+from firm_hdl.sim.fast.top import Top
 
 __all__ = ["AmaranthEngine"]
 
@@ -70,14 +71,37 @@ class _Stream:
     is_input: bool
     size: int
     payload: Signal
+    clock: _Clock
     pattern: list[bool] = field(default_factory=list)
     queue: deque[int] = field(default_factory=deque)
     is_offered: bool = False
     offered: int = 0
     records: list[bytes] = field(default_factory=list)
 
-    def is_stalled(self, cycle: int) -> bool:
-        return bool(self.pattern) and self.pattern[cycle % len(self.pattern)]
+    def is_stalled(self) -> bool:
+        return bool(self.pattern) and self.pattern[self.clock.cycle % len(self.pattern)]
+
+
+@dataclass(slots=True)
+class _Clock:
+    """A clock, as `Clock` of ``server.h``."""
+
+    is_positive: bool
+    period: int = 1
+    next: int = 1
+    cycle: int = 0
+    quiet: int = 0
+
+
+class _Prepared(Fragment):
+    """A design that a simulator need not prepare."""
+
+    def __init__(self, design: Design):
+        super().__init__()
+        self._design = design
+
+    def prepare(self, *_: object) -> Design:
+        return self._design
 
 
 class _Server:
@@ -85,9 +109,17 @@ class _Server:
 
     def __init__(self, top: Top, other: socket.socket):
         self.top, self.socket = top, other
+        design = top.prepare(name="top", divides=True)
+        domains = list(top.clocks.values())
+        self.clocks = [_Clock(domain.clk_edge == "pos") for domain in domains]
+        self.base, self.periods = 0, (1,) * len(domains)
         self.streams = [
-            _Stream(number, each.is_input, each.bytes, top.payloads[number])
-            for number, each in enumerate(top.ports.streams)
+            _Stream(number, each.is_input, each.bytes, top.payloads[number], clock)
+            for (number, each), clock in zip(
+                enumerate(top.ports.streams),
+                (self.clocks[place] for place in top.clock_of),
+                strict=True,
+            )
         ]
         plain = list(zip(top.ports.plain, top.plain, strict=True))
         self.inputs = [signal for port, signal in plain if port.is_input]
@@ -95,14 +127,18 @@ class _Server:
         driven = [
             top.valids[s.number] if s.is_input else top.readies[s.number] for s in self.streams
         ]
-        # The clock and what is driven change together, so the simulator settles less often.
-        self.edge = Cat(top.clock, *driven)
+        # The clocks and what is driven change together, so the simulator settles less often.
+        self.edge = Cat(*driven, *(domain.clk for domain in domains))
+        # Clocks between their edges.
+        self.level = sum((not clock.is_positive) << n for n, clock in enumerate(self.clocks))
+        # For each clock: its streams.
+        self.members = [
+            sum(1 << s.number for s in self.streams if s.clock is clock) for clock in self.clocks
+        ]
         self.handshakes = Cat(
             top.readies[s.number] if s.is_input else top.valids[s.number] for s in self.streams
         )
-        fragment = divided(top)
-        check_domains(fragment)
-        self.simulator = Simulator(fragment)
+        self.simulator = Simulator(_Prepared(design))
         self.work: Callable[[SimulatorContext], object] = _nothing
         self.values = [0] * len(self.inputs)
         self.received = bytearray()
@@ -111,8 +147,11 @@ class _Server:
         self._start()
 
     def _start(self) -> None:
-        self.cycle = self.quiet = self.driven = 0
+        self.driven = 0
         self.is_applied = False
+        for clock, period in zip(self.clocks, self.periods, strict=True):
+            clock.period = clock.next = period
+            clock.cycle = clock.quiet = 0
         for stream in self.streams:
             stream.queue.clear()
             stream.records.clear()
@@ -138,9 +177,9 @@ class _Server:
                 seconds: float | None = None
                 if self.live is not None:
                     quiet, milliseconds, cycles = self.live
-                    is_active = self.quiet < quiet
+                    is_active = not self._is_quiet(quiet)
                     burst = _BURST if is_active else cycles
-                    self._do(lambda ctx, burst=burst: self._cycles(ctx, burst))  # type: ignore[misc]
+                    self._do(lambda ctx, burst=burst: self._steps(ctx, burst))  # type: ignore[misc]
                     self._flush()
                     seconds = 0.0 if is_active else milliseconds / 1000
                 self._receive(seconds)
@@ -186,7 +225,8 @@ class _Server:
             case Order.RUN:
                 self._run(*protocol.read_run(body))
             case Order.LIVE:
-                self.live, self.quiet = protocol.read_live(body), 0
+                self.live = protocol.read_live(body)
+                self._be_active()
             case Order.HALT:
                 self.live = None
                 self._send_done(Reason.HALTED)
@@ -194,23 +234,37 @@ class _Server:
                 self.simulator.reset()
                 self._do(_nothing)
                 self._start()
+            case Order.CLOCKS:
+                self.base, self.periods = protocol.read_clocks(body)
+                self._start()
+
+    def _is_quiet(self, cycles: int) -> bool:
+        """Return whether there was no transfer in so many cycles of each clock."""
+        return all(clock.quiet >= cycles for clock in self.clocks)
+
+    def _be_active(self) -> None:
+        for clock in self.clocks:
+            clock.quiet = 0
 
     def _run(self, cycles: int, quiet: int, conditions: list[tuple[int, int, int]]) -> None:
         self.conditions = [list(each) for each in conditions]
-        self.quiet = 0
+        self._be_active()
         ended = [Reason.CYCLES]
         self._do(lambda ctx: ended.append(self._run_cycles(ctx, cycles, quiet)))
         self.conditions = []
         self._send_done(ended[-1])
 
     def _run_cycles(self, ctx: SimulatorContext, cycles: int, quiet: int) -> Reason:
-        for count in range(cycles + 1):
+        base = self.clocks[self.base]
+        end = base.cycle + cycles
+        for count in itertools.count():
             if self.conditions and not any(left for _, _, left in self.conditions):
                 return Reason.CONDITIONS
-            if quiet and self.quiet >= quiet:
+            if quiet and self._is_quiet(quiet):
                 return Reason.QUIET
-            if count < cycles:
-                self._cycles(ctx, 1)
+            if base.cycle == end:
+                break
+            self._steps(ctx, 1)
             if count % 256 == 0:
                 self._check_open()
         return Reason.CYCLES
@@ -219,21 +273,22 @@ class _Server:
         if select.select([self.socket], [], [], 0)[0] and not self.socket.recv(1, socket.MSG_PEEK):
             raise _ClosedError
 
-    def _cycles(self, ctx: SimulatorContext, count: int) -> None:
+    def _steps(self, ctx: SimulatorContext, count: int) -> None:
+        """Simulate steps: the times at which clocks have edges."""
         for _ in range(count):
             self._apply(ctx)
-            self._finish_cycle(ctx)
+            self._finish_step(ctx)
 
     def _apply(self, ctx: SimulatorContext) -> None:
-        """Apply the inputs of a cycle, with a low clock."""
+        """Apply the inputs of a step, with all clocks between their edges."""
         if self.is_applied:
             return
         driven = 0
         for stream in self.streams:
             if not stream.is_input:
-                driven |= (not stream.is_stalled(self.cycle)) << stream.number
+                driven |= (not stream.is_stalled()) << stream.number
                 continue
-            if not stream.is_offered and stream.queue and not stream.is_stalled(self.cycle):
+            if not stream.is_offered and stream.queue and not stream.is_stalled():
                 stream.is_offered = True
                 if stream.queue[0] != stream.offered:
                     stream.offered = stream.queue[0]
@@ -243,12 +298,19 @@ class _Server:
             if ctx.get(signal) != value:
                 ctx.set(signal, value)
         self.driven = driven
-        ctx.set(self.edge, driven << 1)
+        ctx.set(self.edge, self.level << len(self.streams) | driven)
         self.is_applied = True
 
-    def _finish_cycle(self, ctx: SimulatorContext) -> None:
-        moved = ctx.get(self.handshakes) & self.driven
-        self.quiet = 0 if moved else self.quiet + 1
+    def _finish_step(self, ctx: SimulatorContext) -> None:
+        now = min(clock.next for clock in self.clocks)
+        edges = moved = 0
+        for number, clock in enumerate(self.clocks):
+            if clock.next == now:
+                edges |= 1 << number
+                moved |= self.members[number]
+        moved &= ctx.get(self.handshakes) & self.driven
+        if has_moved := bool(moved):
+            self._be_active()
         while moved:
             stream = self.streams[(moved & -moved).bit_length() - 1]
             moved &= moved - 1
@@ -258,12 +320,16 @@ class _Server:
                 stream.is_offered = False
                 stream.queue.popleft()
             else:
-                head = self.cycle.to_bytes(protocol.CYCLE_BYTES, "little")
+                head = stream.clock.cycle.to_bytes(protocol.CYCLE_BYTES, "little")
                 stream.records.append(head + bits.to_bytes(stream.size, "little"))
                 if len(stream.records) >= _FLUSH_TRANSFERS:
                     self._flush()
-        ctx.set(self.edge, self.driven << 1 | 1)
-        self.cycle += 1
+        ctx.set(self.edge, (self.level ^ edges) << len(self.streams) | self.driven)
+        for clock in self.clocks:
+            if clock.next == now:
+                clock.next += clock.period
+                clock.cycle += 1
+                clock.quiet += not has_moved
         self.is_applied = False
 
     def _note(self, number: int, bits: int) -> None:
@@ -275,7 +341,7 @@ class _Server:
     def _wake(self) -> None:
         """Inputs have changed within a cycle."""
         self.is_applied = False
-        self.quiet = 0
+        self._be_active()
 
     def _send_values(self, ctx: SimulatorContext) -> None:
         self._apply(ctx)
@@ -285,7 +351,7 @@ class _Server:
     def _send_done(self, reason: Reason) -> None:
         self._flush()
         queued = tuple(len(stream.queue) for stream in self.streams)
-        result = Done(reason=reason, cycle=self.cycle, queued=queued)
+        result = Done(reason=reason, cycle=self.clocks[self.base].cycle, queued=queued)
         self.socket.sendall(protocol.done(result))
 
     def _flush(self) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from amaranth.hdl import Const, Shape, ShapeCastable, Value
+from amaranth.hdl import Const, Elaboratable, Shape, ShapeCastable, Value
 from amaranth.lib import data, stream, wiring
 
 __all__ = ["PlainPort", "Ports", "StreamPort", "bytes_of", "ports_of"]
@@ -163,8 +163,10 @@ class Ports:
         raise ValueError(f"There is no plain {kind} {name!r}; {names}")
 
 
-def ports_of(component: wiring.Component) -> Ports:
+def ports_of(component: Any) -> Ports:
     """Return the ports of a component, in the order of its signature.
+
+    What a `DomainRenamer` made of a component has the same ports.
 
     Raises
     ------
@@ -173,7 +175,8 @@ def ports_of(component: wiring.Component) -> Ports:
     ValueError
         If it has an input stream with ``always_valid``, which cannot be fed from a queue.
     """
-    if not isinstance(component, wiring.Component):
+    is_component = isinstance(getattr(component, "signature", None), wiring.Signature)
+    if not is_component or not isinstance(component, Elaboratable):
         raise TypeError(
             f"A simulated design must be a component of amaranth.lib.wiring, not {component!r}"
         )

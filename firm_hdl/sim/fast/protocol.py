@@ -21,7 +21,10 @@ LIVE   u32 quiet, u32 milliseconds, u32 cycles. Runs until HALT. After `quiet` c
        transfer, the engine sleeps until a message comes, and runs that many cycles every so many
        milliseconds.
 HALT   The engine answers DONE.
-RESET  Back to the state of the start; queues are empty. Stalls and values of inputs stay.
+RESET  Back to the state of the start; queues are empty. Stalls, values of inputs and periods stay.
+CLOCKS u16 base, u64 for each clock: its period. Cycles of runs are those of the clock `base`, and
+       the cycle of a transfer, or of a stall, is one of the stream's own clock. Before this
+       message, all periods are 1. The first edge of a clock is after one period.
 ====== ===========================================================================================
 
 From the engine:
@@ -48,11 +51,13 @@ __all__ = [
     "Done",
     "Order",
     "Reason",
+    "clocks",
     "done",
     "live",
     "message",
     "messages",
     "numbered",
+    "read_clocks",
     "read_done",
     "read_live",
     "read_number",
@@ -88,6 +93,7 @@ class Order(enum.IntEnum):
     LIVE = 6
     HALT = 7
     RESET = 8
+    CLOCKS = 9
 
 
 class Answer(enum.IntEnum):
@@ -182,6 +188,17 @@ def read_live(body: bytes) -> tuple[int, int, int]:
     """Return the numbers of a message LIVE."""
     quiet, milliseconds, cycles = _LIVE.unpack(body)
     return quiet, milliseconds, cycles
+
+
+def clocks(base: int, periods: Sequence[int]) -> bytes:
+    """Return the message CLOCKS."""
+    return message(Order.CLOCKS, _NUMBER.pack(base) + struct.pack(f"<{len(periods)}Q", *periods))
+
+
+def read_clocks(body: bytes) -> tuple[int, tuple[int, ...]]:
+    """Return the base and the periods of a message CLOCKS."""
+    base, periods = read_number(body)
+    return base, struct.unpack(f"<{len(periods) // 8}Q", periods)
 
 
 def transfers(stream: int, records: bytes) -> bytes:

@@ -1,13 +1,15 @@
 // Simulates a design that Verilator has translated, by the messages of `protocol.py` on a socket.
 //
-// A cycle begins when the inputs have been applied and all signals have settled. Then transfers are
-// sampled, the clock rises, and the inputs of the next cycle are applied with the falling clock.
+// A step begins when the inputs have been applied and all signals have settled. Then transfers are
+// sampled on the streams whose clocks have an edge, these clocks rise, and the inputs of the next step
+// are applied with the falling clocks. With one clock, a step is a cycle.
 #pragma once
 
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
@@ -27,12 +29,12 @@ uint8_t* bytes_of(Port& port) {
     return reinterpret_cast<uint8_t*>(&port);
 }
 
-enum Order : uint8_t { SEND = 1, SET, GET, STALL, RUN, LIVE, HALT, RESET };
+enum Order : uint8_t { SEND = 1, SET, GET, STALL, RUN, LIVE, HALT, RESET, CLOCKS };
 enum Answer : uint8_t { TRANSFERS = 1, VALUES, DONE };
 enum class Reason : uint8_t { Cycles, Quiet, Conditions, Halted };
 
 constexpr uint16_t ALL_TRANSFERS = 0xffff;
-// Cycles between two looks at the socket.
+// Steps between two looks at the socket.
 constexpr uint64_t BURST = 64;
 // Bytes of transfers that are sent before a run ends.
 constexpr size_t FLUSH_BYTES = 1 << 16;
@@ -57,10 +59,22 @@ struct Reader {
     }
 };
 
+struct Clock {
+    uint8_t* signal;
+    // Its value at an edge.
+    uint8_t active;
+    // The time between two edges, and that of the next one.
+    uint64_t period = 1, next = 1;
+    // Edges, and those since the last transfer.
+    uint64_t cycle = 0, quiet = 0;
+};
+
 struct Stalls {
     std::vector<bool> pattern;
 
-    bool at(uint64_t cycle) const { return !pattern.empty() && pattern[cycle % pattern.size()]; }
+    bool at(const Clock& clock) const {
+        return !pattern.empty() && pattern[clock.cycle % pattern.size()];
+    }
 };
 
 struct Stream {
@@ -70,6 +84,7 @@ struct Stream {
     uint8_t* ready;
     uint8_t* payload;
     size_t bytes;
+    size_t clock;
 
     Stalls stalls;
     bool is_offered = false;
@@ -81,12 +96,12 @@ struct Stream {
 
     uint64_t queued() const { return (queue.size() - first) / bytes; }
 
-    void apply(uint64_t cycle) {
+    void apply(const Clock& clock) {
         if (!is_input) {
-            if (ready) *ready = !stalls.at(cycle);
+            if (ready) *ready = !stalls.at(clock);
             return;
         }
-        if (!is_offered && first < queue.size() && !stalls.at(cycle)) {
+        if (!is_offered && first < queue.size() && !stalls.at(clock)) {
             std::memcpy(payload, &queue[first], bytes);
             is_offered = true;
         }
@@ -124,6 +139,7 @@ struct Condition {
 
 // What `model.cc` fills in: the ports of a design.
 struct Ports {
+    std::vector<Clock> clocks;
     std::vector<Stream> streams;
     std::vector<Plain> inputs, outputs;
 };
@@ -139,7 +155,7 @@ class Server {
     // Serves messages until the other side closes the socket.
     void serve() {
         while (true) {
-            bool is_active = is_live && quiet_cycles < live_quiet;
+            bool is_active = is_live && !is_quiet(live_quiet);
             if (is_live) run_burst(is_active ? BURST : 0);
             receive(is_active ? 0 : is_live ? live_milliseconds : PARENT_MILLISECONDS);
         }
@@ -150,7 +166,8 @@ class Server {
         design.reset(new Design);
         ports = Ports();
         connect(*design, ports);
-        cycle = quiet_cycles = 0;
+        for (size_t n = 0; n < periods.size(); ++n)
+            ports.clocks[n].period = ports.clocks[n].next = periods[n];
         // Not yet settled.
         is_applied = false;
     }
@@ -167,18 +184,21 @@ class Server {
 
     void apply() {
         if (is_applied) return;
-        for (Stream& stream : ports.streams) stream.apply(cycle);
-        design->clk = 0;
+        for (Stream& stream : ports.streams) stream.apply(ports.clocks[stream.clock]);
+        for (Clock& clock : ports.clocks) *clock.signal = !clock.active;
         design->eval();
         is_applied = true;
     }
 
-    // Simulates the rest of a cycle whose inputs have been applied.
-    void finish_cycle() {
+    // Simulates the rest of a step whose inputs have been applied.
+    void finish_step() {
+        uint64_t now = UINT64_MAX;
+        for (const Clock& clock : ports.clocks) now = std::min(now, clock.next);
         bool moved = false;
         for (Stream& stream : ports.streams) {
             if (stream.is_input ? !stream.is_offered : !(*stream.valid & 1)) continue;
             if (stream.ready && !(*stream.ready & 1)) continue;
+            if (ports.clocks[stream.clock].next != now) continue;
             moved = true;
             for (Condition& condition : conditions) condition.note(stream);
             if (stream.is_input)
@@ -186,14 +206,21 @@ class Server {
             else
                 record(stream);
         }
-        design->clk = 1;
+        if (moved) be_active();
+        for (Clock& clock : ports.clocks)
+            if (clock.next == now) *clock.signal = clock.active;
         design->eval();
-        ++cycle;
-        quiet_cycles = moved ? 0 : quiet_cycles + 1;
+        for (Clock& clock : ports.clocks) {
+            if (clock.next != now) continue;
+            clock.next += clock.period;
+            ++clock.cycle;
+            clock.quiet += !moved;
+        }
         is_applied = false;
     }
 
     void record(Stream& stream) {
+        uint64_t cycle = ports.clocks[stream.clock].cycle;
         size_t at = stream.records.size();
         stream.records.resize(at + sizeof cycle + stream.bytes);
         std::memcpy(&stream.records[at], &cycle, sizeof cycle);
@@ -207,17 +234,29 @@ class Server {
         return !conditions.empty();
     }
 
+    // No transfer in so many cycles of each clock.
+    bool is_quiet(uint64_t cycles) const {
+        for (const Clock& clock : ports.clocks)
+            if (clock.quiet < cycles) return false;
+        return true;
+    }
+
+    void be_active() {
+        for (Clock& clock : ports.clocks) clock.quiet = 0;
+    }
+
     Reason run(uint64_t cycles, uint64_t quiet) {
-        quiet_cycles = 0;
-        for (uint64_t n = 0; n < cycles; ++n) {
+        be_active();
+        const Clock& clock = ports.clocks[base];
+        const uint64_t begin = clock.cycle;
+        for (uint64_t n = 0;; ++n) {
             if (are_met()) return Reason::Conditions;
-            if (quiet && quiet_cycles >= quiet) return Reason::Quiet;
+            if (quiet && is_quiet(quiet)) return Reason::Quiet;
+            if (clock.cycle - begin >= cycles) return Reason::Cycles;
             if (n % (1 << 16) == 0) end_if_alone();
             apply();
-            finish_cycle();
+            finish_step();
         }
-        if (are_met()) return Reason::Conditions;
-        return quiet && quiet_cycles >= quiet ? Reason::Quiet : Reason::Cycles;
     }
 
     void run_burst(uint64_t cycles) {
@@ -225,7 +264,7 @@ class Server {
         if (!cycles) cycles = live_cycles;
         for (uint64_t n = 0; n < cycles; ++n) {
             apply();
-            finish_cycle();
+            finish_step();
         }
         flush();
     }
@@ -263,7 +302,7 @@ class Server {
         flush();
         Bytes body;
         put(body, reason);
-        put(body, cycle);
+        put(body, ports.clocks[base].cycle);
         for (const Stream& stream : ports.streams) put(body, stream.queued());
         send(DONE, body);
     }
@@ -355,13 +394,19 @@ class Server {
                 live_milliseconds = static_cast<int>(body.take<uint32_t>());
                 live_cycles = body.take<uint32_t>();
                 is_live = true;
-                quiet_cycles = 0;
+                be_active();
                 break;
             case HALT:
                 is_live = false;
                 send_done(Reason::Halted);
                 break;
             case RESET:
+                reset();
+                break;
+            case CLOCKS:
+                base = body.take<uint16_t>();
+                periods.clear();
+                while (body.at < body.end) periods.push_back(body.take<uint64_t>());
                 reset();
                 break;
             default:
@@ -373,7 +418,7 @@ class Server {
     // Inputs have changed within a cycle.
     void wake() {
         is_applied = false;
-        quiet_cycles = 0;
+        be_active();
     }
 
     int socket, parent;
@@ -383,7 +428,8 @@ class Server {
     std::vector<Bytes> set_values;
     std::vector<Condition> conditions;
     Bytes received;
-    uint64_t cycle = 0, quiet_cycles = 0;
+    size_t base = 0;
+    std::vector<uint64_t> periods;
     bool is_applied = false, is_live = false;
     uint64_t live_quiet = 0, live_cycles = 0;
     int live_milliseconds = 0;

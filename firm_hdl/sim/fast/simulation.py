@@ -20,8 +20,8 @@ from firm_hdl.sim.fast.engines import EngineName, check_engine, start
 from firm_hdl.sim.fast.packing import Packet, Transfer, packed, packed_packets
 from firm_hdl.sim.fast.ports import StreamPort, ports_of
 from firm_hdl.sim.fast.protocol import Answer, Done, Order, Reason
-from firm_hdl.sim.fast.top import Top
-from firm_hdl.sim.stalls import StallPlan, stalls_of
+from firm_hdl.sim.fast.top import ClockDomainError, Top
+from firm_hdl.sim.stalls import StallPlan, check_stalls, stalls_of
 
 __all__ = ["FastSimulation"]
 
@@ -37,7 +37,9 @@ class FastSimulation:
 
     The design is a component whose members are streams and plain values, in any nesting. A stream
     or value is named by the members on the way to it: ``"packets_in"``, ``"message.linear.x"``.
-    There is one clock domain, `sync`; its reset is never high.
+    Each clock domain of the design has a clock, unless the design drives it; resets are never high.
+    A stream transfers at the edges of its own clock. Numbers of cycles, and :attr:`cycle`, are
+    those of the first clock; the cycle of a transfer or of a stall is one of the stream's own.
 
     What is sent on an input stream waits in a queue, and is offered as soon as the design takes it.
     An output stream is always ready, and what came waits until it is received. `stalls` change
@@ -49,7 +51,11 @@ class FastSimulation:
     Parameters
     ----------
     design : wiring.Component
-        It must not be a part of another design.
+        Or what a `DomainRenamer` made of one. It must not be a part of another design.
+    clocks : mapping of str to int, or None
+        The period of each clock, by its domain, in any unit: ``{"sync": 10, "link": 8}``. The first
+        one gives the cycles. `None`: all have the same period, and `sync` is the first one, if the
+        design has it.
     engine : {"auto", "verilator", "amaranth"}
         ``"verilator"`` compiles the design with Verilator and a C++ compiler: the environment's
         ``CXX``, g++, clang++, or that of the Python package `ziglang`. That takes seconds to a
@@ -75,6 +81,8 @@ class FastSimulation:
         Streams and plain values.
     engine : {"verilator", "amaranth"}
         Which engine runs.
+    clocks : dict of str to int
+        The period of each clock, by its domain.
     cycle : int
         Number of the next cycle, as of the last run, halt or reset.
     is_live : bool
@@ -88,7 +96,7 @@ class FastSimulation:
     BuildError
         If the design cannot be compiled.
     ClockDomainError
-        If the design has another clock domain than `sync`.
+        If a stream is in a domain whose clock the design drives, or `clocks` has other domains.
     """
 
     def __init__(
@@ -96,24 +104,31 @@ class FastSimulation:
         design: wiring.Component,
         *,
         engine: EngineName = "auto",
+        clocks: Mapping[str, int] | None = None,
         stalls: StallPlan = None,
         options: Sequence[str] = COMPILER_OPTIONS,
         cache: Path | None = None,
         ignored: Collection[str] = (),
         report: Report | None = None,
     ):
-        check_engine(engine)
         self.ports = ports_of(design)
+        top = Top(design, self.ports)
+        check_engine(engine)
+        check_stalls(stalls, [port.name for port in self.ports.streams])
+        for option, texts in (("ignored=", ignored), ("options=", options)):
+            if isinstance(texts, str):
+                raise TypeError(f"{option} must be a list, such as [{texts!r}], not one text")
         for name in ignored:
             self.ports.stream(name, is_input=False)
         self._ignored = frozenset(ignored)
         self.cycle = 0
         self.is_live = False
         self._clear()
-        self._stalls, top = stalls, Top(design, self.ports)
+        self._stalls = stalls
         self._channel: Channel = start(top, engine, options=options, cache=cache, report=report)
         self.engine: Literal["verilator", "amaranth"] = self._channel.engine
         try:
+            self.clocks = _periods([each.name for each in top.clocks.values()], clocks)
             self._prepare(stalls)
         except BaseException:
             self.close()
@@ -128,6 +143,11 @@ class FastSimulation:
         self._prepare(self._stalls)
 
     def _prepare(self, stalls: StallPlan) -> None:
+        if len(self.clocks) > 1:
+            # An engine has the clocks in the order of their names.
+            periods = [self.clocks[name] for name in sorted(self.clocks)]
+            base = sorted(self.clocks).index(next(iter(self.clocks)))
+            self._channel.send(protocol.clocks(base, periods))
         for port in self.ports.inputs:
             if port.init is not None:
                 self.set(port.name, port.init)
@@ -402,3 +422,25 @@ class FastSimulation:
         for kind, body in messages:
             assert kind == Answer.TRANSFERS, kind
             self._arrivals.keep(*protocol.read_number(body))
+
+
+def _periods(names: list[str], given: Mapping[str, int] | None) -> dict[str, int]:
+    """Return the periods of the clocks with these names, that which gives the cycles first."""
+    if given is None:
+        return dict.fromkeys(sorted(names, key=lambda name: (name != "sync", name)), 1)
+    if not isinstance(given, Mapping):
+        raise TypeError(f"clocks= must be a dict of periods by clock domain, not {given!r}")
+    if set(given) != set(names):
+        raise ClockDomainError(
+            f"clocks= must have the domains {_listed(names)}, not {_listed(given)}"
+        )
+    for name, period in given.items():
+        if not isinstance(period, int) or isinstance(period, bool):
+            raise TypeError(f"The period of {name!r} must be an integer, not {period!r}")
+        if not 1 <= period < 1 << 32:
+            raise ValueError(f"The period of {name!r} must be from 1 to {(1 << 32) - 1}")
+    return dict(given)
+
+
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(repr(name) for name in sorted(names)) or "none"

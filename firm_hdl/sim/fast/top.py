@@ -6,39 +6,51 @@ port. Each port has at least one bit.
 
 from __future__ import annotations
 
+from typing import Any
+
 from amaranth.hdl import ClockDomain, Elaboratable, Fragment, Module, Signal, Value
-from amaranth.lib import wiring
+from amaranth.hdl._ir import Design
+from amaranth.hdl._xfrm import DomainCollector, DomainLowerer
 
-from firm_hdl.sim import design
-from firm_hdl.sim.design import ClockDomainError
-from firm_hdl.sim.fast.ports import Ports
+from firm_hdl.sim.design import ClockDomainError, Logic, check_connections
+from firm_hdl.sim.fast.ports import Ports, StreamPort
+from firm_hdl.sim.levels import divide
 
-__all__ = ["ClockDomainError", "Top", "check_domains"]
+__all__ = ["ClockDomainError", "Top"]
 
 
 class Top(Elaboratable):
-    """A component with flat ports, in the clock domain `sync`, whose reset is never high.
+    """A component with flat ports, and with the clock domains that it lacks.
+
+    The outside drives the clock of each domain that the design does not drive itself. Resets are
+    never high.
 
     Parameters
     ----------
-    component : wiring.Component
+    component : elaboratable
+        A component, or what a `DomainRenamer` made of one.
     ports : Ports
         Its ports.
 
     Attributes
     ----------
-    clock : Signal
     valids, readies, payloads : list of Signal
         For each stream. The outside drives `valid` and `payload` of input streams, and `ready` of
         output streams.
     plain : list of Signal
         For each plain port.
+    clocks : dict of str to ClockDomain
+        By port: the domains whose clocks the outside drives. Known once the design is prepared.
+    clock_of : list of int
+        For each stream: the place of its domain in `clocks`.
     """
 
-    def __init__(self, component: wiring.Component, ports: Ports):
+    def __init__(self, component: Elaboratable, ports: Ports):
         self.component, self.ports = component, ports
-        self.domain = ClockDomain("sync")
-        self.clock = self.domain.clk
+        # If no engine can be started, that is the error, and not that nothing was elaborated.
+        self._MustUse__used = component._MustUse__used = True
+        self.clocks: dict[str, ClockDomain] = {}
+        self.clock_of: list[int] = []
         streams = list(enumerate(self.ports.streams))
         self.valids = [Signal(name=f"valid{number}") for number, _ in streams]
         self.readies = [Signal(name=f"ready{number}") for number, _ in streams]
@@ -48,16 +60,64 @@ class Top(Elaboratable):
             for number, port in enumerate(self.ports.plain)
         ]
 
-    @property
-    def signals(self) -> list[Signal]:
-        """All ports."""
-        return [self.clock, *self.valids, *self.readies, *self.payloads, *self.plain]
+    def prepare(self, *, name: str, divides: bool = False) -> Design:
+        """Elaborate the design, with the clocks as ports ``clock0`` and so on.
+
+        Parameters
+        ----------
+        divides : bool
+            Divide combinational logic, as a simulation in Python wants it.
+
+        Raises
+        ------
+        ClockDomainError
+            If a stream is in a domain whose clock the design drives itself, or in several.
+        wiring.ConnectionError
+            If a stream is connected twice.
+        """
+        fragment = Fragment.get(self, None)
+        check_connections(fragment)
+        fragment._propagate_domains(ClockDomain)
+        domains = dict(sorted(fragment.domains.items())).values()
+        clocks = {f"clock{number}": domain for number, domain in enumerate(domains)}
+        ports: dict[str, Any] = {port: (domain.clk, None) for port, domain in clocks.items()}
+        for signal in [*self.valids, *self.readies, *self.payloads, *self.plain]:
+            ports[signal.name] = (signal, None)
+        # As `Fragment.prepare` does, which has no place for the division.
+        lowered = DomainLowerer()(fragment)
+        if divides:
+            divide(lowered)
+        design = Design(lowered, fragment._prepare_ports(ports), hierarchy=(name,))
+        logic = Logic(design)
+        self.clocks = {p: each for p, each in clocks.items() if id(each.clk) not in logic.drivers}
+        self.clock_of = [self._clock_of(logic, each) for each in self.ports.streams]
+        return design
+
+    def _clock_of(self, logic: Logic, stream: StreamPort) -> int:
+        found = logic.domains_of(stream.port)
+        places = {
+            number
+            for number, clock in enumerate(self.clocks.values())
+            if any(logic.share_a_clock(clock, each) for each in found)
+        }
+        if len(places) == 1 or not found:
+            return places.pop() if places else 0
+        names = " and ".join(sorted(repr(each.name) for each in found))
+        why = "several clocks drive it" if places else "the design makes its clock itself"
+        raise ClockDomainError(
+            f"Stream {stream.name!r} is in the clock domain {names}, and cannot be driven: {why}"
+        )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.domains.sync = self.domain
-        m.d.comb += self.domain.rst.eq(0)
-        m.submodules.design = self.component
+        m.submodules.design = design = Fragment.get(self.component, None)
+        collector = DomainCollector()
+        collector(design)
+        missing = collector.used_domains - collector.defined_domains - {"comb"}
+        # Without any clock, there would be no cycles.
+        for name in sorted(missing or ({"sync"} - collector.defined_domains)):
+            m.domains += (domain := ClockDomain(name))
+            m.d.comb += domain.rst.eq(0)
         for number, each in enumerate(self.ports.streams):
             outer = self.valids[number], self.payloads[number], self.readies[number]
             inner = each.port.valid, Value.cast(each.port.payload), each.port.ready
@@ -75,14 +135,3 @@ class Top(Elaboratable):
             else:
                 m.d.comb += signal.eq(port.value)
         return m
-
-
-def check_domains(fragment: Fragment) -> None:
-    """Check that an elaborated design has no clock domain but `sync`, and one source per stream.
-
-    Raises
-    ------
-    ClockDomainError, wiring.ConnectionError
-    """
-    design.check_domains(fragment, "A fast simulation")
-    design.check_connections(fragment)

@@ -6,12 +6,11 @@ import re
 from pathlib import Path
 
 import jinja2
-from amaranth.hdl import Fragment
 
 from firm_hdl.garbage import search_put_off
 from firm_hdl.jobs import ToolError, made_by, run_tool
 from firm_hdl.rtlil import convert_fragment
-from firm_hdl.sim.fast.top import Top, check_domains
+from firm_hdl.sim.fast.top import Top
 from firm_hdl.verilog import convert
 
 __all__ = ["SERVER", "VerilatedSource", "translate", "verilated_source"]
@@ -59,13 +58,14 @@ def verilated_source(top: Top) -> VerilatedSource:
 
     Raises
     ------
-    ClockDomainError
+    ClockDomainError, wiring.ConnectionError
     """
-    fragment = Fragment.get(top, None)
-    check_domains(fragment)
-    netlist = convert_fragment(fragment, top.signals, name=_MODULE)
+    netlist = convert_fragment(top.prepare(name=_MODULE), (), name=_MODULE)
     main = _templates.get_template("model.cc.j2").render(
-        prefix=_PREFIX, streams=top.ports.streams, plain=top.ports.plain
+        prefix=_PREFIX,
+        streams=[*zip(top.ports.streams, top.clock_of, strict=True)],
+        plain=top.ports.plain,
+        clocks=top.clocks,
     )
     return VerilatedSource(convert(netlist, name=_MODULE), main)
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Literal
 
-from amaranth.hdl import Cat, Module, Signal, signed
+from amaranth.hdl import Cat, ClockDomain, Module, Signal, signed
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
-from firm_hdl import PacketFifo, PacketSignature
+from firm_hdl import PacketCrossing, PacketFifo, PacketSignature
 
-__all__ = ["BUS_BYTES", "Awkward", "Fault", "WithClocks"]
+__all__ = ["BUS_BYTES", "Awkward", "Divided", "Fault"]
 
 BUS_BYTES = 4
 
@@ -38,6 +38,10 @@ class Awkward(wiring.Component):
     unused : In(3)
     wide : Out(100)
         The number of cycles twice, then `p__in` and `p.in`.
+    near, far : packet streams
+        `far` has the packets of `near` in the clock domain `video`.
+    far_cycles : Out(40)
+        The number of cycles of `video`.
     """
 
     def __init__(self, fault: Fault = "") -> None:
@@ -57,6 +61,9 @@ class Awkward(wiring.Component):
                 "p__in": In(8),
                 "unused": In(3),
                 "wide": Out(100),
+                "near": In(PacketSignature(BUS_BYTES)),
+                "far": Out(PacketSignature(BUS_BYTES)),
+                "far_cycles": Out(40),
             }
         )
 
@@ -75,6 +82,13 @@ class Awkward(wiring.Component):
         halves = [self.p__in, inner] if self.fault != "order" else [inner, self.p__in]
         m.d.comb += self.wide.eq(Cat(cycles, cycles, *halves))
         self._sum(m)
+        m.domains.video = ClockDomain()
+        m.submodules.crossing = crossing = PacketCrossing(
+            BUS_BYTES, write_domain="sync", read_domain="video"
+        )
+        connect(m, flipped(self.near), crossing.packets_in)
+        connect(m, crossing.packets_out, flipped(self.far))
+        m.d.video += self.far_cycles.eq(self.far_cycles + 1)
         return m
 
     def _sum(self, m: Module) -> None:
@@ -99,13 +113,16 @@ class Awkward(wiring.Component):
                 m.d.sync += held.eq(0)
 
 
-class WithClocks(wiring.Component):
-    """A design with a clock domain of its own."""
+class Divided(wiring.Component):
+    """A design that makes a clock, and has a stream in its domain."""
 
     def __init__(self) -> None:
-        super().__init__({"o": Out(1)})
+        super().__init__({"o": Out(stream.Signature(8))})
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.d.video += self.o.eq(~self.o)
+        m.domains.half = half = ClockDomain(reset_less=True)
+        m.d.sync += half.clk.eq(~half.clk)
+        m.d.half += self.o.payload.eq(self.o.payload + 1)
+        m.d.half += self.o.valid.eq(1)
         return m

@@ -8,9 +8,12 @@ import random
 from typing import Any
 
 import pytest
+from amaranth.hdl import DomainRenamer
 
+from firm_hdl import PacketFifo
 from firm_hdl.sim import DeadlineError, StallPlan, Stalls
 from firm_hdl.sim.fast import FastSimulation, SimulationError
+from tests.depth import by_depth
 from tests.sim.fast.designs import Awkward, Fault
 
 ENGINES = ("verilator", "amaranth")
@@ -101,6 +104,46 @@ def test_cycles_are_counted(start, engine):
     assert simulation.transfers("echo_out.1") == [(1, 1), (5, 2)]
     assert simulation.cycle == 6
     assert simulation.get("wide") & ((1 << 40) - 1) == 6
+
+
+@pytest.mark.parametrize("clocks", [None, {"sync": 10, "video": 37}, {"video": 3, "sync": 2}])
+def test_packets_cross_to_another_clock(start, clocks):
+    seen = []
+    for engine in ENGINES:
+        simulation = start(engine, {"far": Stalls(0.3, seed=1)}, clocks=clocks)
+        simulation.send_packets("near", PACKETS)
+        simulation.run_until({"far": 3})
+        simulation.reset()
+        simulation.send_packets("near", PACKETS)
+        simulation.run_until_idle(quiet=40)
+        packets = simulation.packets("far")
+        assert [each.data for each in packets] == PACKETS
+        simulation.run(370)
+        seen.append((packets, simulation.cycle, simulation.get("far_cycles"), simulation.clocks))
+    assert seen[0] == seen[1]
+    _, cycle, far_cycles, periods = seen[0]
+    first = next(iter(periods))
+    # The first edges of both clocks are a period after the start.
+    assert far_cycles == cycle * periods[first] // periods["video"]
+    assert periods == (clocks or {"sync": 1, "video": 1}) and first == next(
+        iter(clocks or ["sync"])
+    )
+
+
+@pytest.mark.parametrize("engine", by_depth(["amaranth"], ENGINES))
+def test_a_renamed_design_has_the_ports_and_clocks_of_its_component(engine):
+    renamed = DomainRenamer({"sync": "core"})(Awkward())
+    clocks = {"core": 2, "video": 3}
+    with FastSimulation(renamed, engine=engine, clocks=clocks, options=["-O0"]) as simulation:
+        simulation.send_packets("near", PACKETS)
+        simulation.run_until({"far": len(PACKETS)})
+        assert simulation.receive_packets("far") == PACKETS
+        assert simulation.cycle == simulation.get("wide") & ((1 << 40) - 1)
+    with FastSimulation(DomainRenamer("link")(PacketFifo(4, 64, 8)), engine=engine) as simulation:
+        simulation.send_packets("packets_in", PACKETS)
+        simulation.run_until({"packets_out": len(PACKETS)})
+        assert simulation.receive_packets("packets_out") == PACKETS
+        assert simulation.clocks == {"link": 1}
 
 
 @pytest.mark.parametrize("engine", ENGINES)

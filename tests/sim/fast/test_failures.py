@@ -11,9 +11,9 @@ import time
 from pathlib import Path
 
 import pytest
-from amaranth.hdl import ClockDomain, Elaboratable, Module
+from amaranth.hdl import Elaboratable, Module
 from amaranth.lib import stream, wiring
-from amaranth.lib.wiring import In, Out
+from amaranth.lib.wiring import In
 
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.jobs import programs as all_programs
@@ -26,7 +26,7 @@ from firm_hdl.sim.fast import (
     compilers,
 )
 from firm_hdl.sim.fast.verilated import VerilatedSource
-from tests.sim.fast.designs import Awkward, WithClocks
+from tests.sim.fast.designs import Awkward, Divided
 
 DEADLINE = 60.0
 
@@ -257,19 +257,6 @@ class AlwaysValid(wiring.Component):
         super().__init__({"i": In(stream.Signature(8, always_valid=True))})
 
 
-class Unused(wiring.Component):
-    """A design that declares a clock domain, and has nothing in it."""
-
-    def __init__(self):
-        super().__init__({"o": Out(1)})
-
-    def elaborate(self, platform):
-        m = Module()
-        m.domains.spare = ClockDomain()
-        m.d.sync += self.o.eq(~self.o)
-        return m
-
-
 class Plain(Elaboratable):
     def elaborate(self, platform):
         return Module()
@@ -280,14 +267,38 @@ class Plain(Elaboratable):
     [
         (Plain, TypeError, "must be a component of amaranth.lib.wiring"),
         (AlwaysValid, ValueError, "Stream 'i' is an input that is always valid"),
-        (WithClocks, ClockDomainError, "one clock domain, 'sync'; the design also has 'video'"),
-        (Unused, ClockDomainError, "one clock domain, 'sync'; the design also has 'spare'"),
+        (Divided, ClockDomainError, "'o' is in the clock domain 'half', and cannot be driven"),
     ],
 )
 @pytest.mark.parametrize("engine", ["verilator", "amaranth"])
 def test_designs_that_cannot_be_simulated(design, error, message, engine):
     with pytest.raises(error, match=message):
         FastSimulation(design(), engine=engine)
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "message"),
+    [
+        ({"clocks": 10}, TypeError, r"^clocks= must be a dict of periods by clock domain, not 10$"),
+        (
+            {"clocks": {"sync": 1}},
+            ClockDomainError,
+            r"domains 'sync', 'video', not 'sync'$",
+        ),
+        ({"clocks": {"sync": 1.5, "video": 2}}, TypeError, r"^The period of 'sync' must be an int"),
+        ({"clocks": {"sync": 1, "video": 0}}, ValueError, r"^The period of 'video' must be from 1"),
+        ({"stalls": 0.5}, TypeError, r"^stalls= must be Stalls, such as Stalls\(0\.5\), or a dict"),
+        (
+            {"stalls": {"packet_in": Stalls(0.5)}},
+            ValueError,
+            r"no stream 'packet_in' to stall",
+        ),
+        ({"ignored": "far"}, TypeError, r"^ignored= must be a list, such as \['far'\]"),
+    ],
+)
+def test_options_that_are_wrong(options, error, message):
+    with pytest.raises(error, match=message):
+        FastSimulation(Awkward(), engine="amaranth", **options)
 
 
 def test_names_and_values_that_are_wrong(start):
