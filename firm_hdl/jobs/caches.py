@@ -91,7 +91,8 @@ def cache_folder() -> Path:
             base = os.path.join(home, ".cache")
         folder = private_folder(Path(base, "firm-hdl", "programs"))
         for name in _OF_OTHERS:
-            private_folder(folder / name)
+            if os.path.lexists(folder / name):
+                private_folder(folder / name)
         return folder
     except OSError as error:
         return _temporary_folder(f"{error.filename}: {error.strerror}")

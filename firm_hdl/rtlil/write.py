@@ -81,7 +81,7 @@ def convert_fragment(fragment: Fragment, ports: Any, *, name: str) -> str:
 
 class _Emitter(rtlil.ModuleEmitter):
     def emit_memory(self, cell_idx: int, cell: _nir.Memory) -> None:
-        if any(cell.init):
+        if any(cell.init) or not cell.width * cell.depth:
             super().emit_memory(cell_idx, cell)
             return
         self.builder.cell(

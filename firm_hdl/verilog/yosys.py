@@ -52,7 +52,7 @@ _NO_MEMORY = re.compile(
 )
 
 _CHOICE = re.compile(r"\\\$procmux\$(\w+)")
-_IDENTIFIER = re.compile(r"\\(\S+)")
+_IDENTIFIER = re.compile(r'\\(?!\\)([^\s"]+)')
 _SETTING = re.compile(r"^ *(?:parameter|attribute) (?:signed |real )?(\\\S+)(.*)$", re.MULTILINE)
 _TOP = re.compile(r"^attribute \\top 1\nmodule \\(\S+)$(.*?)^end$", re.MULTILINE | re.DOTALL)
 _MODULE = re.compile(r"^module \\(\S+)$", re.MULTILINE)

@@ -33,7 +33,14 @@ DEFAULTS = {
     ),
     "node": (
         ["info", "n.yaml"],
-        {"action": "info", "file": "n.yaml", "path": [], "out": "node_out", "force": False}
+        {
+            "action": "info",
+            "file": "n.yaml",
+            "path": [],
+            "out": "node_out",
+            "force": False,
+            "sim": False,
+        }
         | {"board": "sim", "graph": None, "domain": None, "interface": None}
         | {"seconds": None, "engine": "auto", "quiet": False},
     ),

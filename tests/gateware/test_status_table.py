@@ -19,15 +19,8 @@ some_buses = pytest.mark.parametrize("bus_bytes", by_depth([1, 16], [1, 4, 16]))
 every_bus = pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
 # No stalls; then stalls on all streams, longest on `status`.
 SLOW = Stalls(0.3, 1, 2, seed=5)
-STALLS = (
-    None,
-    {
-        "packets_in": SLOW,
-        "packets_out": SLOW,
-        "message": SLOW,
-        "status": Stalls.bits("0" * 9 + "1"),
-    },
-)
+OTHERS = {"message": SLOW, "status": Stalls.bits("0" * 9 + "1")}
+STALLS = (None, {"packets_in": SLOW, **OTHERS})
 
 
 def packet(text):
@@ -156,9 +149,9 @@ READ_PLAIN = [
 ]
 
 
-def stalls_on(bus_bytes):
+def stalls_on(bus_bytes, stalls=STALLS):
     """Return the stalls for runs on a bus: every second bus width has none."""
-    return by_depth(STALLS[BUS_WIDTHS.index(bus_bytes) % 2 :][:1], STALLS)
+    return by_depth(stalls[BUS_WIDTHS.index(bus_bytes) % 2 :][:1], stalls)
 
 
 def check_reading(message, table, bus_bytes, plans=STALLS, **options):

@@ -26,7 +26,7 @@ from pathlib import Path
 
 sys.path[0] = {root!r}
 from firm_hdl.bench.tools import find_nextpnr
-from firm_hdl.export.verilog.runtime import run_yosys
+from firm_hdl.verilog.runtime import run_yosys
 from firm_hdl.jobs import ProgramMissingError, ToolError, run_tool
 from firm_hdl.jobs.processes import in_processes
 from firm_hdl.jobs.programs import find_compiler, find_ghdl, find_yosys, version_of

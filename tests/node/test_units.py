@@ -93,7 +93,7 @@ def test_the_files_of_each_kind_are_compared(name, owner, monkeypatch, tmp_path)
         return SimpleNamespace(top=name, files={f"{name}.vhd": ""}, entities={name: entity})
 
     monkeypatch.setattr(node_build, "convert", convert)
-    monkeypatch.setattr(node_build.rtlil, "convert", lambda *_, **__: "circuit")
+    monkeypatch.setattr(node_build.rtlil, "rtlil_of", lambda *_, **__: "circuit")
     message = f"the node and {owner} would both have a unit with the name '{name}'"
     with pytest.raises(DefinitionError, match=message):
         build_node(read(RELAY, node=name), tmp_path)

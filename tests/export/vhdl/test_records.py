@@ -199,7 +199,10 @@ def test_package_reads_like_the_definition(tmp_path):
     ("text", "reason"),
     [
         ("uint8[] a\n", "big_msgs/msg/Big has no fixed size"),
-        ("", "Message big_msgs/msg/Big has no field of fixed size for a record"),
+        (
+            "",
+            "Message big_msgs/msg/Big has no field of fixed size for a record; its fields: none",
+        ),
         (
             "uint64[1024] a\n",
             "Record of big_msgs/msg/Big is too wide: a has 65536 bits, and Amaranth elaborates at "

@@ -13,7 +13,7 @@ import pytest
 
 from firm_hdl import Serializer
 from firm_hdl.sim import Harness, RunOptions, Stalls
-from tests.gateware.test_status_table import SLOW, every_bus, packet, some_buses, stalls_on
+from tests.gateware.test_status_table import OTHERS, SLOW, every_bus, packet, some_buses, stalls_on
 from tests.strategies import make
 
 # Serializer. A leaf is given by its items and by the place of a wrong `last`.
@@ -95,7 +95,7 @@ def test_first_error_of_a_message_is_reported_and_marks_its_packet(bus_bytes):
         for a, a_last, b_last, c, c_last, _, _ in rows
     ]
     harness = Harness(None, tx, message=SENT)
-    for stalls in stalls_on(bus_bytes):
+    for stalls in stalls_on(bus_bytes, (None, {"packets_out": SLOW, **OTHERS})):
         seen = harness.run_messages(messages, RunOptions(stalls=stalls))
         assert seen.packets == [packet(text) for *_, text in rows]
         assert [status.name for status in seen.statuses] == [row[5] for row in rows]

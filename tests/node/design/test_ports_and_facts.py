@@ -106,7 +106,7 @@ def given(monkeypatch):
         asked.append(SimpleNamespace(folder=folder, **options))
 
     monkeypatch.setattr(node_build, "write_design", write_design)
-    monkeypatch.setattr(node_build.rtlil, "convert", lambda *_, **__: "circuit")
+    monkeypatch.setattr(node_build.rtlil, "rtlil_of", lambda *_, **__: "circuit")
     return asked
 
 

@@ -94,9 +94,9 @@ def test_types_that_a_recording_lacks_come_from_a_distribution_and_a_folder(caps
     assert "type 'p/msg/B', but not its definition: none was recorded; " in output.out
     assert "humble      2 of    2 types pass" in output.out
     # What repeats a test names the folder, too.
-    options = Options(bags=(str(bag),), paths=(str(folder),))
+    options = Options(bags=(str(bag),), depends=(str(folder),))
     command = replay("humble", "p/msg/B", options).command
-    assert command.startswith(f"firm-hdl verify --distro humble --bag {bag} --depends {folder} ")
+    assert command.startswith(f"firm-hdl verify --distro humble --depends {folder} --bag {bag} ")
     status, output = run(capsys, "--bag", bag, *given, "p/msg/B")
     assert status == 1 and "name a folder that has it with --depends" in output.err
 

@@ -182,7 +182,7 @@ def test_a_signalling_single_becomes_a_quiet_one():
 
 def test_topics_of_another_definition_are_named(monkeypatch):
     def topic(name, digest, type_="p/A"):
-        return SimpleNamespace(name=name, digest=digest, type=type_)
+        return SimpleNamespace(name=name, digest=digest, type=type_, encoding="cdr")
 
     topics = {
         "one": [topic("/a", ""), topic("/b", "x"), topic("/z", "x", "p/B")],
@@ -196,7 +196,7 @@ def test_topics_of_another_definition_are_named(monkeypatch):
         return SimpleNamespace(name=name)
 
     library = SimpleNamespace(message=message)
-    found, left = replay._topics(SimpleNamespace(name="p/A"), library, ["one", "two"])
+    found, left = replay._topics(SimpleNamespace(name="p/A", wire="cdr"), library, ["one", "two"])
     assert [each.name for each in found] == ["/a", "/b", "/d"]
     assert left == ["/c left out: its definition is another one (y)"]
 
