@@ -29,6 +29,7 @@ __all__ = [
     "check_connections",
     "check_domain",
     "check_domains",
+    "unconnected_streams",
     "what_waits",
 ]
 
@@ -256,6 +257,15 @@ def _assigned(
                     stack += [(each, [*tests, statement.test]) for each in body]
             elif isinstance(statement, Assign):
                 yield domains[name], [*statement._lhs_signals()], [statement.rhs, *tests]
+
+
+def unconnected_streams(design: Fragment, logic: Logic) -> Iterator[str]:
+    """Yield the names of streams that offer transfers, and whose `ready` no logic drives."""
+    for place, component in _components(design):
+        for name, port in _streams(component):
+            is_open = isinstance(port.ready, Signal) and id(port.ready) not in logic.drivers
+            if is_open and id(port.valid) in logic.drivers:
+                yield ".".join([*place, *name])
 
 
 def what_waits(ctx: SimulatorContext) -> str:

@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 from amaranth.lib import wiring
 
+from firm_hdl.gateware.limits import check_integer
 from firm_hdl.sim.bench import DeadlineError
 from firm_hdl.sim.fast import protocol
 from firm_hdl.sim.fast.arrivals import Arrivals
@@ -21,7 +22,8 @@ from firm_hdl.sim.fast.packing import Packet, Transfer, packed, packed_packets
 from firm_hdl.sim.fast.ports import StreamPort, ports_of
 from firm_hdl.sim.fast.protocol import Answer, Done, Order, Reason
 from firm_hdl.sim.fast.top import ClockDomainError, Top
-from firm_hdl.sim.stalls import StallPlan, check_stalls, stalls_of
+from firm_hdl.sim.payloads import as_packets
+from firm_hdl.sim.stalls import StallPlan, Stalls, check_stalls, stalls_of
 
 __all__ = ["FastSimulation"]
 
@@ -116,8 +118,8 @@ class FastSimulation:
         check_engine(engine)
         check_stalls(stalls, [port.name for port in self.ports.streams])
         for option, texts in (("ignored=", ignored), ("options=", options)):
-            if isinstance(texts, str):
-                raise TypeError(f"{option} must be a list, such as [{texts!r}], not one text")
+            if isinstance(texts, str) or not isinstance(texts, Iterable):
+                raise TypeError(f"{option} must be a list of texts, not {texts!r}")
         for name in ignored:
             self.ports.stream(name, is_input=False)
         self._ignored = frozenset(ignored)
@@ -127,6 +129,7 @@ class FastSimulation:
         self._stalls = stalls
         self._channel: Channel = start(top, engine, options=options, cache=cache, report=report)
         self.engine: Literal["verilator", "amaranth"] = self._channel.engine
+        self._open = top.open
         try:
             self.clocks = _periods([each.name for each in top.clocks.values()], clocks)
             self._prepare(stalls)
@@ -153,8 +156,7 @@ class FastSimulation:
                 self.set(port.name, port.init)
         for each in self.ports.streams:
             if pattern := stalls_of(stalls, each.name):
-                cycles = len(pattern.pattern) or STALL_CYCLES
-                self.stall(each.name, islice(pattern.cycles(each.name), cycles))
+                self.stall(each.name, pattern)
 
     def __enter__(self) -> FastSimulation:
         return self
@@ -178,6 +180,8 @@ class FastSimulation:
             of 8 bits, `bytes` are many payloads.
         """
         port = self.ports.stream(name, is_input=True)
+        if isinstance(payloads, str) or not isinstance(payloads, Iterable):
+            raise TypeError(f"Payloads must be a list, not {payloads!r}")
         if isinstance(payloads, bytes | bytearray) and port.bytes == 1 and port.width == 8:
             self._send(port, bytes(payloads))
         else:
@@ -189,7 +193,7 @@ class FastSimulation:
         Lanes that are not valid are random; with `counts`, what a deserializer ignores is, too.
         """
         port = self.ports.stream(name, is_input=True, is_packets=True)
-        self._send(port, packed_packets(packets, port.bus_bytes, counts=counts))
+        self._send(port, packed_packets(as_packets(packets), port.bus_bytes, counts=counts))
 
     def set(self, name: str, value: object) -> None:
         """Set a plain input, from the current cycle on."""
@@ -197,12 +201,12 @@ class FastSimulation:
         body = port.bits(value).to_bytes(port.bytes, "little")
         self._channel.send(protocol.numbered(Order.SET, number, body))
 
-    def stall(self, name: str, pattern: Iterable[bool]) -> None:
+    def stall(self, name: str, pattern: Iterable[bool] | Stalls) -> None:
         """Stall a stream: in a cycle with a stall, nothing new is offered, or nothing is taken.
 
         Parameters
         ----------
-        pattern : iterable of bool
+        pattern : iterable of bool, or Stalls
             Whether the stream is stalled in cycle 0, 1 and so on; it is repeated. No cycles: no
             stalls. A pattern from a :class:`.Stalls` has its first 16,384 cycles.
 
@@ -212,6 +216,10 @@ class FastSimulation:
             If the pattern has only stalls, or the stream is an output that is always ready.
         """
         port = self.ports.stream(name)
+        if isinstance(pattern, Stalls):
+            pattern = islice(pattern.cycles(name), len(pattern.pattern) or STALL_CYCLES)
+        if isinstance(pattern, str) or not isinstance(pattern, Iterable):
+            raise TypeError(f"The pattern of {name!r} must be a list of bool, not {pattern!r}")
         bits = [bool(bit) for bit in pattern]
         if bits and all(bits):
             raise ValueError(f"The pattern of {name!r} would stall for ever")
@@ -279,10 +287,12 @@ class FastSimulation:
         DeadlineError
             If they do not come in `limit` cycles.
         """
+        if not isinstance(counts, Mapping):
+            raise TypeError(f"Counts must be a dict of numbers by stream, not {counts!r}")
         missing = self._missing(counts)
         if missing and self._run(limit, 0, missing).reason != Reason.CONDITIONS:
-            left = [f"{n} on {name!r}" for name, n in self._missing(counts).items()]
-            raise DeadlineError(f"Did not come in {limit} cycles: {', '.join(left)}")
+            left = ", ".join(f"{n} on {name!r}" for name, n in self._missing(counts).items())
+            raise DeadlineError(f"Did not come in {limit} cycles: {left}{self._waits()}")
 
     def run_until_idle(self, *, quiet: int = QUIET, limit: int = LIMIT) -> None:
         """Run until no stream has transferred in `quiet` cycles, and all that was sent is taken.
@@ -296,7 +306,7 @@ class FastSimulation:
         over = zip(self.ports.streams, result.queued, strict=True)
         left = [f"{count} on {port.name!r}" for port, count in over if count]
         if left:
-            waiting = ", ".join(left)
+            waiting = ", ".join(left) + self._waits()
             raise DeadlineError(f"Not taken up to cycle {self.cycle}: {waiting}")
         if result.reason != Reason.QUIET:
             raise DeadlineError(f"There are still transfers after {limit} cycles")
@@ -326,6 +336,8 @@ class FastSimulation:
             the design. A transfer wakes it up.
         """
         self._not_live()
+        for number in (quiet, nap_cycles, nap_ms):
+            check_integer("A number of go_live", number)
         self.is_live = True
         self._channel.send(protocol.live(quiet, nap_ms, nap_cycles))
 
@@ -369,11 +381,16 @@ class FastSimulation:
             order = protocol.numbered(Order.SEND, port.number, payloads[at : at + step])
             self._channel.send(order)
 
+    def _waits(self) -> str:
+        """Describe streams of the design that can never transfer, as the end of an error."""
+        return f"; no logic drives `ready` of {', '.join(self._open)}" if self._open else ""
+
     def _missing(self, counts: Mapping[str, int]) -> dict[str, int]:
         """Return how many transfers or packets must still come, by stream."""
         missing = {}
         for name, count in counts.items():
             self.ports.stream(name, is_input=False)
+            check_integer(f"The number on {name!r}", count)
             if name in self._ignored:
                 raise ValueError(f"Stream {name!r} is ignored")
             if (here := self._arrivals.count(name)) < count:
@@ -382,6 +399,10 @@ class FastSimulation:
 
     def _run(self, cycles: int, quiet: int, counts: Mapping[str, int]) -> Done:
         self._not_live()
+        for what, number in (("cycles", cycles), ("quiet cycles", quiet)):
+            check_integer(f"The number of {what}", number)
+            if number < 0:
+                raise ValueError(f"The number of {what} must be at least 0, not {number}")
         ports = [(self.ports.stream(name), count) for name, count in counts.items()]
         every = protocol.ALL_TRANSFERS
         conditions = [

@@ -12,7 +12,7 @@ from amaranth.hdl import ClockDomain, Elaboratable, Fragment, Module, Signal, Va
 from amaranth.hdl._ir import Design
 from amaranth.hdl._xfrm import DomainCollector, DomainLowerer
 
-from firm_hdl.sim.design import ClockDomainError, Logic, check_connections
+from firm_hdl.sim.design import ClockDomainError, Logic, check_connections, unconnected_streams
 from firm_hdl.sim.fast.ports import Ports, StreamPort
 from firm_hdl.sim.levels import divide
 
@@ -43,6 +43,8 @@ class Top(Elaboratable):
         By port: the domains whose clocks the outside drives. Known once the design is prepared.
     clock_of : list of int
         For each stream: the place of its domain in `clocks`.
+    open : list of str
+        Streams inside the design that offer transfers, and that nothing takes.
     """
 
     def __init__(self, component: Elaboratable, ports: Ports):
@@ -51,6 +53,7 @@ class Top(Elaboratable):
         self._MustUse__used = component._MustUse__used = True
         self.clocks: dict[str, ClockDomain] = {}
         self.clock_of: list[int] = []
+        self.open: list[str] = []
         streams = list(enumerate(self.ports.streams))
         self.valids = [Signal(name=f"valid{number}") for number, _ in streams]
         self.readies = [Signal(name=f"ready{number}") for number, _ in streams]
@@ -90,6 +93,8 @@ class Top(Elaboratable):
         design = Design(lowered, fragment._prepare_ports(ports), hierarchy=(name,))
         logic = Logic(design)
         self.clocks = {p: each for p, each in clocks.items() if id(each.clk) not in logic.drivers}
+        names = unconnected_streams(lowered, logic)
+        self.open = [name.removeprefix("design.") for name in names]
         self.clock_of = [self._clock_of(logic, each) for each in self.ports.streams]
         return design
 

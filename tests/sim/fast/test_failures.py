@@ -13,11 +13,12 @@ from pathlib import Path
 import pytest
 from amaranth.hdl import Elaboratable, Module
 from amaranth.lib import stream, wiring
-from amaranth.lib.wiring import In
+from amaranth.lib.wiring import In, Out
 
+from firm_hdl import PacketFifo, PacketSignature
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.jobs import programs as all_programs
-from firm_hdl.sim import Stalls
+from firm_hdl.sim import DeadlineError, Stalls
 from firm_hdl.sim.fast import (
     BuildError,
     ClockDomainError,
@@ -293,12 +294,57 @@ def test_designs_that_cannot_be_simulated(design, error, message, engine):
             ValueError,
             r"no stream 'packet_in' to stall",
         ),
-        ({"ignored": "far"}, TypeError, r"^ignored= must be a list, such as \['far'\]"),
+        ({"ignored": "far"}, TypeError, r"^ignored= must be a list of texts, not 'far'$"),
     ],
 )
 def test_options_that_are_wrong(options, error, message):
     with pytest.raises(error, match=message):
         FastSimulation(Awkward(), engine="amaranth", **options)
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda s: s.send_packets("near", b"one"), TypeError, "^Packets must be a list"),
+        (
+            lambda s: s.send_packets("near", ["one"]),
+            TypeError,
+            "^A packet must be bytes, not 'one'",
+        ),
+        (lambda s: s.send("int", 5), TypeError, "^Payloads must be a list, not 5$"),
+        (lambda s: s.run(1.5), TypeError, r"^The number of cycles must be an integer, not 1\.5$"),
+        (lambda s: s.run(-1), ValueError, "^The number of cycles must be at least 0, not -1$"),
+        (lambda s: s.run_until("far"), TypeError, "^Counts must be a dict of numbers by stream"),
+        (lambda s: s.run_until({"far": "1"}), TypeError, "^The number on 'far' must be an integer"),
+        (lambda s: s.stall("far", 0.5), TypeError, "^The pattern of 'far' must be a list of bool"),
+    ],
+)
+def test_arguments_that_are_wrong(start, call, error, message):
+    with pytest.raises(error, match=message):
+        call(start("amaranth"))
+
+
+class Forgotten(wiring.Component):
+    """A FIFO of packets whose output nobody takes."""
+
+    def __init__(self):
+        super().__init__({"i": In(PacketSignature(4)), "o": Out(PacketSignature(4))})
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.fifo = fifo = PacketFifo(4, 16, 1)
+        wiring.connect(m, wiring.flipped(self.i), fifo.packets_in)
+        return m
+
+
+def test_deadlines_name_streams_that_nothing_takes():
+    with FastSimulation(Forgotten(), engine="amaranth") as simulation:
+        simulation.send_packets("i", [b"12345678"] * 4)
+        for call in (lambda: simulation.run_until({"o": 1}, limit=99), simulation.run_until_idle):
+            with pytest.raises(
+                DeadlineError, match=r"; no logic drives `ready` of fifo\.packets_out$"
+            ):
+                call()
 
 
 def test_names_and_values_that_are_wrong(start):
