@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.cases.damage import broken_packets
+from firm_hdl.cases.make import Case
 from firm_hdl.fuzz.table import table_of
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.sim.payloads import encoder_of
 from firm_hdl.sim.values import to_transfers
-from firm_hdl.verify.cases.damage import broken_packets
-from firm_hdl.verify.cases.make import Case
 from firm_hdl.wire import lay_out
 from tests.fuzz.programs import compiled
 from tests.strategies import make

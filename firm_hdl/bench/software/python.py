@@ -13,11 +13,11 @@ from typing import Any
 from firm_hdl.bench.software.sample import NoFigureError, Sample, Timed, check_written
 from firm_hdl.bench.software.timing import best_ns
 from firm_hdl.bench.tools import BenchError
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.oracle import ROSBAGS_WIRES
+from firm_hdl.cases.user_oracle import oracle_name, resolved_oracle
 from firm_hdl.jobs import ProgramMissingError, ToolError, run_tool
 from firm_hdl.verify.references.objects import full_text
-from firm_hdl.verify.references.oracle import ROSBAGS_WIRES
-from firm_hdl.verify.references.user_oracle import oracle_name, resolved_oracle
-from firm_hdl.verify.results.verdict import NotJudgedError
 from firm_hdl.verify.ros_python.worker import ROS_PYTHON
 
 __all__ = ["genpy_versions", "rosbags_versions", "time_genpy", "time_rosbags"]

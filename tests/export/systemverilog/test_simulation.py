@@ -15,8 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.build import build
-from firm_hdl.verify.cases.stimuli import stimuli
 from tests.export.systemverilog.hdl import slang
 from tests.export.test_every_keyword import ALL
 from tests.export.test_packaging import run

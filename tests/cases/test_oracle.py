@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.oracle import DISTRO_STORES, RosbagsOracle, distro_oracle
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.cases.stimuli import stimuli
-from firm_hdl.verify.references.oracle import DISTRO_STORES, RosbagsOracle, distro_oracle
-from firm_hdl.verify.results.verdict import NotJudgedError
 from firm_hdl.wire import lay_out
 
 INNER = "string name\nuint16[] numbers\n"

@@ -1,6 +1,6 @@
 """Further cases, until every decision of a plan was taken.
 
-:mod:`firm_hdl.verify.cases.make` chooses each length and value independently of the others. Some
+:mod:`firm_hdl.cases.make` chooses each length and value independently of the others. Some
 decisions need a combination: a padding of five bytes between two strings, or a second element in
 the last turn of an outer loop. So this module draws more cases, and keeps those that take a new
 decision. The record of a test names the decisions that are still missing.
@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from firm_hdl.cases.make import Case, make_cases
+from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.plan import BeginRun, Edge, Plan, RunStep, decode, encode
 from firm_hdl.plan.edges import edges
 from firm_hdl.plan.ir import successors
-from firm_hdl.verify.cases.make import Case, make_cases
-from firm_hdl.verify.references.oracle import RosbagsOracle
 
 __all__ = ["bare_packets", "more_cases"]
 

@@ -19,7 +19,7 @@ from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.base import normalize_fieldname
 from rosbags.typesys.store import Typestore
 
-from firm_hdl.verify.results.verdict import NotJudgedError
+from firm_hdl.cases import NotJudgedError
 from firm_hdl.wire import Wire
 
 __all__ = [

@@ -26,8 +26,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from firm_hdl.cases.wide_oracle import WIDE_MEMBER, fit_units
 from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String
-from firm_hdl.verify.references.wide_oracle import WIDE_MEMBER, fit_units
 
 __all__ = [
     "Change",

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import pytest
 
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases import stimuli as module
+from firm_hdl.cases.make import Case
+from firm_hdl.cases.stimuli import stimuli, stimulus_cases
+from firm_hdl.cases.user_oracle import judge_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.cases import stimuli as module
-from firm_hdl.verify.cases.make import Case
-from firm_hdl.verify.cases.stimuli import stimuli, stimulus_cases
-from firm_hdl.verify.references.user_oracle import judge_of
-from firm_hdl.verify.results.verdict import NotJudgedError
 from firm_hdl.wire import lay_out
 
 BOOL = Library("lyrical").message("std_msgs/msg/Bool")

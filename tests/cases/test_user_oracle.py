@@ -8,13 +8,13 @@ import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from firm_hdl import load_message
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases import user_oracle as module
+from firm_hdl.cases.oracle import RosbagsOracle, distro_oracle
+from firm_hdl.cases.user_oracle import judge_of, oracle_name
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.verify import Options, accept
-from firm_hdl.verify.references import user_oracle as module
-from firm_hdl.verify.references.oracle import RosbagsOracle, distro_oracle
-from firm_hdl.verify.references.user_oracle import judge_of, oracle_name
-from firm_hdl.verify.results.verdict import NotJudgedError
 from tests.verify.judged import assert_passed
 
 

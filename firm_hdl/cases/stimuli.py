@@ -1,17 +1,17 @@
 """Packets for the test benches of generated VHDL: chosen messages, written by rosbags.
 
-The type may be a user's own; see :mod:`firm_hdl.verify.references.user_oracle`.
+The type may be a user's own; see :mod:`firm_hdl.cases.user_oracle`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.make import Case, make_cases
+from firm_hdl.cases.user_oracle import Judge, judge_of
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
-from firm_hdl.verify.cases.make import Case, make_cases
-from firm_hdl.verify.references.user_oracle import Judge, judge_of
-from firm_hdl.verify.results.verdict import NotJudgedError
 
 __all__ = ["stimuli", "stimulus_cases"]
 

@@ -7,11 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from firm_hdl.model import PRIMITIVES
-from firm_hdl.plan import build_plan, decode, encode
-from firm_hdl.sim.values import from_transfers, to_transfers
-from firm_hdl.verify.references.genpy_objects import to_json
-from firm_hdl.verify.references.values import (
+from firm_hdl.cases.values import (
     bits_of,
     from_json,
     from_objects,
@@ -20,6 +16,10 @@ from firm_hdl.verify.references.values import (
     to_numbers,
     unpacked,
 )
+from firm_hdl.model import PRIMITIVES
+from firm_hdl.plan import build_plan, decode, encode
+from firm_hdl.sim.values import from_transfers, to_transfers
+from firm_hdl.verify.references.genpy_objects import to_json
 from firm_hdl.wire import lay_out
 
 TEXT = """\

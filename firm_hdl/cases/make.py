@@ -18,15 +18,15 @@ import numpy as np
 from rosbags.interfaces import Nodetype
 from rosbags.typesys.base import normalize_fieldname
 
-from firm_hdl.plan import DecodeStatus
-from firm_hdl.verify.references.oracle import (
+from firm_hdl.cases.oracle import (
     EMPTY_MEMBER,
     SIZES,
     FieldType,
     RosbagsOracle,
     Transfers,
 )
-from firm_hdl.verify.references.values import as_float, is_nan
+from firm_hdl.cases.values import as_float, is_nan
+from firm_hdl.plan import DecodeStatus
 
 __all__ = ["Case", "make_cases", "run_lengths"]
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-import firm_hdl.verify.cases.effort as effort
+import firm_hdl.cases.effort as effort
 import firm_hdl.verify.ts3.acceptance as acceptance
+from firm_hdl.cases.make import Case
 from firm_hdl.frontend import Library
 from firm_hdl.plan import Edge, build_plan
 from firm_hdl.verify import Options, accept
-from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from firm_hdl.cases.figures import digest, figures
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.cases.figures import digest, figures
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 

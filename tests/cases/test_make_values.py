@@ -8,7 +8,7 @@ import struct
 
 import pytest
 
-from firm_hdl.verify.cases.make import FLOATS, _Maker
+from firm_hdl.cases.make import FLOATS, _Maker
 
 WIDTHS = {
     "bool": 1,

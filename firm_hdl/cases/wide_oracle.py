@@ -12,8 +12,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
+from firm_hdl.cases.oracle import RosbagsOracle, Transfers
 from firm_hdl.model import FieldType, Message, String, spelled
-from firm_hdl.verify.references.oracle import RosbagsOracle, Transfers
 
 __all__ = ["STAND_IN_NOTE", "WIDE_MEMBER", "WideOracle", "fit_units", "stand_in_type", "stand_ins"]
 

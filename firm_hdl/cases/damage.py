@@ -5,9 +5,9 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterator, Sequence
 
+from firm_hdl.cases.make import Case
 from firm_hdl.plan import Plan, decode
 from firm_hdl.sim.stalls import Stalls
-from firm_hdl.verify.cases.make import Case
 
 __all__ = ["DAMAGES", "broken_packets", "stalls_for"]
 

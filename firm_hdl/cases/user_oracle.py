@@ -15,15 +15,15 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from firm_hdl import model
-from firm_hdl.model import IDL_PRIMITIVES, Message, Primitive, String, closure, element_of
-from firm_hdl.verify.references.oracle import FieldType, RosbagsOracle, distro_oracle
-from firm_hdl.verify.references.wide_oracle import (
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.oracle import FieldType, RosbagsOracle, distro_oracle
+from firm_hdl.cases.wide_oracle import (
     STAND_IN_NOTE,
     WideOracle,
     stand_in_type,
     stand_ins,
 )
-from firm_hdl.verify.results.verdict import NotJudgedError
+from firm_hdl.model import IDL_PRIMITIVES, Message, Primitive, String, closure, element_of
 from firm_hdl.wire import refusals
 
 __all__ = ["Judge", "check_wire", "judge_of", "oracle_name", "resolved_oracle"]
@@ -60,7 +60,7 @@ def judge_of(message: Message, distro: str | None = None, *, stand_in: bool = Fa
         if there is one.
     stand_in : bool
         Whether a message of numbers may replace a wstring, see
-        :mod:`firm_hdl.verify.references.wide_oracle`. Then a library that supports wstring has to
+        :mod:`firm_hdl.cases.wide_oracle`. Then a library that supports wstring has to
         confirm the bytes.
 
     Raises

@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 
+from firm_hdl.cases.directed import more_cases
+from firm_hdl.cases.make import Case, make_cases
+from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.plan import Edge, Plan
-from firm_hdl.verify.cases.directed import more_cases
-from firm_hdl.verify.cases.make import Case, make_cases
-from firm_hdl.verify.references.oracle import RosbagsOracle
 
 __all__ = [
     "LARGE_STRIDE",

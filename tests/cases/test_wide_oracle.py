@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.user_oracle import judge_of
+from firm_hdl.cases.values import from_objects
+from firm_hdl.cases.wide_oracle import STAND_IN_NOTE, WideOracle, fit_units, stand_ins
 from firm_hdl.model import closure
-from firm_hdl.verify.references.user_oracle import judge_of
-from firm_hdl.verify.references.values import from_objects
-from firm_hdl.verify.references.wide_oracle import STAND_IN_NOTE, WideOracle, fit_units, stand_ins
-from firm_hdl.verify.results.verdict import NotJudgedError
 
 TEXT = "uint8 a\nwstring w\nwstring<=3[2] two\nB[] list\nB one\nstring s\n"
 INNER = "wstring<=3 v\nuint8 x\n"

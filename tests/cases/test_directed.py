@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from firm_hdl.cases import directed
+from firm_hdl.cases.directed import bare_packets, more_cases
+from firm_hdl.cases.make import make_cases
+from firm_hdl.cases.oracle import distro_oracle
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, decode
 from firm_hdl.plan.edges import edges
-from firm_hdl.verify.cases import directed
-from firm_hdl.verify.cases.directed import bare_packets, more_cases
-from firm_hdl.verify.cases.make import make_cases
-from firm_hdl.verify.references.oracle import distro_oracle
 from firm_hdl.wire import lay_out
 
 ORACLE = distro_oracle("lyrical")

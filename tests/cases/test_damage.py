@@ -6,10 +6,10 @@ import random
 
 import pytest
 
+from firm_hdl.cases import damage
+from firm_hdl.cases.damage import DAMAGES, broken_packets, stalls_for
+from firm_hdl.cases.make import Case
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.cases import damage
-from firm_hdl.verify.cases.damage import DAMAGES, broken_packets, stalls_for
-from firm_hdl.verify.cases.make import Case
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
