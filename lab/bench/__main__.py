@@ -1,6 +1,6 @@
 """``python -m lab.bench``: the figures of ``docs/performance.md``, with their plots.
 
-``make bench`` runs this. ``firm-hdl bench`` is the command for chosen types. Figures of circuits
+``make -C lab bench`` runs this. ``firm-hdl bench`` is the command for chosen types. Figures of circuits
 that did not change are taken from ``build/bench``.
 """
 

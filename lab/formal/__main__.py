@@ -1,4 +1,4 @@
-"""``python -m lab.formal``; ``make formal`` runs it."""
+"""``python -m lab.formal``; ``make -C lab formal`` runs it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``python -m lab.fuzz``; ``make fuzz-hardware`` runs this."""
+"""``python -m lab.fuzz``; ``make -C lab fuzz-hardware`` runs this."""
 
 from __future__ import annotations
 

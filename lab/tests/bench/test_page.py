@@ -1,4 +1,4 @@
-"""The page of figures, its plots, and their update by `make bench`."""
+"""The page of figures, its plots, and their update by `make -C lab bench`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Proofs, and their twins with a bug: a fast subset of `make formal`."""
+"""Proofs, and their twins with a bug: a fast subset of `make -C lab formal`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LONG = ("slice/order", "crossing/nothing-extra")
 FAST = [
     *("arbiter/turns", "router/counters", "claims-noetic/pending"),
     *("gate-bool/statuses", "serializer-joyfeedback-noetic-2/wire-order"),
-    # About 2 s each. lab/tests/formal/test_liveness.py breaks what moves, in short runs.
+    # About 2 s each.
     *by_depth(
         (),
         (
