@@ -46,7 +46,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         find_tools()
         for name in dict.fromkeys(task.type for task in tasks):
             message_of(name)
-    except (DefinitionError, ProgramMissingError) as error:
+    except DefinitionError as error:
+        print(error, file=sys.stderr)
+        return 1
+    except ProgramMissingError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     with unwound_when_terminated(), ExitStack() as stack:

@@ -13,8 +13,7 @@ from dataclasses import replace
 from firm_hdl.arguments import add_origins, check_types_or_all
 from firm_hdl.bench.command import NO_DEVICE, add_bench_arguments, bench_tasks
 from firm_hdl.bench.run import run_tasks
-from firm_hdl.bench.tools import BenchError
-from firm_hdl.errors import DefinitionError
+from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.plan import DIRECTIONS
 from firm_hdl.terminal import printable_streams
 from lab.bench.software import CLOCK_MHZ, compare_software, machine, software_rows
@@ -37,9 +36,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given.device = NO_DEVICE
     try:
         return _run(given)
-    except (BenchError, DefinitionError) as error:
+    except DefinitionError as error:
+        print(error, file=sys.stderr)
+    except UserError as error:
         print(f"error: {error}", file=sys.stderr)
-        return 1
+    return 1
 
 
 def _run(given: argparse.Namespace) -> int:
