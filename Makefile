@@ -21,13 +21,12 @@ VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-thorough test-live lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
-  verify-corpus verify-languages report prove formal oracles oracles-ros2 fuzz fuzz-hardware mutate bench \
-  examples tools ros1 \
-  ghdl verilog clean
+.PHONY: help demo test pytest lint examples bench nightly thorough verify benches languages prove verify-corpus report \
+  cover generate simulate live tools ghdl verilog oracles oracles-ros2 ros1 clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-16s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
+	@echo "make -C lab        what proves firm-hdl to its developers: proofs, fuzzers, the standard benchmark"
 
 demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
 	$(BIN)/python examples/demo.py
@@ -38,116 +37,23 @@ COMPILED := $(VENV)/.compiled $(VENV)/.compiled-nextpnr
 LIVE_PEERS := $(patsubst tests/live/peers/%.txt,$(VENV)/live/%/.installed,\
   $(wildcard tests/live/peers/*.txt))
 
-# pip and the linters take one processor; what tests need is prepared beside them, rclpy included.
-test: ## linters, types and all tests
-	@$(MAKE) --no-print-directory -j $(JOBS) lint $(COMPILED) oracles-ros2 $(VENV)/live/kilted/.installed
-	@$(MAKE) --no-print-directory pytest
+# pip takes one processor; what tests need is prepared beside it, rclpy included. Then the linters run
+# beside the tests. The last lines are those of pytest, whatever the linters say.
+test: ## linters, types and all tests; PYTEST_ARGS=tests/export takes some tests
+	@$(MAKE) --no-print-directory -j $(JOBS) $(COMPILED) oracles-ros2 $(VENV)/live/kilted/.installed
+	@mkdir -p build
+	@{ $(MAKE) --no-print-directory lint >build/lint.log 2>&1 \
+	    || { cat build/lint.log >&2; exit 1; }; } & lint=$$!; \
+	  $(MAKE) --no-print-directory pytest; tests=$$?; \
+	  wait $$lint || { echo "The linters failed: see build/lint.log" >&2; tests=1; }; exit $$tests
 
-pytest: $(COMPILED) tools ## tests only; PYTEST_ARGS=tests/export takes some
+pytest: $(COMPILED) tools ## the tests alone
 	$(BIN)/python -m pytest -n $(JOBS) $(PYTEST_ARGS)
 
-test-thorough: $(COMPILED) tools ## all tests in full depth (an hour or more); PYTEST_ARGS=-mthorough takes some
-	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest --timeout 3600 -n $(JOBS) $(PYTEST_ARGS)
-
-test-live: $(VENV)/.installed-dev $(LIVE_PEERS) verilog ros1 ## our nodes and the bridge with rclpy, rospy and Cyclone DDS, in a network of their own (25 minutes at first)
-	FIRM_HDL_LIVE=1 $(BIN)/python -m pytest --timeout 3600 -n $(JOBS) $(or $(PYTEST_ARGS),tests/live)
-
-lint: $(VENV)/.installed-dev ## ruff and mypy only
+lint: $(VENV)/.installed-dev ## ruff and mypy alone
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-
-coverage: $(COMPILED) tools ## lines and branches of firm_hdl that the tests run
-	rm -rf build/coverage
-	mkdir -p build/coverage
-	$(BIN)/python -m coverage run -m pytest -n $(JOBS) $(PYTEST_ARGS)
-	$(BIN)/python -m coverage combine --quiet
-	$(BIN)/python -m coverage html --quiet
-	$(BIN)/python -m coverage report
-
-# Types that have every feature of all: what `make test` simulates, and what the two
-# targets below are about. COVER=--check compares the files with today's features instead.
-COVERING := tests/verify/covering
-COVER    ?= --out
-cover: $(VENV)/.installed ## choose the types that tests simulate (2 minutes)
-	$(BIN)/firm-hdl cover --distro lyrical --branches $(COVER) $(COVERING)/lyrical.txt
-	$(BIN)/firm-hdl cover --distro noetic --branches $(COVER) $(COVERING)/noetic.txt
-
-GENERATED ?= build/vhdl_out
-generate: $(VENV)/.installed ## Verilog, VHDL and benches of a covering set, in build/vhdl_out
-	for distro in lyrical noetic; do \
-	  $(BIN)/firm-hdl build --distro $$distro --out $(GENERATED) \
-	    $$(grep -v '^#' $(COVERING)/$$distro.txt) || exit; \
-	done
-
-simulate: ghdl ## the benches that `make generate` wrote, in GHDL
-	@benches=$$(ls $(GENERATED)/*/*/vhdl/run_ghdl.sh) && echo "$$benches" | \
-	  xargs -P $(JOBS) -I BENCH sh -c \
-	  'said=$$(sh BENCH 2>&1) && echo "pass BENCH" || { echo "$$said"; echo "FAIL BENCH"; exit 1; }'
-
-# Results and their report go to VERIFY_OUT. `make verify RESUME=1` goes on with a run that was stopped.
-VERIFY_OUT ?= build/verify
-verify: $(VENV)/.installed oracles ## every type of every distribution through TS1, TS2 and TS3 (over 15 minutes)
-	$(if $(RESUME),,rm -f $(VERIFY_OUT)/results.jsonl)
-	$(BIN)/python -m firm_hdl.verify --systems ts1,ts2,ts3 $(VERIFY_ARGS) \
-	  --results $(VERIFY_OUT)/results.jsonl --report $(VERIFY_OUT)/report.html
-
-# `TS1_CORPUS=DIR` has folders `ros1/` and `ros2/` with packages, and `invalid/` with others.
-TS1_CORPUS ?= $(FIRM_HDL_CORPUS)
-TS1 := $(BIN)/python -m firm_hdl.verify --systems ts1
-verify-ts1: $(VENV)/.installed oracles ## every definition against ROS's own readers (20 minutes)
-	$(TS1)
-	$(if $(TS1_CORPUS),$(TS1) --distro noetic --path $(TS1_CORPUS)/invalid/ros1 --path $(TS1_CORPUS)/ros1)
-	$(if $(TS1_CORPUS),$(TS1) --distro lyrical --path $(TS1_CORPUS)/invalid/ros2 --path $(TS1_CORPUS)/ros2)
-
-# `CORPUS=DIR` has folders `ros1/` and `ros2/` with packages, or one of them. The same command goes on
-# with a run that was stopped; results of an older program have to be removed.
-CORPUS ?= $(FIRM_HDL_CORPUS)
-verify-corpus: $(VENV)/.installed oracles ghdl ## every type in CORPUS=DIR through TS1 to TS3, some in GHDL (hours)
-	@[ -n "$(CORPUS)" ] || { echo "Which definitions? make $@ CORPUS=DIR" >&2; exit 2; }
-	@mkdir -p $(VERIFY_OUT)
-	@status=0; for corpus in noetic:ros1 lyrical:ros2; do \
-	  distro=$${corpus%:*} folder="$(CORPUS)/$${corpus#*:}" out=$(VERIFY_OUT)/$${corpus#*:}; \
-	  [ -d "$$folder" ] || continue; \
-	  $(BIN)/firm-hdl verify --all --distro $$distro --path "$$folder" --jobs $(JOBS) \
-	    --systems ts1,ts2,ts3 --results $$out.jsonl --report $$out.html || status=$$?; \
-	  $(BIN)/firm-hdl cover --distro $$distro --path "$$folder" --out $$out.covering.txt >/dev/null \
-	    && $(BIN)/firm-hdl verify --distro $$distro --path "$$folder" --jobs $(JOBS) \
-	      --simulator ghdl --results $$out.ghdl.jsonl --report $$out.ghdl.html \
-	      $$(grep -v '^#' $$out.covering.txt) || status=$$?; \
-	done; exit $$status
-
-report: $(VENV)/.installed ## one page of all results that are in build/verify
-	$(BIN)/firm-hdl report $(VERIFY_OUT)/*.jsonl --out $(VERIFY_OUT)/report.html
-
-verify-vhdl: $(VENV)/.installed ghdl ## every bench of lyrical and noetic in GHDL (10 minutes)
-	$(BIN)/python -m firm_hdl.verify --systems bench --distro lyrical --distro noetic --jobs $(JOBS)
-
-verify-languages: $(VENV)/.installed-dev verilog ## Verilog of four types, in every language of Icarus and Verilator
-	FIRM_HDL_THOROUGH=1 CI=1 $(BIN)/python -m pytest -q -k "language or every_tool or come_back" \
-	  -n $(JOBS) tests/verify/simulators/test_crosscheck_verilog.py \
-	  tests/export/test_every_keyword.py tests/export/systemverilog/test_simulation.py
-
-prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types with all constructs
-	$(BIN)/python -m firm_hdl.equivalence --jobs $(JOBS) $(PROVE_ARGS)
-
-formal: $(COMPILED) ## proofs of blocks and small converters for every input (docs/formal.md), and their twins
-	$(BIN)/python -m firm_hdl.formal --twins --jobs $(JOBS) $(FORMAL_ARGS)
-
-fuzz: $(VENV)/.installed-dev ## a million damaged definitions through the front end; FUZZ_ARGS='-n 1000'
-	$(BIN)/python -m tests.fuzz_frontend --jobs $(JOBS) $(FUZZ_ARGS)
-
-# FUZZ_HARDWARE_ARGS='--types sensor_msgs/msg/Imu --bus-bytes 8 --packets 1000000' takes one type.
-fuzz-hardware: $(VENV)/.installed-dev verilog ## ten million packets, many of them bad, through exported Verilog in Verilator (hours)
-	$(BIN)/python -m firm_hdl.fuzz --jobs $(JOBS) --results $(VERIFY_OUT)/fuzz.jsonl $(FUZZ_HARDWARE_ARGS)
-
-mutate: $(COMPILED) tools ## faults in the program, and which tests notice (hours); MUTATE_ARGS='--count 24'
-	$(BIN)/python -m tools.mutation --first --jobs $(JOBS) --each 1 --most 90 $(MUTATE_ARGS)
-
-# Figures of circuits that did not change are kept in build/bench; BENCH_ARGS='--group beats' takes some.
-bench: $(VENV)/.installed-bench oracles ## area, clock rate, cycles, times of software for docs/performance.md (an hour or two)
-	$(BIN)/python -m firm_hdl.bench --jobs $(JOBS) $(BENCH_ARGS)
-	$(BIN)/firm-hdl build --force geometry_msgs/msg/Twist
 
 HDL_EXAMPLES := vhdl_motor vhdl_two_types sv_motor cocotb_motor
 examples: $(VENV)/.installed-dev ghdl verilog ## designs that act on good packets only, with their benches
@@ -160,6 +66,85 @@ examples: $(VENV)/.installed-dev ghdl verilog ## designs that act on good packet
 	for file in wheels/wheels filter/near echo_ros1/echo; do \
 	  $(BIN)/firm-hdl node run examples/nodes/$$file.yaml --graph none </dev/null || exit; \
 	done
+
+TYPE ?= geometry_msgs/msg/Twist
+bench: $(VENV)/.installed-bench ## area, clock rate and cycles of a type: make bench TYPE=sensor_msgs/msg/Imu
+	$(BIN)/firm-hdl bench $(TYPE) $(BENCH_ARGS)
+
+# What takes long and rarely tells anything new. Each part runs even if one before has failed.
+nightly: ## tests in full depth, all types through TS1 to TS3 and GHDL, proofs, the designs (hours)
+	@$(MAKE) --no-print-directory --keep-going thorough verify benches languages prove examples simulate
+	@$(MAKE) --no-print-directory cover COVER=--check
+
+thorough: $(COMPILED) tools
+	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest --timeout 3600 -n $(JOBS) $(PYTEST_ARGS)
+
+live: $(VENV)/.installed-dev $(LIVE_PEERS) verilog ros1 ## our nodes and the bridge with rclpy, rospy and Cyclone DDS, in a network of their own (25 minutes at first)
+	FIRM_HDL_LIVE=1 $(BIN)/python -m pytest --timeout 3600 -n $(JOBS) $(or $(PYTEST_ARGS),tests/live)
+
+# Results and their report go to VERIFY_OUT. `make verify RESUME=1` goes on with a run that was stopped.
+VERIFY_OUT ?= build/verify
+verify: $(VENV)/.installed oracles ## every type of every distribution through TS1, TS2 and TS3 (over 15 minutes)
+	$(if $(RESUME),,rm -f $(VERIFY_OUT)/results.jsonl)
+	$(BIN)/python -m firm_hdl.verify --systems ts1,ts2,ts3 $(VERIFY_ARGS) \
+	  --results $(VERIFY_OUT)/results.jsonl --report $(VERIFY_OUT)/report.html
+
+# `CORPUS=DIR` has folders `ros1/` and `ros2/` with packages, or one of them, and maybe `invalid/` with
+# such folders. The same command goes on with a run that was stopped; results of an older program have
+# to be removed.
+CORPUS ?= $(FIRM_HDL_CORPUS)
+verify-corpus: $(VENV)/.installed oracles ghdl ## every type in CORPUS=DIR through TS1 to TS3, some in GHDL (hours)
+	@[ -n "$(CORPUS)" ] || { echo "Which definitions? make $@ CORPUS=DIR" >&2; exit 2; }
+	@mkdir -p $(VERIFY_OUT)
+	@status=0; for corpus in noetic:ros1 lyrical:ros2; do \
+	  distro=$${corpus%:*} folder="$(CORPUS)/$${corpus#*:}" out=$(VERIFY_OUT)/$${corpus#*:}; \
+	  invalid="$(CORPUS)/invalid/$${corpus#*:}"; \
+	  [ ! -d "$$invalid" ] || $(BIN)/firm-hdl verify --all --distro $$distro --path "$$invalid" \
+	    --path "$$folder" --systems ts1 --jobs $(JOBS) || status=$$?; \
+	  [ -d "$$folder" ] || continue; \
+	  $(BIN)/firm-hdl verify --all --distro $$distro --path "$$folder" --jobs $(JOBS) \
+	    --systems ts1,ts2,ts3 --results $$out.jsonl --report $$out.html || status=$$?; \
+	  $(BIN)/firm-hdl cover --distro $$distro --path "$$folder" --out $$out.covering.txt >/dev/null \
+	    && $(BIN)/firm-hdl verify --distro $$distro --path "$$folder" --jobs $(JOBS) \
+	      --simulator ghdl --results $$out.ghdl.jsonl --report $$out.ghdl.html \
+	      $$(grep -v '^#' $$out.covering.txt) || status=$$?; \
+	done; exit $$status
+
+report: $(VENV)/.installed ## one page of all results that are in build/verify
+	$(BIN)/firm-hdl report $(VERIFY_OUT)/*.jsonl --out $(VERIFY_OUT)/report.html
+
+benches: $(VENV)/.installed ghdl
+	$(BIN)/python -m firm_hdl.verify --systems bench --distro lyrical --distro noetic --jobs $(JOBS)
+
+# Verilog of four types, in every language of Icarus and Verilator.
+languages: $(VENV)/.installed-dev verilog
+	FIRM_HDL_THOROUGH=1 CI=1 $(BIN)/python -m pytest -q -k "language or every_tool or come_back" \
+	  -n $(JOBS) tests/verify/simulators/test_crosscheck_verilog.py \
+	  tests/export/test_every_keyword.py tests/export/systemverilog/test_simulation.py
+
+prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types with all constructs
+	$(BIN)/python -m firm_hdl.equivalence --jobs $(JOBS) $(PROVE_ARGS)
+
+# Types that have every feature of all: what `make test` simulates, and `make simulate` in GHDL.
+# COVER=--check compares the files with today's features instead.
+COVERING := tests/verify/covering
+COVER    ?= --out
+cover: $(VENV)/.installed ## choose the types that tests simulate (2 minutes)
+	$(BIN)/firm-hdl cover --distro lyrical --branches $(COVER) $(COVERING)/lyrical.txt
+	$(BIN)/firm-hdl cover --distro noetic --branches $(COVER) $(COVERING)/noetic.txt
+
+# Verilog, VHDL and benches of a covering set, in build/vhdl_out; `simulate` runs the benches in GHDL.
+GENERATED ?= build/vhdl_out
+generate: $(VENV)/.installed
+	for distro in lyrical noetic; do \
+	  $(BIN)/firm-hdl build --distro $$distro --out $(GENERATED) \
+	    $$(grep -v '^#' $(COVERING)/$$distro.txt) || exit; \
+	done
+
+simulate: ghdl generate
+	@benches=$$(ls $(GENERATED)/*/*/vhdl/run_ghdl.sh) && echo "$$benches" | \
+	  xargs -P $(JOBS) -I BENCH sh -c \
+	  'said=$$(sh BENCH 2>&1) && echo "pass BENCH" || { echo "$$said"; echo "FAIL BENCH"; exit 1; }'
 
 tools: ghdl verilog oracles ## system packages that tests and the demo use
 
@@ -179,7 +164,7 @@ oracles: oracles-ros2
 	  import rosidl_parser; import rosmsg' 2>/dev/null)
 	@$(call need,g++ libfastcdr-dev,g++ -E -include fastcdr/Cdr.h -x c++ /dev/null >/dev/null 2>&1)
 
-# Peers of `make test-live` in ROS 1.
+# Peers of `make live` in ROS 1.
 ros1:
 	@$(call need,python3-rospy python3-rosmaster python3-sensor-msgs python3-std-srvs,\
 	  /usr/bin/python3 -c 'import rosmaster; import rospy; import sensor_msgs.msg; \
@@ -198,7 +183,7 @@ $(VENV)/ros2/%/.installed: firm_hdl/verify/ros2_wheels/%.txt | $(VENV)/.created
 	  && touch $@; } >$(VENV)/ros2-$*.log 2>&1 \
 	  || echo "Failed: see $(VENV)/ros2-$*.log; going on without." >&2
 
-# Peers of `make test-live`, each in an environment of its own: 600 MB.
+# Peers of `make live`, each in an environment of its own: 600 MB.
 $(VENV)/live/%/.installed: tests/live/peers/%.txt | $(VENV)/.created
 	@echo "Installing the peer $* ..."
 	@mkdir -p $(VENV)/live
@@ -220,7 +205,7 @@ need = { $(2); } || { \
 
 clean: ## remove .venv and what tools have cached
 	rm -rf $(VENV) build dist examples/*/work ./*.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
-	find firm_hdl tests examples -name __pycache__ -type d -prune -exec rm -rf {} +
+	find firm_hdl lab tests examples -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # A stamp is newer than pyproject.toml when what that asks for is installed.
 $(VENV)/.installed: pyproject.toml $(VENV)/.created

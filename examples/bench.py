@@ -1,7 +1,7 @@
 """Measure cycles per beat of long and short messages, on buses of several widths.
 
 One word per cycle would be 1.000. Packets go back to back through a simulated deserializer and
-serializer, without stalls. ``make bench`` measures more types, with short messages.
+serializer, without stalls. ``make -C lab bench`` measures more types, with short messages.
 """
 
 from __future__ import annotations

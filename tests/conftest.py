@@ -27,7 +27,7 @@ for _name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Deselect thorough tests, except in `make test-thorough`; live ones likewise."""
+    """Deselect thorough tests, except in `make nightly`; live ones likewise."""
     markers = [*([] if THOROUGH else ["thorough"]), *([] if LIVE else ["live"])]
     left_out = {item for item in items if any(map(item.get_closest_marker, markers))}
     if not THOROUGH:

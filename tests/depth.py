@@ -1,9 +1,9 @@
-"""Depth of tests: `make test` takes minutes, `make test-thorough` has no limit of time.
+"""Depth of tests: `make test` takes minutes, `make nightly` has no limit of time.
 
 Checks that take long and rarely find a fault are thorough: tests with the marker `thorough`, and
 further cases of a test by :func:`by_depth`
 and by the marker `sampled`. Tests with real peers on the network have the marker
-`live`, and `make test-live` alone runs them.
+`live`, and `make live` alone runs them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ LIVE = bool(os.environ.get("FIRM_HDL_LIVE"))
 
 
 def by_depth(usual: T, thorough: T) -> T:
-    """Return the first value in `make test`, the second one in `make test-thorough`."""
+    """Return the first value in `make test`, the second one in `make nightly`."""
     return thorough if THOROUGH else usual
 
 

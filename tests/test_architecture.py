@@ -6,6 +6,8 @@ import ast
 from collections.abc import Container, Iterator
 from pathlib import Path
 
+import pytest
+
 import firm_hdl
 
 PACKAGE = Path(firm_hdl.__file__).parent
@@ -54,35 +56,26 @@ MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {
     *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
 }
+# Messages and packets to try, and the oracle that writes them.
+MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
+    "cases",
     *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil"}),
-    *("arguments", "drawing", "export", "identity", "metrics", "node", "recordings", "sim"),
+    *("arguments", "drawing", "export", "identity", "node", "recordings", "sim"),
     "terminal",
 }
 MAY_IMPORT["equivalence"] = {
     *("arguments", "errors", "jobs", "names", "terminal", "vhdl", "verilog"),
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
-MAY_IMPORT["formal"] = {
-    *("arguments", "equivalence", "jobs", "terminal"),
-    *("model", "frontend", "wire", "plan", "gateware"),
-}
-MAY_IMPORT["fuzz"] = {
-    *("arguments", "errors", "jobs", "terminal", "verilog"),
-    *("model", "frontend", "plan", "gateware", "export"),
-    # `verify`: how Verilator is found and run.
-    "verify",
-}
 MAY_IMPORT["bench"] = {
-    *("arguments", "drawing", "errors", "files", "jobs", "rtlil", "terminal"),
-    *("model", "frontend", "wire", "plan", "estimates", "gateware", "sim", "export", "node"),
-    # `verify`: the client libraries that are compared with converters.
-    *("covering", "verify"),
+    *("arguments", "errors", "files", "jobs", "rtlil"),
+    *("model", "frontend", "wire", "plan", "gateware", "sim", "export"),
 }
 MAY_IMPORT["cli"] = {
     *("firm_hdl", "arguments", "errors", "terminal"),
     *("names", "model", "frontend", "plan", "estimates", "export"),
-    *("identity", "metrics", "node", "covering", "verify", "equivalence", "bench"),
+    *("identity", "metrics", "node", "cases", "covering", "verify", "equivalence", "bench"),
 }
 # The public interface of the package.
 MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
@@ -93,18 +86,17 @@ VERIFY_MAY_IMPORT = {
     "results": set[str](),
     "ros2_wheels": set[str](),
     "ros_python": set[str](),
-    "references": {"results", "ros2_wheels", "ros_python"},
-    "cases": {"references", "results"},
+    "references": {"ros2_wheels", "ros_python"},
     "simulators": {"results"},
-    "systems": {"choices", "references", "results"},
-    "clients": {"cases", "references", "results", "systems"},
+    "systems": {"choices", "results"},
+    "clients": {"references", "results", "systems"},
     "ts1": {"results", "ros2_wheels", "ros_python", "systems"},
-    "ts2": {"cases", "results", "systems"},
+    "ts2": {"results", "systems"},
     "ts3": {
-        *("cases", "choices", "clients", "references", "results", "simulators", "systems"),
+        *("choices", "clients", "references", "results", "simulators", "systems"),
     },
-    "bench": {"cases", "references", "results", "systems", "ts3"},
-    "board": {"cases", "references", "results", "systems", "ts3"},
+    "bench": {"references", "results", "systems", "ts3"},
+    "board": {"references", "results", "systems", "ts3"},
     "report": {"results"},
 }
 VERIFY_MAY_IMPORT["request"] = {"board", "systems", "ts3"}
@@ -116,7 +108,7 @@ VERIFY_MAY_IMPORT["run"] = {
 VERIFY_MAY_IMPORT["command"] = {"board_arguments", "choices", "request", "run", "systems"}
 VERIFY_MAY_IMPORT["__main__"] = {"command"}
 # The public interface of `firm_hdl.verify`.
-VERIFY_MAY_IMPORT["verify"] = {"cases", "references", "systems", "ts3"}
+VERIFY_MAY_IMPORT["verify"] = {"systems", "ts3"}
 
 
 def unused(package: Path, whole: str, may_import: dict[str, set[str]]) -> Iterator[str]:
@@ -145,6 +137,8 @@ def problems(package: Path) -> Iterator[str]:
             yield f"{where}: no docstring"
         if path.name != "__main__.py" and not _has_all(tree):
             yield f"{where}: no literal __all__"
+        if "lab" in _packages(tree):
+            yield f"{where}: imports the laboratory"
         yield from _wrong_imports(where, tree, "firm_hdl", MAY_IMPORT)
         if where.parts[0] == "verify":
             yield from _wrong_imports(where, tree, "verify", VERIFY_MAY_IMPORT)
@@ -172,6 +166,17 @@ def _statements(node: ast.AST) -> Iterator[ast.AST]:
         for child in getattr(node, part, ()):
             yield child
             yield from _statements(child)
+
+
+def _packages(tree: ast.Module) -> set[str]:
+    """Return the first parts of the names of all modules that a module imports."""
+    names: list[str] = []
+    for node in _statements(tree):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            names.append(node.module or "")
+    return {name.partition(".")[0] for name in names}
 
 
 def _has_all(tree: ast.Module) -> bool:
@@ -208,6 +213,12 @@ def test_package_keeps_to_its_architecture() -> None:
     assert list(problems(PACKAGE)) == []
 
 
+@pytest.mark.parametrize("folder", ["examples", "tests"])
+def test_the_laboratory_is_imported_by_nobody(folder: str) -> None:
+    for path in (PACKAGE.parent / folder).rglob("*.py"):
+        assert "lab" not in _packages(ast.parse(path.read_text(encoding="utf-8"))), path
+
+
 def test_every_permission_is_used() -> None:
     assert list(unused(PACKAGE, "firm_hdl", MAY_IMPORT)) == []
     assert list(unused(PACKAGE / "verify", "verify", VERIFY_MAY_IMPORT)) == []
@@ -228,7 +239,8 @@ def test_violations_are_found(tmp_path: Path) -> None:
         "model.py": '"""Doc."""\nimport firm_hdl.wire.cdr\n__all__ = ["x"]\n',
         "wire/__init__.py": '"""Doc."""\n__all__ = []\n',
         "wire/cdr.py": '"""Doc."""\nfrom firm_hdl import frontend\n__all__ = []\n',
-        "sim/a.py": '"""Doc."""\ndef f():\n    from firm_hdl.export.build import build\n',
+        "sim/a.py": '"""Doc."""\ndef f():\n    from firm_hdl.export.build import build\n'
+        "    import lab.bench\n",
         "sim/b.py": '__all__ = ["a", *b]\n',
         "terminal.py": '"""Doc."""\nimport firm_hdl.verify\n__all__ = []\n',
         "utils.py": '"""Doc."""\n__all__ = []\n',
@@ -251,6 +263,7 @@ def test_violations_are_found(tmp_path: Path) -> None:
         "gateware/__main__.py: gateware imports firm_hdl",
         "model.py: model imports wire",
         "sim/a.py: no literal __all__",
+        "sim/a.py: imports the laboratory",
         "sim/a.py: sim imports export",
         "sim/b.py: no docstring",
         "sim/b.py: no literal __all__",

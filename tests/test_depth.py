@@ -1,4 +1,4 @@
-"""What `make test` leaves out, and `make test-thorough` runs."""
+"""What `make test` leaves out, and `make nightly` runs."""
 
 from __future__ import annotations
 

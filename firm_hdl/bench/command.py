@@ -21,14 +21,13 @@ from firm_hdl.bench.devices import DEVICES
 from firm_hdl.bench.messages import STATED
 from firm_hdl.bench.results import Converted, Result, read_results, results_text
 from firm_hdl.bench.run import BenchTask, run_tasks
-from firm_hdl.bench.software import CLOCK_MHZ, compare_software, machine, software_rows
 from firm_hdl.bench.tables import head, row, summary
 from firm_hdl.bench.tools import versions
 from firm_hdl.files import write_file
 from firm_hdl.frontend import all_names, load_all, open_library
 from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, DIRECTIONS
 
-__all__ = ["add_bench_arguments", "run_bench"]
+__all__ = ["NO_DEVICE", "add_bench_arguments", "bench_tasks", "run_bench"]
 
 NO_DEVICE = "none"
 
@@ -56,11 +55,6 @@ def add_bench_arguments(command: argparse.ArgumentParser) -> None:
         choices=[*DEVICES, NO_DEVICE],
         default="ecp5",
         help=f"FPGA to map circuits to; {NO_DEVICE}: only simulate; default: %(default)s",
-    )
-    command.add_argument(
-        "--software",
-        action="store_true",
-        help="time rosbags, genpy and Fast CDR with the same messages instead, beside the cycles",
     )
     command.add_argument(
         "--seeds",
@@ -129,8 +123,6 @@ def run_bench(given: argparse.Namespace) -> int:
         If the older file cannot be read.
     """
     check_types_or_all(given)
-    if given.software:
-        return _run_software(given)
     old = None if given.compare is None else read_results(given.compare)
     device = None if given.device == NO_DEVICE else DEVICES[given.device]
     tasks = bench_tasks(given)
@@ -155,28 +147,6 @@ def run_bench(given: argparse.Namespace) -> int:
         print(text)
         is_fine = is_fine and is_no_worse
     return 0 if is_fine else 1
-
-
-def _run_software(given: argparse.Namespace) -> int:
-    """Time libraries, and print which have no figure; return 1 if a converter has no figure."""
-    for name in ("json", "compare", "cache", "bus_bytes", "direction"):
-        if getattr(given, name) is not None:
-            given.usage_error(f"--software has no --{name.replace('_', '-')}")
-    given.device = NO_DEVICE
-    tasks = bench_tasks(given)
-    results = {each.converter: each for each in run_tasks(tasks, given.jobs)}
-    print(f"{machine()}; converters simulated, at {CLOCK_MHZ} MHz", software_rows(), sep="\n")
-    for task in tasks:
-        if task.converter.direction != DIRECTIONS[0]:
-            continue
-        same = [replace(task.converter, direction=each) for each in DIRECTIONS]
-        found = compare_software(task, [results[each] for each in same])
-        print(software_rows(found), flush=True)
-        for name, why in found.missing.items():
-            print(f"    {name}: {why}")
-    problems = [f"{each.converter}: {each.problem}" for each in results.values() if each.problem]
-    print(*problems, *(str(task.stated) for task in tasks[:1]), sep="\n")
-    return 0 if tasks and not problems else 1
 
 
 def bench_tasks(given: argparse.Namespace) -> list[BenchTask]:

@@ -56,7 +56,7 @@ def _build(args: argparse.Namespace) -> None:
 
     def packets_of(message: Message, plan: Plan) -> list[bytes]:
         # Import late: NumPy and rosbags take time, which a failing build does not need.
-        from firm_hdl.verify.cases.stimuli import stimuli
+        from firm_hdl.cases.stimuli import stimuli
 
         return stimuli(message, plan)
 

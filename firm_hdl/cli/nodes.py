@@ -63,7 +63,7 @@ def _domain(text: str) -> int:
 
 def _stimuli(message: Message, plan: Plan) -> list[bytes]:
     # rosbags takes time to import, and only benches need it.
-    from firm_hdl.verify.cases.stimuli import stimuli
+    from firm_hdl.cases.stimuli import stimuli
 
     return stimuli(message, plan)
 

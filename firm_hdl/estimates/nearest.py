@@ -1,6 +1,6 @@
 """Find the measured converter that is nearest to a given one.
 
-``python -m firm_hdl.bench`` writes ``figures.json``. An estimate is the measured figures of the
+``python -m lab.bench`` writes ``figures.json``. An estimate is the measured figures of the
 nearest converter with the same bus width and direction; nothing is computed from them. The nearest
 converter has the smallest distance. A plan has three features: bits of the payloads of all leaves,
 steps, and lengths; each is increased by 1 because it may be 0. The distance is the sum of the

@@ -9,8 +9,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from firm_hdl.verify.cases.make import Case, make_cases
-    from firm_hdl.verify.references.oracle import RosbagsOracle, distro_oracle
+    from firm_hdl.cases.make import Case, make_cases
+    from firm_hdl.cases.oracle import RosbagsOracle, distro_oracle
     from firm_hdl.verify.systems.options import Options
     from firm_hdl.verify.systems.tasks import TypeUnderTest, collect_tasks
     from firm_hdl.verify.ts3.acceptance import accept, accept_message
@@ -33,24 +33,24 @@ __all__ = [
 
 # NumPy, Amaranth and simulators take seconds to import, and a wrong argument needs none of them.
 _HOME = {
-    "Case": "cases.make",
-    "Options": "systems.options",
-    "RosbagsOracle": "references.oracle",
-    "Result": "ts3.result",
-    "TypeUnderTest": "systems.tasks",
-    "accept": "ts3.acceptance",
-    "accept_message": "ts3.acceptance",
-    "collect_tasks": "systems.tasks",
-    "distro_oracle": "references.oracle",
-    "make_cases": "cases.make",
-    "run_tasks": "ts3.system",
+    "Case": "firm_hdl.cases.make",
+    "Options": "firm_hdl.verify.systems.options",
+    "RosbagsOracle": "firm_hdl.cases.oracle",
+    "Result": "firm_hdl.verify.ts3.result",
+    "TypeUnderTest": "firm_hdl.verify.systems.tasks",
+    "accept": "firm_hdl.verify.ts3.acceptance",
+    "accept_message": "firm_hdl.verify.ts3.acceptance",
+    "collect_tasks": "firm_hdl.verify.systems.tasks",
+    "distro_oracle": "firm_hdl.cases.oracle",
+    "make_cases": "firm_hdl.cases.make",
+    "run_tasks": "firm_hdl.verify.ts3.system",
 }
 
 
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"firm_hdl.verify.{_HOME[name]}"), name)
+    return getattr(import_module(_HOME[name]), name)
 
 
 def __dir__() -> list[str]:

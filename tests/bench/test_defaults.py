@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -120,12 +119,9 @@ def test_all_of_a_recording_are_its_types(asked: dict[str, Any], tmp_path: Path)
     ]
 
 
-@pytest.mark.parametrize("words", [[], ["--software"]])
-def test_a_folder_without_types_has_no_figures(
-    words: list[str], asked: dict[str, Any], tmp_path: Path
-) -> None:
+def test_a_folder_without_types_has_no_figures(asked: dict[str, Any], tmp_path: Path) -> None:
     asked["results"] = []
-    assert main(["bench", "--all", "--path", str(tmp_path), *words]) == 1
+    assert main(["bench", "--all", "--path", str(tmp_path)]) == 1
     assert asked["tasks"] == []
 
 
@@ -136,29 +132,3 @@ def test_a_task_takes_its_type_from_its_own_folders(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(run, "open_library", open_library)
     task = BenchTask(converter=result().converter, paths=("a",), bags=("b",), depends=("c",))
     assert run.run_task(task).problem == "only ('lyrical', ('a',), ('b',)), ('c',)"
-
-
-def test_libraries_without_a_figure_are_told_with_the_reason_after_each_type(
-    asked: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    seen: list[tuple[str, list[str]]] = []
-
-    def compare(task: BenchTask, results: Sequence[Result]) -> object:
-        seen.append((task.converter.type, [each.converter.direction for each in results]))
-        return SimpleNamespace(missing={"genpy": "it is not here"})
-
-    both = [result(BOOL, direction=way) for way in ("serializer", "deserializer")]
-    converter = replace(both[0].converter, max_message_bytes=1 << 24)
-    asked["results"] = [
-        replace(each, converter=replace(converter, direction=each.converter.direction))
-        for each in both
-    ]
-    monkeypatch.setattr(command, "compare_software", compare)
-    monkeypatch.setattr(command, "software_rows", lambda *found: "row")
-    assert main(["bench", BOOL, "--software", "--messages", "3"]) == 0
-    assert seen == [(BOOL, ["deserializer", "serializer"])]
-    assert all(task.device is None for task in asked["tasks"])
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].endswith("; converters simulated, at 156.25 MHz")
-    assert lines[1:4] == ["row", "row", "    genpy: it is not here"]
-    assert lines[4].startswith("3 messages, strings of 4 to 10 characters")

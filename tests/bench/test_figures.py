@@ -3,35 +3,22 @@
 
 from __future__ import annotations
 
-import gc
-import json
-import re
-import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from amaranth.back import rtlil
 
 from firm_hdl import Deserializer, Serializer, load_message
-from firm_hdl.bench import BenchError, command, cycles
+from firm_hdl.bench import command, cycles
 from firm_hdl.bench.compare import compare
 from firm_hdl.bench.devices import DEVICES, PARITY, Area
-from firm_hdl.bench.estimates import estimates_json
 from firm_hdl.bench.messages import Stated, values
-from firm_hdl.bench.parts import PARTS, run_parts
-from firm_hdl.bench.parts import run as part_run
-from firm_hdl.bench.plots import clock_plot
 from firm_hdl.bench.results import Result
 from firm_hdl.bench.tables import summary
 from firm_hdl.cli import main
-from firm_hdl.estimates import features_of
-from firm_hdl.gateware.packets import PacketFifo, PacketGate, PacketWidth
-from firm_hdl.plan import build_plan
 from firm_hdl.sim import RunResult
-from firm_hdl.wire import lay_out
 from tests.bench.results import result
 from tests.frontend.workspace import make_files
 from tests.strategies import make
@@ -145,29 +132,6 @@ def test_the_table_of_parity_is_the_xor_of_four_bits() -> None:
     assert "".join(str(ones[number] % 2) for number in reversed(range(16))) == PARITY
 
 
-def test_estimates_are_of_circuits_with_a_clock_rate_on_one_device() -> None:
-    ecp5 = measured(result("std_msgs/msg/Header", bus_bytes=4), area=AREA)
-    others = [
-        measured(ecp5, device=DEVICES["ice40"]),
-        replace(ecp5, measured=None),
-        measured(ecp5, placed=()),
-    ]
-    (entry,) = json.loads(estimates_json([*others, ecp5]))
-    message = load_message("std_msgs/msg/Header")
-    plan = build_plan(lay_out(message, "cdr"), bus_bytes=4, max_message_bytes=1 << 27)
-    assert entry == {
-        "type": "std_msgs/msg/Header",
-        "wire": "cdr",
-        "bus_bytes": 4,
-        "direction": "deserializer",
-        "part": "ECP5 LFE5U-45F-8",
-        "lut": 1001,
-        "ff": 202,
-        "mhz": 82.5,
-        **features_of(plan),
-    }
-
-
 def test_numbers_of_messages_have_all_their_bits() -> None:
     message = make("ros2", {"b": "uint8", "c": "int8", "w": "uint64", "v": "int64"})
     drawn = [value for value, _ in zip(values(message, Stated(seed=3)), range(300), strict=False)]
@@ -205,90 +169,6 @@ def test_cycles_are_those_between_two_runs_and_latency_is_that_of_the_first(
     assert given == [1, 7]
     assert (found.cycles, found.latency, found.beats, found.bytes) == (60, 7, 6, 30)
     assert found.messages == Stated(count=6) and found.bits_per_cycle == 4
-
-
-def test_lines_of_a_plot_reach_from_the_slowest_seed_to_the_fastest() -> None:
-    found = result(mhz=(80.0, 90.0, 82.5))
-    other = replace(found, converter=replace(found.converter, wire="ros1"))
-    root = ElementTree.fromstring(clock_plot([found, other]))
-    bars = [bar for bar in root.findall(f"{SVG}rect") if bar.findall(f"{SVG}title")]
-    # Two wires are two rows.
-    assert len(bars) == 2 and len({bar.get("y") for bar in bars}) == 2
-    start, width = float(bars[0].get("x") or 0), float(bars[0].get("width") or 0)
-    for line in root.findall(f"{SVG}line[@class='whisker']"):
-        ends = [(float(line.get(end) or 0) - start) * 82.5 / width for end in ("x1", "x2")]
-        assert ends == pytest.approx([80.0, 90.0], abs=0.2)
-    assert len(root.findall(f"{SVG}line[@class='whisker']")) == 2
-
-
-PLACES = {f"{part.name} {part.parameters}": number for number, part in enumerate(PARTS)}
-
-
-def test_parts_are_those_that_their_names_say() -> None:
-    narrow = PARTS[PLACES["`PacketWidth` 8 to 1 bytes"]].make()
-    wide = PARTS[PLACES["`PacketWidth` 1 to 8 bytes"]].make()
-    for width, sizes in ((narrow, (8, 1)), (wide, (1, 8))):
-        assert isinstance(width, PacketWidth)
-        ports = (width.packets_in, width.packets_out)
-        assert tuple(len(port.payload.data) for port in ports) == sizes
-    for policy in ("wait", "drop"):
-        fifo = PARTS[PLACES[f'`PacketFifo` 64 KiB, 64 packets, `"{policy}"`']].make()
-        gate = PARTS[PLACES[f'`PacketGate` of `PointCloud2` 64 KiB, `"{policy}"`']].make()
-        assert isinstance(fifo, PacketFifo) and isinstance(gate, PacketGate)
-        for each in (fifo, gate):
-            assert each.when_full == policy
-            assert (each.shape.memory_bytes, each.shape.packets) == (1 << 16, 64)
-    parsers = [PARTS[PLACES[f"`Parser` of `{name}` "]].make() for name in ("Twist", "PointCloud2")]
-    assert [(each.plan.message, each.plan.bus_bytes) for each in parsers] == [
-        ("geometry_msgs/msg/Twist", 8),
-        ("sensor_msgs/msg/PointCloud2", 8),
-    ]
-    arbiter = PARTS[PLACES["`PacketArbiter` 8 inputs"]].make()
-    router = PARTS[PLACES["`PacketRouter` 8 topics"]].make()
-    assert (len(arbiter.packets_in), len(router.packets_out)) == (8, 8)
-    # They warn when they are collected.
-    del narrow, wide, width, fifo, gate, each, parsers, arbiter, router
-    gc.collect()
-
-
-def test_both_sides_of_the_crossing_have_one_clock() -> None:
-    crossing = PARTS[PLACES["`PacketCrossing` 16 beats, both sides at one clock"]].make()
-    text = rtlil.convert(crossing, name="top", emit_src=False).partition("\nend\n")[0]
-    inputs = set(re.findall(r"wire width 1 input \d+ +\\(\w*(?:clk|rst))$", text, re.MULTILINE))
-    assert inputs == {"clk", "rst"}
-
-
-def test_a_part_with_a_problem_keeps_its_area(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = result().measured
-    assert found is not None
-    asked = []
-
-    def run_each(work: Any, tasks: Any, *, jobs: int | None) -> Iterator[tuple[int, Any]]:
-        asked.append((work, tasks, jobs))
-        yield 1, replace(found, problem="no room")
-        yield 0, RuntimeError("it was killed")
-
-    monkeypatch.setattr(part_run, "run_each", run_each)
-    first, second = run_parts(parts=[0, 1], seeds=[4, 5], cache="c", jobs=2)
-    assert (first.part, first.problem) == (PARTS[1], "no room")
-    assert first.measured is not None and first.measured.area == found.area
-    assert (second.part, second.measured, second.problem) == (PARTS[0], None, "it was killed")
-    tasks = [(0, (0, (4, 5), "c")), (1, (1, (4, 5), "c"))]
-    assert asked == [(part_run.measure_part, tasks, 2)]
-
-
-@pytest.mark.parametrize(("cache", "folder"), [(None, None), ("c", Path("c"))])
-def test_figures_of_parts_are_kept_in_the_folder(
-    cache: str | None, folder: Path | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def measure_once(text: str, *given: object, **options: object) -> None:
-        assert given == (DEVICES["ecp5"], (4,))
-        assert options == {"mapping": "", "folder": folder}
-        raise BenchError("enough")
-
-    monkeypatch.setattr(part_run, "measure_once", measure_once)
-    place = PLACES["`PacketWidth` 8 to 1 bytes"]
-    assert part_run.measure_part(place, (4,), cache) == "enough"
 
 
 @pytest.fixture

@@ -10,12 +10,10 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.bench import BenchError
-from firm_hdl.bench import __main__ as bench
 from firm_hdl.bench.compare import compare, compared
 from firm_hdl.bench.devices import DEVICES, Area
 from firm_hdl.bench.messages import STATED
 from firm_hdl.bench.results import Result, read_results, results_text
-from firm_hdl.bench.software.run import machine
 from firm_hdl.bench.tables import geometric_mean, head, row, summary
 from tests.bench.results import result
 
@@ -221,25 +219,6 @@ def test_comparison_names_different_tools_and_missing_converters() -> None:
     assert compared(old, [result(lut=50)], 0.02)[1]
 
 
-def test_figures_of_converters_that_were_not_measured_again_stay(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    file = tmp_path / "kept.json"
-    old = [result(), result("p/msg/B")]
-    assert bench._keep(file, old) == old
-    assert capsys.readouterr().out == ""
-    new = [result(lut=200), result("p/msg/C")]
-    assert bench._keep(file, new) == [old[1], *new]
-    assert capsys.readouterr().out.endswith(
-        "\n1 converters compared, 1 are new, 0 are not measured now; "
-        "1 figures changed by more than 2 %\n"
-    )
-    assert read_results(file) == [new[0], old[1], new[1]]
-    # Without results, the file is only read.
-    assert bench._keep(file, []) == [new[0], old[1], new[1]]
-    assert capsys.readouterr().out == ""
-
-
 def test_the_path_is_that_of_the_run_nearest_to_the_median() -> None:
     for rates, middle in (((90.0, 70.0, 80.0), 2), ((70.0, 90.0, 80.0, 81.0), 2)):
         measured = result(mhz=rates).measured
@@ -250,35 +229,3 @@ def test_the_path_is_that_of_the_run_nearest_to_the_median() -> None:
         ]
         path = replace(measured, placed=tuple(placed)).path
         assert path is not None and path.ns == middle
-
-
-PROCESSORS = (
-    "processor\t: 0\nmodel\t\t: 85\nmodel name\t: A: fast one\ncpu MHz\t\t: 2000\n\n"
-    "processor\t: 1\nmodel\t\t: 86\nmodel name\t: Another\n"
-)
-
-
-@pytest.mark.parametrize(
-    ("cpuinfo", "processor", "name"),
-    [
-        (PROCESSORS, "no", "A: fast one, model 85"),
-        ("model name\t: A\n", "no", "A"),
-        # Other architectures have a file without names, and other systems have none.
-        ("processor\t: 0\nmodel\t\t: 85\n", "Arm Neoverse", "Arm Neoverse"),
-        (None, "Arm Neoverse", "Arm Neoverse"),
-        (None, "", "aarch64"),
-    ],
-)
-def test_the_processor_of_a_table_is_named_as_well_as_the_system_can(
-    cpuinfo: str | None, processor: str, name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def read_text(path: Path, encoding: str) -> str:
-        assert str(path) == "/proc/cpuinfo"
-        if cpuinfo is None:
-            raise FileNotFoundError
-        return cpuinfo
-
-    monkeypatch.setattr(Path, "read_text", read_text)
-    monkeypatch.setattr("platform.processor", lambda: processor)
-    monkeypatch.setattr("platform.machine", lambda: "aarch64")
-    assert machine() == name

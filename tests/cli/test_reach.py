@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.cli import main
 from firm_hdl.errors import UserError
 from firm_hdl.export.build import Built
@@ -18,7 +19,6 @@ from firm_hdl.export.design import BuiltDesign
 from firm_hdl.frontend import Library
 from firm_hdl.identity.command import md5_lines
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.wire import lay_out
 from tests.cli.test_cli import COMMAND, ENVIRONMENT
 from tests.cli.test_declared import is_refused, parsed

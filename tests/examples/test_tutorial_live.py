@@ -21,7 +21,7 @@ def peers():
     """Return the folder with the peers; without them or a network of its own, skip the test."""
     found = Path(os.environ.get("FIRM_HDL_LIVE_PEERS") or Path(sys.prefix) / "live")
     if not (found / "kilted" / "bin" / "python").is_file():
-        pytest.skip("rclpy of Kilted is not installed (make test-live, or FIRM_HDL_LIVE_PEERS=DIR)")
+        pytest.skip("rclpy of Kilted is not installed (make live, or FIRM_HDL_LIVE_PEERS=DIR)")
     if lacking := why_not():
         pytest.skip(f"this system has no {lacking}")
     return found

@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 import yaml
 
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.build import build
 from firm_hdl.export.packaging import packaging
 from firm_hdl.export.packaging.fusesoc import cores
-from firm_hdl.verify.cases.stimuli import stimuli
 from tests.depth import by_depth
 from tests.tools import need
 

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.constants import named_constants
 from firm_hdl.names.keywords import KEYWORDS
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.vhdl.names import PREDEFINED, USED
 from firm_hdl.wire import lay_out
 from tests.export.vhdl.test_layer import analyse, vhdl_of, write

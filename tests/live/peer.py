@@ -21,7 +21,7 @@ _SYSTEM_PYTHON = "/usr/bin/python3"
 
 
 def python_of(environment: str) -> str:
-    """Return the Python of an environment, such as ``kilted``; see `make test-live`.
+    """Return the Python of an environment, such as ``kilted``; see `make live`.
 
     That of ``ros1`` is the system's, with Debian's packages of ROS 1.
     """
@@ -30,7 +30,7 @@ def python_of(environment: str) -> str:
     folder = Path(os.environ.get(_FOLDER) or Path(sys.prefix) / "live")
     path = folder / environment / "bin" / "python"
     found = str(path) if path.is_file() else None
-    return need(f"the peer '{environment}' (make test-live, or {_FOLDER}=DIR)", found)
+    return need(f"the peer '{environment}' (make live, or {_FOLDER}=DIR)", found)
 
 
 def _ros1() -> str | None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.node.build import build_node
-from firm_hdl.verify.cases.stimuli import stimuli
 from tests.node.samples import RELAY, read
 
 

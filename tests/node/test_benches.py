@@ -14,11 +14,11 @@ from importlib.util import find_spec
 import pytest
 import yaml
 
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.node import Node
 from firm_hdl.node.benches import bench_files, link_script
 from firm_hdl.node.build import build_node
 from firm_hdl.node.top import node_ports
-from firm_hdl.verify.cases.stimuli import stimuli
 from tests.depth import by_depth
 from tests.node.accelerators import echo_text
 from tests.node.samples import RELAY, read

@@ -10,6 +10,7 @@ import subprocess
 import pytest
 from amaranth.sim import Simulator
 
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.cli import main
 from firm_hdl.errors import UserError
 from firm_hdl.node import Node
@@ -17,7 +18,6 @@ from firm_hdl.node.build import build_node
 from firm_hdl.node.messages import NodeMessage
 from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodeTop, node_ports
-from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.vhdl.convert import Vhdl
 from tests.export.strikes import left_when_outdated
 from tests.node.samples import PACKAGES, WHEELS, read

@@ -1,7 +1,7 @@
 # amaranth: UnusedElaboratable=no
 """One link at line rate: eight topics, a beat per cycle through router, gates, FIFOs and arbiter.
 
-The core is the one whose clock rate ``python -m firm_hdl.bench --group parts`` measures.
+`lab/bench/parts/standard.py` has the same node, to measure its clock rate.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import random
 import pytest
 from amaranth.hdl import Signal
 
-from firm_hdl.bench.parts import EIGHT_TOPICS
 from firm_hdl.frontend import open_library
 from firm_hdl.node import read_description_text
 from firm_hdl.node.gateware import NodeCore
@@ -25,6 +24,20 @@ from tests.node.test_core import CoreBench
 from tests.node.traffic import messages_of
 
 BUS = 8
+EIGHT_TOPICS = """\
+node: eight
+clock_mhz: 156.25
+subscribe:
+  twist: {type: geometry_msgs/msg/Twist}
+  imu: {type: sensor_msgs/msg/Imu, memory_bytes: 4096}
+  scan: {type: sensor_msgs/msg/LaserScan}
+  text: {type: std_msgs/msg/String, memory_bytes: 4096}
+publish:
+  twist_out: {type: geometry_msgs/msg/Twist}
+  imu_out: {type: sensor_msgs/msg/Imu, memory_bytes: 4096}
+  scan_out: {type: sensor_msgs/msg/LaserScan}
+  text_out: {type: std_msgs/msg/String, memory_bytes: 4096}
+"""
 PASSED = 14
 """Cycles from the last beat of a packet on `received` to its first beat at a subscription."""
 SENT = 7

@@ -11,6 +11,7 @@ import subprocess
 
 import pytest
 
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.errors import UserError
 from firm_hdl.node import Node, read_description_text
 from firm_hdl.node.benches import bench_files, link_script
@@ -18,7 +19,6 @@ from firm_hdl.node.build import build_node
 from firm_hdl.node.records import message_ports
 from firm_hdl.node.records.messages import other_ports
 from firm_hdl.node.top import node_ports
-from firm_hdl.verify.cases.stimuli import stimuli
 from tests.depth import by_depth
 from tests.frontend.workspace import make_files
 from tests.node.samples import LIBRARY, RELAY, read

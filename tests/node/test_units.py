@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
 from firm_hdl.node import Node
@@ -15,7 +16,6 @@ from firm_hdl.node import build as node_build
 from firm_hdl.node.build import build_node
 from firm_hdl.node.top import node_ports
 from firm_hdl.node.units import check_units
-from firm_hdl.verify.cases.stimuli import stimuli
 from tests.node.samples import RELAY, read
 
 FILES = {

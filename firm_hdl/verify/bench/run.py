@@ -14,6 +14,11 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.make import Case
+from firm_hdl.cases.stimuli import stimulus_cases
+from firm_hdl.cases.user_oracle import check_wire, judge_of
+from firm_hdl.cases.wide_oracle import WideOracle
 from firm_hdl.export import backend
 from firm_hdl.export.build import BuildError, Built, build, check_size, plan_of
 from firm_hdl.export.manifest import MANIFEST
@@ -22,14 +27,10 @@ from firm_hdl.jobs.processes import ToolError, made_by, run_tool
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
 from firm_hdl.sim.payloads import encoder_of
-from firm_hdl.verify.cases.make import Case
-from firm_hdl.verify.cases.stimuli import stimulus_cases
 from firm_hdl.verify.references.choice import WIDE_REFERENCES, may_stand_in
-from firm_hdl.verify.references.user_oracle import check_wire, judge_of
-from firm_hdl.verify.references.wide_oracle import WideOracle
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.texts import first_difference
-from firm_hdl.verify.results.verdict import Failed, NotJudgedError, Passed
+from firm_hdl.verify.results.verdict import Failed, Passed
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.system import Stopwatch, recorded
 from firm_hdl.verify.systems.tasks import library_of

@@ -13,6 +13,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.damage import DAMAGES, broken_packets
+from firm_hdl.cases.directed import bare_packets
+from firm_hdl.cases.effort import all_cases
+from firm_hdl.cases.figures import digest, figures
+from firm_hdl.cases.make import Case
+from firm_hdl.cases.user_oracle import Judge, judge_of
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
@@ -21,14 +28,8 @@ from firm_hdl.node.control import FIFO_COUNTERS, GATE_COUNTERS, LINK_COUNTERS, r
 from firm_hdl.plan import Plan, build_plan
 from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.verify.board.talk import Talk, room_for
-from firm_hdl.verify.cases.damage import DAMAGES, broken_packets
-from firm_hdl.verify.cases.directed import bare_packets
-from firm_hdl.verify.cases.effort import all_cases
-from firm_hdl.verify.cases.figures import digest, figures
-from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.references.choice import may_stand_in
-from firm_hdl.verify.references.user_oracle import Judge, judge_of
-from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
+from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.ts3.acceptance import confirm_cases
 from firm_hdl.verify.ts3.compare import packet_differences

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, cast
 
+from firm_hdl.cases import NotJudgedError
 from firm_hdl.errors import DefinitionError, UserError, described
 from firm_hdl.node import Description, Topic
 from firm_hdl.node.boards import Board, board_of
@@ -22,7 +23,6 @@ from firm_hdl.verify.results.verdict import (
     Failed,
     KnownDifference,
     NotJudged,
-    NotJudgedError,
     Passed,
 )
 from firm_hdl.verify.systems.options import Request, command_again

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import Any, TypeGuard
 
+from firm_hdl.cases.values import Change, Plain, is_nan
 from firm_hdl.model import FieldType, Message, Primitive, String
 from firm_hdl.verify.clients.finding import KnownDivergence
-from firm_hdl.verify.references.values import Change, Plain, is_nan
 
 __all__ = ["KNOWN"]
 

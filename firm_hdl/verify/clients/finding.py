@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from firm_hdl.cases.values import Change, Plain
 from firm_hdl.model import Message
 from firm_hdl.verify.references.client import Refusal
-from firm_hdl.verify.references.values import Change, Plain
 from firm_hdl.wire import Wire
 
 __all__ = ["Finding", "KnownDivergence"]

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from firm_hdl.cases.values import Plain
 from firm_hdl.model import Message
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.clients.known import known_keys
@@ -25,7 +26,6 @@ from firm_hdl.verify.references.client import (
     UnsupportedError,
     each_answered,
 )
-from firm_hdl.verify.references.values import Plain
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 from firm_hdl.wire import Wire
 

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from firm_hdl.cases.values import Plain, changed
 from firm_hdl.model import Message
 from firm_hdl.verify.clients.divergences import KNOWN
 from firm_hdl.verify.clients.finding import Finding, KnownDivergence
 from firm_hdl.verify.references.client import Codec, Refusal, UnsupportedError
 from firm_hdl.verify.references.clients import client
-from firm_hdl.verify.references.values import Plain, changed
 from firm_hdl.wire import Wire
 
 __all__ = ["known_keys", "known_writing"]

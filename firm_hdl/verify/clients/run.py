@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.effort import all_cases
+from firm_hdl.cases.user_oracle import judge_of
+from firm_hdl.cases.values import Plain, from_objects
 from firm_hdl.errors import DefinitionError
 from firm_hdl.jobs.processes import in_processes
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.cases.effort import all_cases
 from firm_hdl.verify.clients.judge import LibraryComparison, LibraryResult
 from firm_hdl.verify.references.clients import REFERENCES, client
-from firm_hdl.verify.references.user_oracle import judge_of
-from firm_hdl.verify.references.values import Plain, from_objects
-from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
+from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Request, command_again
 from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.wire import Wire, lay_out

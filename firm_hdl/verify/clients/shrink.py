@@ -6,11 +6,11 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from firm_hdl.cases.values import Plain, changed, packed
 from firm_hdl.model import Array, Field, FieldType, Message, Primitive, String, closure, rebuilt
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.references.objects import full_text
-from firm_hdl.verify.references.values import Plain, changed, packed
 
 __all__ = ["shrunk"]
 

@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 
+from firm_hdl.cases.values import Plain, changed
 from firm_hdl.model import Array, FieldType, Message, Primitive, String
 from firm_hdl.model import Sequence as SequenceType
-from firm_hdl.verify.references.values import Plain, changed
 from firm_hdl.wire import Wire
 
 __all__ = [

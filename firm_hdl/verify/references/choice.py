@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from firm_hdl.cases.wide_oracle import stand_ins
 from firm_hdl.model import Message, closure
 from firm_hdl.verify.references.client import ClientMissingError
 from firm_hdl.verify.references.clients import CLIENTS, client, close_clients
 from firm_hdl.verify.references.fastcdr import NEWER
-from firm_hdl.verify.references.wide_oracle import stand_ins
 from firm_hdl.wire import Wire
 
 __all__ = [

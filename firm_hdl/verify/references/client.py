@@ -10,8 +10,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from typing import ClassVar, TypeVar
 
+from firm_hdl.cases.values import Plain
 from firm_hdl.model import Message
-from firm_hdl.verify.references.values import Plain
 from firm_hdl.wire import Wire
 
 __all__ = [

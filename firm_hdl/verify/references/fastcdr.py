@@ -16,6 +16,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
+from firm_hdl.cases.values import Plain, packed, unpacked
 from firm_hdl.jobs.caches import kept_program
 from firm_hdl.jobs.processes import ToolError, hang_up, made_by, run_tool, start_program
 from firm_hdl.jobs.programs import ProgramMissingError, find_compiler
@@ -28,7 +29,6 @@ from firm_hdl.verify.references.client import (
     Refusal,
     UnsupportedError,
 )
-from firm_hdl.verify.references.values import Plain, packed, unpacked
 from firm_hdl.verify.ros2_wheels import RELEASES, Release
 from firm_hdl.wire import Wire
 

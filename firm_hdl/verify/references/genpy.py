@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar
 
+from firm_hdl.cases.values import Plain, from_json
 from firm_hdl.model import Array, FieldType, Message, closure, element_of
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.references.client import (
@@ -18,7 +19,6 @@ from firm_hdl.verify.references.client import (
 )
 from firm_hdl.verify.references.genpy_objects import to_json
 from firm_hdl.verify.references.objects import full_text
-from firm_hdl.verify.references.values import Plain, from_json
 from firm_hdl.verify.ros_python import worker
 from firm_hdl.wire import Wire
 

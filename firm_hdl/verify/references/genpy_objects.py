@@ -1,7 +1,7 @@
 """Conversion between plain values and genpy's objects, for ROS's own genpy and for mcap's.
 
 This file is also run by the Python that ROS's modules are installed for, so it imports nothing of
-firm-hdl. Plain values are described in `firm_hdl.verify.references.values`; bytes may be text in
+firm-hdl. Plain values are described in `firm_hdl.cases.values`; bytes may be text in
 Latin-1. A table lists the fields of each message type. Each field has its name, whether it is an
 array or a sequence, and the name of its type.
 """

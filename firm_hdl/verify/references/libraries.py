@@ -14,6 +14,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.user_oracle import oracle_name, resolved_oracle
+from firm_hdl.cases.values import Plain
 from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String, closure
 from firm_hdl.verify.references.client import Client, Codec, Refusal, UnsupportedError
 from firm_hdl.verify.references.genpy import field_table
@@ -25,9 +28,6 @@ from firm_hdl.verify.references.objects import (
     plainly_named,
     refuse_wide,
 )
-from firm_hdl.verify.references.user_oracle import oracle_name, resolved_oracle
-from firm_hdl.verify.references.values import Plain
-from firm_hdl.verify.results.verdict import NotJudgedError
 from firm_hdl.wire import Wire
 
 __all__ = ["CycloneDds", "McapRos1", "McapRos2", "Rosbags"]

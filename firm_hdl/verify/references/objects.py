@@ -11,6 +11,7 @@ from dataclasses import replace
 from itertools import count
 from typing import Any
 
+from firm_hdl.cases.values import Plain, as_float, bits_of
 from firm_hdl.model import (
     Array,
     FieldType,
@@ -24,7 +25,6 @@ from firm_hdl.model import (
     spelled,
 )
 from firm_hdl.verify.references.client import Codec, Refusal, UnsupportedError
-from firm_hdl.verify.references.values import Plain, as_float, bits_of
 
 __all__ = [
     "ObjectCodec",

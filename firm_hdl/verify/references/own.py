@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import ClassVar
 
 import firm_hdl
+from firm_hdl.cases.values import Plain, to_numbers
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError
 from firm_hdl.gateware import Deserializer, Serializer
@@ -13,7 +14,6 @@ from firm_hdl.model import Message
 from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.verify.references.client import Client, Codec, Refusal, UnsupportedError
-from firm_hdl.verify.references.values import Plain, to_numbers
 from firm_hdl.wire import Wire
 
 __all__ = ["FirmHdl"]

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, TypeAlias
 
-__all__ = ["Failed", "KnownDifference", "NotJudged", "NotJudgedError", "Passed", "Verdict"]
+__all__ = ["Failed", "KnownDifference", "NotJudged", "Passed", "Verdict"]
 
 SILENT = "failed without saying why"
 """The text of a failure whose own text is blank."""
@@ -98,10 +98,6 @@ class NotJudged:
     def details(self) -> tuple[str, ...]:
         """The reason."""
         return (self.reason,)
-
-
-class NotJudgedError(Exception):
-    """No oracle can judge something, such as a type; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,13 +15,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from firm_hdl.cases import NotJudgedError
 from firm_hdl.export.build import BuildError, check_size
 from firm_hdl.export.top import Top
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.jobs.processes import ToolError
 from firm_hdl.plan import Plan
 from firm_hdl.sim.record import RunResult
-from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Passed, Verdict
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed, Verdict
 from firm_hdl.verify.simulators import TextSimulator
 from firm_hdl.verify.simulators.semantics import traffic
 from firm_hdl.verify.simulators.trace import Trace, read_row

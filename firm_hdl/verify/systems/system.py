@@ -17,6 +17,7 @@ from typing import Any, ClassVar, TypeAlias, TypeVar
 
 from tqdm import tqdm
 
+from firm_hdl.cases import NotJudgedError
 from firm_hdl.errors import described
 from firm_hdl.frontend import DISTROS
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, run_each
@@ -24,7 +25,7 @@ from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import WIRE_OF
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import STAGES, Record, Seconds, Test, clipped_verdict, settled
-from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Verdict
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Verdict
 from firm_hdl.verify.systems.options import Request, command_again
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 

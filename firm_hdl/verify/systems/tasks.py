@@ -82,7 +82,7 @@ def collect_tasks(
         If no distribution has a type of a name.
     """
     # This import loads rosbags' types and NumPy, which a user's own definitions do not need.
-    from firm_hdl.verify.references.oracle import DISTRO_STORES, distro_oracle
+    from firm_hdl.cases.oracle import DISTRO_STORES, distro_oracle
 
     wanted = {_full(name) for name in names}
     found: dict[tuple[str, str], list[str]] = defaultdict(list)

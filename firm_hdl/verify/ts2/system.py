@@ -14,11 +14,11 @@ from typing import Any
 
 from tqdm import tqdm
 
+from firm_hdl.cases.figures import digest, figures
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, check, from_yaml, to_yaml
-from firm_hdl.verify.cases.figures import digest, figures
 from firm_hdl.verify.results.records import Record, Test, clipped_verdict
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.options import Options, Request

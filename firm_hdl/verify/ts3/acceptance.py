@@ -1,6 +1,6 @@
 """Acceptance: every case of a type through simulated converters, against the oracle.
 
-For each case of :mod:`firm_hdl.verify.cases.make`, the loopback of deserializer and serializer must
+For each case of :mod:`firm_hdl.cases.make`, the loopback of deserializer and serializer must
 return the packet byte for byte. Every leaf must transfer what the oracle says, and every status
 must be ``OK``. Cases run once without stalls and with all packets back to back, and once with every
 stream stalled. The golden model (:mod:`firm_hdl.plan.interpret`) must agree in both directions.
@@ -17,15 +17,10 @@ from collections.abc import Set as AbstractSet
 from itertools import chain
 from typing import Any
 
-from firm_hdl.errors import described
-from firm_hdl.model import Message
-from firm_hdl.plan import Edge, build_plan
-from firm_hdl.plan.edges import edges
-from firm_hdl.plan.interpret import decode, encode
-from firm_hdl.sim.stalls import Stalls
-from firm_hdl.verify.cases.damage import DAMAGES, broken_packets, stalls_for
-from firm_hdl.verify.cases.directed import bare_packets
-from firm_hdl.verify.cases.effort import (
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.damage import DAMAGES, broken_packets, stalls_for
+from firm_hdl.cases.directed import bare_packets
+from firm_hdl.cases.effort import (
     all_cases,
     cases_to_disturb,
     is_large,
@@ -33,14 +28,20 @@ from firm_hdl.verify.cases.effort import (
     packets_to_simulate,
     too_large,
 )
-from firm_hdl.verify.cases.figures import digest, figures
-from firm_hdl.verify.cases.make import Case
+from firm_hdl.cases.figures import digest, figures
+from firm_hdl.cases.make import Case
+from firm_hdl.cases.oracle import RosbagsOracle
+from firm_hdl.cases.user_oracle import Judge, judge_of
+from firm_hdl.cases.wide_oracle import WideOracle
+from firm_hdl.errors import described
+from firm_hdl.model import Message
+from firm_hdl.plan import Edge, build_plan
+from firm_hdl.plan.edges import edges
+from firm_hdl.plan.interpret import decode, encode
+from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.references.choice import WIDE_REFERENCES, may_stand_in
-from firm_hdl.verify.references.oracle import RosbagsOracle
-from firm_hdl.verify.references.user_oracle import Judge, judge_of
-from firm_hdl.verify.references.wide_oracle import WideOracle
 from firm_hdl.verify.results.records import PlanCoverage
-from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
+from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.circuit import Circuit

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from firm_hdl.cases.oracle import Transfers
 from firm_hdl.plan import Payload, Plan
 from firm_hdl.sim.record import RunResult
-from firm_hdl.verify.references.oracle import Transfers
 from firm_hdl.verify.results.texts import first_difference
 
 __all__ = [

@@ -10,8 +10,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from firm_hdl.cases.make import Case
+from firm_hdl.cases.values import Plain, from_objects
 from firm_hdl.model import Message
-from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.clients.known import known_writing
 from firm_hdl.verify.references.choice import WRITERS, usable_references
 from firm_hdl.verify.references.client import (
@@ -21,7 +22,6 @@ from firm_hdl.verify.references.client import (
     each_answered,
 )
 from firm_hdl.verify.references.clients import client
-from firm_hdl.verify.references.values import Plain, from_objects
 from firm_hdl.wire import Wire
 
 __all__ = ["confirm"]

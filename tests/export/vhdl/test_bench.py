@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from firm_hdl import load_message
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.vhdl.parts import packets_text
-from firm_hdl.verify.cases.stimuli import stimuli
-from firm_hdl.verify.results.verdict import NotJudgedError
 from tests.depth import by_depth
 from tests.export.vhdl.test_layer import nasty, plan_of, vhdl_of, write
 from tests.tools import run_script
@@ -116,7 +116,7 @@ def test_type_that_rosbags_cannot_write_has_no_stimuli(monkeypatch):
     def refuse(*arguments, **options):
         raise NotJudgedError("too odd")
 
-    monkeypatch.setattr("firm_hdl.verify.cases.stimuli.judge_of", refuse)
+    monkeypatch.setattr("firm_hdl.cases.stimuli.judge_of", refuse)
     message = load_message("std_msgs/msg/String")
     vhdl, plan = vhdl_of(message, hollow=True)
     assert stimuli(message, plan) == []

@@ -7,6 +7,7 @@ import re
 import pytest
 
 from firm_hdl import load_message
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.cli import main
 from firm_hdl.export import top
 from firm_hdl.export.backend import Options
@@ -18,7 +19,6 @@ from firm_hdl.export.vhdl.bench_views import flat_view
 from firm_hdl.export.vhdl.layer import flat_package
 from firm_hdl.export.vhdl.wrapper import Core, stream_wrapper
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.export.vhdl.test_layer import analyse, nasty, plan_of, vhdl_of, write

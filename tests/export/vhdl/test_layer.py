@@ -14,6 +14,7 @@ from tempfile import TemporaryDirectory
 import pytest
 
 from firm_hdl import load_message
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.backend import Converters, Options, Output, Ports
 from firm_hdl.export.top import Direction
 from firm_hdl.export.vhdl.backend import to_vhdl
@@ -21,7 +22,6 @@ from firm_hdl.export.vhdl.layer import UserLayer, user_layer
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan, build_plan
-from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.export.conftest import hollow_converters

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from firm_hdl import Deserializer, load_message
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.backend import Output
 from firm_hdl.export.record_top import RecordTop, record_ports, why_no_record
 from firm_hdl.export.tree import taken_names, tree_of
@@ -17,7 +18,6 @@ from firm_hdl.export.vhdl.parts import packets_text
 from firm_hdl.export.vhdl.values import values_of
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.cases.stimuli import stimuli
 from firm_hdl.vhdl.names import PREDEFINED
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth

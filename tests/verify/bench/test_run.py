@@ -8,13 +8,14 @@ from types import SimpleNamespace
 
 import pytest
 
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.make import Case
+from firm_hdl.cases.wide_oracle import WideOracle
 from firm_hdl.export.build import BuildError
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, build_plan
 from firm_hdl.verify.bench import run
 from firm_hdl.verify.bench.run import _check_transfers, _compare
-from firm_hdl.verify.cases.make import Case
-from firm_hdl.verify.references.wide_oracle import WideOracle
-from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Passed
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.wire import lay_out
 from tests.strategies import make

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from firm_hdl.cases import NotJudgedError
 from firm_hdl.errors import DefinitionError, Diagnostic, UserError
 from firm_hdl.verify.board import system
 from firm_hdl.verify.board.system import SILENT_SECONDS_OF_SIMULATION, Boards
 from firm_hdl.verify.board.talk import SILENT_SECONDS, Talk
-from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Passed
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Recorder
 from tests.node.bridge.fakes import FakeBoard

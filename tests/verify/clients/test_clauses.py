@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from firm_hdl.cases.values import as_float, bits_of, changed, is_nan
 from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
 from firm_hdl.verify.clients.divergences import KNOWN
 from firm_hdl.verify.clients.finding import Finding, KnownDivergence
@@ -18,7 +19,6 @@ from firm_hdl.verify.clients.unusual import (
     unusual_values,
 )
 from firm_hdl.verify.references.client import Codec, Refusal
-from firm_hdl.verify.references.values import as_float, bits_of, changed, is_nan
 
 UINT8 = PRIMITIVES["ros2"]["uint8"]
 REFUSED = Refusal("no")

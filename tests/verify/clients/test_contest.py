@@ -6,6 +6,7 @@ from collections import Counter
 
 import pytest
 
+from firm_hdl.cases.values import changed
 from firm_hdl.model import Message, Primitive, Sequence, String
 from firm_hdl.verify.clients.finding import Finding, KnownDivergence
 from firm_hdl.verify.clients.judge import LibraryComparison, LibraryResult
@@ -19,7 +20,6 @@ from firm_hdl.verify.references.client import (
     UnsupportedError,
     each_answered,
 )
-from firm_hdl.verify.references.values import changed
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.cases.values import shown
 from firm_hdl.verify.clients.divergences import KNOWN
 from firm_hdl.verify.clients.judge import LibraryComparison
 from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.objects import definition_text
-from firm_hdl.verify.references.values import shown
 from tests.verify.clients.examples import EXAMPLES
 
 PAGE = Path(__file__).parents[3] / "docs" / "divergences.md"

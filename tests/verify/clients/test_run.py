@@ -7,10 +7,11 @@ from types import SimpleNamespace
 
 import pytest
 
+from firm_hdl.cases import NotJudgedError
 from firm_hdl.verify.clients import run as module
 from firm_hdl.verify.clients.judge import LibraryResult
 from firm_hdl.verify.clients.run import judge_type, judge_types
-from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError
+from firm_hdl.verify.results.verdict import Failed, NotJudged
 from firm_hdl.verify.systems.options import Request
 from tests.frontend.workspace import make_files
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from firm_hdl.cases.values import Plain, bits_of
 from firm_hdl.model import FieldType, Message, Primitive, String
-from firm_hdl.verify.references.values import Plain, bits_of
 
 __all__ = ["plain"]
 

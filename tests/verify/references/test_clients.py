@@ -11,13 +11,13 @@ from pathlib import Path
 import pytest
 import yaml
 
+from firm_hdl.cases.values import bits_of
 from firm_hdl.frontend import Library
 from firm_hdl.model import PRIMITIVES, Field, Message
 from firm_hdl.verify.references.client import Refusal, UnsupportedError
 from firm_hdl.verify.references.clients import CLIENTS, client
 from firm_hdl.verify.references.fastcdr import FastCdr
 from firm_hdl.verify.references.genpy import Genpy
-from firm_hdl.verify.references.values import bits_of
 from tests.frontend.workspace import make_files
 from tests.verify.references.plain import plain
 

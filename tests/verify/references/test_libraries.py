@@ -7,11 +7,11 @@ import logging
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from firm_hdl.verify.references import user_oracle as module
+from firm_hdl.cases import user_oracle as module
+from firm_hdl.cases.oracle import RosbagsOracle
+from firm_hdl.cases.user_oracle import judge_of
+from firm_hdl.cases.values import bits_of
 from firm_hdl.verify.references.client import Refusal, UnsupportedError
-from firm_hdl.verify.references.oracle import RosbagsOracle
-from firm_hdl.verify.references.user_oracle import judge_of
-from firm_hdl.verify.references.values import bits_of
 
 
 def data(text):

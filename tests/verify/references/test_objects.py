@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from firm_hdl.cases.values import bits_of
 from firm_hdl.model import Field, Message
 from firm_hdl.verify.references.client import Refusal, UnsupportedError
 from firm_hdl.verify.references.genpy import field_table
@@ -18,7 +19,6 @@ from firm_hdl.verify.references.objects import (
     plainly_named,
     refuse_wide,
 )
-from firm_hdl.verify.references.values import bits_of
 from tests.frontend.workspace import make_files
 
 LINE = "=" * 80

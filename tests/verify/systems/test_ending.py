@@ -7,16 +7,16 @@ from dataclasses import replace
 import pytest
 
 import firm_hdl.verify.ts3.acceptance as acceptance
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.user_oracle import judge_of
 from firm_hdl.cli import main
 from firm_hdl.jobs.executors import ExecutorError
-from firm_hdl.verify.references.user_oracle import judge_of
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.records import settled
 from firm_hdl.verify.results.verdict import (
     Failed,
     KnownDifference,
     NotJudged,
-    NotJudgedError,
     Passed,
 )
 from firm_hdl.verify.run import concluded, failure

@@ -7,10 +7,11 @@ from itertools import count
 
 import pytest
 
+from firm_hdl.cases import NotJudgedError
 from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.verify.results.file import ResultsWriter, read_results
 from firm_hdl.verify.results.records import MOST_FAILURES, Seconds
-from firm_hdl.verify.results.verdict import Failed, NotJudged, NotJudgedError, Passed
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems import system
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import (

@@ -1,4 +1,4 @@
-"""Definitions of real packages against oracles; all of them: ``make verify-ts1``."""
+"""Definitions of real packages against oracles; all of them: ``make verify``."""
 
 from __future__ import annotations
 

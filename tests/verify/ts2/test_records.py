@@ -8,10 +8,10 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl import load_message
+from firm_hdl.cases.figures import digest
 from firm_hdl.cli import main
 from firm_hdl.export.build import plan_of
 from firm_hdl.plan import build_plan, to_yaml
-from firm_hdl.verify.cases.figures import digest
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.records import Test
 from firm_hdl.verify.results.verdict import Failed, Passed

@@ -9,17 +9,17 @@ import pytest
 from amaranth.hdl import Module, Signal
 from amaranth.lib import wiring
 
-import firm_hdl.verify.cases.damage as damage
+import firm_hdl.cases.damage as damage
 import firm_hdl.verify.ts3.acceptance as acceptance
 import firm_hdl.verify.ts3.circuit as circuit
+from firm_hdl.cases.damage import DAMAGES, broken_packets
+from firm_hdl.cases.make import Case
 from firm_hdl.frontend import load_message
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.plan import build_plan, decode
 from firm_hdl.verify import Options, accept, collect_tasks, run_tasks
 from firm_hdl.verify.__main__ import main
-from firm_hdl.verify.cases.damage import DAMAGES, broken_packets
-from firm_hdl.verify.cases.make import Case
 from firm_hdl.verify.results.verdict import Passed
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth

@@ -69,7 +69,7 @@ KNOWN = {("lyrical", "sensor_msgs/msg/Joy"): (NAN_KEY,)}
 
 
 def options_of(distro: str, name: str) -> Options:
-    """Return the options of a type; all cases are for `make test-thorough`."""
+    """Return the options of a type; all cases are for `make nightly`."""
     if THOROUGH:
         return Options(bus_bytes=8)
     is_damaged = (KEPT[distro].index(name) + DISTROS.index(distro)) % 2 == 0

@@ -8,8 +8,8 @@ from __future__ import annotations
 import pytest
 
 import firm_hdl.verify.ts3.acceptance as acceptance
+from firm_hdl.cases import NotJudgedError
 from firm_hdl.verify import Options, accept, collect_tasks
-from firm_hdl.verify.results.verdict import NotJudgedError
 from tests.depth import THOROUGH, by_depth
 from tests.verify.judged import assert_passed
 

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
+from firm_hdl.cases.effort import work_of
 from firm_hdl.plan import build_plan
 from firm_hdl.verify import Options, Result, RosbagsOracle, accept_message
-from firm_hdl.verify.cases.effort import work_of
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.strategies import BUS_WIDTHS, definitions

@@ -11,11 +11,11 @@ import pytest
 
 import firm_hdl.verify.ts3.circuit as circuit
 import firm_hdl.verify.ts3.replay as replay_module
+from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.cli import main
 from firm_hdl.frontend import Library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.verify import Options
-from firm_hdl.verify.references.oracle import RosbagsOracle
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.ts3.recording import Topic
 from firm_hdl.verify.ts3.replay import replay

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from firm_hdl import load_message
+from firm_hdl.cases.damage import stalls_for
+from firm_hdl.cases.effort import MAX_MESSAGE_BYTES
+from firm_hdl.cases.make import Case
+from firm_hdl.cases.oracle import distro_oracle
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.interpret import decode
-from firm_hdl.verify.cases.damage import stalls_for
-from firm_hdl.verify.cases.effort import MAX_MESSAGE_BYTES
-from firm_hdl.verify.cases.make import Case
-from firm_hdl.verify.references.oracle import distro_oracle
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.ts3 import acceptance, replay
 from firm_hdl.verify.ts3.recording import Selection

@@ -7,12 +7,13 @@ from types import SimpleNamespace
 import pytest
 
 import firm_hdl.verify.ts3.acceptance as acceptance
+from firm_hdl.cases import NotJudgedError
+from firm_hdl.cases.damage import stalls_for
+from firm_hdl.cases.oracle import RosbagsOracle
+from firm_hdl.cases.wide_oracle import WideOracle
 from firm_hdl.frontend import Library
 from firm_hdl.verify import Options, Result, accept
-from firm_hdl.verify.cases.damage import stalls_for
-from firm_hdl.verify.references.oracle import RosbagsOracle
-from firm_hdl.verify.references.wide_oracle import WideOracle
-from firm_hdl.verify.results.verdict import NotJudged, NotJudgedError
+from firm_hdl.verify.results.verdict import NotJudged
 
 STRING = "std_msgs/msg/String"
 BARE = bytes.fromhex("00010000 00000000")

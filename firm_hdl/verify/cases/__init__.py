@@ -1,3 +1,0 @@
-"""Messages and packets to test a type with, chosen for its plan."""
-
-__all__ = []

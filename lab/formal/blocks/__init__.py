@@ -1,0 +1,36 @@
+"""Scenes of blocks: what drives each of them, and what is claimed."""
+
+from __future__ import annotations
+
+from lab.formal.blocks import (
+    claims,
+    converters,
+    crossings,
+    drop_gate,
+    fifos,
+    judges,
+    records,
+    serializers,
+    slices,
+    tail_drop,
+)
+from lab.formal.catalog import Study
+
+__all__ = ["all_studies"]
+
+
+def all_studies() -> list[Study]:
+    """Return all studies, in the order of the table."""
+    modules = (
+        slices,
+        fifos,
+        tail_drop,
+        crossings,
+        claims,
+        records,
+        converters,
+        serializers,
+        judges,
+        drop_gate,
+    )
+    return [study for module in modules for study in module.studies()]

@@ -1,1 +1,0 @@
-"""Development tools besides the tests."""
