@@ -1,4 +1,4 @@
-"""Fixtures for tests of verification: external programs and libraries, and messages as for cases."""
+"""Fixtures for tests of verification: external programs, libraries and message types."""
 
 from __future__ import annotations
 
