@@ -31,7 +31,15 @@ from tqdm import tqdm
 
 from firm_hdl.errors import DefinitionError, Source
 from firm_hdl.frontend import Library
-from firm_hdl.frontend.sources import Definition, EmbeddedOrigin, FolderOrigin
+from firm_hdl.frontend.names import Kind
+from firm_hdl.frontend.sources import (
+    Definition,
+    EmbeddedOrigin,
+    FolderOrigin,
+    Language,
+    Origin,
+    PackagePlace,
+)
 from tests.damage import MOST_CHARACTERS, mutate
 
 __all__ = ["Finding", "Fuzzer", "Seed", "main", "seeds"]
@@ -47,7 +55,9 @@ INPUTS_PER_TASK = 500
 SEEDS_PER_TASK = 50
 
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
-ENDINGS = {".msg": "msg", ".srv": "srv", ".action": "action", ".idl": "idl"}
+ENDINGS: dict[str, Language] = {".msg": "msg", ".srv": "srv", ".action": "action", ".idl": "idl"}
+
+KINDS: dict[str, Kind] = {"msg": "msg", "srv": "srv", "action": "action"}
 
 
 @dataclass(frozen=True)
@@ -56,9 +66,9 @@ class Seed:
 
     dialect: str
     package: str
-    kind: str
+    kind: Kind
     name: str
-    language: str
+    language: Language
     text: str
 
 
@@ -78,8 +88,8 @@ def seeds(folder: Path) -> list[Seed]:
     for path in sorted(folder.rglob("*")):
         parts = path.relative_to(folder).parts
         dialect = next((part for part in parts if part in DISTROS), None)
-        kind = path.parent.name
-        if dialect and path.suffix in ENDINGS and kind in ("msg", "srv", "action"):
+        kind = KINDS.get(path.parent.name)
+        if dialect and path.suffix in ENDINGS and kind:
             text = path.read_bytes().decode("utf-8", "replace")
             if len(text) <= MOST_CHARACTERS:
                 package = path.parent.parent.name
@@ -91,15 +101,15 @@ def seeds(folder: Path) -> list[Seed]:
 class _InputOrigin:
     """An origin with the inputs that are being tried."""
 
-    packages: ClassVar = {}
+    packages: ClassVar[dict[str, PackagePlace]] = {}
 
     def __init__(self) -> None:
-        self.definitions: dict[tuple[str, str, str], Definition] = {}
+        self.definitions: dict[tuple[str, Kind, str], Definition] = {}
 
-    def names(self) -> Iterable[tuple[str, str, str]]:
+    def names(self) -> Iterable[tuple[str, Kind, str]]:
         return self.definitions
 
-    def find(self, package: str, kind: str, name: str) -> Definition | None:
+    def find(self, package: str, kind: Kind, name: str) -> Definition | None:
         return self.definitions.get((package, kind, name))
 
 
@@ -119,7 +129,7 @@ class Fuzzer:
         self._seeds: dict[str, list[Seed]] = {}
         for one in seeds(folder):
             self._seeds.setdefault(one.language, []).append(one)
-        self._origins = {
+        self._origins: dict[str, list[Origin]] = {
             dialect: [FolderOrigin(folder / dialect), EmbeddedOrigin(distro)]
             for dialect, distro in DISTROS.items()
         }

@@ -122,8 +122,8 @@ def faults_of(path: str, text: bytes) -> Iterator[Fault]:
                 if (found := re.search(word.encode(), between)) is None:
                     continue
                 start, end = start + found.start(), start + found.end()
-            line = text.count(b"\n", 0, start) + 1
-            yield Fault(path=path, line=line, start=start, end=end, old=old, new=new)
+            number = text.count(b"\n", 0, start) + 1
+            yield Fault(path=path, line=number, start=start, end=end, old=old, new=new)
 
 
 def _code(tree: ast.AST) -> Iterator[ast.expr | ast.stmt]:

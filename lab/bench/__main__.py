@@ -1,7 +1,7 @@
 """``python -m lab.bench``: the figures of ``docs/performance.md``, with their plots.
 
-``make -C lab bench`` runs this. ``firm-hdl bench`` is the command for chosen types. Figures of circuits
-that did not change are taken from ``build/bench``.
+``make -C lab bench`` runs this. ``firm-hdl bench`` is the command for chosen types. Figures of
+circuits that did not change are taken from ``build/bench``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""``make -C lab fuzz-hardware``: send random packets through exported circuits, and judge what comes."""
+"""``make -C lab fuzz-hardware``: random packets through exported circuits, and what comes."""
 
 from __future__ import annotations
 
