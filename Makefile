@@ -21,7 +21,7 @@ VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test pytest lint examples bench nightly thorough verify benches languages prove verify-corpus report \
+.PHONY: help demo test pytest lint examples bench nightly lowest thorough verify benches languages prove verify-corpus report \
   cover generate simulate live tools ghdl verilog oracles oracles-ros2 ros1 clean
 
 help: ## list the targets
