@@ -21,7 +21,7 @@ VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test pytest lint examples bench nightly thorough verify benches languages prove verify-corpus report \
+.PHONY: help demo test pytest lint examples bench nightly lowest thorough verify benches languages prove verify-corpus report \
   cover generate simulate live tools ghdl verilog oracles oracles-ros2 ros1 clean
 
 help: ## list the targets
@@ -73,8 +73,21 @@ bench: $(VENV)/.installed-bench ## area, clock rate and cycles of a type: make b
 
 # What takes long and rarely tells anything new. Each part runs even if one before has failed.
 nightly: ## tests in full depth, all types through TS1 to TS3 and GHDL, proofs, the designs (hours)
-	@$(MAKE) --no-print-directory --keep-going thorough verify benches languages prove examples simulate
+	@$(MAKE) --no-print-directory --keep-going lowest thorough verify benches languages prove examples simulate
 	@$(MAKE) --no-print-directory cover COVER=--check
+
+# The oldest versions of libraries that pyproject.toml allows, with today's pytest; `make test` has the
+# newest ones. Tests of tools that are no libraries are not among them.
+LOWEST := .venv-lowest
+lowest: $(VENV)/.installed-dev
+	rm -rf $(LOWEST) && $(BIN)/uv venv --quiet --python $(BIN)/python $(LOWEST)
+	$(BIN)/uv pip compile --quiet --resolution lowest-direct --only-binary :all: \
+	  --python $(LOWEST)/bin/python pyproject.toml --output-file $(LOWEST)/lowest.txt
+	$(BIN)/uv pip install --quiet --python $(LOWEST)/bin/python --requirement $(LOWEST)/lowest.txt \
+	  --editable . hatchling hypothesis pygments pytest pytest-timeout pytest-xdist
+	$(LOWEST)/bin/python -m pytest -n $(JOBS) tests/cli tests/export/test_build.py tests/frontend \
+	  tests/gateware/test_converters.py tests/jobs tests/plan tests/recordings tests/sim/test_loopback.py \
+	  tests/verify/ts3/test_acceptance.py tests/verilog/test_convert.py tests/wire
 
 thorough: $(COMPILED) tools
 	FIRM_HDL_THOROUGH=1 $(BIN)/python -m pytest --timeout 3600 -n $(JOBS) $(PYTEST_ARGS)
@@ -204,7 +217,7 @@ need = { $(2); } || { \
   fi; }
 
 clean: ## remove .venv and what tools have cached
-	rm -rf $(VENV) build dist examples/*/work ./*.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
+	rm -rf $(VENV) $(LOWEST) build dist examples/*/work ./*.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
 	find firm_hdl lab tests examples -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # A stamp is newer than pyproject.toml when what that asks for is installed.

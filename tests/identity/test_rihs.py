@@ -6,7 +6,7 @@ import json
 
 import pytest
 from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
-from rosbags.typesys.msg import TypesysError
+from rosbags.typesys import TypesysError
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DISTROS, Library

@@ -15,7 +15,7 @@ from functools import cache
 
 import pytest
 from rosbags.typesys import get_types_from_msg
-from rosbags.typesys.msg import TypesysError
+from rosbags.typesys import TypesysError
 
 from firm_hdl.errors import DefinitionError, Source
 from firm_hdl.frontend import Library
