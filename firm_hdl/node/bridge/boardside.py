@@ -58,7 +58,6 @@ class BoardSide:
         self.session: Session | None = None
         # The session before, whose counters of the board go on.
         self._before: Session | None = None
-        self._past: Counter[str] = Counter()
         self._restarts = 0
         self._retry = Retry(*RETRY_SECONDS)
         self.is_opening = self.was_tried = self.was_ready = self.has_read_last = False
@@ -83,9 +82,10 @@ class BoardSide:
 
     @property
     def on_the_way(self) -> Counter[str]:
-        """What was lost between the board and here, in all sessions."""
-        now = self.session.lost_on_the_way() if self.session else Counter()
-        return +(self._past + now + self._board.counters)
+        """What was lost between the board and here, in all sessions, and the signs of it."""
+        session = self.session or self._before
+        lost = session.lost_on_the_way() if session else Counter()
+        return +(lost + self._board.counters)
 
     def drops(self) -> list[tuple[Register, int]]:
         """Return what the node says that it dropped; see :meth:`.Session.drops`."""
@@ -128,7 +128,6 @@ class BoardSide:
         session, self.session = self.session, None
         if session is not None:
             session.end()
-            self._past += session.lost_on_the_way()
             self._restarts += session.restarts
             self._before = session
             self._drop_unconfirmed(session, "board lost" if why else "unconfirmed")
