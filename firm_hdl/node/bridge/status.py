@@ -18,6 +18,9 @@ _LOG_SECONDS = 10.0
 _WAY_LOSSES = ("lost", "held back")
 """What counts messages on the way from a board. Anything else says why some were lost."""
 
+_GRAPH_SIGNS = ("overwritten",)
+"""What readers may have got all the same."""
+
 _LINK_SIGNS = ("late", "cut", "stray", "malformed")
 """The same of a board's link, which counts the messages as lost when the next one comes."""
 
@@ -109,7 +112,7 @@ def _drops(bridge: Bridge) -> Iterator[tuple[str, int]]:
         if name in _WAY_LOSSES:
             yield f"on the way from the board: {name}", value
     for name, value in sorted(bridge.graph.counters.items()):
-        if value:
+        if value and name not in _GRAPH_SIGNS:
             yield f"in the graph: {name}", value
     for register, value in bridge.last_drops:
         if not _is_sign(register):
@@ -121,6 +124,9 @@ def _signs(bridge: Bridge) -> Iterator[tuple[str, int]]:
     for name, value in _way(bridge):
         if name not in _WAY_LOSSES:
             yield f"on the way from the board: {name}", value
+    for name in _GRAPH_SIGNS:
+        if value := bridge.graph.counters[name]:
+            yield f"in the graph: {name}", value
     for register, value in bridge.last_drops:
         if _is_sign(register):
             yield f"on the board, {register.owner} {register.part}: {register.name}", value
