@@ -73,7 +73,18 @@ class BoardSide:
     @property
     def has_room(self) -> bool:
         """Whether a message can be sent now, and is soon on its way."""
-        return self.is_ready and self._board.has_room
+        return self._is_there and self._board.has_room
+
+    @property
+    def _is_there(self) -> bool:
+        session = self.session
+        if session is None or not session.is_ready or session.may_be_new:
+            return False
+        try:
+            return not self._board.is_unreachable
+        except BoardError as error:
+            self.lose(str(error))
+            return False
 
     @property
     def restarts(self) -> int:
@@ -102,6 +113,8 @@ class BoardSide:
                     return
                 self._open()
             assert self.session is not None
+            if self._board.is_unreachable:
+                self.session.hurry(now)
             frames = self.session.due(time.monotonic(), time.time_ns())
             if frames:
                 self._board.send(frames)
@@ -156,9 +169,10 @@ class BoardSide:
 
     def send(self, topic: Topic, packet: bytes, tag: int = 0) -> str | None:
         """Send a message; return why it was dropped, or `None`; see `CAUSES`."""
-        session = self.session
-        if session is None or not session.is_ready:
+        if not self._is_there:
             return "no board"
+        session = self.session
+        assert session is not None
         if not self._board.has_room:
             return "board full"
         now = time.monotonic()

@@ -38,6 +38,9 @@ __all__ = ["ROUND_SECONDS", "Session", "SilentBoardError", "WrongBoardError"]
 REPEAT_SECONDS = 0.25
 """A request without an answer is repeated after so long."""
 
+HURRY_SECONDS = 0.05
+"""The same where the network has said that nobody gets it: messages wait for the board meanwhile."""
+
 ROUND_SECONDS = 5.0
 """All counters of a board are read in turn; a round begins so often."""
 
@@ -267,6 +270,11 @@ class Session:
         packet = asked.request.encode()
         return self.frames(NodeMessage(topic=CONTROL_TOPIC, packet=packet, tag=self._tag))
 
+    def hurry(self, now: float) -> None:
+        """Let requests be due soon, which find out whether the board is there again."""
+        self._next_sample = min(self._next_sample, now)
+        self._waits_until = min(self._waits_until, now + HURRY_SECONDS)
+
     def next_due(self) -> float:
         """Return when :meth:`due` should be called next, if nothing comes."""
         if not self.is_ready or self._todo or self._clock_request or self._is_unanswered:
@@ -290,6 +298,11 @@ class Session:
             self._next_round = now + ROUND_SECONDS
             self._todo.extend(_read(each.number) for each in self._counters)
         return (self._todo[0] if self._todo else None), False
+
+    @property
+    def may_be_new(self) -> bool:
+        """Whether a frame has said that the board has started again, which is not known yet."""
+        return self._new is not None and self._new_starts
 
     # The end.
 
