@@ -6,7 +6,7 @@ receiver puts fragments together, in any order, with bounded memory, and counts 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 from firm_hdl.node.frame import (
     FRAGMENT_UNIT,
@@ -60,9 +60,13 @@ class MessageSender:
         Most bytes of a frame, header included: 16 and a multiple of 16. `None`: no limit.
     sequence : int
         Number of the first message.
+    starts : bool
+        Whether the first message says that the sequence begins.
     """
 
-    def __init__(self, frame_bytes: int | None = None, *, sequence: int = 0) -> None:
+    def __init__(
+        self, frame_bytes: int | None = None, *, sequence: int = 0, starts: bool = True
+    ) -> None:
         if frame_bytes is not None and (
             frame_bytes <= HEADER_BYTES or (frame_bytes - HEADER_BYTES) % FRAGMENT_UNIT
         ):
@@ -71,7 +75,7 @@ class MessageSender:
                 f"{frame_bytes}"
             )
         self._room = None if frame_bytes is None else frame_bytes - HEADER_BYTES
-        self._sequence, self._starts = sequence % _SEQUENCES, True
+        self._sequence, self._starts = sequence % _SEQUENCES, starts
 
     def frames(self, message: NodeMessage) -> list[bytes]:
         """Return the frames of the next message, in order.
@@ -112,9 +116,11 @@ class FrameCounters:
     passed : int
         Messages that arrived whole.
     lost : int
-        Messages that did not, by the gaps between the numbers of those that did.
+        Messages that did not, by the gaps between the numbers of those that did. All others below
+        say why; none of them is a further loss.
     late : int
-        Messages that were dropped because a later one had passed. They also count as lost.
+        Messages that were dropped because a later one had passed, or the same one before, or
+        because their number is far from what is expected.
     cut : int
         Messages that were dropped because a fragment was missing, or their length was wrong.
     stray : int
@@ -132,6 +138,11 @@ class FrameCounters:
     stray: int = 0
     malformed: int = 0
     large: int = 0
+
+    def add(self, other: FrameCounters) -> None:
+        """Add what another receiver did."""
+        for each in fields(self):
+            setattr(self, each.name, getattr(self, each.name) + getattr(other, each.name))
 
 
 @dataclass(slots=True)
@@ -178,16 +189,29 @@ class MessageReceiver:
     max_open : int
         Most messages that are under way at once; then the oldest one is cut. A sender sends one
         after the other, so more than one only happens if the network changes the order.
+    most_late : int
+        How many numbers before the expected one are late. What is further back may be a sender that
+        has started again.
 
     Attributes
     ----------
     counters : FrameCounters
+    expected : int or None
+        Number of the next message, once one has come.
     """
 
-    def __init__(self, *, max_bytes: int = 1 << 26, max_open: int = 4) -> None:
-        self._max_bytes, self._max_open = max_bytes, max_open
+    def __init__(
+        self,
+        *,
+        max_bytes: int = 1 << 26,
+        max_open: int = 4,
+        most_late: int = LATE_MESSAGES,
+    ) -> None:
+        self._max_bytes, self._max_open, self._most_late = max_bytes, max_open, most_late
         self._open: dict[int, _Assembly] = {}
-        self._expected: int | None = None
+        self.expected: int | None = None
+        # The number that would confirm a message whose number was far from the expected one.
+        self._confirms: int | None = None
         self.counters = FrameCounters()
 
     def take(self, frame: bytes) -> NodeMessage | None:
@@ -214,13 +238,26 @@ class MessageReceiver:
             self._cut(header.sequence)
             return None
         del self._open[header.sequence]
-        self._pass(assembly.header)
+        if not self._passes(assembly.header):
+            self.counters.late += 1
+            return None
         return NodeMessage(topic=header.topic, packet=assembly.packet(), tag=header.tag)
 
+    def go_back(self, sequence: int) -> None:
+        """Expect a number again, as one of those that have passed since was damaged."""
+        assert self.expected is not None
+        self.counters.lost += distance(sequence, self.expected)
+        self.expected = sequence
+
+    def _ahead(self, header: Header) -> int:
+        """Return how many messages are missing before one; negative if it is late."""
+        if self.expected is None or header.start:
+            return 0
+        return distance(header.sequence, self.expected)
+
     def _is_late(self, header: Header) -> bool:
-        if self._expected is None or header.start:
-            return False
-        return -LATE_MESSAGES <= distance(header.sequence, self._expected) < 0
+        is_behind = -self._most_late <= self._ahead(header) < 0
+        return is_behind and header.sequence != self._confirms
 
     def _assembly(self, header: Header) -> _Assembly:
         """Return the message of a frame; begin it if need be, and cut the oldest if too many."""
@@ -234,12 +271,20 @@ class MessageReceiver:
         del self._open[sequence]
         self.counters.cut += 1
 
-    def _pass(self, header: Header) -> None:
-        """Count a message that is whole, and those before it that are not."""
-        gap = 0 if self._expected is None else distance(header.sequence, self._expected)
-        if gap > 0 and not header.start:
-            self.counters.lost += gap
-        self._expected = (header.sequence + 1) % _SEQUENCES
+    def _passes(self, header: Header) -> bool:
+        """Count a message that is whole, and those before it that are not, if it is believed.
+
+        A number that is far from the expected one may be damaged; the next message shows it, as in
+        RFC 3550, A.1.
+        """
+        ahead, following = self._ahead(header), (header.sequence + 1) % _SEQUENCES
+        if not 0 <= ahead <= LATE_MESSAGES and header.sequence != self._confirms:
+            self._confirms = following
+            return False
+        # Behind is a new sequence. Of that, only the message that was not believed is missing.
+        self.counters.lost += ahead if ahead >= 0 else 1
         self.counters.passed += 1
+        self.expected, self._confirms = following, None
         for sequence in [s for s, each in self._open.items() if self._is_late(each.header)]:
             self._cut(sequence)
+        return True

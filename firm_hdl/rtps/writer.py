@@ -34,7 +34,7 @@ an Ethernet frame holds. So IP does not cut it, and boards without IP fragments 
 
 # Seconds between heartbeats while a reader has not acknowledged all: at first, and at most.
 _HEARTBEAT, _MAX_HEARTBEAT = 0.05, 1.0
-# Seconds between those that ask for an acknowledgement while half of a KEEP_ALL history is in use.
+# Seconds between those that ask for an acknowledgement while half of the history is in use.
 _HEARTBEAT_WHEN_FULL = 0.002
 # Heartbeats to a reader that never answered.
 _MOST_UNANSWERED = 12
@@ -445,7 +445,7 @@ class Writer:
         if not proxy.reliable:
             return ()
         large = len(change.data.payload or b"") > self._fragment_bytes
-        full = not self.qos.depth and 2 * len(self._changes) >= self.qos.max_samples
+        full = 2 * len(self._changes) >= (self.qos.depth or self.qos.max_samples)
         period = _HEARTBEAT_WHEN_FULL if full else _HEARTBEAT
         final = now - proxy.asked_at < period and not large
         if not final:

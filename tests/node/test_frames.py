@@ -166,26 +166,41 @@ def test_a_sender_that_starts_again_is_heard_at_once():
 
 
 @pytest.mark.parametrize(
-    ("expected", "begins", "lost"),
-    [(6, 9, 3), (6, 0x8005, 0x7FFF), (6, 0x8006, 0), (65534, 2, 4), (6, 6, 0), (None, 9, 0)],
+    ("expected", "comes", "passed", "lost"),
+    [
+        (6, 9, 2, 3),
+        (6, 6, 2, 0),
+        (65534, 2, 2, 4),
+        (None, 9, 2, 0),
+        (6, 70, 2, 64),
+        # Further ahead, the next number has to follow.
+        (6, 71, 1, 66),
+        (6, 0x8004, 1, 0x7FFF),
+        # Behind is a sender that has started again, of which the first one here is missing.
+        (6, 0x8006, 1, 1),
+        (100, 35, 1, 1),
+    ],
 )
-def test_what_is_lost_before_a_message_unless_its_sender_begins(expected, begins, lost):
+def test_what_is_lost_before_a_message_unless_its_sender_begins(expected, comes, passed, lost):
     """The numbers are expected and found; as many as 32,767 may be missing."""
-    before = b"" if expected is None else frame_of(expected - 1)
-    for start, count in ((False, lost), (True, 0)):
-        out, counters = received([*([before] if before else []), frame_of(begins, start=start)])
-        assert len(out) == counters.passed == 1 + bool(before)
-        assert (counters.lost, counters.late) == (count, 0), start
+    before = [] if expected is None else [frame_of(expected - 1)]
+    both = [frame_of(comes), frame_of(comes + 1)]
+    out, counters = received([*before, *both])
+    assert len(out) == counters.passed == len(before) + passed
+    assert (counters.lost, counters.late) == (lost, 2 - passed)
+    out, counters = received([*before, frame_of(comes, start=True), both[1]])
+    assert len(out) == len(before) + 2
+    assert (counters.lost, counters.late) == (0, 0)
 
 
-def test_one_that_starts_far_back_is_heard_without_its_first_message():
-    old = frames_of([NodeMessage(topic=1, packet=b"a")] * 3, sequence=5000)
-    new = frames_of([NodeMessage(topic=1, packet=b"b")] * 3, sequence=100)[1:]
-    out, counters = received(frame for each in (*old, *new) for frame in each)
-    assert len(out) == 5 and counters.late == 0
-    # A number just before the expected one is late.
-    late = frames_of([NodeMessage(topic=1, packet=b"b")] * 2, sequence=4990)[1:]
-    assert received(frame for each in (*old, *late) for frame in each)[1].late == 1
+def test_a_number_that_is_damaged_adds_no_more_than_what_is_lost():
+    """Each tenth message has any number; all others come, and what is not passed on is lost."""
+    for seed in range(20):
+        rng = random.Random(seed)
+        numbers = [n if n % 10 or not n else rng.randrange(1 << 16) for n in range(3000)]
+        out, counters = received(frame_of(number) for number in [*numbers, *range(3000, 3100)])
+        assert counters.lost == 3100 - len(out), seed
+        assert counters.lost < 500
 
 
 def test_a_message_beyond_the_limit_is_counted():
@@ -201,15 +216,15 @@ def test_a_message_as_large_as_the_limit_passes():
 
 
 @pytest.mark.parametrize(
-    ("back", "passes"), [(1, False), (63, False), (64, False), (65, True), (1000, True)]
+    ("back", "passes"), [(2, False), (63, False), (64, False), (65, True), (1000, True)]
 )
 def test_as_many_as_64_numbers_back_are_late(back, passes):
     """A sender whose number is further back has started again, and its first message was lost."""
     old = frames_of([NodeMessage(topic=1, packet=b"a")], sequence=30)[0]
-    new = frames_of([NodeMessage(topic=1, packet=b"b")] * 2, sequence=31 - back - 1)[1]
-    out, counters = received([*old, *new])
+    new = frames_of([NodeMessage(topic=1, packet=b"b")] * 3, sequence=31 - back - 1)[1:]
+    out, counters = received(frame for each in (old, *new) for frame in each)
     assert [each.packet for each in out] == [b"a", b"b"][: 1 + passes]
-    assert counters.late == (not passes)
+    assert counters.late == 2 - passes
 
 
 def test_the_oldest_message_is_cut_if_too_many_are_under_way():

@@ -63,6 +63,11 @@ class Board(ABC):
         return False
 
     @property
+    def is_unreachable(self) -> bool:
+        """Whether the network has said so since the last frame came; requests may still go."""
+        return False
+
+    @property
     def has_room(self) -> bool:
         """Whether a message that is sent now is soon on its way.
 

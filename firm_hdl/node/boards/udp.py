@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import os
 import socket
 from collections.abc import Sequence
 from typing import Any
@@ -38,6 +39,7 @@ class UdpBoard(Board):
         super().__init__(name, frame_bytes)
         self._address = (host, port)
         self._socket: socket.socket | None = None
+        self._is_unreachable = False
 
     def open(self) -> None:
         self.close()
@@ -57,7 +59,15 @@ class UdpBoard(Board):
             if found is not None:
                 found.close()
             raise BoardError(f"cannot reach {self.name}: {error.strerror or error}") from None
-        self._socket = found
+        self._socket, self._is_unreachable = found, False
+
+    @property
+    def is_unreachable(self) -> bool:
+        # What the network said of the datagrams before would be said of the next one.
+        error = self._opened().getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
+        if error:
+            self._judge(OSError(error, os.strerror(error)))
+        return self._is_unreachable
 
     def fileno(self) -> int:
         return self._opened().fileno()
@@ -67,6 +77,11 @@ class UdpBoard(Board):
         for frame in frames:
             try:
                 own.send(frame)
+            except ConnectionRefusedError as error:
+                # This is said of a datagram before, and the frame was not sent.
+                self._judge(error)
+                with contextlib.suppress(OSError):
+                    own.send(frame)
             except BlockingIOError:
                 return False
             except OSError as error:
@@ -79,6 +94,7 @@ class UdpBoard(Board):
         for _ in range(_MOST_AT_ONCE):
             try:
                 frames.append(own.recv(_MOST_DATAGRAM))
+                self._is_unreachable = False
             except BlockingIOError:
                 break
             except OSError as error:
@@ -95,6 +111,7 @@ class UdpBoard(Board):
         if error.errno not in _PASSING:
             raise BoardError(f"{self.name}: {error.strerror or error}") from None
         self.counters["unreachable"] += 1
+        self._is_unreachable = True
 
     def _opened(self) -> socket.socket:
         if self._socket is None:

@@ -58,7 +58,6 @@ class BoardSide:
         self.session: Session | None = None
         # The session before, whose counters of the board go on.
         self._before: Session | None = None
-        self._past: Counter[str] = Counter()
         self._restarts = 0
         self._retry = Retry(*RETRY_SECONDS)
         self.is_opening = self.was_tried = self.was_ready = self.has_read_last = False
@@ -74,7 +73,18 @@ class BoardSide:
     @property
     def has_room(self) -> bool:
         """Whether a message can be sent now, and is soon on its way."""
-        return self.is_ready and self._board.has_room
+        return self._is_there and self._board.has_room
+
+    @property
+    def _is_there(self) -> bool:
+        session = self.session
+        if session is None or not session.is_ready or session.may_be_new:
+            return False
+        try:
+            return not self._board.is_unreachable
+        except BoardError as error:
+            self.lose(str(error))
+            return False
 
     @property
     def restarts(self) -> int:
@@ -83,9 +93,10 @@ class BoardSide:
 
     @property
     def on_the_way(self) -> Counter[str]:
-        """What was lost between the board and here, in all sessions."""
-        now = self.session.lost_on_the_way() if self.session else Counter()
-        return +(self._past + now + self._board.counters)
+        """What was lost between the board and here, in all sessions, and the signs of it."""
+        session = self.session or self._before
+        lost = session.lost_on_the_way() if session else Counter()
+        return +(lost + self._board.counters)
 
     def drops(self) -> list[tuple[Register, int]]:
         """Return what the node says that it dropped; see :meth:`.Session.drops`."""
@@ -102,6 +113,8 @@ class BoardSide:
                     return
                 self._open()
             assert self.session is not None
+            if self._board.is_unreachable:
+                self.session.hurry(now)
             frames = self.session.due(time.monotonic(), time.time_ns())
             if frames:
                 self._board.send(frames)
@@ -128,7 +141,6 @@ class BoardSide:
         session, self.session = self.session, None
         if session is not None:
             session.end()
-            self._past += session.lost_on_the_way()
             self._restarts += session.restarts
             self._before = session
             self._drop_unconfirmed(session, "board lost" if why else "unconfirmed")
@@ -157,9 +169,10 @@ class BoardSide:
 
     def send(self, topic: Topic, packet: bytes, tag: int = 0) -> str | None:
         """Send a message; return why it was dropped, or `None`; see `CAUSES`."""
-        session = self.session
-        if session is None or not session.is_ready:
+        if not self._is_there:
             return "no board"
+        session = self.session
+        assert session is not None
         if not self._board.has_room:
             return "board full"
         now = time.monotonic()

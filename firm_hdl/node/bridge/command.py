@@ -58,6 +58,7 @@ def run_bridge(
         If board or graph cannot be used, if the board has another description, or if it has not
         answered in `seconds`.
     """
+    joined = graph_of(graph, description, domain=domain, interface=interface)
     status = Status(sys.stderr, quiet=quiet)
     simulation: dict[str, Any] = {"engine": engine}
     if board == "sim":
@@ -66,7 +67,7 @@ def run_bridge(
     bridge = Bridge(
         description,
         board_of(board, description, **simulation),
-        graph_of(graph, description, domain=domain, interface=interface),
+        joined,
         report=status.report,
     )
     with _signals(bridge):

@@ -4,13 +4,19 @@ A session begins when a way to a board is open. First, the board has to answer w
 of the description; no message passes before. Then the clock of the node is kept in step, and its
 counters are read. One request of control is under way at any time; its answer also shows that the
 board is there.
+
+The numbers of messages show what is lost, and their flag or a clock that was reset that a board has
+started again. A network that repeats or delays a frame shows the same, so such a sign is only a
+reason to ask: the answer to a later request decides. In the same sequence, an answer has a number
+after those that had come before its request was sent.
 """
 
 from __future__ import annotations
 
 import random
 from collections import Counter, deque
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
 
 from firm_hdl.node.bridge.unconfirmed import PASS_SECONDS, Unconfirmed
 from firm_hdl.node.control import (
@@ -23,14 +29,17 @@ from firm_hdl.node.control import (
     registers,
 )
 from firm_hdl.node.description import CONTROL_TOPIC, Description
-from firm_hdl.node.frame import FLAG_START, HEADER_BYTES
-from firm_hdl.node.messages import MessageReceiver, MessageSender, NodeMessage
+from firm_hdl.node.frame import HEADER_BYTES, LATE_MESSAGES, FrameError, Header, decode_header
+from firm_hdl.node.messages import MessageReceiver, MessageSender, NodeMessage, distance
 from firm_hdl.node.timekeeping import ClockKeeper
 
 __all__ = ["ROUND_SECONDS", "Session", "SilentBoardError", "WrongBoardError"]
 
 REPEAT_SECONDS = 0.25
 """A request without an answer is repeated after so long."""
+
+HURRY_SECONDS = 0.05
+"""The same where the network has said that nobody gets it: messages wait for the board meanwhile."""
 
 ROUND_SECONDS = 5.0
 """All counters of a board are read in turn; a round begins so often."""
@@ -41,6 +50,14 @@ _MOST_ASKED = 64
 _LATENCIES = 64
 _RESET_SECONDS = 10**8
 """A node whose time is before that of 1973 has started again since its time was set."""
+
+_SETTLED = 0x8100
+"""The number of the first message that does not say that a sequence begins; those that do have 0.
+If one of these comes again later, the others seem to be behind, so that the board counts no gap. It
+believes such a number when the next one follows, so two requests are sent."""
+
+_MOST_BEHIND = (1 << 15) - 1
+"""A sequence never goes back; see :meth:`Session._judge`."""
 
 _NO_LOSSES = ("passed", "bytes_low", "bytes_high", "control", "control_full", "unsent")
 """Counters that do not count losses: a request of control without room was repeated, and before a
@@ -57,12 +74,59 @@ class SilentBoardError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _Asked:
-    """A request that is under way, and when it was sent: on the host's clock, and in its time."""
+    """A request that was sent, and when: on the host's clock, and in its time."""
 
     request: ControlRequest
     at: float
     wall_ns: int
     is_sample: bool
+    # How many requests were sent up to this one, and which message of the board came next.
+    number: int
+    expected: int | None
+
+
+@dataclass(slots=True)
+class _Control:
+    """How many requests and answers were lost, which are no losses of messages: they are repeated.
+
+    The board counts the requests that it takes, so those that were lost on the way to it differ
+    from those whose answer was lost. Of a board that does not count them, nothing is known.
+
+    Attributes
+    ----------
+    asked, answered : int
+        Requests that were sent, and answers that came.
+    lost_there, lost_back : int
+        What was lost on the way to the board, and back.
+    """
+
+    asked: int = 0
+    answered: int = 0
+    lost_there: int = 0
+    lost_back: int = 0
+    # By how much the numbers differ when nothing is lost.
+    _taken: int = 0
+    _there: int = 0
+    _back: int | None = None
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the board was asked for the requests that it has taken since it started."""
+        return self._back is not None
+
+    def begin(self, asked: int, taken: int, lost: int) -> None:
+        """Begin with a request of this number, as of which the board has taken and lost so many."""
+        self.lost_there += lost
+        self._taken, self._there = taken, asked - taken - self.lost_there
+        if self._back is None:
+            self._back = taken - self.answered
+
+    def note(self, asked: int, taken: int) -> None:
+        """Note how many requests the board has taken, up to one with its number."""
+        assert self._back is not None
+        if taken > self._taken:
+            self.lost_there = max(0, asked - taken - self._there)
+            self.lost_back = max(0, taken - self.answered - self._back)
 
 
 class Session:
@@ -80,8 +144,8 @@ class Session:
     silent_seconds : float
         A board from which nothing whole came for so long is gone.
     before : Session or None
-        The last session with the same board. Its counters go on, or are kept if the board has
-        started again since.
+        The last session with the same board. Its counters and the sequence of messages go on, or
+        are kept and begin anew if the board has started again since.
 
     Attributes
     ----------
@@ -110,16 +174,34 @@ class Session:
         self._description, self._frame_bytes = description, frame_bytes
         self._sample_seconds, self._silent_seconds = sample_seconds, silent_seconds
         self._counters = [each for each in registers(description) if each.part != "identity"]
+        number = {(each.part, each.name): each.number for each in self._counters}
+        self._lost_register, self._requests_register = (
+            number["link", "lost"],
+            number["node", "control"],
+        )
         self._keeper = ClockKeeper(nominal_rate(description.clock_hz))
         self._sender = MessageSender(frame_bytes)
-        self._receiver = MessageReceiver()
+        self._receiver: MessageReceiver = (
+            before._receiver if before else MessageReceiver(most_late=_MOST_BEHIND)
+        )
+        # Since a sign that the board has started again: when it came, and the messages since then.
+        self._suspected = 0.0
+        self._new: MessageReceiver | None = None
+        self._new_messages: list[NodeMessage] = []
+        self._new_starts = False
+        self._control: _Control = before._control if before else _Control()
+        # Answers that were lost before the board started again.
+        self._past_back: int = before._past_back if before else 0
+        # What was lost counts from when the board is known.
+        self._lost_before = self._receiver.counters.lost
+        self._lost_asked = self._settled_at = self._asks_from = 0
         self._tag = random.getrandbits(32)
         self._asked: dict[int, _Asked] = {}
         self._held: deque[NodeMessage] = deque()
         self._latencies: deque[float] = deque(maxlen=_LATENCIES)
         self._heard = self._waits_until = now
         self._is_set: bool = before is not None and before._is_set
-        self._is_unanswered = self._is_finishing = False
+        self._is_unanswered = self._is_finishing = self._is_settled = False
         # Until when the last messages may still be in the node.
         self._passes_until = now
         self._late = 0
@@ -133,7 +215,8 @@ class Session:
         self._past: Counter[int] = Counter(before._past) if before else Counter()
         self.unconfirmed = Unconfirmed()
         self.is_ready = False
-        self.restarts = self.held_back = 0
+        self.restarts = 0
+        self.held_back: int = before.held_back if before else 0
 
     # To the board.
 
@@ -164,15 +247,33 @@ class Session:
             return []
         self._waits_until = now + REPEAT_SECONDS
         self._is_unanswered = True
-        if not self.is_ready:
+        asked = _Asked(request, now, wall_ns, is_sample, 0, self._receiver.expected)
+        if self.is_ready:
+            return self._ask(asked)
+        if request.argument != self._requests_register:
             # The first message says that a sequence begins. It may have been lost.
-            self._sender = MessageSender(self._frame_bytes)
+            self._sender, self._is_settled = MessageSender(self._frame_bytes), False
+            return self._ask(asked)
+        if not self._is_settled:
+            self._is_settled = True
+            self._sender = MessageSender(self._frame_bytes, sequence=_SETTLED, starts=False)
+            self._settled_at = self._control.asked + 1
+        return self._ask(asked) + self._ask(asked)
+
+    def _ask(self, asked: _Asked) -> list[bytes]:
+        """Return the frames of a request, and keep it in mind."""
         self._tag = (self._tag + 1) & 0xFFFF_FFFF
-        self._asked[self._tag] = _Asked(request, now, wall_ns, is_sample)
+        self._control.asked += 1
+        self._asked[self._tag] = replace(asked, number=self._control.asked)
         while len(self._asked) > _MOST_ASKED:
             del self._asked[next(iter(self._asked))]
-        message = NodeMessage(topic=CONTROL_TOPIC, packet=request.encode(), tag=self._tag)
-        return self._sender.frames(message)
+        packet = asked.request.encode()
+        return self.frames(NodeMessage(topic=CONTROL_TOPIC, packet=packet, tag=self._tag))
+
+    def hurry(self, now: float) -> None:
+        """Let requests be due soon, which find out whether the board is there again."""
+        self._next_sample = min(self._next_sample, now)
+        self._waits_until = min(self._waits_until, now + HURRY_SECONDS)
 
     def next_due(self) -> float:
         """Return when :meth:`due` should be called next, if nothing comes."""
@@ -183,7 +284,8 @@ class Session:
     def _next(self, now: float) -> tuple[ControlRequest | None, bool]:
         """Return the next request, and whether its answer compares the clocks."""
         if not self.is_ready:
-            return _read(2 if 1 in self._identity else 1), False
+            unknown = {1, 2} - self._identity.keys()
+            return _read(min(unknown, default=self._requests_register)), False
         if self._is_finishing:
             return (self._todo[0] if self._todo else None), False
         if self._clock_request is not None:
@@ -197,6 +299,11 @@ class Session:
             self._todo.extend(_read(each.number) for each in self._counters)
         return (self._todo[0] if self._todo else None), False
 
+    @property
+    def may_be_new(self) -> bool:
+        """Whether a frame has said that the board has started again, which is not known yet."""
+        return self._new is not None and self._new_starts
+
     # The end.
 
     def finish(self, now: float) -> None:
@@ -207,10 +314,19 @@ class Session:
         """
         self._is_finishing = True
         # An answer to a request of before shows nothing of the last messages.
-        self._asked.clear()
+        self._asks_from = self._control.asked
         self._todo = deque([_read(0)])
-        self._todo.extend(_read(each.number) for each in self._counters if _is_loss(each))
+        self._todo.extend(
+            _read(each.number)
+            for each in self._counters
+            if _is_loss(each) and each.number != self._lost_register
+        )
+        self._read_lost()
         self._waits_until = now
+
+    def _read_lost(self) -> None:
+        """Read what the link has lost, and then which part of this were requests."""
+        self._todo.extend(map(_read, (self._lost_register, self._requests_register)))
 
     @property
     def is_finished(self) -> bool:
@@ -232,56 +348,109 @@ class Session:
         WrongBoardError
             If the board has another description.
         """
-        starts = len(frame) >= HEADER_BYTES and bool(frame[1] & FLAG_START)
         message = self._receive(frame, now)
         if message is None:
             return []
         self._heard = now
         self._is_unanswered = False
-        if starts:
-            self._begin_again(now)
         if message.topic != CONTROL_TOPIC:
             if self.is_ready:
                 return [message]
-            self._held.append(message)
-            if len(self._held) > _MOST_HELD:
-                self._held.popleft()
-                self.held_back += 1
+            self._hold(message)
             return []
+        self._control.answered += 1
+        # The board has taken a request that came twice.
+        self._control.asked += message.tag not in self._asked
         self._answer(message, now, wall_ns)
         if not self.is_ready or not self._held:
             return []
         found, self._held = list(self._held), deque()
         return found
 
+    def _hold(self, message: NodeMessage) -> None:
+        self._held.append(message)
+        if len(self._held) > _MOST_HELD:
+            self._held.popleft()
+            self.held_back += 1
+
     def _receive(self, frame: bytes, now: float) -> NodeMessage | None:
-        """Put messages together. Several late ones in a row are those of a new sequence."""
-        counters = self._receiver.counters
-        late = counters.late
-        message = self._receiver.take(frame)
+        """Put messages together; those of a sequence that may be new wait until this is known."""
+        try:
+            header = decode_header(frame)
+        except FrameError:
+            return self._receiver.take(frame)
+        if header.topic == CONTROL_TOPIC and header.tag in self._asked:
+            self._judge(self._asked[header.tag], header, frame[HEADER_BYTES:], now)
+        starts = header.start and self._receiver.expected is not None
+        if starts:
+            self._suspect(now)
+            self._new_starts = True
+        late = self._receiver.counters.late
+        message = None if starts else self._receiver.take(frame)
+        self._late += self._receiver.counters.late - late
         if message is not None:
             self._late = 0
-        self._late += counters.late - late
-        if self._late >= _MOST_LATE:
-            # The message that said so was lost.
-            self._late = 0
-            self._receiver = MessageReceiver()
-            self._receiver.counters = counters
-            self._begin_again(now)
+        elif self._late >= _MOST_LATE:
+            # The message that says so may have been lost.
+            self._suspect(now)
+        if self._new is not None:
+            new = self._new.take(frame)
+            if new is not None and message is None and len(self._new_messages) < _MOST_HELD:
+                self._new_messages.append(new)
         return message
+
+    def _suspect(self, now: float) -> None:
+        """Ask the board whether it has started again."""
+        if self._new is None:
+            self._new, self._new_starts = MessageReceiver(most_late=_MOST_BEHIND), False
+            self._suspected = self._waits_until = self._next_sample = now
+
+    def _judge(self, asked: _Asked, header: Header, packet: bytes, now: float) -> None:
+        """Find out by an answer whether the board has started again.
+
+        One answer alone may be damaged, or has come before the sign that asks.
+        """
+        ahead = 0 if asked.expected is None else distance(header.sequence, asked.expected)
+        was_reset = False
+        with suppress(ValueError):
+            seconds = ControlResponse.decode(packet).seconds
+            was_reset = self._is_set and seconds < _RESET_SECONDS
+        if self._new is None or asked.at < self._suspected:
+            if ahead < 0 or was_reset:
+                self._suspect(now)
+            return
+        new, self._new, self._late = self._new, None, 0
+        messages, self._new_messages = self._new_messages, []
+        if not (was_reset or self._new_starts or ahead < -LATE_MESSAGES):
+            if ahead < 0:
+                self._receiver.go_back(header.sequence)
+            return
+        if ahead >= 0 and not was_reset:
+            return
+        new.counters.add(self._receiver.counters)
+        self._receiver = new
+        self._begin_again(now)
+        for message in messages:
+            if message.topic != CONTROL_TOPIC:
+                self._hold(message)
 
     def _begin_again(self, now: float) -> None:
         """The board has started again, perhaps with another design."""
         self._identity.clear()
+        self._late = 0
         # Also of the board that a session before has left.
         self._past.update(self.values)
+        self._past[self._lost_register] -= self._control.lost_there
+        self._past_back += self._control.lost_back
+        self._control, self._lost_before = _Control(), self._receiver.counters.lost
+        self._asks_from = 0
         self.values.clear()
-        self._is_set = False
+        self._is_set = self._is_settled = False
+        self._asked.clear()
         if not self.is_ready:
             return
         self.restarts += 1
         self.is_ready = False
-        self._asked.clear()
         self._todo.clear()
         self._clock_request = None
         self._waits_until = now
@@ -293,27 +462,30 @@ class Session:
 
     def _answer(self, message: NodeMessage, now: float, wall_ns: int) -> None:
         asked = self._asked.pop(message.tag, None)
+        if asked is None or self._new is not None or asked.number <= self._asks_from:
+            return
         try:
             response = ControlResponse.decode(message.packet)
         except ValueError:
             return
-        if asked is None or response.operation != asked.request.operation:
+        if response.operation != asked.request.operation:
             return
         self._waits_until = max(now, self._passes_until)
         self._latencies.append(now - asked.at)
-        if self._is_set and response.seconds < _RESET_SECONDS:
-            # Its first message, which says so, did not come, or came to a session before.
-            self._begin_again(now)
-            return
         self.unconfirmed.answered(asked.at, now)
+        if asked.request == _read(self._lost_register):
+            self._lost_asked = asked.number
         if self._todo and asked.request == self._todo[0]:
             self._todo.popleft()
             if asked.request.argument == 0:
                 # The first request of `finish`: a round reads counters alone.
                 self._waits_until = self._passes_until = now + PASS_SECONDS
         self._is_set |= asked.request.operation == Operation.SET_TIME
-        if response.result == Result.OK and asked.request.operation == Operation.READ:
-            self._keep(asked.request.argument, response.value)
+        if asked.request.operation == Operation.READ:
+            if response.result == Result.OK:
+                self._keep(asked.request.argument, response.value)
+            if asked.request.argument == self._requests_register:
+                self._note_requests(asked, response.value)
         if asked.is_sample:
             more = self._keeper.sample(asked.wall_ns, response, wall_ns)
             if more is not None:
@@ -324,7 +496,7 @@ class Session:
             self.values[number] = value
             return
         self._identity[number] = value
-        if self._identity.keys() < {1, 2}:
+        if not self._identity.keys() >= {1, 2}:
             return
         found = self._identity[1] | self._identity[2] << 32
         if found != self._description.fingerprint:
@@ -333,7 +505,19 @@ class Session:
                 f"the board's fingerprint is {found:016x}, and that of the description is "
                 f"{self._description.fingerprint:016x}: one of them is older"
             )
-        self.is_ready = True
+
+    def _note_requests(self, asked: _Asked, taken: int) -> None:
+        """Take how many requests the board has taken; the first time, the board is known."""
+        if not self.is_ready:
+            if not self._control.is_known:
+                self._receiver.counters.lost = self._lost_before
+            # Unless the board has believed the first one at once, it has counted it as lost.
+            self._control.begin(asked.number, taken, int(asked.number > self._settled_at))
+            self.is_ready = True
+        self._control.note(asked.number, taken)
+        if self._is_finishing and not self._todo and asked.number != self._lost_asked + 1:
+            # Requests were lost between the two.
+            self._read_lost()
 
     # For people.
 
@@ -351,22 +535,22 @@ class Session:
 
     def lost_on_the_way(self) -> Counter[str]:
         """Return what was lost between the board and here, by cause."""
-        counters = self._receiver.counters
-        names = ("lost", "cut", "stray", "malformed", "large")
-        found = Counter({name: getattr(counters, name) for name in names})
-        found["held back"] = self.held_back
-        return found
+        counters = asdict(self._receiver.counters)
+        del counters["passed"]
+        lost = max(0, counters["lost"] - self._past_back - self._control.lost_back)
+        return Counter(counters | {"lost": lost, "held back": self.held_back})
 
     def drops(self) -> list[tuple[Register, int]]:
         """Return the losses in the node that are not 0, as they were read last.
 
         Those that a board had counted before it started again are added.
         """
+        found = self._past + Counter(self.values)
+        found[self._lost_register] -= self._control.lost_there
         return [
-            (each, value)
+            (each, found[each.number])
             for each in self._counters
-            if _is_loss(each)
-            and (value := self._past[each.number] + self.values.get(each.number, 0))
+            if _is_loss(each) and found[each.number] > 0
         ]
 
 

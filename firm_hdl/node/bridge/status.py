@@ -8,11 +8,21 @@ from typing import TextIO
 
 from firm_hdl.node.bridge.bridge import Bridge
 from firm_hdl.node.bridge.counters import summary_lines
+from firm_hdl.node.control import Register
 
 __all__ = ["Status", "account", "status_line"]
 
 _LOG_SECONDS = 10.0
 """How often the line is printed where it cannot be replaced."""
+
+_WAY_LOSSES = ("lost", "held back")
+"""What counts messages on the way from a board. Anything else says why some were lost."""
+
+_GRAPH_SIGNS = ("overwritten",)
+"""What readers may have got all the same."""
+
+_LINK_SIGNS = ("late", "cut", "stray", "malformed")
+"""The same of a board's link, which counts the messages as lost when the next one comes."""
 
 
 class Status:
@@ -86,6 +96,8 @@ def account(bridge: Bridge) -> Iterator[str]:
     yield from summary_lines(bridge.description, bridge.counters)
     for name, value in _drops(bridge):
         yield f"dropped: {value} {name}"
+    for name, value in _signs(bridge):
+        yield f"seen: {value} {name}"
     if not bridge.was_ready:
         yield "the board has never answered"
     elif bridge.restarts:
@@ -96,10 +108,33 @@ def account(bridge: Bridge) -> Iterator[str]:
 
 def _drops(bridge: Bridge) -> Iterator[tuple[str, int]]:
     """Yield the losses that the bridge did not cause, with where they happened."""
-    for name, value in sorted(bridge.on_the_way.items()):
-        yield f"on the way from the board: {name}", value
+    for name, value in _way(bridge):
+        if name in _WAY_LOSSES:
+            yield f"on the way from the board: {name}", value
     for name, value in sorted(bridge.graph.counters.items()):
-        if value:
+        if value and name not in _GRAPH_SIGNS:
             yield f"in the graph: {name}", value
     for register, value in bridge.last_drops:
-        yield f"on the board, {register.owner} {register.part}: {register.name}", value
+        if not _is_sign(register):
+            yield f"on the board, {register.owner} {register.part}: {register.name}", value
+
+
+def _signs(bridge: Bridge) -> Iterator[tuple[str, int]]:
+    """Yield why messages were lost on the way, which are counted as lost, and what came again."""
+    for name, value in _way(bridge):
+        if name not in _WAY_LOSSES:
+            yield f"on the way from the board: {name}", value
+    for name in _GRAPH_SIGNS:
+        if value := bridge.graph.counters[name]:
+            yield f"in the graph: {name}", value
+    for register, value in bridge.last_drops:
+        if _is_sign(register):
+            yield f"on the board, {register.owner} {register.part}: {register.name}", value
+
+
+def _way(bridge: Bridge) -> list[tuple[str, int]]:
+    return sorted(bridge.on_the_way.items())
+
+
+def _is_sign(register: Register) -> bool:
+    return register.part == "link" and register.name in _LINK_SIGNS

@@ -48,7 +48,8 @@ def graph_of(
     Raises
     ------
     UserError
-        If the messages of the description are not those of the graph, or rospy is missing.
+        If the messages of the description are not those of the graph, the domain is none, or rospy
+        is missing.
     """
     wire = description.wire
     if name is None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable
@@ -9,9 +11,13 @@ from concurrent.futures import Future, InvalidStateError
 from contextlib import suppress
 from typing import TypeAlias
 
+from firm_hdl.errors import UserError
 from firm_hdl.node.description import Topic
 
-__all__ = ["FutureGraph", "Graph", "GraphError", "OnMessage"]
+__all__ = ["FutureGraph", "Graph", "GraphError", "OnMessage", "domain_of"]
+
+MAX_DOMAIN = 232
+"""The ports of a higher one would be above 65,535 (DDSI-RTPS, 9.6.1.1)."""
 
 OnMessage: TypeAlias = Callable[[Topic, bytes, object], None]
 """Takes a message of a subscription, or a request of a service: topic, packet and, of a request,
@@ -20,6 +26,21 @@ its caller, which :meth:`Graph.respond` gets back. Called in any thread; it does
 
 class GraphError(Exception):
     """A graph cannot be joined, or is gone; the text says why. Joining it again may help."""
+
+
+def domain_of(domain: int | None) -> int:
+    """Return a domain of ROS 2; `None` is the environment's ``ROS_DOMAIN_ID``, or 0.
+
+    Raises
+    ------
+    UserError
+        If it is no number from 0 to 232.
+    """
+    name = "the domain" if domain is not None else "ROS_DOMAIN_ID"
+    text = os.environ.get("ROS_DOMAIN_ID") or "0" if domain is None else str(domain)
+    if not re.fullmatch("[0-9]{1,9}", text) or int(text) > MAX_DOMAIN:
+        raise UserError(f"{name} is '{text}', and should be a number from 0 to {MAX_DOMAIN}")
+    return int(text)
 
 
 class Graph(ABC):

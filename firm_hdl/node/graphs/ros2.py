@@ -7,14 +7,20 @@ rclpy has no raw services; there, requests are serialized again, and responses a
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 from importlib import import_module
 from typing import Any
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.description import Description, Qos, Topic
-from firm_hdl.node.graphs.graph import Graph, GraphError, OnMessage
+from firm_hdl.node.graphs.graph import Graph, GraphError, OnMessage, domain_of
 
 __all__ = ["RclpyGraph", "has_rclpy"]
+
+_QUEUED = 4096
+"""How many messages for the board may wait for the thread of rclpy. The depth of a topic is that of
+its publisher; here, it would lose what comes faster than Python takes it. The bridge has a queue of
+its own behind, whose losses it counts."""
 
 
 def has_rclpy() -> bool:
@@ -36,11 +42,17 @@ class RclpyGraph(Graph):
     ----------
     description : Description
     domain : int or None
+        As of :func:`.domain_of`.
+
+    Raises
+    ------
+    UserError
+        If the domain is none.
     """
 
     def __init__(self, description: Description, *, domain: int | None = None) -> None:
         super().__init__("rclpy")
-        self._description, self._domain = description, domain
+        self._description, self._domain = description, domain_of(domain)
         self._context: Any = None
         self._node: Any = None
         self._executor: Any = None
@@ -74,17 +86,18 @@ class RclpyGraph(Graph):
         self._thread.start()
 
     def _add(self, topic: Topic, on_message: OnMessage) -> None:
-        found, qos = _class_of(topic), _qos(topic.qos)
+        found = _class_of(topic)
         match topic.kind:
             case "publish":
-                made = self._node.create_publisher(found, topic.name, qos)
+                made = self._node.create_publisher(found, topic.name, _qos(topic.qos))
                 self._publishers[topic.id] = made
             case "subscribe":
 
                 def take(packet: bytes) -> None:
                     on_message(topic, bytes(packet), None)
 
-                self._node.create_subscription(found, topic.name, take, qos, raw=True)
+                qos = replace(topic.qos, depth=max(topic.qos.depth, _QUEUED))
+                self._node.create_subscription(found, topic.name, take, _qos(qos), raw=True)
             case "serve":
                 self._services[topic.id] = self._serve(topic, found, on_message)
 
@@ -97,7 +110,8 @@ class RclpyGraph(Graph):
         def ask(request: Any, header: Any) -> None:
             on_message(topic, bytes(serialize(request)), header)
 
-        service = self._node.create_service(found, topic.name, keep)
+        qos = _qos(Qos(depth=_QUEUED))
+        service = self._node.create_service(found, topic.name, keep, qos_profile=qos)
         # The executor calls this with what the callback returned. The response comes later, and in
         # no thread of the executor, which must not wait for it.
         service.send_response = ask

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
-import re
+from collections import Counter
 from concurrent.futures import Future
 from typing import Any
 
 from firm_hdl.errors import UserError
 from firm_hdl.identity import type_hash
 from firm_hdl.node.description import Description, Qos, Topic
-from firm_hdl.node.graphs.graph import FutureGraph, GraphError, OnMessage
+from firm_hdl.node.graphs.graph import FutureGraph, GraphError, OnMessage, domain_of
 from firm_hdl.rtps import (
     ClosedError,
     DataReader,
@@ -37,11 +36,16 @@ class RtpsGraph(FutureGraph):
     ----------
     description : Description
     domain : int or None
-        `None`: the environment's ``ROS_DOMAIN_ID``, or 0.
+        As of :func:`.domain_of`.
     interface : str or None
         As of :class:`firm_hdl.rtps.Participant`.
     options
         Further parameters of the participant.
+
+    Raises
+    ------
+    UserError
+        If the domain is none.
     """
 
     def __init__(
@@ -54,11 +58,13 @@ class RtpsGraph(FutureGraph):
     ) -> None:
         super().__init__("rtps")
         self._description = description
-        self._options = {"domain": _domain(domain), "interface": interface, **options}
+        self._options = {"domain": domain_of(domain), "interface": interface, **options}
         self._node: Node | None = None
         self._writers: dict[int, DataWriter] = {}
         self._readers: list[DataReader] = []
         self._full: set[int] = set()
+        # What was counted before the graph was joined again.
+        self._past: Counter[str] = Counter()
 
     def open(self, on_message: OnMessage) -> None:
         self.close()
@@ -123,9 +129,13 @@ class RtpsGraph(FutureGraph):
         return True
 
     def check(self) -> None:
-        self.counters["lost"] = sum(reader.lost for reader in self._readers)
+        lost = sum(reader.lost for reader in self._readers)
+        overwritten = sum(writer.overwritten for writer in self._writers.values())
+        self.counters = self._past + Counter({"lost": lost, "overwritten": overwritten})
 
     def close(self) -> None:
+        self.check()
+        self._past = self.counters
         if self._node is not None:
             self._node.close()
         self._node = None
@@ -139,12 +149,3 @@ def _qos(qos: Qos) -> RtpsQos:
         durability=Durability[qos.durability.upper()],
         depth=0 if qos.history == "keep_all" else qos.depth,
     )
-
-
-def _domain(domain: int | None) -> int:
-    if domain is not None:
-        return domain
-    text = os.environ.get("ROS_DOMAIN_ID") or "0"
-    if not re.fullmatch("[0-9]{1,9}", text):
-        raise UserError(f"ROS_DOMAIN_ID is '{text}', and should be a number from 0 to 232")
-    return int(text)

@@ -32,7 +32,7 @@ class FakeNode:
         self.fingerprint, self.seconds, self.rate = fingerprint, seconds, None
         self.is_mute = self.answers_no_calls = self.holds = False
         self.values = {17: 7}
-        self.held = []
+        self.requests, self.held = 0, []
         self.read, self.set_ns = [], []
 
     def take(self, frame):
@@ -56,11 +56,14 @@ class FakeNode:
     def _control(self, packet):
         assert len(packet) == CONTROL_BYTES
         operation, argument = packet[0], int.from_bytes(packet[4:8], "little")
+        self.requests += 1
         before, value = self.seconds, 0
         if operation == 1:
             self.read.append(argument)
             halves = {1: self.fingerprint & 0xFFFF_FFFF, 2: self.fingerprint >> 32}
             value = halves.get(argument, self.values.get(argument, 0))
+            # What its link has lost, and the requests that it has taken, are counted.
+            value += {17: self.receiver.counters.lost, 26: self.requests}.get(argument, 0)
         elif operation == 2:
             self.seconds = int.from_bytes(packet[8:12], "little")
             nanoseconds = int.from_bytes(packet[12:], "little")

@@ -11,6 +11,8 @@ from tests.node.bridge.fakes import ECHO
 __all__ = ["EPOCH", "READ", "SET_RATE", "SET_TIME", "Script"]
 
 READ, SET_TIME, SET_RATE = 1, 2, 3
+REQUESTS = 26
+"""The register that counts requests."""
 EPOCH = 1_800_000_000
 """Seconds since 1970 when a script begins."""
 
@@ -22,6 +24,7 @@ class Script:
         self.now = 100.0
         self.session = Session(ECHO, frame_bytes, self.now)
         self.receiver, self.sender = MessageReceiver(), MessageSender()
+        self.requests = 0
         if is_known:
             self.know()
 
@@ -31,16 +34,19 @@ class Script:
 
     def ask(self):
         """Let the session ask; return operation, argument, seconds, nanoseconds and tag."""
-        found = [self.receiver.take(f) for f in self.session.due(self.now, self.wall)]
+        taken = map(self.receiver.take, self.session.due(self.now, self.wall))
+        found = [each for each in taken if each is not None]
         if not found:
             return None
         (message,) = found
         assert message.topic == 0
+        self.requests += 1
         return (*struct.unpack("<B3xIII", message.packet), message.tag)
 
     def answer(self, asked, value=0, *, time=None, result=0, after=0.0):
         """Let the board answer `asked`, by default at a time that is the host's."""
         self.now += after
+        value = self.requests if asked[1] == REQUESTS else value
         seconds, nanoseconds = divmod(self.wall if time is None else time, 10**9)
         packet = struct.pack("<BBxxIII", asked[0], result, value, seconds, nanoseconds)
         return self.come(NodeMessage(topic=0, packet=packet, tag=asked[-1]))
@@ -57,14 +63,17 @@ class Script:
         return [each.packet for each in self.come(NodeMessage(topic=2, packet=packet))]
 
     def start_again(self, packet=b"x"):
-        """Let the board start again, which its first message says."""
+        """Let the board start again, which its first message says, and an answer shows."""
         self.sender = MessageSender()
-        return self.publish(packet)
+        found = self.publish(packet)
+        self.answer(self.ask())
+        return found
 
     def know(self):
         """Let the board show its fingerprint; return the messages that this sets free."""
         found = []
-        for number, half in ((1, ECHO.fingerprint & 0xFFFF_FFFF), (2, ECHO.fingerprint >> 32)):
+        halves = (1, ECHO.fingerprint & 0xFFFF_FFFF), (2, ECHO.fingerprint >> 32)
+        for number, half in (*halves, (REQUESTS, 0)):
             asked = self.ask()
             assert asked[:2] == (READ, number) and not self.session.is_ready
             found += self.answer(asked, half)

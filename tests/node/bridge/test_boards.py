@@ -186,6 +186,26 @@ def test_a_board_behind_udp_and_its_restart():
     node.stop()
 
 
+@pytest.mark.parametrize("starts_again", [False, True])
+def test_messages_wait_for_a_board_that_nobody_listens_for(starts_again):
+    node = UdpNode()
+    made, got, said = exchange(board_of(f"udp://127.0.0.1:{node.port}", ECHO), TEXTS[:3])
+    assert got == TEXTS[:3]
+    node.stop()
+    # The system says of the first one that nobody listens, and the others wait.
+    waiting = [b"sent", b"waits 1", b"waits 2"]
+    made.graph.say(HEARD, *waiting)
+    for _ in range(3):
+        made.step(time.monotonic())
+    assert made.counters.to_board["/heard"] <= 4 and not made.counters.dropped
+    node = UdpNode(node.port, FakeNode() if starts_again else node.node)
+    assert run_until(made, lambda: made.graph.got[-1][1] == waiting[-1], 5), said
+    assert [packet for _, packet in made.graph.got][-2:] == waiting[1:]
+    assert made.is_ready and made.restarts == starts_again
+    made.close()
+    node.stop()
+
+
 def test_a_host_without_a_name_is_an_error_that_may_pass():
     with pytest.raises(BoardError, match=r"cannot reach udp://no\.such\.host\.invalid:1"):
         board_of("udp://no.such.host.invalid:1", ECHO).open()
@@ -354,7 +374,8 @@ def test_what_a_network_says_of_one_datagram_ends_no_board(number, passes, sends
     board._socket = Socket()
     work = (lambda: board.send([b"x"])) if sends else board.receive
     if passes:
-        assert not work()
+        # Of a refusal, a datagram before is the reason.
+        assert bool(work()) == (sends and number == errno.ECONNREFUSED)
         assert board.counters["unreachable"] == (1 if sends else 256)
     else:
         with pytest.raises(BoardError, match=r"^udp://127\.0\.0\.1:9: no$"):

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 import time
 from enum import Enum
+from pathlib import Path
 from types import ModuleType, SimpleNamespace
 
 import pytest
@@ -15,7 +17,10 @@ from firm_hdl.node import read_description_text
 from firm_hdl.node.graphs import GraphError, graph_of, ros1
 from firm_hdl.node.graphs.ros2 import RclpyGraph
 from tests.frontend.workspace import make_files
+from tests.live.peer import python_of
 from tests.node.samples import LIBRARY
+
+ROOT = Path(__file__).parents[3]
 
 ROS2 = """\
 node: echo
@@ -92,7 +97,7 @@ class Rclpy(ModuleType):
         self.made[name] = (kind, qos)
         self.take, self.is_raw = take, raw
 
-    def create_service(self, kind, name, keep):
+    def create_service(self, kind, name, keep, *, qos_profile):
         self.keep = keep
         self.services[name] = Service(kind, self.sent)
         return self.services[name]
@@ -149,7 +154,8 @@ def test_endpoints_of_rclpy_have_the_policies_of_their_topics(rclpy):
         assert rclpy.made == {
             "/robot/said": ("String", profile("KEEP_LAST", 3, "BEST_EFFORT", "VOLATILE")),
             "/robot/kept": ("String", profile("KEEP_LAST", 1, "RELIABLE", "TRANSIENT_LOCAL")),
-            "/robot/heard": ("String", profile("KEEP_ALL", 7, "RELIABLE", "VOLATILE")),
+            # What comes waits for rclpy's thread.
+            "/robot/heard": ("String", profile("KEEP_ALL", 4096, "RELIABLE", "VOLATILE")),
         }
         assert list(rclpy.services) == ["/robot/cal"]
         # Domain 0 is asked for, and signals stay those of the process.
@@ -159,6 +165,46 @@ def test_endpoints_of_rclpy_have_the_policies_of_their_topics(rclpy):
         assert rclpy.calls[2] is rclpy
     finally:
         graph.close()
+
+
+BURST = """\
+import sys, time
+import rclpy
+from std_msgs.msg import String
+from firm_hdl.node import read_description_text
+from firm_hdl.node.graphs.ros2 import RclpyGraph
+
+domain, got = int(sys.argv[1]), []
+topics = "node: echo\\nsubscribe: {heard: {type: std_msgs/msg/String}}\\n"
+graph = RclpyGraph(read_description_text(topics), domain=domain)
+graph.open(lambda topic, packet, caller: got.append(packet))
+rclpy.init(domain_id=domain)
+publisher = rclpy.create_node("peer").create_publisher(String, "/heard", 1000)
+while not publisher.get_subscription_count():
+    time.sleep(0.01)
+for number in range(500):
+    publisher.publish(String(data=str(number)))
+end = time.monotonic() + 30
+while len(got) < 500 and time.monotonic() < end:
+    time.sleep(0.01)
+print(len(got))
+graph.close()
+"""
+
+
+def test_a_burst_in_rclpy_comes_whole():
+    """With rclpy itself, whose thread gets no time while the other side publishes."""
+    folders = [str(ROOT), *(path for path in sys.path if path.endswith("site-packages"))]
+    discovery = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    done = subprocess.run(
+        [python_of("kilted"), "-c", BURST, str(os.getpid() % 200)],
+        env={**os.environ, **discovery, "PYTHONPATH": os.pathsep.join(folders)},
+        capture_output=True,
+        text=True,
+        timeout=90,
+        check=False,
+    )
+    assert done.stdout == "500\n", done.stderr
 
 
 def test_messages_pass_rclpy_as_bytes_and_answers_find_their_callers(rclpy):

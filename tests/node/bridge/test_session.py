@@ -167,8 +167,8 @@ def test_what_is_next_due_is_due_then_and_not_before(sample_seconds, samples, ro
         if at > talk.now:
             assert talk.session.due(at - 1e-6, talk.wall) == []
             talk.now = at
-        (frame,) = talk.session.due(talk.now, talk.wall)
-        talk.say(frame)
+        for frame in talk.session.due(talk.now, talk.wall):
+            talk.say(frame)
     assert talk.node.read.count(0) == samples and talk.node.read.count(first) == rounds
 
 
@@ -201,7 +201,8 @@ def test_the_clock_of_a_board_that_starts_again_is_set_at_once():
     talk.session.take(published(talk.node), talk.now, talk.wall)
     talk.run(1)
     assert talk.session.restarts == 1 and talk.session.is_ready
-    assert talk.node.read[:3] == [1, 2, 0] and talk.node.set_ns
+    # An answer shows that it has.
+    assert talk.node.read[:5] == [0, 1, 2, 26, 0] and talk.node.set_ns
 
 
 def test_an_answer_to_another_operation_is_ignored():
@@ -227,9 +228,10 @@ def test_loss_of_two_fifths_of_all_frames(seed):
 def test_a_board_that_starts_again_is_asked_again():
     talk = Talk()
     talk.run(2)
-    # Its first message says so.
+    # Its first message says so, and an answer shows it.
     talk.node = FakeNode()
     assert talk.session.take(published(talk.node), talk.now, talk.wall) == []
+    talk.step()
     assert talk.session.restarts == 1 and not talk.session.is_ready
     talk.run(0.1)
     assert talk.session.is_ready and [each.packet for each in talk.got] == [b"1"]

@@ -149,11 +149,11 @@ def test_the_account_names_all_losses_with_their_places():
         "/cal    serve             7           0",
         "dropped: 9 of /cal: unanswered",
         "dropped: 8 of /heard: no board",
-        "dropped: 1 on the way from the board: cut",
         "dropped: 2 on the way from the board: lost",
         "dropped: 3 in the graph: no line",
         "dropped: 4 on the board, /a in: full",
-        "dropped: 5 on the board, link link: late",
+        "seen: 1 on the way from the board: cut",
+        "seen: 5 on the board, link link: late",
         "the board was started again or lost 6 times",
     ]
 
