@@ -244,6 +244,8 @@ class Bridge:
             if now >= self._next_check:
                 self._next_check = now + CHECK_SECONDS
                 self.graph.check()
+                for line in self.graph.news():
+                    self._report(f"graph {self.graph.name}: {line}")
         except GraphError as error:
             self._lose_graph(str(error))
 
