@@ -57,6 +57,7 @@ def board_of(name: str, description: Description, **simulation: Any) -> Board:
             board = UdpBoard(name, *_address(name, url, link.port), link.datagram_bytes)
         case "tcp":
             board = TcpBoard(name, *_address(name, url, None))
+            board.bytes_per_second = link.baud / 10
         case "serial":
             board = SerialBoard(name, *_device(name, url, link.baud))
         case _:

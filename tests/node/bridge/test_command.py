@@ -20,7 +20,7 @@ from firm_hdl.node.bridge.status import Status
 from tests.node.accelerators import echo_text
 from tests.node.bridge.fakes import ECHO, FakeBoard, FakeGraph, FakeNode
 from tests.node.bridge.test_boards import UdpNode
-from tests.node.samples import PACKAGES
+from tests.node.samples import PACKAGES, read
 
 
 @pytest.fixture
@@ -282,6 +282,18 @@ def test_a_quiet_one_prints_no_figures(started, capsys, monkeypatch):
     command.run_bridge(ECHO, "sim", engine="amaranth", quiet=True)
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("board sim: starts; Amaranth's simulator")
+
+
+def test_what_a_link_cannot_carry_is_said_at_the_start(capsys, monkeypatch):
+    text = echo_text(link="{kind: uart, baud: 115200}").replace("256}", "256, rate_hz: 1000}", 1)
+    board = "serial:///dev/no-such-tty?baud=9600"
+    monkeypatch.setattr(Bridge, "run", lambda self, **_: (self.stop(), self.close()))
+    command.run_bridge(read(text), board, graph="none", quiet=True)
+    assert capsys.readouterr().err.splitlines() == [
+        "warning: /heard at 1000 Hz: at least 32,000 bytes/s to the node, and the link carries "
+        "11,520 (115200 baud)",
+        f"warning: board {board} has 9600 baud, and the link of the description has 115200",
+    ]
 
 
 def test_only_a_simulation_says_what_it_starts(started, capsys):
