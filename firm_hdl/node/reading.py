@@ -172,16 +172,13 @@ class _Reader:
             return self.library
         named = self._places(known["paths"]) if "paths" in known else []
         bags = self._places(known["bags"]) if "bags" in known else []
-        folders = [*self.paths, *named]
-        if bags and folders:
-            known["bags"].error_at_key("recordings are read without any other definitions")
-            bags = []
         try:
-            return open_library(distro, folders, bags)
+            return open_library(distro, [*self.paths, *named], bags)
         except DefinitionError as error:
-            # A folder or a recording that cannot be read has no place of its own.
-            entry = known.get("bags" if bags else "paths")
             for problem in error.diagnostics:
+                # A folder or a recording that cannot be read has no place of its own.
+                is_of_bags = any(f"'{bag}'" in problem.message for bag in bags)
+                entry = known.get("bags" if is_of_bags or not named else "paths")
                 if entry is None or problem.span is not None:
                     self.marked.note(problem)
                 else:
