@@ -73,8 +73,8 @@ def _too_large(path: str | os.PathLike[str], size: str, max_bytes: int) -> OSErr
 def write_file(path: str | os.PathLike[str], text: str) -> None:
     """Write a text, as UTF-8, to a path that the user named. Missing folders are made.
 
-    A link stays, and the file that it leads to is replaced. A device, a FIFO and standard output
-    are written to. Bytes of a file's name that are not UTF-8 are written as in JSON, ``\\udcff``.
+    A link stays, and the file that it leads to is replaced. A device, standard output, and a FIFO
+    that somebody reads, are written to. Bytes of a file's name that are not UTF-8 are written as in JSON, ``\\udcff``.
 
     Raises
     ------
@@ -87,7 +87,15 @@ def write_file(path: str | os.PathLike[str], text: str) -> None:
         sys.stdout.write(data.decode())
         return
     if status is not None and not stat.S_ISREG(status.st_mode):
-        with open(path, "wb") as file:
+        # A FIFO would wait for a reader, which may never come.
+        try:
+            number = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
+        except OSError as error:
+            if error.errno != errno.ENXIO or not stat.S_ISFIFO(status.st_mode):
+                raise
+            raise OSError(errno.ENXIO, "nobody reads it", os.fspath(path)) from None
+        os.set_blocking(number, True)
+        with open(number, "wb") as file:
             file.write(data)
         return
     target = os.path.realpath(path)

@@ -48,7 +48,8 @@ MAY_IMPORT["export"] = {
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
-    *("firm_hdl", "errors", "files", "garbage", "names", "rtlil", "rtps", "vhdl"),
+    # `terminal`: names of peers are printed.
+    *("firm_hdl", "errors", "files", "garbage", "names", "rtlil", "rtps", "terminal", "vhdl"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
     *("sim", "export"),
 }

@@ -147,6 +147,8 @@ def test_a_link_stays_and_its_file_is_written(file, tmp_path, target):
 
 def test_nothing_that_is_no_file_is_replaced(tmp_path):
     os.mkfifo(tmp_path / "fifo")
+    with pytest.raises(OSError, match="nobody reads it"):
+        write_file(tmp_path / "fifo", "new")
     reader = os.open(tmp_path / "fifo", os.O_RDONLY | os.O_NONBLOCK)
     write_file(tmp_path / "fifo", "new")
     assert os.read(reader, 9) == b"new"

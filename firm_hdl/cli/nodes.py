@@ -22,7 +22,8 @@ def add_node(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "action",
         choices=["info", "build", "run"],
-        help="info: print topics, ids, cycles, clocks, memory and area; build: write the design; "
+        help="info: check the description and its accelerator, and print topics, ids, cycles, "
+        "clocks, memory and area; build: write the design; "
         "run: join a board, or the design in simulation, with a graph of ROS",
     )
     command.add_argument("file", metavar="FILE", help="description of a node; see docs/node.md")
@@ -74,12 +75,22 @@ def _node(args: argparse.Namespace) -> None:
 
     description = read_description(args.file, paths=args.path)
     try:
+        if args.action == "info" and description.accelerator:
+            from firm_hdl.node.accelerator import load_accelerator
+
+            load_accelerator(description)
+            _leave_unused()
         _act(args, description)
     except DefinitionError:
-        # A mistake of an accelerator leaves circuits unfinished. Amaranth would warn of each.
-        if (hdl := sys.modules.get("amaranth.hdl")) is not None:
-            warnings.simplefilter("ignore", hdl.UnusedElaboratable)
+        # A mistake of an accelerator leaves circuits unfinished.
+        _leave_unused()
         raise
+
+
+def _leave_unused() -> None:
+    """Let Amaranth not warn of circuits that were made and not used."""
+    if (hdl := sys.modules.get("amaranth.hdl")) is not None:
+        warnings.simplefilter("ignore", hdl.UnusedElaboratable)
 
 
 def _act(args: argparse.Namespace, description: Description) -> None:

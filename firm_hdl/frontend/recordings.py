@@ -18,7 +18,7 @@ from firm_hdl.frontend.explain import clip
 from firm_hdl.frontend.names import Kind, TypeName, owners
 from firm_hdl.frontend.parse import is_type_name
 from firm_hdl.frontend.recorded_idl import MAX_COPIED, structs_of
-from firm_hdl.frontend.sources import Definition, Language, Origin, PackagePlace
+from firm_hdl.frontend.sources import Definition, Language, Origin, PackagePlace, distro_of
 from firm_hdl.model import Dialect
 from firm_hdl.recordings import MAX_TEXT_BYTES, MAX_TOPICS, Recording, Schema, Topic
 
@@ -93,6 +93,7 @@ class RecordingOrigin:
         for schema in sorted(recording.schemas, key=lambda schema: schema.data == b""):
             reasons.setdefault(schema.type, self._read(schema))
         others = list(others)
+        self._named = distro_of(others)
         self.unusable: dict[str, str] = {}
         self._refused: dict[_Name, str] = {}
         first: dict[str, Topic] = {}
@@ -224,7 +225,9 @@ class RecordingOrigin:
         for key in self._owners(name):
             for origin in others:
                 try:
-                    found = origin.find(*key)
+                    # Why another recording has no definition is no reason here.
+                    is_recording = isinstance(origin, RecordingOrigin)
+                    found = origin._definitions.get(key) if is_recording else origin.find(*key)
                 except DefinitionError as error:
                     return error.diagnostics[0].message
                 if found is not None:
@@ -239,6 +242,11 @@ class RecordingOrigin:
         start = f"'{self.path}' has a topic of type '{clip(topic.type)}'"
         if name is None and reason in ("", _NOT_RECORDED):
             return f"{start}, which is not the name of a type"
+        if reason == _NOT_RECORDED and self._named:
+            reason = (
+                f"none was recorded, and {self._named} does not have it; name a folder that has it "
+                "with --depends"
+            )
         return f"{start}, but not its definition: {reason or 'the recorded text is of other types'}"
 
     def _nothing(self, is_looked_up: bool) -> Iterator[Diagnostic]:

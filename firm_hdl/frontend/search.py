@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Container, Iterable, Iterator, Mapping
+from contextlib import suppress
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS
@@ -125,7 +126,16 @@ def _of_recordings(
 ) -> Library:
     # A distribution is asked for more only if it is named: a recording need not say which it is of.
     others: list[Origin] = [*needed, *([] if distro is None else [EmbeddedOrigin(distro)])]
-    recordings = [RecordingOrigin(path, others) for path in paths]
+    files, alone = list(paths), []
+    for path in files:
+        # Others may have what it lacks.
+        with suppress(DefinitionError):
+            alone.append(RecordingOrigin(path))
+    recordings = []
+    for path in files:
+        whole = [each for each in alone if each.path == os.fspath(path) and not each.unusable]
+        more = [each for each in alone if each.path != os.fspath(path)]
+        recordings += whole[:1] or [RecordingOrigin(path, [*more, *others])]
     first = recordings[0]
     for other in recordings:
         if other.dialect != first.dialect:

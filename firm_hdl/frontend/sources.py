@@ -29,6 +29,7 @@ __all__ = [
     "Origin",
     "PackagePlace",
     "Sources",
+    "distro_of",
 ]
 
 Language: TypeAlias = Literal["msg", "srv", "action", "idl"]
@@ -98,6 +99,8 @@ class EmbeddedOrigin:
 
     def __init__(self, distro: str, packages: Collection[str] | None = None) -> None:
         self._distro, self._packages = distro, packages
+        # The name of the distribution, if all of it is here.
+        self.distro = distro if packages is None else ""
 
     @cached_property
     def packages(self) -> Mapping[str, PackagePlace]:
@@ -117,6 +120,12 @@ class EmbeddedOrigin:
             return None
         source = embedded_source(self._distro, package, name)
         return None if source is None else Definition(source=source, language="msg")
+
+
+def distro_of(origins: Iterable[Origin]) -> str:
+    """Return the distribution that is among origins as a whole; empty if none is."""
+    names = (each.distro for each in origins if isinstance(each, EmbeddedOrigin))
+    return next((name for name in names if name), "")
 
 
 class FolderOrigin:
@@ -225,12 +234,14 @@ class Sources:
     ----------
     has_implied : bool
         Whether there are such origins, as behind a recording.
+    implied_distro : str
+        The distribution that is one of them as a whole; empty if none is.
     """
 
     def __init__(self, origins: Iterable[Origin], implied: Iterable[Origin] = ()) -> None:
         listed, more = tuple(origins), tuple(implied)
         self._origins, self._listed = listed + more, len(listed)
-        self.has_implied = bool(more)
+        self.has_implied, self.implied_distro = bool(more), distro_of(more)
 
     def _having(self, package: str) -> Iterator[Origin]:
         """Yield the origins that may have types of a package: all without the hidden copies."""

@@ -47,6 +47,9 @@ def unknown_type(sources: Sources, names: Sequence[TypeName]) -> str:
     else:
         message, place = f"package '{clip(package)}' is not found", None
     if sources.has_implied:
+        if sources.implied_distro:
+            lacking = f"; the recording and {sources.implied_distro} lack it"
+            return f"{message}{lacking}: name a folder that has it with --depends"
         return (
             f"{message}; the recording lacks it: name a folder that has it with --depends, or a "
             "distribution with --distro"

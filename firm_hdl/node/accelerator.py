@@ -6,6 +6,7 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+import sysconfig
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -33,10 +34,10 @@ __all__ = [
     "other_members",
 ]
 
-_OTHERS = tuple(
-    f"{folder}/" for folder in (Path(amaranth.__file__).parent, Path(__file__).parents[1])
-)
-"""The folders of code that is not the user's."""
+_OTHERS = (f"{Path(amaranth.__file__).parent}/", f"{Path(__file__).parents[1]}/", "<frozen")
+"""How the names of files begin whose code is not the user's."""
+
+_PYTHON = f"{sysconfig.get_path('stdlib')}/"
 
 _imported: dict[str, str] = {}
 """Modules that came from a folder of a description, with the folder."""
@@ -76,14 +77,14 @@ def load_accelerator(description: Description) -> Any:
     module, _, path = description.accelerator.partition(":")
     # Python remembers what it found in a folder by its name, and "." is another one later.
     folder = os.path.abspath(description.folder)
-    try:
-        with _searched_first(folder):
-            found: Any = importlib.import_module(module)
-    except ImportError as error:
-        hint = f"; write '{module[:-3]}:{path}'" if module.endswith(".py") else ""
-        raise _refused(description, f"cannot import '{module}': {error}{hint}") from None
-    except (Exception, SystemExit) as error:
-        raise _refused(description, f"'{module}' {_raised(error)}") from None
+    with _reported(description, f"'{module}'"):
+        try:
+            with _searched_first(folder):
+                found: Any = importlib.import_module(module)
+        except ImportError as error:
+            hint = f"; write '{module[:-3]}:{path}'" if module.endswith(".py") else ""
+            reason = f"{_place(error)}: {error}{hint}"
+            raise UserError(f"cannot import '{module}'{reason}") from None
     top = module.partition(".")[0]
     there = PathFinder.find_spec(top, [folder])
     if top != "firm_hdl" and there and there.origin:
@@ -91,21 +92,14 @@ def load_accelerator(description: Description) -> Any:
         if not (os.path.exists(file) and os.path.samefile(file, there.origin)):
             other = f"another module, {file or 'of Python itself'}"
             raise _refused(description, f"'{top}' is the name of {other}, too; rename yours")
-    for name in path.split("."):
-        if not hasattr(found, name):
-            raise _refused(description, f"'{module}' has no '{path}'")
-        found = getattr(found, name)
-    try:
+    with _reported(description, f"'{module}'"):
+        for name in path.split("."):
+            if not hasattr(found, name):
+                raise UserError(f"'{module}' has no '{path}'")
+            found = getattr(found, name)
+    with _reported(description, f"'{description.accelerator}'"):
         accelerator = found(description)
-    except UserError as error:
-        # The class has refused the description, and says why.
-        raise _refused(description, str(error)) from None
-    except (Exception, SystemExit) as error:
-        raise _refused(description, f"'{description.accelerator}' {_raised(error)}") from None
-    try:
         check_accelerator(description, accelerator)
-    except UserError as error:
-        raise _refused(description, str(error)) from None
     return accelerator
 
 
@@ -152,12 +146,11 @@ def elaborate_accelerator(description: Description, accelerator: Any, platform: 
         At the name in the description: if the code of the accelerator raises an exception, or if
         it uses a clock domain that it does not have.
     """
-    try:
+    if not description.accelerator:
         fragment = Fragment.get(accelerator, platform)
-    except (Exception, SystemExit) as error:
-        if not description.accelerator:
-            raise
-        raise _refused(description, f"'{description.accelerator}' {_raised(error)}") from error
+    else:
+        with _reported(description, f"'{description.accelerator}'"):
+            fragment = Fragment.get(accelerator, platform)
     collector = DomainCollector()
     collector(fragment)
     # Amaranth would make ports of the node of such a clock, which no list of ports has.
@@ -214,17 +207,47 @@ def _searched_first(folder: str) -> Iterator[None]:
                 _imported[name] = folder
 
 
-def _raised(error: BaseException) -> str:
-    """Say what went wrong in the user's code, and where."""
-    if isinstance(error, SyntaxError):
-        return f"has a mistake at {error.filename}:{error.lineno}: {error.msg}"
+@contextmanager
+def _reported(description: Description, name: str) -> Iterator[None]:
+    """Report whatever the user's code raises, with its place.
+
+    Raises
+    ------
+    DefinitionError
+        At the name in the description. A :class:`UserError` gives its own text.
+    """
+    try:
+        yield
+    except UserError as error:
+        raise _refused(description, str(error)) from None
+    except KeyboardInterrupt:
+        raise
+    except SyntaxError as error:
+        message = f"{name} has a mistake at {error.filename}:{error.lineno}: {error.msg}"
+        raise _refused(description, message) from None
+    except BaseException as error:
+        try:
+            text = str(error)
+        except Exception:
+            text = "its text cannot be read"
+        message = f"{name} raised {type(error).__name__}{_place(error)}: {text}"
+        raise _refused(description, message) from error
+
+
+def _place(error: BaseException) -> str:
+    """Say where the user's code was, as far as it was reached."""
     frames = [
         f"{frame.filename}:{frame.lineno}"
         for frame in traceback.extract_tb(error.__traceback__)
-        if not frame.filename.startswith((*_OTHERS, "<frozen"))
+        if _is_of_user(frame.filename)
     ]
-    place = f" at {frames[-1]}" if frames else ""
-    return f"raised {type(error).__name__}{place}: {error}"
+    return f" at {frames[-1]}" if frames else ""
+
+
+def _is_of_user(file: str) -> bool:
+    # Packages are installed in folders of Python's own.
+    is_of_python = file.startswith(_PYTHON) and "-packages/" not in file
+    return not (is_of_python or file.startswith(_OTHERS))
 
 
 def _refused(description: Description, message: str) -> DefinitionError:

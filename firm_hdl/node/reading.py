@@ -172,16 +172,13 @@ class _Reader:
             return self.library
         named = self._places(known["paths"]) if "paths" in known else []
         bags = self._places(known["bags"]) if "bags" in known else []
-        folders = [*self.paths, *named]
-        if bags and folders:
-            known["bags"].error_at_key("recordings are read without any other definitions")
-            bags = []
         try:
-            return open_library(distro, folders, bags)
+            return open_library(distro, [*self.paths, *named], bags)
         except DefinitionError as error:
-            # A folder or a recording that cannot be read has no place of its own.
-            entry = known.get("bags" if bags else "paths")
             for problem in error.diagnostics:
+                # A folder or a recording that cannot be read has no place of its own.
+                is_of_bags = any(f"'{bag}'" in problem.message for bag in bags)
+                entry = known.get("bags" if is_of_bags or not named else "paths")
                 if entry is None or problem.span is not None:
                     self.marked.note(problem)
                 else:
@@ -241,6 +238,7 @@ class _Reader:
         topics: list[Topic] = []
         places: dict[tuple[str, str], str] = {}
         ports: dict[tuple[str, str], str] = {}
+        types: dict[str, Topic] = {}
         # The place in the text is the id, so sections count in the order in which they are written.
         for section in (entry for name, entry in known.items() if name in KINDS):
             kind: Kind = section.name  # type: ignore[assignment]
@@ -258,6 +256,8 @@ class _Reader:
                 topic = reader.topic(entry, options, kind, name, written, port, 1 + len(topics))
                 if topic is not None:
                     topics.append(topic)
+                    if kind != "serve":
+                        _check_type(topic, types.setdefault(name, topic), options["type"])
         return topics
 
     def _name(self, entry: Entry, written: str, library: Library, names: _Names) -> str:
@@ -286,6 +286,17 @@ class _Names:
         complete = self.complete(name)
         self.used.add(complete)
         return self.remap.get(complete, complete)
+
+
+def _check_type(topic: Topic, first: Topic, entry: Entry) -> None:
+    """Check that a topic has the type that it has where the description names it first."""
+    if topic.type != first.type:
+        assert first.span is not None
+        where = f"'{first.written}' in line {first.span.line}"
+        entry.error(
+            f"the topic '{topic.name}' has the type '{first.type}' already ({where}); a topic has "
+            "one type"
+        )
 
 
 def _path_problem(text: str) -> str:

@@ -12,6 +12,7 @@ from typing import Any, TypeAlias
 from firm_hdl.estimates import Estimate, estimates_of
 from firm_hdl.metrics import Metrics, metrics_of
 from firm_hdl.model import Message
+from firm_hdl.node.capacity import rate_problems, size_problems
 from firm_hdl.node.control import IDENTITY, registers
 from firm_hdl.node.description import Description, Direction, Store, Topic
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
@@ -119,7 +120,9 @@ def _store(topic: Topic, direction: Direction, store: Store, figures: _Figures) 
 def summary(description: Description) -> str:
     """Describe a node on a page of text, as ``firm-hdl node info`` prints it."""
     facts = facts_of(description)
-    return "\n".join([*_head(description, facts), "", *_table(facts), "", *_totals(facts)])
+    warnings = [f"warning: {line}" for line in _warnings(description, facts)]
+    lines = [*_head(description, facts), "", *_table(facts), "", *_totals(facts)]
+    return "\n".join([*lines, *([""] if warnings else []), *warnings])
 
 
 def _head(description: Description, facts: dict[str, Any]) -> Iterator[str]:
@@ -191,3 +194,16 @@ def _totals(facts: dict[str, Any]) -> Iterator[str]:
         yield f"clock for all stated rates on one link: {sum(clocks) / 1e6:.3g} MHz"
     yield f"a message costs {HEADER_BYTES} bytes of header"
     yield "cycles: of the packet that is hardest for its converter, of those that were tried"
+
+
+def _warnings(description: Description, facts: dict[str, Any]) -> Iterator[str]:
+    """Yield what the node cannot carry: rates and sizes."""
+    for topic in facts["topics"]:
+        for store in topic["packets"].values():
+            if (needed := store["clock_hz"]) is not None and needed > description.clock_hz:
+                yield (
+                    f"{topic['name']}: a rate of {topic['rate_hz']:g} Hz needs a clock of "
+                    f"{needed / 1e6:.3g} MHz"
+                )
+    yield from rate_problems(description)
+    yield from size_problems(description)

@@ -104,6 +104,72 @@ def test_a_mistake_is_an_error_at_the_name(folder, capsys, action, mistake):
     )
 
 
+CANNOT_BE_LOADED = {
+    "not there": (double(), "", "cannot import 'mistaken': No module named 'mistaken'"),
+    "needs another": (
+        "class Double",
+        "import not_there\nclass Double",
+        "cannot import 'mistaken' at FILE:7: No module named 'not_there'",
+    ),
+    "needs another later": (
+        "super()",
+        "import not_there; super()",
+        "'mistaken:Double' raised ModuleNotFoundError at FILE:9: No module named 'not_there'",
+    ),
+    "other name": ("class Double(", "class Single(", "'mistaken' has no 'Double'"),
+    "fails in a library": (
+        "class Double",
+        "import json; json.loads('')\nclass Double",
+        "'mistaken' raised JSONDecodeError at FILE:7: Expecting value",
+    ),
+    "no Exception": (
+        "class Double",
+        "raise GeneratorExit('gone')\nclass Double",
+        "'mistaken' raised GeneratorExit at FILE:7: gone",
+    ),
+    "an error without a text": (
+        "class Double",
+        "class Odd(Exception):\n    __str__ = None\nraise Odd\nclass Double",
+        "'mistaken' raised Odd at FILE:9: its text cannot be read",
+    ),
+    "attributes": (
+        "class Double(",
+        "def __getattr__(name):\n    return {}[name]\nclass Single(",
+        "'mistaken' raised KeyError at FILE:8: 'Double'",
+    ),
+    "another member": (
+        "accelerator_signature(description)",
+        "{}",
+        "the accelerator has no 'subscribe' with the ports of its topics",
+    ),
+    "a signature that fails": (
+        "    def elaborate",
+        "    @property\n    def signature(self):\n        return 1 // 0\n    def elaborate",
+        "'mistaken:Double' raised ",
+    ),
+}
+
+
+@pytest.mark.parametrize("mistake", CANNOT_BE_LOADED)
+def test_info_loads_the_accelerator(folder, capsys, mistake):
+    change, new, message = CANNOT_BE_LOADED[mistake]
+    text = double()
+    assert text.count(change) == 1
+    if mistake != "not there":
+        (folder / f"{NAME}.py").write_text(text.replace(change, new))
+    assert run("info", "double.yaml") == 1
+    out, said = capsys.readouterr()
+    assert not out and said.startswith("double.yaml:3:14: error: ")
+    assert f"\n{' ' * 13}^^^^^^" in said and "Traceback" not in said
+    assert message in said.replace(str(folder / f"{NAME}.py"), "FILE")
+
+
+def test_info_of_an_accelerator_that_can_be_loaded_warns_of_nothing(folder, capsys):
+    (folder / f"{NAME}.py").write_text(double())
+    assert run("info", "double.yaml") == 0
+    assert "accelerator mistaken:Double" in capsys.readouterr().out
+
+
 def test_each_description_has_the_module_of_its_own_folder(tmp_path):
     """Also if that of another folder has the same name, and one beside it."""
     for name in ("a", "b", "a"):

@@ -73,7 +73,7 @@ def test_ids_are_places_in_the_text():
 def test_the_fingerprint_is_that_of_the_topics():
     first = read()
     assert read(clock_mhz="50", link="uart").fingerprint == first.fingerprint
-    for old, new in (("/cmd_vel", "/cmd"), ("Twist", "Accel"), ("names:", "odom:")):
+    for old, new in (("/cmd_vel", "/cmd"), ("Twist", "Accel"), ("names:", "heard:")):
         assert read(WHEELS.replace(old, new)).fingerprint != first.fingerprint
     assert 0 < first.fingerprint < 1 << 64
     # The same topics on another wire format are other bytes.
@@ -318,12 +318,14 @@ def test_recordings_are_read_from_beside_the_file(tmp_path):
     file.write_text("node: a\nbags: run.mcap\npublish: {x: {type: own_msgs/Level}}\n")
     (topic,) = read_description(file).topics
     assert [field.name for field in topic.store("out").message.fields] == ["litres"]
-    # A recording has all of its definitions, and would hide those of folders.
-    mistake = r"node\.yaml:2:1: error: recordings are read without any other definitions\nbags: "
-    with pytest.raises(DefinitionError, match=mistake):
-        read_description(file, paths=[PACKAGES])
-    file.write_text(f"paths: '{PACKAGES}'\n" + file.read_text())
-    with pytest.raises(DefinitionError, match=mistake.replace(":2:1:", ":3:1:")):
+    # What a recording lacks comes from folders.
+    more = "distro: jazzy\npublish: {x: {type: own_msgs/Level}, y: {type: robot_msgs/Wheel}}\n"
+    file.write_text(f"node: a\nbags: run.mcap\n{more}")
+    assert len(read_description(file, paths=[PACKAGES]).topics) == 2
+    file.write_text(f"node: a\nbags: run.mcap\npaths: '{PACKAGES}'\n{more}")
+    assert len(read_description(file).topics) == 2
+    file.write_text(f"node: a\nbags: run.mcap\npaths: far\n{more}")
+    with pytest.raises(DefinitionError, match=r"node\.yaml:3:8: error: .*far' is not a folder"):
         read_description(file)
     file.write_text("node: a\npublish: {}\nbags: [run.mcap, far.mcap]\n")
     with pytest.raises(DefinitionError, match=r"node\.yaml:3:7: error: .*far\.mcap"):

@@ -17,6 +17,13 @@ __all__ = ["BOARD_FORMS", "board_of"]
 BOARD_FORMS = "sim, udp://HOST[:PORT], tcp://HOST:PORT, serial:///dev/DEVICE[?baud=RATE]"
 """The forms of names of boards."""
 
+_BOARDS = {
+    "udp": "which goes with --board udp://HOST",
+    "uart": "which goes with --board serial:///dev/DEVICE or tcp://HOST:PORT",
+    "stream": "which goes with --board sim, or a board of your own in Python",
+}
+"""The boards of each kind of link."""
+
 
 def board_of(name: str, description: Description, **simulation: Any) -> Board:
     """Make a board, which is not yet open.
@@ -31,7 +38,7 @@ def board_of(name: str, description: Description, **simulation: Any) -> Board:
     Raises
     ------
     UserError
-        If the name has another form, or a simulation is not possible.
+        If the name has another form or is that of another link, or a simulation is not possible.
     """
     if name == "sim":
         # Amaranth takes seconds to import, and a host of a real board does not need it.
@@ -44,15 +51,24 @@ def board_of(name: str, description: Description, **simulation: Any) -> Board:
     except ValueError as error:
         # Such as a bracket that is not closed.
         raise UserError(f"'{name}' is no board: {error}") from None
+    board: Board
     match url.scheme:
         case "udp":
-            default = link.port if link.kind == "udp" else None
-            return UdpBoard(name, *_address(name, url, default), link.datagram_bytes)
+            board = UdpBoard(name, *_address(name, url, link.port), link.datagram_bytes)
         case "tcp":
-            return TcpBoard(name, *_address(name, url, None))
+            board = TcpBoard(name, *_address(name, url, None))
+            board.bytes_per_second = link.baud / 10
         case "serial":
-            return SerialBoard(name, *_device(name, url, link.baud))
-    raise UserError(f"'{name}' is no board; boards are {BOARD_FORMS}")
+            board = SerialBoard(name, *_device(name, url, link.baud))
+        case _:
+            raise UserError(f"'{name}' is no board; boards are {BOARD_FORMS}")
+    kind = "udp" if url.scheme == "udp" else "uart"
+    if link.kind != kind:
+        raise UserError(
+            f"'{name}' is a board whose link is '{kind}', and the link of '{description.node}' is "
+            f"'{link.kind}', {_BOARDS[link.kind]}"
+        )
+    return board
 
 
 def _address(name: str, url: SplitResult, default: int | None) -> tuple[str, int]:

@@ -18,7 +18,9 @@ from firm_hdl.errors import UserError
 from firm_hdl.node.boards.board import Board
 from firm_hdl.node.bridge.boardside import BoardSide
 from firm_hdl.node.bridge.counters import BridgeCounters
+from firm_hdl.node.bridge.load import Load
 from firm_hdl.node.bridge.waiting import RETRY_SECONDS, Call, Calls, MessageQueue, Retry, Waiting
+from firm_hdl.node.capacity import most_bytes
 from firm_hdl.node.control import Register
 from firm_hdl.node.description import Description, Topic
 from firm_hdl.node.graphs.graph import Graph, GraphError
@@ -81,6 +83,13 @@ class Bridge:
         self._report = report or (lambda _: None)
         self.side = BoardSide(description, board, self.counters, self._report, self._end_calls)
         self._topics = {topic.id: topic for topic in description.topics}
+        self._most_bytes = {
+            topic.id: most_bytes(description, "in", store)
+            for topic, store in description.received()
+        }
+        # Topics of which a message was too large.
+        self._large: set[int] = set()
+        self._load = Load(description, board.bytes_per_second)
         self._queue = MessageQueue(_MOST_QUEUED_BYTES)
         # What comes later is not sent any more.
         self._last = float("inf")
@@ -166,6 +175,8 @@ class Bridge:
         self._end_calls(now)
         # A simulation may have read while it sent, so nothing may be left there before the wait.
         self._from_board()
+        for line in self._load.judge(time.monotonic()):
+            self._report(f"board {self.board.name}: {line}")
         self._wait(end)
 
     def _finish(self) -> None:
@@ -244,6 +255,8 @@ class Bridge:
             if now >= self._next_check:
                 self._next_check = now + CHECK_SECONDS
                 self.graph.check()
+                for line in self.graph.news():
+                    self._report(f"graph {self.graph.name}: {line}")
         except GraphError as error:
             self._lose_graph(str(error))
 
@@ -261,6 +274,7 @@ class Bridge:
         if topic is None or topic.kind == "subscribe":
             self.counters.drop(str(message.topic), "unknown topic")
             return
+        self._load.add("out", topic, message.packet)
         call = None
         if topic.kind == "serve":
             call = self._calls.answered(message.tag, topic)
@@ -303,7 +317,16 @@ class Bridge:
 
     def _send(self, waiting: Waiting) -> str | None:
         """Send a message to the board; return why it was dropped, or `None`."""
-        topic = waiting.topic
+        topic, size = waiting.topic, len(waiting.packet)
+        if size > (most := self._most_bytes[topic.id]):
+            if topic.id not in self._large:
+                self._large.add(topic.id)
+                self._report(
+                    f"graph {self.graph.name}: a message of {topic.name} has {size} bytes, and the "
+                    f"memory on the board has room for {most}; larger ones are dropped"
+                )
+            return "too large"
+        self._load.add("in", topic, waiting.packet)
         if topic.kind != "serve":
             return self.side.send(topic, waiting.packet)
         if self._calls.is_full:

@@ -14,6 +14,7 @@ from firm_hdl.node.boards import board_of
 from firm_hdl.node.bridge.bridge import Bridge
 from firm_hdl.node.bridge.session import WrongBoardError
 from firm_hdl.node.bridge.status import Status, account
+from firm_hdl.node.capacity import rate_problems
 from firm_hdl.node.description import Description
 from firm_hdl.node.graphs import graph_of
 
@@ -64,12 +65,21 @@ def run_bridge(
     if board == "sim":
         status.report(f"board sim: starts; {_engine(engine)}")
         simulation["report"] = lambda stage: status.report(f"board sim: {stage}")
+    way = board_of(board, description, **simulation)
     bridge = Bridge(
         description,
-        board_of(board, description, **simulation),
+        way,
         joined,
         report=status.report,
     )
+    for line in rate_problems(description):
+        status.report(f"warning: {line}")
+    baud = round(10 * (way.bytes_per_second or 0))
+    if baud and baud != description.link.baud:
+        status.report(
+            f"warning: board {board} has {baud} baud, and the link of the description has "
+            f"{description.link.baud}"
+        )
     with _signals(bridge):
         try:
             bridge.run(seconds=seconds, each_second=lambda: status.show(bridge))

@@ -14,6 +14,7 @@ CAUSES = {
     "no board": "messages for the board while it was not there for longer than a moment",
     "queue full": "messages for the board that found no room in the bridge",
     "board full": "messages for the board that waited for room for longer than a moment",
+    "too large": "messages for the board that are larger than the memories on their way",
     "board lost": "messages sent before the board was lost, which it may not have passed on",
     "unconfirmed": "messages whose arrival the board had not confirmed when the bridge ended",
     "bridge ended": "messages for the board that still waited when the bridge ended",

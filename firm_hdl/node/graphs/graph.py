@@ -13,6 +13,7 @@ from typing import TypeAlias
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.description import Topic
+from firm_hdl.terminal import printable
 
 __all__ = ["FutureGraph", "Graph", "GraphError", "OnMessage", "domain_of"]
 
@@ -22,6 +23,9 @@ MAX_DOMAIN = 232
 OnMessage: TypeAlias = Callable[[Topic, bytes, object], None]
 """Takes a message of a subscription, or a request of a service: topic, packet and, of a request,
 its caller, which :meth:`Graph.respond` gets back. Called in any thread; it does not block."""
+
+_MOST_TOLD = 100
+"""Most lines about peers. A peer may have any number of endpoints."""
 
 
 class GraphError(Exception):
@@ -59,6 +63,20 @@ class Graph(ABC):
     def __init__(self, name: str) -> None:
         self.name = name
         self.counters: Counter[str] = Counter()
+        # Lines for people, and whether each has been said.
+        self._told: dict[str, bool] = {}
+
+    def tell(self, line: str) -> None:
+        """Let people know a line, once, however often it is told. Called in any thread."""
+        if len(self._told) >= _MOST_TOLD:
+            line = "more peers do not fit, which are not named"
+        self._told.setdefault(printable(line).replace("\n", "\\n"), False)
+
+    def news(self) -> list[str]:
+        """Return the lines that are new."""
+        found = [line for line, is_said in list(self._told.items()) if not is_said]
+        self._told.update(dict.fromkeys(found, True))
+        return found
 
     @abstractmethod
     def open(self, on_message: OnMessage) -> None:

@@ -134,6 +134,7 @@ class RospyGraph(FutureGraph):
         while not ends.wait(_WATCH_SECONDS):
             try:
                 found = master.getPid()
+                types = dict(master.getTopicTypes())
             except Exception as error:
                 problem = f"the master does not answer: {error}"
                 break
@@ -141,6 +142,13 @@ class RospyGraph(FutureGraph):
             if found != first:
                 problem = "the master has started again"
                 break
+            for topic in self._description.topics:
+                other = types.get(topic.name, "*") if topic.kind != "serve" else "*"
+                if other not in ("*", topic.type):
+                    self.tell(
+                        f"{topic.name}: another node has it with the type '{other}', and the type "
+                        f"here is '{topic.type}'; no messages pass"
+                    )
         if not ends.is_set():
             self._problem = problem
 

@@ -14,6 +14,10 @@ from typing import Any
 from firm_hdl.errors import UserError
 from firm_hdl.node.description import Description, Qos, Topic
 from firm_hdl.node.graphs.graph import Graph, GraphError, OnMessage, domain_of
+from firm_hdl.node.graphs.mismatch import OwnEndpoint, own_endpoints
+from firm_hdl.rtps import Durability, Reliability
+from firm_hdl.rtps import Qos as Policies
+from firm_hdl.rtps.qos import INFINITE
 
 __all__ = ["RclpyGraph", "has_rclpy"]
 
@@ -21,6 +25,13 @@ _QUEUED = 4096
 """How many messages for the board may wait for the thread of rclpy. The depth of a topic is that of
 its publisher; here, it would lose what comes faster than Python takes it. The bridge has a queue of
 its own behind, whose losses it counts."""
+
+_NO_NAMES = ("_NODE_NAME_UNKNOWN_", "_CREATED_BY_BARE_DDS_APP_")
+"""What rclpy says of an endpoint whose node is not known yet, or of one without a node."""
+
+_DURATIONS = ("deadline", "liveliness_lease_duration")
+_LONGEST = 1 << 31
+"""A duration of more seconds has no end."""
 
 
 def has_rclpy() -> bool:
@@ -59,6 +70,9 @@ class RclpyGraph(Graph):
         self._thread: threading.Thread | None = None
         self._publishers: dict[int, Any] = {}
         self._services: dict[int, Any] = {}
+        self._own = list(own_endpoints(description))
+        # Endpoints of peers that did not fit, and whose nodes were not known yet.
+        self._nameless: set[bytes] = set()
 
     def open(self, on_message: OnMessage) -> None:
         self.close()
@@ -141,6 +155,31 @@ class RclpyGraph(Graph):
     def check(self) -> None:
         if self._thread is not None and not self._thread.is_alive():
             raise GraphError("rclpy has ended")
+        if self._node is not None:
+            self._tell_mismatches()
+
+    def _tell_mismatches(self) -> None:
+        """Name the endpoints that do not fit; the nodes of peers may be known a little later.
+
+        Our own endpoints are among them: the environment may have another definition of a type.
+        """
+        nameless: set[bytes] = set()
+        for own in self._own:
+            # Only middlewares of DDS have topics for a service.
+            is_service = own.topic.kind == "serve"
+            name = own.name if is_service else own.topic.name
+            writers = self._call(self._node.get_publishers_info_by_topic, name, is_service)
+            readers = self._call(self._node.get_subscriptions_info_by_topic, name, is_service)
+            for each in (*writers, *readers):
+                line = _mismatch(own, each, each.endpoint_type.name == "PUBLISHER")
+                if line is None:
+                    continue
+                gid = bytes(each.endpoint_gid)
+                if each.node_name in _NO_NAMES:
+                    nameless.add(gid)
+                if each.node_name not in _NO_NAMES or gid in self._nameless:
+                    self.tell(line)
+        self._nameless = nameless
 
     def close(self) -> None:
         context, self._context = self._context, None
@@ -185,3 +224,30 @@ def _qos(qos: Qos) -> Any:
         reliability=rclpy.ReliabilityPolicy[qos.reliability.upper()],
         durability=rclpy.DurabilityPolicy[qos.durability.upper()],
     )
+
+
+def _mismatch(own: OwnEndpoint, peer: Any, writes: bool) -> str | None:
+    """Compare an endpoint of ours with what rclpy says of another one (`TopicEndpointInfo`)."""
+    node = f"{peer.node_namespace.rstrip('/')}/{peer.node_name}"
+    # Before Iron, there were no type hashes.
+    found = str(getattr(peer, "topic_type_hash", ""))
+    return own.mismatch(
+        "" if peer.node_name in _NO_NAMES else node,
+        writes,
+        peer.topic_type,
+        found if found.startswith("RIHS") else None,
+        _policies(peer.qos_profile),
+    )
+
+
+def _policies(profile: Any) -> Policies:
+    """Return what is known of the policies of an endpoint that rclpy has found."""
+    given: dict[str, Any] = {}
+    for name, kind in (("reliability", Reliability), ("durability", Durability)):
+        value = getattr(profile, name).name
+        if value in kind.__members__:
+            given[name] = kind[value]
+    ends = {name: getattr(profile, name).nanoseconds / 1e9 for name in _DURATIONS}
+    deadline, lease = (INFINITE if ends[each] > _LONGEST else ends[each] for each in _DURATIONS)
+    is_manual = profile.liveliness.name == "MANUAL_BY_TOPIC"
+    return Policies(**given, deadline=deadline, lease=lease, liveliness=2 * is_manual)

@@ -8,20 +8,20 @@ from typing import Any
 
 from firm_hdl.errors import UserError
 from firm_hdl.identity import type_hash
-from firm_hdl.node.description import Description, Qos, Topic
+from firm_hdl.node.description import Description, Topic
 from firm_hdl.node.graphs.graph import FutureGraph, GraphError, OnMessage, domain_of
+from firm_hdl.node.graphs.mismatch import OwnEndpoint, own_endpoints, qos_of
 from firm_hdl.rtps import (
     ClosedError,
     DataReader,
     DataWriter,
-    Durability,
     HistoryFullError,
-    Reliability,
     Sample,
     TransportError,
 )
-from firm_hdl.rtps import Qos as RtpsQos
-from firm_hdl.rtps.ros import Node
+from firm_hdl.rtps.discovery import EndpointData
+from firm_hdl.rtps.ros import Node, names
+from firm_hdl.rtps.wire.guid import Guid, is_keyed
 
 __all__ = ["RtpsGraph"]
 
@@ -65,6 +65,12 @@ class RtpsGraph(FutureGraph):
         self._full: set[int] = set()
         # What was counted before the graph was joined again.
         self._past: Counter[str] = Counter()
+        # Endpoints of peers that did not fit, and whose nodes were not known yet.
+        self._nameless: set[Guid] = set()
+        # Our endpoints by the names of their topics on the wire.
+        self._own: dict[str, list[OwnEndpoint]] = {}
+        for own in own_endpoints(description):
+            self._own.setdefault(own.name, []).append(own)
 
     def open(self, on_message: OnMessage) -> None:
         self.close()
@@ -98,7 +104,7 @@ class RtpsGraph(FutureGraph):
                 response_hash=hashes["out"],
             )
             return
-        (_, store), qos = topic.stores[0], _qos(topic.qos)
+        (_, store), qos = topic.stores[0], qos_of(topic)
         options = {"type_hash": type_hash(store.message)}
         if topic.kind == "publish":
             self._writers[topic.id] = node.publisher(topic.name, topic.type, qos, **options)
@@ -132,6 +138,29 @@ class RtpsGraph(FutureGraph):
         lost = sum(reader.lost for reader in self._readers)
         overwritten = sum(writer.overwritten for writer in self._writers.values())
         self.counters = self._past + Counter({"lost": lost, "overwritten": overwritten})
+        if self._node is not None:
+            self._tell_mismatches(self._node)
+
+    def _tell_mismatches(self, node: Node) -> None:
+        """Name the endpoints of peers that do not fit; their nodes may be known a little later."""
+        there = node.context.participant
+        wrong = [
+            (own, each, writes)
+            for writes in (True, False)
+            for each in there.remotes(writes)
+            for own in self._own.get(each.topic, ())
+            if _mismatch("", own, each, writes)
+        ]
+        if wrong:
+            owners = {
+                guid: f"{each.namespace.rstrip('/')}/{each.name}"
+                for each in node.context.nodes()
+                for guid in (*each.readers, *each.writers)
+            }
+            for own, each, writes in wrong:
+                if each.guid in owners or each.guid in self._nameless:
+                    self.tell(_mismatch(owners.get(each.guid, ""), own, each, writes) or "")
+        self._nameless = {each.guid for _, each, _ in wrong}
 
     def close(self) -> None:
         self.check()
@@ -143,9 +172,8 @@ class RtpsGraph(FutureGraph):
         self._full.clear()
 
 
-def _qos(qos: Qos) -> RtpsQos:
-    return RtpsQos(
-        reliability=Reliability[qos.reliability.upper()],
-        durability=Durability[qos.durability.upper()],
-        depth=0 if qos.history == "keep_all" else qos.depth,
-    )
+def _mismatch(node: str, own: OwnEndpoint, each: EndpointData, writes: bool) -> str | None:
+    # Types of ROS have no keys, and a type that has one is another.
+    key = " with a key" if is_keyed(each.guid.entity) else ""
+    found = names.type_hash_of(each.user_data)
+    return own.mismatch(node, writes, each.type_name + key, found, each.qos)

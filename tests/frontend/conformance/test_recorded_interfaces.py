@@ -138,6 +138,33 @@ def test_types_of_old_databases_come_from_a_distribution_or_a_folder(tmp_path, c
     assert main(["proto", *arguments]) == 0
 
 
+def test_a_distribution_that_was_named_is_not_proposed(tmp_path, capsys):
+    path = make_old_db3(tmp_path / "x.db3", ["p/msg/A"])
+    for more in ([], ["--bag", str(make_old_db3(tmp_path / "y.db3", ["std_msgs/msg/Bool"]))]):
+        main(["list", "--bag", str(path), *more, "--distro", "humble"])
+        said = capsys.readouterr().err
+        assert "none was recorded, and humble does not have it; name a folder that has" in said
+        assert "--distro" not in said
+    mcap = write_mcap(tmp_path / "x.mcap", Channel(type="p/msg/A", text="q/B b\n"))
+    assert main(["show", "p/A", "--bag", str(mcap), "--distro", "humble"]) == 1
+    said = capsys.readouterr().err
+    assert "the recording and humble lack it: name a folder" in said and "--distro" not in said
+
+
+def test_one_recording_has_what_another_lacks(tmp_path):
+    """Whatever their order is, and whether the first has anything of its own."""
+    old = make_old_db3(tmp_path / "old.db3", ["p/msg/A", "p/msg/B"])
+    some = write_db3(tmp_path / "some", STRING, Channel(type="p/msg/A", schema="other", text=""))
+    a = write_mcap(tmp_path / "a.mcap", Channel(type="p/msg/A", text="int8 a\n"))
+    b = write_mcap(tmp_path / "b.mcap", Channel(type="p/msg/B", text="A a\n"))
+    for bags in ([old, a, b], [a, old, b], [b, a, old], [some, a, b]):
+        ours = open_library(bags=bags)
+        assert fields(ours, "p/A") == [("a", "int8")] and not ours.unusable
+        assert fields(ours, "p/B") == [("a", "p/msg/A")]
+    with pytest.raises(DefinitionError, match=r"old\.db3' has a topic of type 'p/msg/B', but not"):
+        open_library(bags=[old, a]).message("p/B")
+
+
 @pytest.mark.parametrize("write", [write_mcap, write_db3])
 @pytest.mark.parametrize(
     ("language", "text", "reason"),

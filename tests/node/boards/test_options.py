@@ -16,7 +16,7 @@ from firm_hdl.node.boards import BoardError, board_of, udp
 from firm_hdl.node.boards.bytestreams import ByteBoard
 from firm_hdl.node.bytestream import write_frame
 from tests.node.accelerators import echo_text
-from tests.node.bridge.fakes import ECHO
+from tests.node.bridge.fakes import ECHO, LINE
 from tests.node.samples import read
 
 
@@ -36,7 +36,7 @@ def option(board, level, name):
 
 def test_a_message_over_tcp_waits_for_no_other_and_little_is_held():
     with socket.create_server(("127.0.0.1", 0)) as server:
-        board = board_of(f"tcp://127.0.0.1:{server.getsockname()[1]}", ECHO)
+        board = board_of(f"tcp://127.0.0.1:{server.getsockname()[1]}", LINE)
         board.open()
         assert option(board, socket.IPPROTO_TCP, socket.TCP_NODELAY)
         # Linux doubles it, and would begin with 2.5 MB on the loopback interface.
@@ -120,7 +120,7 @@ def test_datagrams_of_the_largest_size_are_received_whole():
 
 @pytest.mark.parametrize(("baud", "speed"), [(9600, termios.B9600), (115_200, termios.B115200)])
 def test_each_byte_passes_a_serial_line_as_it_is(line, baud, speed):
-    board = board_of(f"serial://{line[0]}?baud={baud}", ECHO)
+    board = board_of(f"serial://{line[0]}?baud={baud}", LINE)
     board.open()
     found_in, out, control, local, *speeds, characters = termios.tcgetattr(board.fileno())
     assert (found_in, out, local) == (0, 0, 0)
@@ -136,7 +136,7 @@ def test_each_byte_passes_a_serial_line_as_it_is(line, baud, speed):
 def test_bytes_of_before_are_not_read(line):
     name, host = line
     os.write(host, b"abc\0")
-    board = board_of(f"serial://{name}?baud=9600", ECHO)
+    board = board_of(f"serial://{name}?baud=9600", LINE)
     board.open()
     assert board.receive() == [] and not board.counters.total()
     # What comes now is: a frame that is damaged.
@@ -156,7 +156,7 @@ def test_a_file_that_is_no_line_stays_closed(tmp_path, monkeypatch):
 
     monkeypatch.setattr(os, "open", noted)
     with pytest.raises(BoardError, match=r"^'.*/file' is no serial device$"):
-        board_of(f"serial://{path}", ECHO).open()
+        board_of(f"serial://{path}", LINE).open()
     with pytest.raises(OSError, match="Bad file descriptor"):
         os.fstat(opened[0])
 

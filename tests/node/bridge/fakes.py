@@ -14,9 +14,11 @@ from firm_hdl.node.messages import MessageReceiver, MessageSender, NodeMessage
 from tests.node.accelerators import echo_text
 from tests.node.samples import read
 
-__all__ = ["ECHO", "FakeBoard", "FakeGraph", "FakeNode", "bridge_of", "run_until"]
+__all__ = ["ECHO", "LINE", "FakeBoard", "FakeGraph", "FakeNode", "bridge_of", "run_until"]
 
 ECHO = read(echo_text(link="udp"))
+LINE = read(echo_text(link="uart"))
+"""The same node on a stream of bytes."""
 HEARD, SAID, STAMP, CAL = ECHO.topics
 
 

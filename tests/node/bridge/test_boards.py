@@ -23,7 +23,7 @@ from firm_hdl.node.boards.bytestreams import ByteBoard, SerialBoard, TcpBoard
 from firm_hdl.node.boards.udp import UdpBoard
 from firm_hdl.node.bytestream import ByteStreamReader, write_frame
 from tests.node.accelerators import echo_text
-from tests.node.bridge.fakes import ECHO, HEARD, FakeGraph, FakeNode, bridge_of, run_until
+from tests.node.bridge.fakes import ECHO, HEARD, LINE, FakeGraph, FakeNode, bridge_of, run_until
 from tests.node.samples import read
 
 TEXTS = [b"%d" % n * (n % 300) for n in range(200)]
@@ -135,7 +135,7 @@ def exchange(board, texts, description=ECHO, seconds=20):
     ],
 )
 def test_names_of_boards(name, kind):
-    board = board_of(name, ECHO)
+    board = board_of(name, ECHO if kind is UdpBoard else LINE)
     assert type(board) is kind and board.name == name
     assert board.frame_bytes == (1472 if kind is UdpBoard else None)
 
@@ -159,9 +159,19 @@ def test_wrong_names_of_boards(name, message):
         board_of(name, ECHO)
 
 
-def test_only_a_link_of_udp_says_the_port_of_a_board():
-    with pytest.raises(UserError, match=r"'udp://a' needs a port, such as udp://a:7411"):
-        board_of("udp://a", read(echo_text(link="uart")))
+@pytest.mark.parametrize("name", ["udp://a", "udp://a:1", "tcp://a:1", "serial:///dev/x"])
+@pytest.mark.parametrize("link", ["stream", "udp", "uart"])
+def test_a_board_of_another_link_is_refused(name, link):
+    kind = "udp" if name.startswith("udp") else "uart"
+    if link == kind:
+        board_of(name, read(echo_text(link=link)))
+        return
+    message = f"^'{name}' is a board whose link is '{kind}', and the link of 'echo' is '{link}', "
+    with pytest.raises(UserError, match=message):
+        board_of(name, read(echo_text(link=link)))
+
+
+def test_the_link_says_the_port_of_a_board():
     assert board_of("udp://a", read(echo_text(link="{kind: udp, port: 99}")))._address == ("a", 99)
 
 
@@ -213,7 +223,7 @@ def test_a_host_without_a_name_is_an_error_that_may_pass():
 
 def test_a_board_behind_tcp_and_its_restart():
     with socket.create_server(("127.0.0.1", 0)) as server:
-        board = board_of(f"tcp://127.0.0.1:{server.getsockname()[1]}", ECHO)
+        board = board_of(f"tcp://127.0.0.1:{server.getsockname()[1]}", LINE)
         accepted, nodes = [], []
 
         def accept():
@@ -240,7 +250,7 @@ def test_a_board_behind_a_serial_line(serial):
     """So many bytes have room at once, if the line should stand still."""
     name, serve = serial
     serve()
-    made, got, _ = exchange(board_of(name, ECHO), TEXTS[:100])
+    made, got, _ = exchange(board_of(name, LINE), TEXTS[:100])
     made.close()
     assert got == TEXTS[:100] and not made.on_the_way
 
@@ -250,7 +260,7 @@ def test_flipped_bits_of_a_serial_line_lose_messages_and_change_none(serial):
     node = serve(flips=0.01)
     texts = [b"%d." % n for n in range(300)]
     # Not all come back.
-    made, got, _ = exchange(board_of(name, ECHO), texts, seconds=0.7)
+    made, got, _ = exchange(board_of(name, LINE), texts, seconds=0.7)
     made.close()
     assert node.flipped > 100 and 30 < len(got) < 300
     # In order, each at most once, and none that was not sent.
@@ -261,7 +271,7 @@ def test_flipped_bits_of_a_serial_line_lose_messages_and_change_none(serial):
 def test_a_serial_line_that_ends(serial):
     name, serve = serial
     node = serve()
-    made, _, said = exchange(board_of(name, ECHO), [])
+    made, _, said = exchange(board_of(name, LINE), [])
     node.stop()
     # Ends the pty; the fixture closes the file.
     os.dup2(os.open(os.devnull, os.O_RDWR), node.file)
@@ -274,11 +284,11 @@ def test_a_file_is_no_serial_line(tmp_path):
     path = tmp_path / "file"
     path.write_text("")
     with pytest.raises(BoardError, match="is no serial device"):
-        board_of(f"serial://{path}", ECHO).open()
+        board_of(f"serial://{path}", LINE).open()
     with pytest.raises(BoardError, match="cannot open '/dev/no-such-tty': No such file"):
-        board_of("serial:///dev/no-such-tty", ECHO).open()
+        board_of("serial:///dev/no-such-tty", LINE).open()
     with pytest.raises(BoardError, match="is no serial device"):
-        board_of("serial:///dev/null", ECHO).open()
+        board_of("serial:///dev/null", LINE).open()
 
 
 def full(board):
@@ -291,7 +301,7 @@ def full(board):
 @pytest.mark.parametrize("baud", [9600, 115_200, 1_000_000])
 def test_a_twentieth_of_a_second_of_a_line_may_wait(serial, baud):
     name, _ = serial
-    board = board_of(name.replace("1000000", str(baud)), ECHO)
+    board = board_of(name.replace("1000000", str(baud)), LINE)
     board.open()
     # Nobody reads the other end of the pty, whose 4 KiB are not counted.
     assert 0 <= full(board) - baud / 10 / 20 < 200
@@ -304,7 +314,7 @@ def test_a_twentieth_of_a_second_of_a_line_may_wait(serial, baud):
 
 def test_what_a_driver_holds_takes_room(serial, monkeypatch):
     name, _ = serial
-    board = board_of(name.replace("1000000", "9600"), ECHO)
+    board = board_of(name.replace("1000000", "9600"), LINE)
     board.open()
     for held, has_room in [(0, True), (47, True), (48, False), (4096, False)]:
         monkeypatch.setattr(fcntl, "ioctl", lambda *_, held=held: held.to_bytes(4, sys.byteorder))
@@ -320,7 +330,7 @@ def test_what_a_driver_holds_takes_room(serial, monkeypatch):
 
 def test_a_connection_has_little_room_for_a_slow_peer():
     with socket.create_server(("127.0.0.1", 0)) as server:
-        board = board_of(f"tcp://127.0.0.1:{server.getsockname()[1]}", ECHO)
+        board = board_of(f"tcp://127.0.0.1:{server.getsockname()[1]}", LINE)
         board.open()
         with server.accept()[0]:
             assert 0 <= full(board) - 65_536 < 200
@@ -331,7 +341,7 @@ def test_a_connection_has_little_room_for_a_slow_peer():
 def test_a_slow_line_loses_messages_and_names_them(serial, room):
     """The twin has so much room that nothing is lost: commands would come 10 s late."""
     name, serve = serial
-    board = board_of(name, ECHO)
+    board = board_of(name, LINE)
     node = serve()
     made, _, _ = exchange(board, [])
     # The node reads no more, and the line stands still.

@@ -79,6 +79,14 @@ class Rclpy(ModuleType):
         self.context = SimpleNamespace(Context=Context)
         self.calls, self.made, self.sent, self.services = [], {}, [], {}
         self.executor_ends, self.destroyed = [], 0
+        # What the graph has, by name and whether that is one on the wire.
+        self.publishers, self.subscriptions = {}, {}
+
+    def get_publishers_info_by_topic(self, name, no_mangle):
+        return self.publishers.get((name, no_mangle), [])
+
+    def get_subscriptions_info_by_topic(self, name, no_mangle):
+        return self.subscriptions.get((name, no_mangle), [])
 
     def init(self, *, context, domain_id, signal_handler_options):
         context.is_up = True
@@ -234,6 +242,78 @@ def test_messages_pass_rclpy_as_bytes_and_answers_find_their_callers(rclpy):
     assert rclpy.destroyed == 1
 
 
+def endpoint(kind, type_name, node="peer", **given):
+    """What rclpy tells of an endpoint; words are policies."""
+    forever = SimpleNamespace(nanoseconds=(1 << 63) - 1)
+    policies = {"reliability": "RELIABLE", "durability": "VOLATILE", "liveliness": "AUTOMATIC"}
+    policies |= {key: given.pop(key) for key in list(given) if key in policies}
+    words = {key: SimpleNamespace(name=word) for key, word in policies.items()}
+    return SimpleNamespace(
+        endpoint_type=SimpleNamespace(name=kind),
+        topic_type=type_name,
+        node_name=node,
+        node_namespace="/",
+        endpoint_gid=[1, 2],
+        qos_profile=SimpleNamespace(
+            **words,
+            deadline=given.pop("deadline", forever),
+            liveliness_lease_duration=forever,
+        ),
+        **given,
+    )
+
+
+def test_peers_that_rclpy_finds_and_that_do_not_fit_are_told_once(rclpy):
+    string, other = "std_msgs/msg/String", f"RIHS01_{64 * '0'}"
+    rclpy.publishers = {
+        ("/robot/heard", False): [
+            endpoint("PUBLISHER", "std_msgs/msg/Bool"),
+            endpoint("PUBLISHER", string),
+            endpoint("PUBLISHER", string, reliability="BEST_EFFORT"),
+            endpoint("PUBLISHER", string, topic_type_hash=other),
+            # Its policies are not known.
+            endpoint("PUBLISHER", string, reliability="UNKNOWN", topic_type_hash="INVALID"),
+        ],
+        ("rq/robot/calRequest", True): [
+            endpoint("PUBLISHER", "a::srv::dds_::B_Request_", "_NODE_NAME_UNKNOWN_")
+        ],
+    }
+    second = SimpleNamespace(nanoseconds=10**9)
+    rclpy.subscriptions = {
+        ("/robot/said", False): [
+            endpoint("SUBSCRIPTION", string),
+            endpoint("SUBSCRIPTION", string, durability="TRANSIENT_LOCAL", deadline=second),
+        ],
+    }
+    graph = RclpyGraph(read_description_text(ROS2, library=LIBRARY))
+    graph.open(lambda *message: None)
+    try:
+        graph.check()
+        found = graph.news()
+        unfit = "it with a QoS that does not fit, so no messages pass:"
+        best_effort = "(best_effort is offered, and reliable asked for)"
+        assert [line for line in found if "its type hash" not in line] == [
+            f"/robot/said: node /peer subscribes to {unfit} reliability {best_effort}",
+            f"/robot/said: node /peer subscribes to {unfit} reliability {best_effort}, durability "
+            "(volatile is offered, and transient_local asked for), deadline",
+            "/robot/heard: node /peer publishes 'std_msgs/msg/Bool', and the type here is "
+            "'std_msgs/msg/String'; no messages pass",
+            f"/robot/heard: node /peer publishes {unfit} reliability {best_effort}",
+        ]
+        (line,) = set(found) - {line for line in found if "its type hash" not in line}
+        assert f"publishes another definition of '{string}': its type hash is {other}, " in line
+        # Its node may be known soon.
+        graph.check()
+        assert graph.news() == [
+            "/robot/cal: a peer calls 'a/srv/B', and the type here is 'robot_msgs/srv/Calibrate'; "
+            "no messages pass"
+        ]
+        graph.check()
+        assert not graph.news()
+    finally:
+        graph.close()
+
+
 def test_rclpy_that_ends_or_fails_is_told(rclpy, monkeypatch):
     description = read_description_text(ROS2, library=LIBRARY)
     said = description.topics[0]
@@ -312,7 +392,7 @@ def ros1_echo(tmp_path_factory):
 def rospy(monkeypatch):
     monkeypatch.setenv("ROS_NAMESPACE", "")
     monkeypatch.setattr(ros1, "_WATCH_SECONDS", 0.005)
-    master = SimpleNamespace(pid=7, is_online=True, asked=0)
+    master = SimpleNamespace(pid=7, is_online=True, asked=0, types=[])
     made = []
 
     def process():
@@ -341,7 +421,7 @@ def rospy(monkeypatch):
         "rosgraph",
         is_master_online=lambda: master.is_online,
         get_master_uri=lambda: "http://here",
-        Master=lambda name: SimpleNamespace(getPid=process),
+        Master=lambda name: SimpleNamespace(getPid=process, getTopicTypes=lambda: master.types),
     )
     monkeypatch.setitem(sys.modules, "rospy", rospy)
     monkeypatch.setitem(sys.modules, "rosgraph", rosgraph)
@@ -415,6 +495,21 @@ def test_a_board_without_an_answer_is_an_error_of_the_service(rospy, ros1_echo, 
         with pytest.raises(rospy.ServiceException, match=r"^the board did not answer$"):
             rospy.endpoints[-1].handler[0](SimpleNamespace(_buff=b""))
     graph.close()
+
+
+def test_a_topic_that_others_have_with_another_type_is_told(rospy, ros1_echo):
+    graph = graph_of("ros1", ros1_echo)
+    # `*` is what a master has of a subscription to any type.
+    rospy.master.types = [["/robot/said", "a/B"], ["/robot/kept", "*"], ["/robot/reset", "a/B"]]
+    graph.open(lambda *message: None)
+    try:
+        assert wait(lambda: rospy.master.asked > 1)
+        assert graph.news() == [
+            "/robot/said: another node has it with the type 'a/B', and the type here is "
+            "'std_msgs/String'; no messages pass"
+        ]
+    finally:
+        graph.close()
 
 
 def test_a_master_that_is_gone_or_another_is_told(rospy, ros1_echo):

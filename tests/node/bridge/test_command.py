@@ -20,13 +20,20 @@ from firm_hdl.node.bridge.status import Status
 from tests.node.accelerators import echo_text
 from tests.node.bridge.fakes import ECHO, FakeBoard, FakeGraph, FakeNode
 from tests.node.bridge.test_boards import UdpNode
-from tests.node.samples import PACKAGES
+from tests.node.samples import PACKAGES, read
 
 
 @pytest.fixture
 def file(tmp_path):
     path = tmp_path / "echo.yaml"
     path.write_text(echo_text(link="udp", paths=f"'{PACKAGES}'") + "\n")
+    return str(path)
+
+
+@pytest.fixture
+def line_file(tmp_path):
+    path = tmp_path / "line.yaml"
+    path.write_text(echo_text(link="uart", paths=f"'{PACKAGES}'") + "\n")
     return str(path)
 
 
@@ -67,9 +74,9 @@ def test_standard_input_may_be_anything(file, board, capsys, monkeypatch, stdin)
     assert (lost in err) == (stdin is not None) and "Traceback" not in err
 
 
-def test_a_board_that_never_answers_ends_with_an_error(file, capsys):
+def test_a_board_that_never_answers_ends_with_an_error(line_file, capsys):
     options = ["--board", "tcp://127.0.0.1:1", "--graph", "none", "--seconds", "0.3"]
-    assert main(["node", "run", file, *options]) == 1
+    assert main(["node", "run", line_file, *options]) == 1
     err = capsys.readouterr().err
     assert "the board has never answered" in err
     assert "error: the board tcp://127.0.0.1:1 did not answer in 0.3 s" in err
@@ -195,11 +202,12 @@ def test_a_second_ctrl_c_ends_the_last_questions(file, board, capsys, monkeypatc
     assert "not all counters on the board could be read at the end" in err
 
 
-def test_ctrl_c_ends_it_while_there_is_no_board(file):
+def test_ctrl_c_ends_it_while_there_is_no_board(line_file):
     """As a process, as Ctrl-C is one's own in a terminal."""
     code = "import sys; from firm_hdl.cli import main; sys.exit(main())"
-    command = [sys.executable, "-c", code, "node", "run", file, "--board", "tcp://127.0.0.1:1"]
-    process = subprocess.Popen([*command, "--graph", "none"], stderr=subprocess.PIPE, text=True)
+    options = ["--board", "tcp://127.0.0.1:1", "--graph", "none"]
+    command = [sys.executable, "-c", code, "node", "run", line_file, *options]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     try:
         assert "cannot reach tcp://127.0.0.1:1: Connection refused" in process.stderr.readline()
         process.send_signal(signal.SIGINT)
@@ -274,6 +282,18 @@ def test_a_quiet_one_prints_no_figures(started, capsys, monkeypatch):
     command.run_bridge(ECHO, "sim", engine="amaranth", quiet=True)
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("board sim: starts; Amaranth's simulator")
+
+
+def test_what_a_link_cannot_carry_is_said_at_the_start(capsys, monkeypatch):
+    text = echo_text(link="{kind: uart, baud: 115200}").replace("256}", "256, rate_hz: 1000}", 1)
+    board = "serial:///dev/no-such-tty?baud=9600"
+    monkeypatch.setattr(Bridge, "run", lambda self, **_: (self.stop(), self.close()))
+    command.run_bridge(read(text), board, graph="none", quiet=True)
+    assert capsys.readouterr().err.splitlines() == [
+        "warning: /heard at 1000 Hz: at least 32,000 bytes/s to the node, and the link carries "
+        "11,520 (115200 baud)",
+        f"warning: board {board} has 9600 baud, and the link of the description has 115200",
+    ]
 
 
 def test_only_a_simulation_says_what_it_starts(started, capsys):

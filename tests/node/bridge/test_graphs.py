@@ -14,17 +14,19 @@ from types import ModuleType
 import pytest
 
 from firm_hdl.errors import UserError
+from firm_hdl.identity import type_hash
 from firm_hdl.node import read_description_text
 from firm_hdl.node.graphs import GraphError, graph_of, rtps
 from firm_hdl.node.graphs.lines import LinesGraph
+from firm_hdl.node.graphs.mismatch import qos_of
 from firm_hdl.node.graphs.ros1 import definitions
 from firm_hdl.node.graphs.ros2 import RclpyGraph, has_rclpy
 from firm_hdl.node.graphs.rtps import RtpsGraph
-from firm_hdl.rtps import HistoryFullError, Qos
+from firm_hdl.rtps import Durability, HistoryFullError, Participant, Qos, Reliability
 from firm_hdl.rtps.ros import Node, names
 from firm_hdl.rtps.ros.graph import TYPE_HASH
 from tests.node.accelerators import echo_text
-from tests.node.bridge.fakes import CAL, ECHO, HEARD, SAID, STAMP
+from tests.node.bridge.fakes import CAL, ECHO, HEARD, SAID, STAMP, bridge_of, run_until
 from tests.node.samples import read
 
 # One that no other test has.
@@ -126,7 +128,7 @@ def test_the_domain_of_the_environment(monkeypatch):
 def test_policies_of_a_topic_are_those_of_its_endpoints(options, policies):
     text = f"node: n\npublish: {{a: {{type: std_msgs/msg/Bool{options}}}}}\n"
     (topic,) = read_description_text(text).topics
-    found = rtps._qos(topic.qos)
+    found = qos_of(topic)
     assert (found.reliability, found.durability, found.depth) == policies
 
 
@@ -168,6 +170,64 @@ def test_our_own_participant():
         graph.close()
     with pytest.raises(GraphError, match="the participant is closed"):
         graph.publish(said, b"")
+
+
+def test_peers_that_do_not_fit_are_named_once():
+    made, said = bridge_of(graph=RtpsGraph(ECHO, **OPTIONS))
+    best_effort = Qos(reliability=Reliability.BEST_EFFORT)
+    lasting = Qos(durability=Durability.TRANSIENT_LOCAL)
+    other = "RIHS01_" + 64 * "0"
+    try:
+        with Node("peer", "/p", **OPTIONS) as peer, Participant(**OPTIONS) as stranger:
+            peer.publisher("/heard", "std_msgs/msg/Bool")
+            peer.publisher("/said", "std_msgs/msg/Byte")
+            peer.publisher("/heard", STRING, best_effort)
+            peer.publisher("/heard", STRING, type_hash=other)
+            peer.subscription("/said", STRING, print, lasting)
+            # These fit.
+            peer.publisher("/heard", STRING, lasting)
+            peer.subscription("/said", STRING, print, best_effort)
+            peer.publisher("/said", STRING, best_effort)
+            peer.client("/cal", "robot_msgs/srv/Other")
+            peer.client("/cal", "robot_msgs/srv/Calibrate")
+            stranger.writer("rt/heard", "a\nb\x1b")
+            stranger.writer("rt/heard", "a\nb\x1b")
+            assert run_until(made, lambda: len(said) >= 9), said
+            begin = made.graph.counters.copy()
+            run_until(made, lambda: False, seconds=2.5)
+    finally:
+        made.close()
+    own = type_hash(SAID.stores[0][1].message)
+    assert begin == {"lost": 0} and said[:2] == ["board fake: ready", "graph rtps: joined"]
+    unfit = "it with a QoS that does not fit, so no messages pass:"
+    assert sorted(said[2:]) == sorted(
+        f"graph rtps: {line}"
+        for line in (
+            "/heard: node /p/peer publishes 'std_msgs/msg/Bool', and the type here is "
+            "'std_msgs/msg/String'; no messages pass",
+            "/said: node /p/peer publishes 'std_msgs/msg/Byte', and the type here is "
+            "'std_msgs/msg/String'; no messages pass",
+            f"/heard: node /p/peer publishes {unfit} reliability (best_effort is offered, and "
+            "reliable asked for)",
+            f"/heard: node /p/peer publishes another definition of '{STRING}': its type hash is "
+            f"{other}, and that of the description is {own}",
+            f"/said: node /p/peer subscribes to {unfit} durability (volatile is offered, and "
+            "transient_local asked for)",
+            "/cal: node /p/peer calls 'robot_msgs/srv/Other', and the type here is "
+            "'robot_msgs/srv/Calibrate'; no messages pass",
+            "/heard: a peer publishes 'a\\nb\\x1b', and the type here is 'std_msgs/msg/String'; "
+            "no messages pass",
+        )
+    )
+
+
+def test_a_peer_with_many_types_is_not_named_for_ever():
+    graph = RtpsGraph(ECHO, **OPTIONS)
+    for number in range(1000):
+        graph.tell(str(number))
+    assert len(graph.news()) == 101 and not graph.news()
+    graph.tell("again")
+    assert not graph.news()
 
 
 def test_endpoints_of_a_service_have_the_hashes_of_its_messages():

@@ -10,7 +10,7 @@ import pytest
 from firm_hdl.node.boards import BoardError, board_of
 from firm_hdl.node.boards.bytestreams import ByteBoard
 from firm_hdl.node.bridge import bridge
-from tests.node.bridge.fakes import ECHO, HEARD, FakeBoard, FakeGraph, bridge_of, run_until
+from tests.node.bridge.fakes import ECHO, HEARD, LINE, FakeBoard, FakeGraph, bridge_of, run_until
 
 
 def test_messages_wait_for_room_for_a_moment():
@@ -70,7 +70,7 @@ def test_one_message_always_has_room():
 def test_a_connection_that_is_reset_takes_no_more():
     with socket.create_server(("127.0.0.1", 0)) as server:
         name = f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        board = board_of(name, ECHO)
+        board = board_of(name, LINE)
         board.open()
         server.accept()[0].close()
         # The first bytes are answered with a reset, from which on the system takes no more.

@@ -63,6 +63,34 @@ def test_two_topics_that_a_remapping_makes_one_are_refused():
     ]
 
 
+@pytest.mark.parametrize(
+    ("first", "second", "more"),
+    [
+        ("/r/a", "/r/a", ""),
+        ("a", "/r/a", ""),
+        ("~/a", "n/a", ""),
+        ("/r/n/a", "~/a", ""),
+        ("/b", "a", "remap: {a: /b}\n"),
+        ("c", "d", "remap: {c: /x, d: /x}\n"),
+    ],
+)
+def test_a_topic_has_one_type_by_whatever_names(first, second, more):
+    text = f"node: n\nnamespace: /r\n{more}publish:\n  {first}: {BOOL}\nsubscribe:\n"
+    text += f"  {second}: {{depth: 1, type: std_msgs/Byte}}\n"
+    with pytest.raises(DefinitionError) as caught:
+        described(text)
+    head, line, caret = str(caught.value).splitlines()
+    row, column = text.count("\n"), text.splitlines()[-1].index("std_msgs") + 1
+    assert head.startswith(f"<description>:{row}:{column}: error: the topic '/")
+    wanted = f"has the type 'std_msgs/msg/Bool' already ('{first}' in line {row - 2}); a topic "
+    assert wanted in head
+    assert line == text.splitlines()[-1] and caret == " " * (column - 1) + "^" * 13
+    # One type has many names; and a service is no topic.
+    described(text.replace("std_msgs/Byte", "std_msgs/Bool"))
+    served = text.replace("depth: 1, type: std_msgs/Byte", "type: robot_msgs/Calibrate")
+    described(served.replace("subscribe", "serve"))
+
+
 def test_the_complete_name_of_a_topic_has_a_limit():
     """The namespace counts; the name of the node does for its private names."""
     for written, length in ((f"{'x' * 45}", 247), (f"{'x' * 46}", 248), (f"~/{'x' * 43}", 248)):

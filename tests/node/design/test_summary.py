@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from firm_hdl.estimates import estimates_of
 from firm_hdl.node import read_description_text
 from firm_hdl.node.summary import facts_of, summary
@@ -99,6 +101,56 @@ def test_areas_are_those_of_the_converter_of_each_direction():
         wanted, (topic,) = estimates_of(plan)[part], facts_of(description)["topics"]
         (store,) = topic["packets"].values()
         assert (store["estimate"]["lut"], store["estimate"]["ff"]) == (wanted.lut, wanted.ff)
+
+
+BEYOND = """\
+node: n
+link: {kind: KIND}
+clock_mhz: 2
+subscribe:
+  /a: {type: geometry_msgs/msg/Twist, rate_hz: 200}
+  /b: {type: geometry_msgs/msg/Twist, rate_hz: 300000}
+  /c: {type: std_msgs/msg/String, memory_bytes: 64}
+publish:
+  /d: {type: builtin_interfaces/msg/Time, rate_hz: 1}
+serve:
+  /e: {type: robot_msgs/srv/Calibrate, memory_bytes: 64}
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "link"),
+    [
+        # Frames have a header of 16 bytes, and on a line 7 bytes more.
+        ("uart, baud: 100000", "22,515,000 bytes/s to the node, and the link carries 10,000 (100"),
+        ("udp", "20,413,600 bytes/s to the node, and the link carries 2,000,000 (1 bytes per"),
+        ("udp, data_bytes: 16", ""),
+        ("stream", "20,413,600 bytes/s to the node, and the link carries 16,000,000 (8 bytes"),
+    ],
+)
+def test_what_a_node_cannot_carry_is_a_warning(kind, link):
+    found = summary(read(BEYOND.replace("KIND", kind))).splitlines()
+    warnings = [line.removeprefix("warning: ") for line in found if line.startswith("warning: ")]
+    assert warnings.pop(0) == "/b: a rate of 300000 Hz needs a clock of 2.1 MHz"
+    if link:
+        assert f"/a at 200 Hz, /b at 300000 Hz: at least {link}" in warnings.pop(0)
+    assert warnings == [
+        "/e (out): a message has up to 76 bytes, and the memory has room for 64; larger ones are "
+        "dropped",
+        "larger messages are dropped, and the types set no limit: /c over 64 bytes, /e (in) over "
+        "64 bytes",
+    ]
+
+
+def test_a_memory_of_the_link_limits_what_comes():
+    link = "{kind: udp, memory_bytes: 64}"
+    text = summary(read(BEYOND, link=link))
+    assert "/a: a message has up to 52 bytes, and the link has room for 48" in text
+    assert "/c over 48 bytes" in text
+    # A message has 65,536 frames at most.
+    few = "{kind: udp, datagram_bytes: 32}"
+    large = "node: n\nsubscribe: {/a: {type: std_msgs/msg/String, memory_bytes: 4194304}}\n"
+    assert "/a over 1048576 bytes" in summary(read(large, link=few))
 
 
 WRITTEN_OUT = """\

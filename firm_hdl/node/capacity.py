@@ -1,0 +1,95 @@
+"""What the link and the memories of a node carry, and what its topics may need beyond that."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from firm_hdl.metrics import metrics_of
+from firm_hdl.node.bytestream import CRC_BYTES
+from firm_hdl.node.description import Description, Direction, Store
+from firm_hdl.node.frame import HEADER_BYTES
+
+__all__ = ["bytes_on_link", "link_bytes_per_second", "most_bytes", "rate_problems", "size_problems"]
+
+_WAYS: dict[Direction, str] = {"in": "to the node", "out": "from the node"}
+_MOST_NAMED = 8
+_MOST_FRAGMENTS = 1 << 16
+
+
+def most_bytes(description: Description, direction: Direction, store: Store) -> int:
+    """Return the size of the largest message that has room in all memories on its way."""
+    link, most = description.link, store.memory_bytes
+    if direction == "in" and link.kind != "stream":
+        most = min(most, link.memory_bytes - HEADER_BYTES)
+    if link.kind == "udp":
+        most = min(most, _MOST_FRAGMENTS * (link.datagram_bytes - HEADER_BYTES))
+    return most
+
+
+def bytes_on_link(description: Description, packet_bytes: int) -> int:
+    """Return how many bytes a message takes on the link, at least."""
+    link = description.link
+    if link.kind == "uart":
+        # A byte of COBS, and a byte 0 before and after.
+        return HEADER_BYTES + packet_bytes + CRC_BYTES + 3
+    room = link.datagram_bytes - HEADER_BYTES if link.kind == "udp" else max(1, packet_bytes)
+    return packet_bytes + HEADER_BYTES * max(1, -(-packet_bytes // room))
+
+
+def link_bytes_per_second(description: Description) -> float:
+    """Return what the link carries in each direction at most."""
+    link = description.link
+    if link.kind == "uart":
+        # A byte has a start bit and a stop bit.
+        return link.baud / 10
+    return description.clock_hz * (link.data_bytes if link.kind == "udp" else description.bus_bytes)
+
+
+def rate_problems(description: Description) -> Iterator[str]:
+    """Yield a line for each direction whose stated rates the link cannot carry."""
+    link, carries = description.link, link_bytes_per_second(description)
+    cycle = f"{link.data_bytes if link.kind == 'udp' else description.bus_bytes} bytes per cycle"
+    why = f"{link.baud} baud" if link.kind == "uart" else cycle
+    for direction, way in _WAYS.items():
+        least, most, names = 0.0, 0.0, []
+        for topic in description.topics:
+            store = topic.store(direction)
+            if store is None or topic.rate_hz is None:
+                continue
+            sizes = metrics_of(store.message, description.wire)
+            shortest = sizes.min_bytes or 0
+            longest = min(most_bytes(description, direction, store), sizes.max_bytes or shortest)
+            least += topic.rate_hz * bytes_on_link(description, shortest)
+            most += topic.rate_hz * bytes_on_link(description, longest)
+            names.append(f"{topic.name} at {topic.rate_hz:g} Hz")
+        if most > carries:
+            needs = f"at least {least:,.0f}" if least > carries else f"up to {most:,.0f}"
+            yield (
+                f"{_some(names)}: {needs} bytes/s {way}, and the link carries {carries:,.0f} "
+                f"({why})"
+            )
+
+
+def size_problems(description: Description) -> Iterator[str]:
+    """Yield lines about messages that may be larger than the memories on their way."""
+    endless = []
+    for topic in description.topics:
+        for direction, store in topic.stores:
+            room = most_bytes(description, direction, store)
+            most = metrics_of(store.message, description.wire).max_bytes
+            name = topic.name if topic.kind != "serve" else f"{topic.name} ({direction})"
+            if most is None:
+                endless.append(f"{name} over {room} bytes")
+            elif most > room:
+                place = "memory" if room == store.memory_bytes else "link"
+                yield (
+                    f"{name}: a message has up to {most} bytes, and the {place} has room for "
+                    f"{room}; larger ones are dropped"
+                )
+    if endless:
+        yield f"larger messages are dropped, and the types set no limit: {_some(endless)}"
+
+
+def _some(names: list[str]) -> str:
+    more = len(names) - _MOST_NAMED
+    return ", ".join(names[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
