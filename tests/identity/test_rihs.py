@@ -5,8 +5,13 @@ from __future__ import annotations
 import json
 
 import pytest
-from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
-from rosbags.typesys import TypesysError
+from rosbags.typesys import (
+    Stores,
+    TypesysError,
+    get_types_from_idl,
+    get_types_from_msg,
+    get_typestore,
+)
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DISTROS, Library

@@ -14,8 +14,7 @@ from dataclasses import replace
 from functools import cache
 
 import pytest
-from rosbags.typesys import get_types_from_msg
-from rosbags.typesys import TypesysError
+from rosbags.typesys import TypesysError, get_types_from_msg
 
 from firm_hdl.errors import DefinitionError, Source
 from firm_hdl.frontend import Library
