@@ -74,7 +74,8 @@ def write_file(path: str | os.PathLike[str], text: str) -> None:
     """Write a text, as UTF-8, to a path that the user named. Missing folders are made.
 
     A link stays, and the file that it leads to is replaced. A device, standard output, and a FIFO
-    that somebody reads, are written to. Bytes of a file's name that are not UTF-8 are written as in JSON, ``\\udcff``.
+    that somebody reads, are written to. Bytes of a file's name that are not UTF-8 are written as in
+    JSON, ``\\udcff``.
 
     Raises
     ------
