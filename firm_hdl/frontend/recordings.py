@@ -225,9 +225,11 @@ class RecordingOrigin:
         for key in self._owners(name):
             for origin in others:
                 try:
-                    # Why another recording has no definition is no reason here.
-                    is_recording = isinstance(origin, RecordingOrigin)
-                    found = origin._definitions.get(key) if is_recording else origin.find(*key)
+                    if isinstance(origin, RecordingOrigin):
+                        # Why another recording has no definition is no reason here.
+                        found = origin._definitions.get(key)
+                    else:
+                        found = origin.find(*key)
                 except DefinitionError as error:
                     return error.diagnostics[0].message
                 if found is not None:

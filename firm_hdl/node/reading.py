@@ -23,7 +23,7 @@ from firm_hdl.node.names import (
     node_problem,
     topic_problem,
 )
-from firm_hdl.node.topics import TOPIC_KEYS, TopicReader, port_of
+from firm_hdl.node.topics import TOPIC_KEYS, TopicReader, in_keys, port_of
 
 __all__ = ["read_description", "read_description_text"]
 
@@ -175,7 +175,7 @@ class _Reader:
         try:
             return open_library(distro, [*self.paths, *named], bags)
         except DefinitionError as error:
-            for problem in error.diagnostics:
+            for problem in map(in_keys, error.diagnostics):
                 # A folder or a recording that cannot be read has no place of its own.
                 is_of_bags = any(f"'{bag}'" in problem.message for bag in bags)
                 entry = known.get("bags" if is_of_bags or not named else "paths")

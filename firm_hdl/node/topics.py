@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import keyword
 import re
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
-from firm_hdl.errors import DefinitionError
+from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import Library
 from firm_hdl.metrics import metrics_of
 from firm_hdl.model import Action, Interface, Message, Service
@@ -15,7 +16,7 @@ from firm_hdl.node.description import Direction, Kind, Link, Qos, Store, Topic
 from firm_hdl.node.marked_yaml import Entry, Marked
 from firm_hdl.wire import refusals
 
-__all__ = ["TOPIC_KEYS", "TopicReader", "port_of"]
+__all__ = ["TOPIC_KEYS", "TopicReader", "in_keys", "port_of"]
 
 _QOS: dict[str, tuple[str, ...]] = {
     "reliability": ("reliable", "best_effort"),
@@ -135,7 +136,7 @@ class TopicReader:
             found = self.library.interface(name)
         except DefinitionError as error:
             # What is wrong in a definition has its own place; a type that is not there has none.
-            for problem in error.diagnostics:
+            for problem in map(in_keys, error.diagnostics):
                 if problem.span is None:
                     entry.error(problem.message)
                 else:
@@ -208,6 +209,12 @@ class TopicReader:
         if policy == "wait" and kind == "subscribe" and self.link.kind != "stream":
             entry.error(f"a link of kind '{self.link.kind}' cannot be held; use 'drop'")
         return policy
+
+
+def in_keys(problem: Diagnostic) -> Diagnostic:
+    """Name keys of a description where a problem of its definitions names options of commands."""
+    message = problem.message.replace("--depends", "'paths'").replace("--distro", "'distro'")
+    return replace(problem, message=message)
 
 
 def _directions(kind: Kind, interface: Interface) -> tuple[tuple[Direction, Message], ...]:

@@ -324,6 +324,12 @@ def test_recordings_are_read_from_beside_the_file(tmp_path):
     assert len(read_description(file, paths=[PACKAGES]).topics) == 2
     file.write_text(f"node: a\nbags: run.mcap\npaths: '{PACKAGES}'\n{more}")
     assert len(read_description(file).topics) == 2
+    file.write_text(f"node: a\nbags: run.mcap\n{more}")
+    hint = (
+        r":4:48: error: package 'robot_msgs' .* lack it: name a folder that has it with 'paths'; "
+    )
+    with pytest.raises(DefinitionError, match=hint):
+        read_description(file)
     file.write_text(f"node: a\nbags: run.mcap\npaths: far\n{more}")
     with pytest.raises(DefinitionError, match=r"node\.yaml:3:8: error: .*far' is not a folder"):
         read_description(file)

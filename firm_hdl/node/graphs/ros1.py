@@ -134,7 +134,6 @@ class RospyGraph(FutureGraph):
         while not ends.wait(_WATCH_SECONDS):
             try:
                 found = master.getPid()
-                types = dict(master.getTopicTypes())
             except Exception as error:
                 problem = f"the master does not answer: {error}"
                 break
@@ -142,6 +141,9 @@ class RospyGraph(FutureGraph):
             if found != first:
                 problem = "the master has started again"
                 break
+            types: dict[str, str] = {}
+            with suppress(Exception):
+                types = dict(master.getTopicTypes())
             for topic in self._description.topics:
                 other = types.get(topic.name, "*") if topic.kind != "serve" else "*"
                 if other not in ("*", topic.type):

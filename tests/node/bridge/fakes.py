@@ -16,8 +16,9 @@ from tests.node.samples import read
 
 __all__ = ["ECHO", "LINE", "FakeBoard", "FakeGraph", "FakeNode", "bridge_of", "run_until"]
 
-ECHO = read(echo_text(link="udp"))
-LINE = read(echo_text(link="uart"))
+_TEXT = echo_text().replace("memory_bytes: 256", "memory_bytes: 1024", 1)
+ECHO = read(_TEXT, link="udp")
+LINE = read(_TEXT, link="uart")
 """The same node on a stream of bytes."""
 HEARD, SAID, STAMP, CAL = ECHO.topics
 

@@ -10,7 +10,7 @@ from firm_hdl.node.bridge.load import Load
 from tests.node.bridge.fakes import CAL, HEARD, LINE, SAID, FakeBoard, bridge_of, run_until
 
 
-@pytest.mark.parametrize(("link_bytes", "most"), [(1024, 256), (256, 240)])
+@pytest.mark.parametrize(("link_bytes", "most"), [(4096, 1024), (256, 240)])
 def test_a_message_larger_than_the_memory_is_said_once_and_counted(link_bytes, most):
     description = replace(LINE, link=replace(LINE.link, memory_bytes=link_bytes))
     made, said = bridge_of(description=description)
@@ -26,8 +26,8 @@ def test_a_message_larger_than_the_memory_is_said_once_and_counted(link_bytes, m
     assert graph.got == [("/said", bytes(most))] and graph.abandoned == ["caller"]
     assert [line for line in said if "bytes" in line] == [
         f"graph fake: a message of {name} has {most + 1} bytes, and the memory on the board has "
-        f"room for {most}; larger ones are dropped"
-        for name in ("/heard", "/cal")
+        f"room for {room}; larger ones are dropped"
+        for name, room in (("/heard", most), ("/cal", min(most, 256)))
     ]
     large = {name: n for (name, cause), n in made.counters.dropped.items() if cause == "too large"}
     assert large == {"/heard": 2, "/cal": 1}
