@@ -41,6 +41,8 @@ END_SECONDS = 1.0
 _MOST_QUEUED_BYTES = 1 << 26
 _MOST_CALLS = 1 << 16
 _MOST_AT_ONCE = 256
+# Each has a line in the account.
+_MOST_UNKNOWN = 8
 _MOST_SLEEP = 0.5
 _POLL_SECONDS = 0.005
 _LINGER_SECONDS = 1.0
@@ -81,6 +83,7 @@ class Bridge:
         self._report = report or (lambda _: None)
         self.side = BoardSide(description, board, self.counters, self._report, self._end_calls)
         self._topics = {topic.id: topic for topic in description.topics}
+        self._unknown: set[int] = set()
         self._queue = MessageQueue(_MOST_QUEUED_BYTES)
         # What comes later is not sent any more.
         self._last = float("inf")
@@ -259,7 +262,11 @@ class Bridge:
         """Give a message of the board to the graph."""
         topic = self._topics.get(message.topic)
         if topic is None or topic.kind == "subscribe":
-            self.counters.drop(str(message.topic), "unknown topic")
+            is_named = message.topic in self._unknown or len(self._unknown) < _MOST_UNKNOWN
+            if is_named:
+                self._unknown.add(message.topic)
+            name = str(message.topic) if is_named else "other topics"
+            self.counters.drop(name, "unknown topic")
             return
         call = None
         if topic.kind == "serve":

@@ -39,7 +39,7 @@ REPEAT_SECONDS = 0.25
 """A request without an answer is repeated after so long."""
 
 HURRY_SECONDS = 0.05
-"""The same where the network has said that nobody gets it: messages wait for the board meanwhile."""
+"""The same where the network says that nobody gets it: messages wait for the board meanwhile."""
 
 ROUND_SECONDS = 5.0
 """All counters of a board are read in turn; a round begins so often."""
