@@ -139,6 +139,7 @@ class BoardSide:
             time.monotonic(),
             sample_seconds=self._board.sample_seconds,
             silent_seconds=self._board.silent_seconds,
+            repeat_seconds=self._board.repeat_seconds,
             before=self._before,
         )
 

@@ -35,9 +35,6 @@ CALL_SECONDS = 10.0
 CHECK_SECONDS = 1.0
 """How often a graph is looked after."""
 
-END_SECONDS = 1.0
-"""How long, at most, the bridge asks the board at the end what has arrived and what it lost."""
-
 _MOST_QUEUED_BYTES = 1 << 26
 _MOST_CALLS = 1 << 16
 _MOST_AT_ONCE = 256
@@ -121,8 +118,8 @@ class Bridge:
     ) -> None:
         """Pass messages on until :meth:`stop`, or until the graph has ended; then close both.
 
-        Before, a board that is ready is asked for its last figures, for `END_SECONDS` at most. A
-        `KeyboardInterrupt` closes both at once.
+        Before, a board that is ready is asked for its last figures, for its `end_seconds` at most.
+        A `KeyboardInterrupt` closes both at once.
 
         Parameters
         ----------
@@ -174,7 +171,7 @@ class Bridge:
     def _finish(self) -> None:
         """Send what waits, and let the board say what has arrived and what it lost."""
         self._last = time.monotonic()
-        end, session = self._last + END_SECONDS, self.side.session
+        end, session = self._last + self.board.end_seconds, self.side.session
         has_asked = False
         # A board that is lost now is not tried again.
         while self.is_ready and self.side.session is session and time.monotonic() < end:

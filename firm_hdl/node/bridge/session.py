@@ -35,11 +35,9 @@ from firm_hdl.node.timekeeping import ClockKeeper
 
 __all__ = ["ROUND_SECONDS", "Session", "SilentBoardError", "WrongBoardError"]
 
-REPEAT_SECONDS = 0.25
-"""A request without an answer is repeated after so long."""
-
 HURRY_SECONDS = 0.05
-"""The same where the network says that nobody gets it: messages wait for the board meanwhile."""
+"""A request is repeated after so long where the network says that nobody gets it: messages wait for
+the board meanwhile."""
 
 ROUND_SECONDS = 5.0
 """All counters of a board are read in turn; a round begins so often."""
@@ -143,6 +141,8 @@ class Session:
         How often the clocks are compared.
     silent_seconds : float
         A board from which nothing whole came for so long is gone.
+    repeat_seconds : float
+        A request without an answer is repeated after so long.
     before : Session or None
         The last session with the same board. Its counters and the sequence of messages go on, or
         are kept and begin anew if the board has started again since.
@@ -169,10 +169,12 @@ class Session:
         *,
         sample_seconds: float = 1.0,
         silent_seconds: float = 5.0,
+        repeat_seconds: float = 0.25,
         before: Session | None = None,
     ) -> None:
         self._description, self._frame_bytes = description, frame_bytes
         self._sample_seconds, self._silent_seconds = sample_seconds, silent_seconds
+        self._repeat_seconds = repeat_seconds
         self._counters = [each for each in registers(description) if each.part != "identity"]
         number = {(each.part, each.name): each.number for each in self._counters}
         self._lost_register, self._requests_register = (
@@ -245,7 +247,7 @@ class Session:
         request, is_sample = self._next(now)
         if request is None:
             return []
-        self._waits_until = now + REPEAT_SECONDS
+        self._waits_until = now + self._repeat_seconds
         self._is_unanswered = True
         asked = _Asked(request, now, wall_ns, is_sample, 0, self._receiver.expected)
         if self.is_ready:

@@ -213,7 +213,7 @@ def test_the_end_names_the_last_drops_of_a_working_board(running, board, graph):
 
 def test_the_end_of_a_board_that_answers_no_more(running, board, graph, monkeypatch):
     """The twin: without a last answer, nobody knows, and the account says so."""
-    monkeypatch.setattr(bridge, "END_SECONDS", 0.1)
+    monkeypatch.setattr(board, "end_seconds", 0.1)
     made, _ = running
     board.node.is_mute = True
     graph.say(HEARD, *packets(50))
