@@ -55,7 +55,7 @@ If one of these comes again later, the others seem to be behind, so that the boa
 believes such a number when the next one follows, so two requests are sent."""
 
 _MOST_BEHIND = (1 << 15) - 1
-"""A sequence never goes back; see :meth:`Session._judge`."""
+"""What is behind is late. Whether a sequence goes back, :meth:`Session._judge` finds out."""
 
 _NO_LOSSES = ("passed", "bytes_low", "bytes_high", "control", "control_full", "unsent")
 """Counters that do not count losses: a request of control without room was repeated, and before a
@@ -177,10 +177,8 @@ class Session:
         self._repeat_seconds = repeat_seconds
         self._counters = [each for each in registers(description) if each.part != "identity"]
         number = {(each.part, each.name): each.number for each in self._counters}
-        self._lost_register, self._requests_register = (
-            number["link", "lost"],
-            number["node", "control"],
-        )
+        self._lost_register = number["link", "lost"]
+        self._requests_register = number["node", "control"]
         self._keeper = ClockKeeper(nominal_rate(description.clock_hz))
         self._sender = MessageSender(frame_bytes)
         self._receiver: MessageReceiver = (
@@ -410,7 +408,7 @@ class Session:
     def _judge(self, asked: _Asked, header: Header, packet: bytes, now: float) -> None:
         """Find out by an answer whether the board has started again.
 
-        One answer alone may be damaged, or has come before the sign that asks.
+        One answer alone may be damaged, or may belong to a request that was sent before the sign.
         """
         ahead = 0 if asked.expected is None else distance(header.sequence, asked.expected)
         was_reset = False
@@ -449,13 +447,13 @@ class Session:
         self.values.clear()
         self._is_set = self._is_settled = False
         self._asked.clear()
+        self._waits_until = now
         if not self.is_ready:
             return
         self.restarts += 1
         self.is_ready = False
         self._todo.clear()
         self._clock_request = None
-        self._waits_until = now
         self._keeper = ClockKeeper(nominal_rate(self._description.clock_hz))
         self._next_sample = self._next_round = now
         if self._is_finishing:
