@@ -42,6 +42,7 @@ the board meanwhile."""
 ROUND_SECONDS = 5.0
 """All counters of a board are read in turn; a round begins so often."""
 
+_SHORT_SECONDS = 0.02
 _MOST_HELD = 1024
 _MOST_LATE = 3
 _MOST_ASKED = 64
@@ -245,7 +246,11 @@ class Session:
         request, is_sample = self._next(now)
         if request is None:
             return []
-        self._waits_until = now + self._repeat_seconds
+        pause = self._repeat_seconds
+        if self._is_finishing:
+            # There is little time for many counters, of which a bad link loses some.
+            pause = min(pause, max(_SHORT_SECONDS, 4 * (self.latency or pause)))
+        self._waits_until = now + pause
         self._is_unanswered = True
         asked = _Asked(request, now, wall_ns, is_sample, 0, self._receiver.expected)
         if self.is_ready:
