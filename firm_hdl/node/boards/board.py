@@ -28,6 +28,10 @@ class Board(ABC):
         How often the time of the node is compared with that of the host.
     silent_seconds : float
         A board from which nothing whole came for so long is gone.
+    repeat_seconds : float
+        A request without an answer is repeated after so long.
+    end_seconds : float
+        How long, at most, a bridge asks at its end what has arrived and what was lost.
     bytes_per_second : float or None
         How fast the way is; `None`: fast enough not to be waited for.
     counters : Counter of str
@@ -37,6 +41,8 @@ class Board(ABC):
 
     sample_seconds = 1.0
     silent_seconds = 5.0
+    repeat_seconds = 0.25
+    end_seconds = 1.0
 
     def __init__(self, name: str, frame_bytes: int | None = None) -> None:
         self.name = name

@@ -55,6 +55,10 @@ class SimulatedBoard(Board):
     sample_seconds = 0.1
     # An answer takes seconds on a busy machine, and a simulation that has ended says so.
     silent_seconds = 60.0
+    # Its link loses nothing, and a request that is repeated takes its time.
+    repeat_seconds = 5.0
+    # Amaranth's simulator answers a few requests per second, and there is one for each counter.
+    end_seconds = 60.0
 
     def __init__(
         self,

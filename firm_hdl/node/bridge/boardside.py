@@ -20,6 +20,10 @@ from firm_hdl.node.messages import NodeMessage
 
 __all__ = ["BoardSide"]
 
+REPORT_SECONDS = 2.0
+"""Of a board that is gone and back, or has started again, at most two lines are reported in this
+time."""
+
 
 class BoardSide:
     """A board, the session with it while it is open, and the figures of all sessions.
@@ -62,6 +66,8 @@ class BoardSide:
         self._retry = Retry(*RETRY_SECONDS)
         self.is_opening = self.was_tried = self.was_ready = self.has_read_last = False
         self._is_ending = False
+        # When a restart may be reported again, and whether the last one was.
+        self._report_at, self._is_reported = 0.0, True
 
     # Figures.
 
@@ -133,6 +139,7 @@ class BoardSide:
             time.monotonic(),
             sample_seconds=self._board.sample_seconds,
             silent_seconds=self._board.silent_seconds,
+            repeat_seconds=self._board.repeat_seconds,
             before=self._before,
         )
 
@@ -148,9 +155,20 @@ class BoardSide:
         self._on_lost()
         if why is not None:
             self._restarts += 1
-            if self._retry.failed(time.monotonic(), why):
-                more = "" if self._is_ending else "; trying again"
-                self._report(f"board {self._board.name}: {why}{more}")
+            now = time.monotonic()
+            if self._retry.failed(now, why):
+                if self._may_report(now):
+                    more = "" if self._is_ending else "; trying again"
+                    self._report(f"board {self._board.name}: {why}{more}")
+                else:
+                    self._retry.forget()
+
+    def _may_report(self, now: float) -> bool:
+        """Return whether a restart is reported: a board may start again at any rate."""
+        self._is_reported = now >= self._report_at
+        if self._is_reported:
+            self._report_at = now + REPORT_SECONDS
+        return self._is_reported
 
     def _drop_unconfirmed(self, session: Session, cause: str) -> None:
         for topic, count in session.unconfirmed.take().items():
@@ -215,15 +233,17 @@ class BoardSide:
         if session is None:
             return []
         was_ready, restarts = session.is_ready, session.restarts
-        messages = session.take(frame, time.monotonic(), time.time_ns())
+        now = time.monotonic()
+        messages = session.take(frame, now, time.time_ns())
         if session.restarts > restarts:
-            self._report(f"board {self._board.name}: it has started again")
             self._drop_unconfirmed(session, "board lost")
             self._on_lost()
         if session.is_ready and not was_ready:
             self.was_ready = True
             self._retry.worked()
-            self._report(f"board {self._board.name}: ready")
+            again = "it has started again; " if session.restarts else ""
+            if self._may_report(now) if again else self._is_reported:
+                self._report(f"board {self._board.name}: {again}ready")
         self.has_read_last = session.is_finished
         return messages
 

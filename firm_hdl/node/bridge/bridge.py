@@ -37,12 +37,11 @@ CALL_SECONDS = 10.0
 CHECK_SECONDS = 1.0
 """How often a graph is looked after."""
 
-END_SECONDS = 1.0
-"""How long, at most, the bridge asks the board at the end what has arrived and what it lost."""
-
 _MOST_QUEUED_BYTES = 1 << 26
 _MOST_CALLS = 1 << 16
 _MOST_AT_ONCE = 256
+# Each has a line in the account.
+_MOST_UNKNOWN = 8
 _MOST_SLEEP = 0.5
 _POLL_SECONDS = 0.005
 _LINGER_SECONDS = 1.0
@@ -90,6 +89,7 @@ class Bridge:
         # Topics of which a message was too large.
         self._large: set[int] = set()
         self._load = Load(description, board.bytes_per_second)
+        self._unknown: set[int] = set()
         self._queue = MessageQueue(_MOST_QUEUED_BYTES)
         # What comes later is not sent any more.
         self._last = float("inf")
@@ -127,8 +127,8 @@ class Bridge:
     ) -> None:
         """Pass messages on until :meth:`stop`, or until the graph has ended; then close both.
 
-        Before, a board that is ready is asked for its last figures, for `END_SECONDS` at most. A
-        `KeyboardInterrupt` closes both at once.
+        Before, a board that is ready is asked for its last figures, for its `end_seconds` at most.
+        A `KeyboardInterrupt` closes both at once.
 
         Parameters
         ----------
@@ -182,7 +182,7 @@ class Bridge:
     def _finish(self) -> None:
         """Send what waits, and let the board say what has arrived and what it lost."""
         self._last = time.monotonic()
-        end, session = self._last + END_SECONDS, self.side.session
+        end, session = self._last + self.board.end_seconds, self.side.session
         has_asked = False
         # A board that is lost now is not tried again.
         while self.is_ready and self.side.session is session and time.monotonic() < end:
@@ -272,7 +272,11 @@ class Bridge:
         """Give a message of the board to the graph."""
         topic = self._topics.get(message.topic)
         if topic is None or topic.kind == "subscribe":
-            self.counters.drop(str(message.topic), "unknown topic")
+            is_named = message.topic in self._unknown or len(self._unknown) < _MOST_UNKNOWN
+            if is_named:
+                self._unknown.add(message.topic)
+            name = str(message.topic) if is_named else "other topics"
+            self.counters.drop(name, "unknown topic")
             return
         self._load.add("out", topic, message.packet)
         call = None

@@ -35,15 +35,14 @@ from firm_hdl.node.timekeeping import ClockKeeper
 
 __all__ = ["ROUND_SECONDS", "Session", "SilentBoardError", "WrongBoardError"]
 
-REPEAT_SECONDS = 0.25
-"""A request without an answer is repeated after so long."""
-
 HURRY_SECONDS = 0.05
-"""The same where the network has said that nobody gets it; what waits is held until then."""
+"""A request is repeated after so long where the network says that nobody gets it: messages wait for
+the board meanwhile."""
 
 ROUND_SECONDS = 5.0
 """All counters of a board are read in turn; a round begins so often."""
 
+_SHORT_SECONDS = 0.02
 _MOST_HELD = 1024
 _MOST_LATE = 3
 _MOST_ASKED = 64
@@ -57,7 +56,7 @@ If one of these comes again later, the others seem to be behind, so that the boa
 believes such a number when the next one follows, so two requests are sent."""
 
 _MOST_BEHIND = (1 << 15) - 1
-"""A sequence never goes back; see :meth:`Session._judge`."""
+"""What is behind is late. Whether a sequence goes back, :meth:`Session._judge` finds out."""
 
 _NO_LOSSES = ("passed", "bytes_low", "bytes_high", "control", "control_full", "unsent")
 """Counters that do not count losses: a request of control without room was repeated, and before a
@@ -143,6 +142,8 @@ class Session:
         How often the clocks are compared.
     silent_seconds : float
         A board from which nothing whole came for so long is gone.
+    repeat_seconds : float
+        A request without an answer is repeated after so long.
     before : Session or None
         The last session with the same board. Its counters and the sequence of messages go on, or
         are kept and begin anew if the board has started again since.
@@ -169,16 +170,16 @@ class Session:
         *,
         sample_seconds: float = 1.0,
         silent_seconds: float = 5.0,
+        repeat_seconds: float = 0.25,
         before: Session | None = None,
     ) -> None:
         self._description, self._frame_bytes = description, frame_bytes
         self._sample_seconds, self._silent_seconds = sample_seconds, silent_seconds
+        self._repeat_seconds = repeat_seconds
         self._counters = [each for each in registers(description) if each.part != "identity"]
         number = {(each.part, each.name): each.number for each in self._counters}
-        self._lost_register, self._requests_register = (
-            number["link", "lost"],
-            number["node", "control"],
-        )
+        self._lost_register = number["link", "lost"]
+        self._requests_register = number["node", "control"]
         self._keeper = ClockKeeper(nominal_rate(description.clock_hz))
         self._sender = MessageSender(frame_bytes)
         self._receiver: MessageReceiver = (
@@ -245,7 +246,11 @@ class Session:
         request, is_sample = self._next(now)
         if request is None:
             return []
-        self._waits_until = now + REPEAT_SECONDS
+        pause = self._repeat_seconds
+        if self._is_finishing:
+            # There is little time for many counters, of which a bad link loses some.
+            pause = min(pause, max(_SHORT_SECONDS, 4 * (self.latency or pause)))
+        self._waits_until = now + pause
         self._is_unanswered = True
         asked = _Asked(request, now, wall_ns, is_sample, 0, self._receiver.expected)
         if self.is_ready:
@@ -408,7 +413,7 @@ class Session:
     def _judge(self, asked: _Asked, header: Header, packet: bytes, now: float) -> None:
         """Find out by an answer whether the board has started again.
 
-        One answer alone may be damaged, or has come before the sign that asks.
+        One answer alone may be damaged, or may belong to a request that was sent before the sign.
         """
         ahead = 0 if asked.expected is None else distance(header.sequence, asked.expected)
         was_reset = False
@@ -447,13 +452,13 @@ class Session:
         self.values.clear()
         self._is_set = self._is_settled = False
         self._asked.clear()
+        self._waits_until = now
         if not self.is_ready:
             return
         self.restarts += 1
         self.is_ready = False
         self._todo.clear()
         self._clock_request = None
-        self._waits_until = now
         self._keeper = ClockKeeper(nominal_rate(self._description.clock_hz))
         self._next_sample = self._next_round = now
         if self._is_finishing:

@@ -145,6 +145,10 @@ class Retry:
         before, self._why = self._why, why
         return why != before
 
+    def forget(self) -> None:
+        """Forget the reason, which nobody was told."""
+        self._why = ""
+
     def worked(self) -> None:
         """Note that it works again."""
         self._pause, self._why = self._first, ""

@@ -9,7 +9,7 @@ from firm_hdl.node.bridge.boardside import BoardSide
 from firm_hdl.node.bridge.counters import BridgeCounters
 from firm_hdl.node.messages import NodeMessage
 from tests.node.bridge.clocks import Sleeper
-from tests.node.bridge.fakes import CAL, ECHO, HEARD, SAID, FakeBoard
+from tests.node.bridge.fakes import CAL, ECHO, HEARD, SAID, FakeBoard, FakeNode
 
 
 class Board(FakeBoard):
@@ -137,7 +137,7 @@ def test_reasons_and_pauses_begin_anew_with_a_board_that_was_ready(monkeypatch):
         said += ["board fake: ready", "board fake: it is dead; trying again"]
         assert [line for line in sleeper.said if "board" in line] == said
         sleeper.board.is_dead = False
-        sleeper.now += 0.4
+        sleeper.now += 2.0
     sleeper.bridge.close()
 
 
@@ -163,3 +163,26 @@ def test_messages_behind_one_that_ends_the_session_are_for_nobody(board):
         found.append(message)
         side.lose("gone")
     assert len(found) == 1
+
+
+@pytest.mark.parametrize("is_gone", [False, True])
+def test_a_board_that_starts_again_all_the_time_is_reported_now_and_then(monkeypatch, is_gone):
+    sleeper = Sleeper(monkeypatch)
+    sleeper.sleep()
+    begin, before = sleeper.now, len(sleeper.said)
+    while sleeper.now < begin + 20:
+        sleeper.board.node = FakeNode()
+        if is_gone:
+            sleeper.board.is_dead = True
+            list(sleeper.bridge.side.receive())
+            sleeper.board.is_dead = False
+        elif sleeper.bridge.is_ready:
+            frames = sleeper.board.node.sender.frames(NodeMessage(topic=SAID.id, packet=b"x"))
+            sleeper.board.come(frames)
+        sleeper.now += 0.2
+        for _ in range(6):
+            sleeper.bridge.side.care(sleeper.now)
+            list(sleeper.bridge.side.receive())
+    assert sleeper.bridge.restarts > 10
+    assert 5 < len(sleeper.said) - before <= 22
+    sleeper.bridge.close()

@@ -131,9 +131,7 @@ def test_a_board_that_starts_again_gets_what_comes_meanwhile(running, board, gra
     made, said = running
     board.node = FakeNode()
     board.come(board.node.sender.frames(NodeMessage(topic=2, packet=b"first")))
-    assert run_until(
-        made, lambda: said[-2:] == ["board fake: it has started again", "board fake: ready"]
-    )
+    assert run_until(made, lambda: said[-1:] == ["board fake: it has started again; ready"])
     graph.say(HEARD, *packets(20))
     assert run_until(made, lambda: len(graph.got) == 21)
     assert [packet for _, packet in graph.got] == [b"first", *packets(20)]
@@ -215,7 +213,7 @@ def test_the_end_names_the_last_drops_of_a_working_board(running, board, graph):
 
 def test_the_end_of_a_board_that_answers_no_more(running, board, graph, monkeypatch):
     """The twin: without a last answer, nobody knows, and the account says so."""
-    monkeypatch.setattr(bridge, "END_SECONDS", 0.1)
+    monkeypatch.setattr(board, "end_seconds", 0.1)
     made, _ = running
     board.node.is_mute = True
     graph.say(HEARD, *packets(50))
@@ -314,6 +312,12 @@ def test_topics_that_a_board_must_not_send_are_counted(running, board):
         board.come(board.node.sender.frames(NodeMessage(topic=topic, packet=b"")))
     assert run_until(made, lambda: len(made.counters.dropped) == 2)
     assert made.counters.dropped == {("1", "unknown topic"): 1, ("9", "unknown topic"): 1}
+    for topic in range(1000, 1100):
+        board.come(board.node.sender.frames(NodeMessage(topic=topic, packet=b"")))
+    assert run_until(made, lambda: made.counters.dropped.total() == 102)
+    # A line for each would be an account that nobody reads.
+    assert len(made.counters.dropped) == 9
+    assert made.counters.dropped["other topics", "unknown topic"] == 94
 
 
 def test_lost_frames_are_counted_and_nothing_wrong_is_passed(running, board, graph):

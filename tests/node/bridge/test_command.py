@@ -14,6 +14,7 @@ import time
 import pytest
 
 from firm_hdl.cli import main
+from firm_hdl.node.boards import Board
 from firm_hdl.node.boards.simulated import SimulatedBoard
 from firm_hdl.node.bridge import Bridge, bridge, command, status
 from firm_hdl.node.bridge.status import Status
@@ -184,7 +185,7 @@ def test_signals_end_it(file, board, capsys, monkeypatch):
 
 def test_a_second_ctrl_c_ends_the_last_questions(file, board, capsys, monkeypatch):
     """The board answers no more; without the second one, it is gone after 5 s."""
-    monkeypatch.setattr(bridge, "END_SECONDS", 60)
+    monkeypatch.setattr(Board, "end_seconds", 60)
     report = Status.report
 
     def said(self, line):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from firm_hdl.node.boards import Board
 from firm_hdl.node.bridge import session as sessions
 from firm_hdl.node.bridge.session import (
-    REPEAT_SECONDS,
     ROUND_SECONDS,
     SilentBoardError,
 )
@@ -14,6 +14,8 @@ from firm_hdl.node.bridge.unconfirmed import PASS_SECONDS
 from firm_hdl.node.frame import Header, encode_header
 from firm_hdl.node.messages import MessageSender, NodeMessage
 from tests.node.bridge.script import EPOCH, READ, REQUESTS, SET_RATE, SET_TIME, Script
+
+REPEAT_SECONDS = Board.repeat_seconds
 
 # Registers of ECHO, as docs/node.md numbers them: from 16 on, those of the link, the node and each
 # topic in turn. What does not count a loss is left out.

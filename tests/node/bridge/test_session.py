@@ -7,8 +7,8 @@ import random
 
 import pytest
 
+from firm_hdl.node.boards import Board
 from firm_hdl.node.bridge.session import (
-    REPEAT_SECONDS,
     Session,
     SilentBoardError,
     WrongBoardError,
@@ -17,6 +17,7 @@ from firm_hdl.node.control import registers
 from firm_hdl.node.messages import NodeMessage
 from tests.node.bridge.fakes import ECHO, FakeNode
 
+REPEAT_SECONDS = Board.repeat_seconds
 EPOCH_NS = 1_800_000_000_000_000_000
 
 

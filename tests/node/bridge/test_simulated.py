@@ -50,6 +50,9 @@ def test_messages_and_calls_go_through_gateware(link):
     # The clock of the node was set before the graph was joined, or soon after.
     assert len(stamps) == 6 and stamps == sorted(stamps)
     assert not made.counters.dropped and not made.on_the_way
+    # Slow as it is, all counters were read.
+    assert made.side.has_read_last
+    assert [(each.owner, value) for each, value in made.last_drops] == [("/heard", 1)]
 
 
 NAMES = """\
