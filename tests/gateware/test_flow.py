@@ -6,7 +6,7 @@ from __future__ import annotations
 import random
 
 import pytest
-from amaranth.hdl import Module, Mux, Signal, Value
+from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.sim import Simulator
@@ -76,10 +76,10 @@ class Walk(wiring.Component):
         )
         done, ends = Signal(), Signal()
         m.d.comb += [
-            done.eq(Mux(flow.step_state.is_run, flow.words.last, ~self.begins | self.skips)),
+            done.eq(Mux(flow.traits.is_run, flow.words.last, ~self.begins | self.skips)),
             ends.eq(done & flow.exit_ends),
-            self.step.eq(flow.step),
-            self.trait.eq(flow.step_state.is_run),
+            self.step.eq(Cat(flow.step)),
+            self.trait.eq(flow.traits.is_run),
         ]
         flow.count(
             moves=self.moves,
@@ -89,9 +89,8 @@ class Walk(wiring.Component):
             single=self.single,
             nul=True,
         )
-        following = Mux(done, flow.exit_state, flow.body_state)
         with m.If(self.moves):
-            m.d.sync += Value.cast(flow.step_state).eq(Mux(ends, flow.start, following))
+            flow.go(ends=ends, done=done)
         return m
 
 
