@@ -70,7 +70,8 @@ class Flow:
     """Step, counters and jumps of a plan. Not a component: logic of one module.
 
     A *trait* is what a circuit has to know of a step. Each trait is a register of its own, written
-    together with the step. So traits are valid at the start of a cycle.
+    together with the step. So traits are valid at the start of a cycle. A trait that is the same at
+    all steps is a constant.
 
     Parameters
     ----------
@@ -86,12 +87,14 @@ class Flow:
         it leaves out are 0.
     has_end : bool
         The end of the packet is a state of its own.
+    written : str
+        A trait that the caller writes, too.
 
     Attributes
     ----------
     step : list of Value(1)
         Whether the circuit is at a step, by index. One more at the end if `has_end`.
-    traits : SimpleNamespace of Signal
+    traits : SimpleNamespace of Signal or Const
         The traits of the step, by name.
     exits : list of Exit
         All exits of all steps; at most one of them is taken.
@@ -112,18 +115,27 @@ class Flow:
         traits: Callable[[int | None], Mapping[str, int]],
         *,
         has_end: bool,
+        written: str = "",
     ):
         self.m, self.plan = m, plan
         self._traits, self._has_end = traits, has_end
         self._widths = self._step_widths() | dict(widths)
         start = self._state(plan.start.step)
+        others = [self._state(i) for i in [*range(len(plan.steps)), *([None] if has_end else [])]]
         self._registers = {
-            name: Signal(width, init=start[name], name=name) for name, width in self._widths.items()
+            name: Signal(width, init=start[name], name=name)
+            for name, width in self._widths.items()
+            if name not in widths or name == written or any(s[name] != start[name] for s in others)
         }
         self.step: list[Value] = [
             bit for name in self._step_widths() for bit in self._registers[name]
         ]
-        self.traits = SimpleNamespace(**{name: self._registers[name] for name in widths})
+        self.traits = SimpleNamespace(
+            **{
+                name: self._registers.get(name, Const(start[name], width))
+                for name, width in widths.items()
+            }
+        )
         init = {
             counter: self._words_or_elements(plan.start, counter) for counter, _ in plan.start.enter
         }

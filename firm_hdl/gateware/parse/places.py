@@ -151,8 +151,8 @@ class NextPlace:
         if width is None:
             return Const(0, 1)
         if name in vars(self.flow.traits):
-            register: Signal = vars(self.flow.traits)[name]
-            return register
+            trait: Value = vars(self.flow.traits)[name]
+            return trait
         values = [place_traits(self.plan, k).get(name, 0) for k in range(len(self.plan.steps))]
         return pick([(self.flow.step[k], value) for k, value in enumerate(values)], width)
 

@@ -120,12 +120,16 @@ class ParseState:
         widths |= dict.fromkeys([*flags.split(), "two_word_map", "at_end"], 1)
         # On a narrow bus, positions are short: their traits are not worth registers.
         widths |= place_fields(plan) if plan.bus_bytes >= 8 else {}
-        return Flow(self.m, plan, plan.max_count, widths, self._traits, has_end=True)
+        # After a length that claims too much, its step begins nothing.
+        written = "begins_nothing" if self.refused is not None else ""
+        return Flow(
+            self.m, plan, plan.max_count, widths, self._traits, has_end=True, written=written
+        )
 
     def _traits(self, index: int | None) -> dict[str, int]:
         plan, bus = self.plan, self.plan.bus_bytes
         if index is None:
-            return {"at_end": 1, "map_offset": 1}
+            return {"at_end": 1, "begins_nothing": 1, "map_offset": 1}
         step = plan.steps[index]
         is_words = isinstance(step, RunStep)
         is_lead = step.bytes > bus
