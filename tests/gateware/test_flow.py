@@ -26,6 +26,8 @@ MESSAGES = {
     "constant counts": make("ros1", {"a": "uint8[37]", "p": (POINT, "[3]"), "b": "float64[5]"}),
     "a long run first": make("ros1", {"a": "uint8[300]", "b": "float64[3]", "c": "uint8[64]"}),
     "begins with a count": make("ros1", {"p": (ROW, "[2]"), "z": "uint8"}),
+    # The step is in two registers.
+    "many steps": make("ros1", {f"f{n}": ("uint64", "string")[n == 34] for n in range(40)}),
     "nested": make("ros1", {"rows": (ROW, "[]"), "s": "string", "t": (TEXT, "[]")}),
     # Lengths of strings count a NUL, others do not.
     "with NUL": make(
