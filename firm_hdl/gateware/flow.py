@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from types import SimpleNamespace
 
-from amaranth.hdl import Const, Module, Mux, Signal, Value
-from amaranth.lib import data
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 
 from firm_hdl.gateware.counter import Counter
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.plan import RUN_COUNTER, BeginLoop, BeginRun, Jump, Plan, RunStep, Step
 
 __all__ = ["Flow", "exceeds", "last_word"]
+
+REGISTER_BITS = 32
+"""Most bits of a register with an initial value, and of a constant that a register is loaded with.
+
+GHDL 2.0 writes longer constants other than 0 as strings in the Verilog of ``ghdl --synth``.
+"""
 
 
 def last_word(items: Value, lanes: int) -> Value:
@@ -63,8 +69,9 @@ class Exit:
 class Flow:
     """Step, counters and jumps of a plan. Not a component: logic of one module.
 
-    A *trait* is what a circuit has to know of a step: a field of `step_state`, written
-    together with the step. So traits are valid at the start of a cycle.
+    A *trait* is what a circuit has to know of a step. Each trait is a register of its own, written
+    together with the step. So traits are valid at the start of a cycle. A trait that is the same at
+    all steps is a constant.
 
     Parameters
     ----------
@@ -73,27 +80,26 @@ class Flow:
     plan : Plan
     limit : function
         Returns the largest count of a run or loop that a length begins.
-    fields : mapping of str to int
-        Widths of the traits in bits, by name.
+    widths : mapping of str to int
+        Widths of the traits in bits, by name; at most 32.
     traits : function
-        Returns the traits of the step with an index; `None` is the end of the packet.
+        Returns the traits of the step with an index; `None` is the end of the packet. Traits that
+        it leaves out are 0.
     has_end : bool
         The end of the packet is a state of its own.
+    written : str
+        A trait that the caller writes, too.
 
     Attributes
     ----------
-    step_state : View
-        Register with `step` and the traits.
-    step : Signal
-        One-hot, one bit per step.
-    start : int
-        The state in which a packet starts, as bits.
+    step : list of Value(1)
+        Whether the circuit is at a step, by index. One more at the end if `has_end`.
+    traits : SimpleNamespace of Signal or Const
+        The traits of the step, by name.
     exits : list of Exit
         All exits of all steps; at most one of them is taken.
     exit_ends : Value(1)
         The exit that is taken ends the packet.
-    exit_state, body_state : Value
-        The state after the exit, and in the body of the run or loop that the step begins.
     words : Counter
         Counts the words of a run.
     levels : list of Counter
@@ -105,19 +111,31 @@ class Flow:
         m: Module,
         plan: Plan,
         limit: Callable[[BeginRun | BeginLoop], int],
-        fields: Mapping[str, int],
+        widths: Mapping[str, int],
         traits: Callable[[int | None], Mapping[str, int]],
         *,
         has_end: bool,
+        written: str = "",
     ):
         self.m, self.plan = m, plan
-        steps = plan.steps
-        self.layout = data.StructLayout({"step": len(steps) + has_end, **fields})
         self._traits, self._has_end = traits, has_end
-        self.start = self.encode(plan.start.step)
-        init_bits = self.layout.from_bits(self.start)
-        self.step_state = Signal(self.layout, init=init_bits, name="state")
-        self.step = self.step_state.step
+        self._widths = self._step_widths() | dict(widths)
+        start = self._state(plan.start.step)
+        others = [self._state(i) for i in [*range(len(plan.steps)), *([None] if has_end else [])]]
+        self._registers = {
+            name: Signal(width, init=start[name], name=name)
+            for name, width in self._widths.items()
+            if name not in widths or name == written or any(s[name] != start[name] for s in others)
+        }
+        self.step: list[Value] = [
+            bit for name in self._step_widths() for bit in self._registers[name]
+        ]
+        self.traits = SimpleNamespace(
+            **{
+                name: self._registers.get(name, Const(start[name], width))
+                for name, width in widths.items()
+            }
+        )
         init = {
             counter: self._words_or_elements(plan.start, counter) for counter, _ in plan.start.enter
         }
@@ -127,30 +145,63 @@ class Flow:
             Counter(most[level], f"level_{level}", init.get(level)) for level in range(plan.levels)
         ]
         self.exits = list(self._exits())
-        width = self.layout.size
-        self.exit_state = pick(
-            [(each.taken, self.encode(each.jump.step)) for each in self.exits], width
-        )
         self.exit_ends = any_of([each.taken for each in self.exits if each.jump.step is None])
-        self.body_state = pick(
-            [
-                (self.step[i], self.encode(i if s.begin is None else s.begin.body.step))
-                for i, s in enumerate(steps)
-                if isinstance(s, RunStep) or s.begin is not None
-            ],
-            width,
-        )
 
-    def encode(self, index: int | None) -> int:
-        """Return the state of a step, as bits; `None` is the end of the packet."""
+    def _step_widths(self) -> dict[str, int]:
+        """Return the registers of the step, which is one-hot: their names and widths."""
+        count, most = len(self.plan.steps) + self._has_end, REGISTER_BITS
+        if count <= most:
+            return {"step": count}
+        return {f"step_{k}": min(most, count - k) for k in range(0, count, most)}
+
+    def _state(self, index: int | None) -> dict[str, int]:
+        """Return the values of all registers at a step; `None` is the end of the packet."""
         number = len(self.plan.steps) if index is None else index
-        fields = {"step": 1 << number if index is not None or self._has_end else 0}
-        fields |= self._traits(index)
-        bits = 0
-        for name, value in fields.items():
-            field = self.layout[name]
-            bits |= (int(value) & ((1 << field.width) - 1)) << field.offset
-        return bits
+        one_hot = 1 << number if index is not None or self._has_end else 0
+        state = dict.fromkeys(self._widths, 0)
+        for k, (name, width) in enumerate(self._step_widths().items()):
+            state[name] = one_hot >> REGISTER_BITS * k & ((1 << width) - 1)
+        for name, value in self._traits(index).items():
+            state[name] = int(value) & ((1 << self._widths[name]) - 1)
+        return state
+
+    def go(self, *, ends: Value, done: Value, aborts: Value | None = None) -> None:
+        """Go to the next step; the caller's `m.If` says when.
+
+        Parameters
+        ----------
+        ends : Value
+            To the start of the next packet.
+        aborts : Value or None
+            Else, to the end of the packet.
+        done : Value
+            Else, through an exit if `done`, and into the body that the step begins if not.
+        """
+        start, end = self._state(self.plan.start.step), self._state(None)
+        exits = [(each.taken, self._state(each.jump.step)) for each in self.exits]
+        bodies = [
+            (self.step[i], self._state(i if s.begin is None else s.begin.body.step))
+            for i, s in enumerate(self.plan.steps)
+            if isinstance(s, RunStep) or s.begin is not None
+        ]
+        registers = self._registers.items()
+        m, sync = self.m, self.m.d.sync
+        with m.If(ends):
+            sync += [register.eq(start[name]) for name, register in registers]
+        if aborts is not None:
+            with m.Elif(aborts):
+                sync += [register.eq(end[name]) for name, register in registers]
+        for condition, cases in ((m.Elif(done), exits), (m.Else(), bodies)):
+            with condition:
+                for name, register in registers:
+                    choices = [(on, state[name]) for on, state in cases]
+                    sync += register.eq(pick(choices, len(register)))
+
+    def go_to(self, steps: Mapping[int, Value]) -> None:
+        """Change the step, but no trait: to the step whose value is high."""
+        bits = Cat(steps.get(i, Const(0, 1)) for i in range(len(self.step)))
+        for k, name in enumerate(self._step_widths()):
+            self.m.d.sync += self._registers[name].eq(bits[REGISTER_BITS * k :])
 
     def on(self, test: Callable[[Step], bool]) -> Value:
         """Return, as one bit, whether a test holds for the current step."""

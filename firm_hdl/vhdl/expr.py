@@ -6,7 +6,7 @@ A value can be written as one of four types: `std_logic` (one bit), `unsigned` (
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from firm_hdl.rtlil.evaluate import constant
@@ -15,7 +15,7 @@ from firm_hdl.vhdl.cells import Cells
 from firm_hdl.vhdl.text import Expression, atom, bit_literal, call, chain, infix, literal
 from firm_hdl.vhdl.uses import trim
 
-__all__ = ["Declared", "Values"]
+__all__ = ["Declared", "Values", "short_constants"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -174,6 +174,7 @@ class Values:
 
     def _joined(self, spec: Spec, target: bool) -> Expression:
         parts: list[Expression] = []
+        spec = tuple(short_constants(spec))
         index = len(spec) - 1
         while index >= 0:
             used, text = self._sign_run(spec, index)
@@ -185,7 +186,13 @@ class Values:
             index -= used
         if len(parts) == 1:
             return parts[0]
-        joined = chain("&", *parts)
+        # Constants in front are joined from the right, as in `x"1" & (x"2" & signal)`: GHDL would
+        # join them to a long one.
+        first = next(k for k, chunk in enumerate(reversed(spec)) if isinstance(chunk, Slice))
+        first = max(0, first - 1)
+        joined = chain("&", *parts[first:])
+        for part in reversed(parts[:first]):
+            joined = infix("&", part, joined)
         return joined if target else atom(f"unsigned'({joined.text})")
 
     def _chunk(self, chunk: Chunk) -> Expression:
@@ -219,6 +226,19 @@ class Values:
         if used < 2 or spec[index].width != 1:
             return 0, atom("")
         return used, call("repeat_bit", self._chunk(spec[index]), used)
+
+
+def short_constants(spec: Spec) -> Iterator[Chunk]:
+    """Yield the chunks of a value, with constants other than 0 in pieces of at most 32 bits.
+
+    GHDL 2.0 writes longer ones as strings in the Verilog of ``ghdl --synth``.
+    """
+    for chunk in spec:
+        if isinstance(chunk, Bits) and "1" in chunk.text:
+            text = chunk.text
+            yield from (Bits(text[max(0, end - 32) : end]) for end in range(len(text), 0, -32))
+        else:
+            yield chunk
 
 
 def _run_length(spec: Spec, index: int) -> int:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Spec, Value, spec_width
-from firm_hdl.vhdl.expr import Values
+from firm_hdl.vhdl.expr import Values, short_constants
 from firm_hdl.vhdl.graph import Graph
 from firm_hdl.vhdl.names import is_identifier
 from firm_hdl.vhdl.text import bit_literal, literal
@@ -109,6 +109,7 @@ def _associate(
 
     An expression in a port map would be an implicit signal, one delta cycle late.
     """
+    spec = tuple(short_constants(spec))
     position = 0
     for chunk in spec:
         name = formal

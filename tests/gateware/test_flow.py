@@ -6,7 +6,7 @@ from __future__ import annotations
 import random
 
 import pytest
-from amaranth.hdl import Module, Mux, Signal, Value
+from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.sim import Simulator
@@ -26,6 +26,8 @@ MESSAGES = {
     "constant counts": make("ros1", {"a": "uint8[37]", "p": (POINT, "[3]"), "b": "float64[5]"}),
     "a long run first": make("ros1", {"a": "uint8[300]", "b": "float64[3]", "c": "uint8[64]"}),
     "begins with a count": make("ros1", {"p": (ROW, "[2]"), "z": "uint8"}),
+    # The step is in two registers.
+    "many steps": make("ros1", {f"f{n}": ("uint64", "string")[n == 34] for n in range(40)}),
     "nested": make("ros1", {"rows": (ROW, "[]"), "s": "string", "t": (TEXT, "[]")}),
     # Lengths of strings count a NUL, others do not.
     "with NUL": make(
@@ -76,10 +78,10 @@ class Walk(wiring.Component):
         )
         done, ends = Signal(), Signal()
         m.d.comb += [
-            done.eq(Mux(flow.step_state.is_run, flow.words.last, ~self.begins | self.skips)),
+            done.eq(Mux(flow.traits.is_run, flow.words.last, ~self.begins | self.skips)),
             ends.eq(done & flow.exit_ends),
-            self.step.eq(flow.step),
-            self.trait.eq(flow.step_state.is_run),
+            self.step.eq(Cat(flow.step)),
+            self.trait.eq(flow.traits.is_run),
         ]
         flow.count(
             moves=self.moves,
@@ -89,9 +91,8 @@ class Walk(wiring.Component):
             single=self.single,
             nul=True,
         )
-        following = Mux(done, flow.exit_state, flow.body_state)
         with m.If(self.moves):
-            m.d.sync += Value.cast(flow.step_state).eq(Mux(ends, flow.start, following))
+            flow.go(ends=ends, done=done)
         return m
 
 

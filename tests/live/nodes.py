@@ -9,7 +9,7 @@ from amaranth.lib import wiring
 
 from firm_hdl.node import accelerator_signature
 
-__all__ = ["LOOP", "LOOP_ROS1", "PACKAGES", "SERIAL", "Echo", "Loop", "loop_file"]
+__all__ = ["LARGE", "LOOP", "LOOP_ROS1", "PACKAGES", "SERIAL", "Echo", "Loop", "loop_file"]
 
 PACKAGES = Path(__file__).parents[2] / "examples" / "nodes" / "packages"
 
@@ -25,6 +25,27 @@ subscribe:
 publish:
   /imu_out: {{type: sensor_msgs/msg/Imu, history: keep_all}}
   /cloud_out: {{type: sensor_msgs/msg/PointCloud2, history: keep_all, memory_bytes: 65536}}
+serve:
+  /mode: {{type: std_srvs/srv/SetBool, memory_bytes: 256}}
+"""
+
+# Of real size; the clouds and images of a robot.
+LARGE = """\
+node: large
+namespace: /fpga
+distro: {distro}
+paths: {paths}
+accelerator: tests.live.nodes:Loop
+subscribe:
+  /image_in: {{type: sensor_msgs/msg/Image, history: keep_all, memory_bytes: 1048576}}
+  /cloud_in: {{type: sensor_msgs/msg/PointCloud2, history: keep_all, memory_bytes: 524288}}
+  /imu_in: {{type: sensor_msgs/msg/Imu, history: keep_all}}
+  /odom_in: {{type: nav_msgs/msg/Odometry, history: keep_all}}
+publish:
+  /image_out: {{type: sensor_msgs/msg/Image, history: keep_all, memory_bytes: 1048576}}
+  /cloud_out: {{type: sensor_msgs/msg/PointCloud2, history: keep_all, memory_bytes: 524288}}
+  /imu_out: {{type: sensor_msgs/msg/Imu, history: keep_all}}
+  /odom_out: {{type: nav_msgs/msg/Odometry, history: keep_all}}
 serve:
   /mode: {{type: std_srvs/srv/SetBool, memory_bytes: 256}}
 """

@@ -11,7 +11,7 @@ from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.jobs.programs import find_compiler
 from tests.live.bridges import BridgeProcess
 from tests.live.load import load
-from tests.live.nodes import LOOP, SERIAL, loop_file
+from tests.live.nodes import LARGE, LOOP, SERIAL, loop_file
 from tests.live.peer import Peer, python_of
 from tests.live.serial import check_serial
 from tests.live.trips import CLOUD, IMU, check_killed_board, check_trips, named
@@ -35,9 +35,9 @@ def bridge(tmp_path):
     need("a C++ compiler", compiler())
     started = []
 
-    def start(release, graph, clouds=False):
+    def start(release, graph, clouds=False, text=LOOP):
         # The definitions of both releases are equal, so that one program serves both.
-        file = loop_file(tmp_path, LOOP, clouds)
+        file = loop_file(tmp_path, text, clouds)
         options = ["--graph", graph, *(["--interface", "lo"] if graph == "rtps" else [])]
         python = {"python": python_of(release)} if graph == "ros2" else {}
         started.append(BridgeProcess(file, *options, **python))
@@ -70,6 +70,17 @@ def test_imu_at_1_khz(release, graph, bridge):
 def test_clouds_at_50_hz(release, graph, bridge):
     cloud = {**CLOUD, "count": 300, "period": 0.02}
     check_trips(bridge(release, graph, clouds=True), release, cloud)
+
+
+@GRAPHS
+@RELEASES
+def test_a_node_of_real_size(release, graph, bridge):
+    """Clouds of 300 kB at 10 Hz, which the bridge keeps until the simulation takes them."""
+    running = bridge(release, graph, clouds=True, text=LARGE)
+    with Peer(release, "call", name="/mode", count=20) as peer:
+        assert peer.result(90)["answers"] == [[bool(n & 1), "ok"] for n in range(20)]
+    cloud = {**CLOUD, "bytes": 300_000, "count": 30, "period": 0.1}
+    check_trips(running, release, {**IMU, "count": 300, "period": 0.01}, cloud, linger=30)
 
 
 @GRAPHS

@@ -8,11 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from amaranth.hdl import Elaboratable, Module, Signal, Value, signed
+from amaranth.hdl import Cat, Const, Elaboratable, Module, Signal, Value, signed
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
 
 from firm_hdl.node.gateware.clock import NodeClock
 from firm_hdl.vhdl.convert import Vhdl, convert
-from tests.vhdl.ghdl import difference, expected, run, simulate, synthesize, vectors
+from tests.vhdl.ghdl import analyse, difference, expected, run, simulate, synthesize, vectors
 
 K = 0x1_EE6B_2800
 """33 bits, one more than GHDL 2.0 can extend in synthesis."""
@@ -96,6 +98,52 @@ def test_ghdl_synthesizes_them(vhdl: Vhdl, tmp_path: Path) -> None:
             synthesize(replace(vhdl, files={**vhdl.files, "wide.vhd": text}), tmp_path)
 
 
+class Joined(wiring.Component):
+    """Long constants in concatenations, in front of a signal and behind it, and at a port."""
+
+    def __init__(self) -> None:
+        super().__init__({"a": In(32), "front": Out(128), "behind": Out(128), "ports": Out(160)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.submodules.same = same = Same()
+        constant = Const(0xFEDC_BA98_7654_3210_0123_4567, 96)
+        m.d.comb += [
+            self.front.eq(Cat(self.a, constant)),
+            self.behind.eq(Cat(constant, self.a)),
+            same.a.eq(Cat(constant, self.a, self.a)),
+            self.ports.eq(same.o),
+        ]
+        return m
+
+
+class Same(wiring.Component):
+    """A component with a wide input."""
+
+    def __init__(self) -> None:
+        super().__init__({"a": In(160), "o": Out(160)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.d.comb += self.o.eq(self.a)
+        return m
+
+
 @pytest.mark.usefixtures("ghdl")
-def test_ghdl_synthesizes_the_clock_of_a_node(tmp_path: Path) -> None:
-    assert "entity" in synthesize(convert(NodeClock(100e6), name="clock"), tmp_path)
+@pytest.mark.parametrize("design", [Joined(), NodeClock(100e6)], ids=["joined", "clock of a node"])
+def test_ghdl_writes_no_constant_as_a_string(tmp_path: Path, design: wiring.Component) -> None:
+    vhdl = convert(design, name="top")
+    analyse(vhdl, tmp_path)
+    verilog = run(tmp_path, "--synth", "--std=08", "--out=verilog", vhdl.top)
+    assert "endmodule" in verilog and '"' not in verilog
+
+
+@pytest.mark.usefixtures("ghdl")
+def test_pieces_of_long_constants_are_those_of_amaranth(tmp_path: Path) -> None:
+    joined = Joined()
+    outputs = {name: getattr(joined, name) for name in ("front", "behind", "ports")}
+    steps = vectors({"a": 32}, [], steps=10, seed=1)
+    want = expected(joined, {"a": joined.a}, outputs, steps)
+    widths = {name: len(value) for name, value in outputs.items()}
+    vhdl = convert(joined, name="top")
+    assert difference(want, simulate(vhdl, steps, {"a": 32}, widths, tmp_path)) is None

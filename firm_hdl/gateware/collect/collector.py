@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import chain
 
-from amaranth.hdl import Const, Module, Mux, Signal, Value
+from amaranth.hdl import Const, Module, Signal, Value
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import Out
 
@@ -103,14 +103,16 @@ class _CollectorLogic:
     def _decide(self) -> None:
         m, plan, state = self.m, self.plan, self.state
         traits, flow = state.traits, state.flow
-        is_begin = traits.run_begin | traits.loop_begin
+        is_begin = traits.begins_run | traits.begins_loop
         skips = state.of_length(lambda length: length.skips)
         # A last step that only takes a rest is skipped if there is no rest.
         rests = {i for i, step in enumerate(plan.steps) if only_ends(step)}
         to_rest = any_of([each.taken for each in flow.exits if each.jump.step in rests])
-        no_rest = is_begin & state.zero & ~traits.terminated & to_rest
+        no_rest = is_begin & state.zero & ~traits.begins_string & to_rest
         m.d.comb += [
-            state.done.eq(traits.plain | (is_begin & skips) | (traits.words & flow.words.last)),
+            state.done.eq(
+                traits.begins_nothing | (is_begin & skips) | (traits.is_words & flow.words.last)
+            ),
             state.ends.eq(state.done & (flow.exit_ends | no_rest)),
         ]
 
@@ -258,15 +260,13 @@ class _CollectorLogic:
             nul=False,
         )
         with m.If(state.complete):
-            m.d.sync += Value.cast(flow.step_state).eq(
-                Mux(state.ends, flow.start, Mux(state.done, flow.exit_state, flow.body_state))
-            )
+            flow.go(ends=state.ends, done=state.done)
             with m.If(state.ends):
                 m.d.sync += [state.rest.eq(0), state.has_nul.eq(0)]
             with m.Else():
-                with m.If(traits.run_begin):
-                    m.d.sync += [state.rest.eq(next_rest), state.has_nul.eq(traits.terminated)]
-                with m.Elif(traits.rest):
+                with m.If(traits.begins_run):
+                    m.d.sync += [state.rest.eq(next_rest), state.has_nul.eq(traits.begins_string)]
+                with m.Elif(traits.takes_rest):
                     m.d.sync += [state.rest.eq(0), state.has_nul.eq(0)]
 
     def _count(self) -> Value:

@@ -145,9 +145,9 @@ class Filler:
         # Whether the packet has a byte before this step, and whether it has one after the step.
         begun, begins = Signal(name="begun"), Signal(name="begins")
         m.d.comb += [
-            items.eq(Mux(traits.rest, state.flow.rest_bytes(state.rest), traits.items_bytes)),
-            map_size.eq(traits.map_bytes + Mux(traits.lead, bus, 0)),
-            nul.eq(state.has_nul & traits.rest),
+            items.eq(Mux(traits.takes_rest, state.flow.rest_bytes(state.rest), traits.items_bytes)),
+            map_size.eq(traits.map_bytes + Mux(traits.two_word_map, bus, 0)),
+            nul.eq(state.has_nul & traits.takes_rest),
             begins.eq(begun | items.any() | nul | traits.map_bytes.any()),
         ]
         with m.If(state.complete):
@@ -156,7 +156,7 @@ class Filler:
         to_end = Signal.like(words.to_end, name="to_end")
         end_mask = Signal(max(3, ring.lane_bits), name="end_mask")
         to_map = Signal.like(words.to_map, name="to_map")
-        m.d.comb += to_map.eq(Mux(traits.lead, 0, items) + nul + traits.map_addend)
+        m.d.comb += to_map.eq(Mux(traits.two_word_map, 0, items) + nul + traits.map_addend)
         with m.If(state.ends):
             m.d.comb += [to_end.eq(Mux(begins, map_size + (bus - 1), bus)), end_mask.eq(bus - 1)]
         with m.Else():
@@ -166,10 +166,10 @@ class Filler:
                 self.words.valid.eq(state.complete),
                 words.items_bytes.eq(items),
                 words.map_bytes.eq(traits.map_bytes),
-                words.lead.eq(traits.lead),
+                words.lead.eq(traits.two_word_map),
                 words.to_map.eq(to_map),
                 words.max_beats.eq((to_map + to_end + (bus - 1)) >> ring.lane_bits),
-                words.map_mask.eq(traits.mask),
+                words.map_mask.eq(traits.map_mask),
                 words.to_end.eq(to_end),
                 words.end_mask.eq(end_mask),
                 words.last.eq(state.ends),

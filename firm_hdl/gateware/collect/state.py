@@ -32,8 +32,8 @@ class CollectState:
         By leaf.
     flow : Flow
         The step and the counters.
-    traits, step : View, Signal
-        The traits of the step, and the step itself: `flow.step_state` and `flow.step`.
+    traits, step : SimpleNamespace, list of Value(1)
+        The traits of the step, and the step itself: those of `flow`.
     rest : Signal(range(lanes + 1))
         Number of items in the rest of the last run, until a step takes them. A register.
     has_nul : Signal(1)
@@ -59,7 +59,7 @@ class CollectState:
             for leaf in plan.begins
         }
         self.flow = self._flow()
-        self.traits, self.step = self.flow.step_state, self.flow.step
+        self.traits, self.step = self.flow.traits, self.flow.step
         lanes = plan.max_run_lanes
         self.rest, self.has_nul = Signal(range(lanes + 1), name="rest"), Signal(name="has_nul")
         self.zero = self.of_length(lambda length: length.zero)
@@ -70,11 +70,11 @@ class CollectState:
 
     def _flow(self) -> Flow:
         size = self.plan.bus_bytes.bit_length()
-        flags = "run_begin loop_begin words plain rest terminated lead"
-        fields = {"map_bytes": size, "items_bytes": size, "mask": 3, "map_addend": 3}
-        fields |= dict.fromkeys(flags.split(), 1)
+        widths = {"map_bytes": size, "items_bytes": size, "map_mask": 3, "map_addend": 3}
+        flags = "begins_nothing begins_run begins_string begins_loop is_words takes_rest"
+        widths |= dict.fromkeys([*flags.split(), "two_word_map"], 1)
         most = (1 << COUNT_BITS) - 1
-        return Flow(self.m, self.plan, lambda _: most, fields, self._traits, has_end=False)
+        return Flow(self.m, self.plan, lambda _: most, widths, self._traits, has_end=False)
 
     def _traits(self, index: int | None) -> dict[str, int]:
         if index is None:
@@ -89,15 +89,15 @@ class CollectState:
         return {
             "map_bytes": bus if is_words and not counted else step.bytes - bus * lead,
             "items_bytes": bus if lead or counted else 0,
-            "mask": step.align - 1,
+            "map_mask": step.align - 1,
             "map_addend": map_addend,
-            "run_begin": isinstance(begin, BeginRun),
-            "loop_begin": isinstance(begin, BeginLoop),
-            "words": is_words,
-            "plain": begin is None and not is_words,
-            "rest": step.rest is not None,
-            "terminated": isinstance(begin, BeginRun) and plan.runs[begin.run].terminated,
-            "lead": lead,
+            "begins_nothing": begin is None and not is_words,
+            "begins_run": isinstance(begin, BeginRun),
+            "begins_string": isinstance(begin, BeginRun) and plan.runs[begin.run].terminated,
+            "begins_loop": isinstance(begin, BeginLoop),
+            "is_words": is_words,
+            "takes_rest": step.rest is not None,
+            "two_word_map": lead,
         }
 
     def of_length(

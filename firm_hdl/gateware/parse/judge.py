@@ -72,7 +72,7 @@ class Judge:
             marks.beat.eq(beat),
             marks.nul_at.eq(state.nul_at),
             marks.header_at.eq(ring.beat(state.first_at)),
-            self.wrong_nul.eq(state.has_nul & state.traits.rest & marks.nonzero),
+            self.wrong_nul.eq(state.has_nul & state.traits.takes_rest & marks.nonzero),
             self.has_trailing.eq(state.present & too_many),
         ]
         headers = [state.step[i] & marks.mismatch[k] for k, i in enumerate(marks.steps)]
@@ -98,7 +98,7 @@ class Judge:
         m.d.comb += [
             within.eq(self.limit - state.nul_at),
             cut.eq(self.ended & ~state.present),
-            begins.eq(state.issue & (state.traits.run_begin | state.traits.loop_begin)),
+            begins.eq(state.issue & (state.traits.begins_run | state.traits.begins_loop)),
         ]
         # The string's last byte is in the buffer, even if later bytes of the step are not.
         missing_nul = self.wrong_nul & (state.present | (~within[-1] & within.any()))
@@ -137,14 +137,14 @@ class Judge:
         traits = state.traits
         # Bytes from the first one of the map's last word to the packet's end.
         map_left = ring.position("map_left")
-        back = traits.back.as_signed()
+        back = traits.map_offset.as_signed()
         m.d.comb += map_left.eq(sum_of_three(self.limit, ~state.last_at, (1 - back)))
         map_room = self._room(map_left)
-        items_room = Mux(traits.rest, self._room(self.limit - state.first_at), map_room)
+        items_room = Mux(traits.takes_rest, self._room(self.limit - state.first_at), map_room)
         # If the map has two words, the word of items is the first one. A negative `map_left` is at
         # least -bus: the packet ends within the first word.
         in_front = Mux(ring.beat(map_left).all(), ring.lane(map_left), 0)
-        items_room = Mux(traits.lead, Mux(map_left[-1], in_front, bus), items_room)
+        items_room = Mux(traits.two_word_map, Mux(map_left[-1], in_front, bus), items_room)
         is_cut, trails = self.code == Status.TRUNCATED, self.code == Status.TRAILING
         whole = Mux(trails | (self.code == Status.STRING), bus, 0)
         with m.If(state.bad):

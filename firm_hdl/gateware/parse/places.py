@@ -72,7 +72,7 @@ def place_traits(plan: Plan, index: int) -> dict[str, int]:
     Each successor of the step has an addend (`add`), the `mask` of the bits that alignment clears,
     and the value of these bits (`low`); if the phase is not a constant, `low` is a distance. With
     `rest`, the register `tail`, the distance over the rest, replaces the addend. `is` tells that
-    the step has this successor.
+    the step ends a loop's body.
     """
     bus, traits = plan.bus_bytes, dict[str, int]()
     for name, successor in _successors(plan, index):
@@ -84,19 +84,23 @@ def place_traits(plan: Plan, index: int) -> dict[str, int]:
             f"{name}_mask": successor.align - 1,
             f"{name}_low": low,
             f"{name}_rest": successor.rest,
-            f"{name}_is": 1,
         }
+        if name.startswith("again"):
+            traits[f"{name}_is"] = 1
     return traits
 
 
 def place_fields(plan: Plan) -> dict[str, int]:
     """Return the widths of these traits, in bits."""
     bus = plan.bus_bytes
-    widths = {"add": (3 * bus + 8).bit_length(), "mask": 3, "low": 3, "rest": 1, "is": 1}
+    widths = {"add": (3 * bus + 8).bit_length(), "mask": 3, "low": 3, "rest": 1}
     if bus < 8:
         widths["low"] = Ring(plan).bits
     names = {name for index in range(len(plan.steps)) for name, _ in _successors(plan, index)}
-    return {f"{name}_{what}": bits for name in sorted(names) for what, bits in widths.items()}
+    again = {f"{name}_is": 1 for name in sorted(names) if name.startswith("again")}
+    return again | {
+        f"{name}_{what}": bits for name in sorted(names) for what, bits in widths.items()
+    }
 
 
 class NextPlace:
@@ -136,7 +140,6 @@ class NextPlace:
         self.m, self.flow, self.plan = m, flow, flow.plan
         self.last_at, self.phase, self.meanings, self.entry = last_at, phase, meanings, entry
         self.ring = Ring(self.plan)
-        self.names = [name.removesuffix("_is") for name in place_fields(self.plan) if "_is" in name]
         tail = self._tail()
         self.exit = self._sum("exit", self._exits(), tail)
         self.body = self._sum("body", [(Const(1, 1), "body")], tail)
@@ -147,8 +150,9 @@ class NextPlace:
         width = place_fields(self.plan).get(name)
         if width is None:
             return Const(0, 1)
-        if name in self.flow.layout.members:
-            return self.flow.step_state[name]
+        if name in vars(self.flow.traits):
+            trait: Value = vars(self.flow.traits)[name]
+            return trait
         values = [place_traits(self.plan, k).get(name, 0) for k in range(len(self.plan.steps))]
         return pick([(self.flow.step[k], value) for k, value in enumerate(values)], width)
 
@@ -158,7 +162,7 @@ class NextPlace:
         free: Value = Const(1, 1)
         # The innermost loop goes on first.
         for level in reversed(range(self.plan.levels)):
-            if f"again_{level}" in self.names:
+            if f"again_{level}_is" in place_fields(self.plan):
                 again = self._trait(f"again_{level}_is") & ~self.flow.levels[level].last
                 found.append((free & again, f"again_{level}"))
                 free = free & ~again
@@ -172,8 +176,8 @@ class NextPlace:
             return pick([(on, self._trait(f"{name}_{what}")) for on, name in successors], width)
 
         amount, total = Signal(len(tail), name=f"{kind}_amount"), ring.position(f"{kind}_sum")
-        mask, low = Signal(3, name=f"{kind}_mask"), ring.position(f"{kind}_low")
-        rest = Signal(name=f"{kind}_rest")
+        mask, low = Signal(3, name=f"to_{kind}_mask"), ring.position(f"to_{kind}_low")
+        rest = Signal(name=f"to_{kind}_rest")
         m.d.comb += [
             rest.eq(chosen("rest", 1)),
             amount.eq(Mux(rest, tail, chosen("add", len(tail)))),
@@ -201,7 +205,7 @@ class NextPlace:
             rests.append((taken, rest))
         if sizes:
             total = pick(sizes, len(tail)) + pick(rests, len(tail))
-            with self.m.If(self.flow.step_state.run_begin):
+            with self.m.If(self.flow.traits.begins_run):
                 self.m.d.sync += tail.eq(total)
         return tail
 

@@ -146,15 +146,15 @@ class _SequencerLogic:
         """Decide whether all bytes are present, and what follows the step."""
         m, c, state = self.m, self.c, self.state
         ring, traits, flow = state.ring, state.traits, state.flow
-        is_begin = traits.run_begin | traits.loop_begin
-        word_before = Cat(ring.lane(state.map_at), ring.beat(state.map_at) - traits.lead)
+        is_begin = traits.begins_run | traits.begins_loop
+        word_before = Cat(ring.lane(state.map_at), ring.beat(state.map_at) - traits.two_word_map)
         m.d.comb += [
             state.step_end.eq(state.last_at + 1),
             # limit - last_at - 1.
             state.left.eq(c.limit + ~state.last_at),
             c.trailing.eq(state.left),
             state.present.eq(~state.left[-1]),
-            state.exits_always.eq(traits.plain | (traits.words & flow.words.last)),
+            state.exits_always.eq(traits.begins_nothing | (traits.is_words & flow.words.last)),
             state.done.eq(
                 state.exits_always
                 | (is_begin & state.bad)
@@ -162,10 +162,10 @@ class _SequencerLogic:
                 | self.length.loop_skips
             ),
             # Whether a length of 0 ends the message is known late; then the end is its own step.
-            state.ends_message.eq(traits.end | (flow.exit_ends & state.exits_always)),
+            state.ends_message.eq(traits.at_end | (flow.exit_ends & state.exits_always)),
             state.ends_packet.eq(state.ends_message & c.ended),
-            state.map_at.eq(state.last_at + traits.back.as_signed()),
-            state.items_at.eq(Mux(traits.rest, state.first_at, word_before)),
+            state.map_at.eq(state.last_at + traits.map_offset.as_signed()),
+            state.items_at.eq(Mux(traits.takes_rest, state.first_at, word_before)),
         ]
 
     def _allow(self, ready: Value) -> None:
@@ -182,7 +182,7 @@ class _SequencerLogic:
         allowed = Signal(name="allowed")
         drains, good, ends, bad = state.drains, self.judge.good, state.ends_packet, state.bad
         may_proceed = ~bad & (~state.ends_message | c.ended) & ~self._too_early()
-        may_drain = bad & ~state.new_error & (~traits.end | c.ended)
+        may_drain = bad & ~state.new_error & (~traits.at_end | c.ended)
         if self.claims is not None:
             waits = self.claims.pending
             if c.has_leaves:
@@ -205,11 +205,11 @@ class _SequencerLogic:
         m, c, state = self.m, self.c, self.state
         ring, traits, flow = state.ring, state.traits, state.flow
         order, bus, bad = c.orders.payload, self.plan.bus_bytes, state.bad
-        blank = traits.end if state.refused is None else traits.end | state.refused
+        blank = traits.at_end if state.refused is None else traits.at_end | state.refused
         wanted = Signal(range(bus + 1), name="items_wanted")
         fits = self.judge.items_room >= wanted
         m.d.comb += [
-            wanted.eq(Mux(traits.rest, flow.rest_bytes(state.rest), bus)),
+            wanted.eq(Mux(traits.takes_rest, flow.rest_bytes(state.rest), bus)),
             order.step.eq(
                 pick([(state.step[i], i) for i in range(len(self.plan.steps))], len(order.step))
             ),
@@ -220,8 +220,8 @@ class _SequencerLogic:
             order.map_next.eq(ring.slot(state.map_at) + 1),
             order.items_bytes.eq(Mux(bad & ~fits, self.judge.items_room, wanted)),
             order.map_bytes.eq(Mux(bad, self.judge.map_room, bus)),
-            order.items.eq((traits.rest & state.rest.any()) | traits.counted),
-            order.last.eq(traits.rest | (flow.words.last & ~traits.counted)),
+            order.items.eq((traits.takes_rest & state.rest.any()) | traits.is_counted),
+            order.last.eq(traits.takes_rest | (flow.words.last & ~traits.is_counted)),
             order.length_good.eq(~bad & ~self.length.zero & ~self.length.over),
             order.final.eq(Cat(level.last for level in flow.levels)),
             order.first.eq(ring.beat(state.first_at)),
@@ -249,11 +249,6 @@ class _SequencerLogic:
     def _proceed(self) -> None:
         """Go to the next step, and count."""
         m, state, flow = self.m, self.state, self.state.flow
-        next_state = Signal(flow.layout.size, name="next_state")
-        following = Mux(state.done, flow.exit_state, flow.body_state)
-        if not self.c.has_leaves:
-            following = Mux(state.bad, flow.encode(None), following)
-        m.d.comb += next_state.eq(Mux(state.ends_packet, flow.start, following))
         flow.count(
             moves=state.issue,
             ends=state.ends_packet,
@@ -263,14 +258,16 @@ class _SequencerLogic:
             double=self.length.double,
             nul=True,
         )
+        aborts = None if self.c.has_leaves else state.bad
         with m.If(state.issue):
-            m.d.sync += Value.cast(flow.step_state).eq(next_state)
+            flow.go(ends=state.ends_packet, done=state.done, aborts=aborts)
         if state.refused is not None and self.claims is not None:
             # Back to the step of the length. It begins nothing, and is left at once.
             back = {s.begin.body.step: i for i, s in enumerate(self.plan.steps) if s.begin}
-            bits = pick([(state.step[k], 1 << i) for k, i in back.items() if k], len(state.step))
+            begun = {i: state.step[k] for k, i in back.items() if k}
             with m.If(self.claims.fails):
-                m.d.sync += [state.traits.plain.eq(1), state.step.eq(bits)]
+                m.d.sync += state.traits.begins_nothing.eq(1)
+                flow.go_to(begun)
         with m.If(state.issue):
             with m.If(state.ends_packet):
                 m.d.sync += [state.rest.eq(0), state.has_nul.eq(0)]
@@ -284,14 +281,13 @@ class _SequencerLogic:
         terminated = state.flow.on(
             lambda s: isinstance(s.begin, BeginRun) and self.plan.runs[s.begin.run].terminated
         )
-        with m.If(state.traits.run_begin):
+        with m.If(state.traits.begins_run):
             m.d.sync += [
                 state.rest.eq(Mux(good, self.length.rest, 0)),
                 state.has_nul.eq(terminated & good & ~self.length.zero),
             ]
-        with m.Elif(
-            state.traits.rest if state.refused is None else state.traits.rest | state.refused
-        ):
+        ends: Value = state.traits.takes_rest
+        with m.Elif(ends if state.refused is None else ends | state.refused):
             m.d.sync += [state.rest.eq(0), state.has_nul.eq(0)]
 
     def _move_on(self) -> None:
@@ -318,14 +314,14 @@ class _SequencerLogic:
             ),
         ]
         # After an error, `first_at` only frees beats; the end step drops the rest of the packet.
-        kept = Mux(state.traits.end, c.limit, state.first_at)
+        kept = Mux(state.traits.at_end, c.limit, state.first_at)
         first = Mux(state.ends_packet, start, Mux(state.bad, kept, self._items_start()))
-        with m.If(state.issue | (state.bad & state.traits.end)):
+        with m.If(state.issue | (state.bad & state.traits.at_end)):
             m.d.sync += state.first_at.eq(first)
         with m.If(state.issue):
             m.d.sync += state.last_at.eq(last)
             if any(run.terminated for run in plan.runs):
-                rest = Mux(state.traits.words, state.rest, self.length.rest)
+                rest = Mux(state.traits.is_words, state.rest, self.length.rest)
                 m.d.sync += state.nul_at.eq(state.step_end + rest)
             if isinstance(state.phase, Signal):
                 with m.If(state.ends_packet):

@@ -34,8 +34,8 @@ class ParseState:
         What the length of a step means, by the step's index.
     flow : Flow
         The step and the counters.
-    traits, step : View, Signal
-        The traits of the step, and the step itself: `flow.step_state` and `flow.step`.
+    traits, step : SimpleNamespace, list of Value(1)
+        The traits of the step, and the step itself: those of `flow`.
     last_at : Signal(position)
         Last byte of the step's map or word. A length of the step is the end of its map; so this is
         the length's last byte, too.
@@ -90,7 +90,7 @@ class ParseState:
         checks = has_leaves and plan.has_claims
         self.refused = Signal(name="refused") if checks else None
         self.flow = self._flow()
-        self.traits, self.step = self.flow.step_state, self.flow.step
+        self.traits, self.step = self.flow.traits, self.flow.step
         start = shift_of(plan, plan.start.step) % (1 << ring.bits)
         self.last_at = ring.position("last_at", init=start)
         self.first_at = ring.position("first_at")
@@ -114,29 +114,34 @@ class ParseState:
 
     def _flow(self) -> Flow:
         plan = self.plan
-        flags = "run_begin loop_begin words counted rest lead plain end"
-        # `back` is in two's complement.
-        fields = {"back": plan.bus_bytes.bit_length() + 1} | dict.fromkeys(flags.split(), 1)
+        flags = "begins_nothing begins_run begins_loop is_words is_counted takes_rest"
+        # `map_offset` is in two's complement.
+        widths = {"map_offset": plan.bus_bytes.bit_length() + 1}
+        widths |= dict.fromkeys([*flags.split(), "two_word_map", "at_end"], 1)
         # On a narrow bus, positions are short: their traits are not worth registers.
-        fields |= place_fields(plan) if plan.bus_bytes >= 8 else {}
-        return Flow(self.m, plan, plan.max_count, fields, self._traits, has_end=True)
+        widths |= place_fields(plan) if plan.bus_bytes >= 8 else {}
+        # After a length that claims too much, its step begins nothing.
+        written = "begins_nothing" if self.refused is not None else ""
+        return Flow(
+            self.m, plan, plan.max_count, widths, self._traits, has_end=True, written=written
+        )
 
     def _traits(self, index: int | None) -> dict[str, int]:
         plan, bus = self.plan, self.plan.bus_bytes
         if index is None:
-            return {"end": 1, "back": 1}
+            return {"at_end": 1, "begins_nothing": 1, "map_offset": 1}
         step = plan.steps[index]
         is_words = isinstance(step, RunStep)
         is_lead = step.bytes > bus
         return {
             # From the last byte to the first one of the map's last word.
-            "back": is_lead * bus - shift_of(plan, index),
-            "run_begin": isinstance(step.begin, BeginRun),
-            "loop_begin": isinstance(step.begin, BeginLoop),
-            "words": is_words,
-            "counted": isinstance(step, RunStep) and plan.runs[step.run].counted,
-            "rest": step.rest is not None,
-            "lead": is_lead,
-            "plain": step.begin is None and not is_words,
+            "map_offset": is_lead * bus - shift_of(plan, index),
+            "begins_nothing": step.begin is None and not is_words,
+            "begins_run": isinstance(step.begin, BeginRun),
+            "begins_loop": isinstance(step.begin, BeginLoop),
+            "is_words": is_words,
+            "is_counted": isinstance(step, RunStep) and plan.runs[step.run].counted,
+            "takes_rest": step.rest is not None,
+            "two_word_map": is_lead,
             **(place_traits(plan, index) if bus >= 8 else {}),
         }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module, Mux, Signal, signed
+from amaranth.hdl import Cat, Module, Mux, Signal, signed
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -11,8 +11,8 @@ from firm_hdl.node.gateware.streams import time_layout
 
 __all__ = ["NodeClock"]
 
-SECOND = 1_000_000_000 << RATE_FRACTION_BITS
-"""A second, in steps of the clock."""
+SECOND = 1_000_000_000
+"""Nanoseconds of a second."""
 
 
 class NodeClock(wiring.Component):
@@ -59,33 +59,34 @@ class NodeClock(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        bits = SECOND.bit_length() + 1
+        fraction = RATE_FRACTION_BITS
+        bits = fraction + SECOND.bit_length() + 1
         rate = Signal(32, init=self.nominal)
         step = Signal(32, init=self.nominal)
-        # A step less a second, one register per cycle, so that no path has two additions.
-        step_back = Signal(signed(bits), init=self.nominal - SECOND)
+        # The nanoseconds of a step less a second, in a register, so that no path has two additions.
+        step_back = Signal(signed(bits - fraction), init=(self.nominal >> fraction) - SECOND)
         # The time in this second, and the same less a second. If the latter is not negative, the
         # second is over; its sign is a register, so it only selects what the adders add to.
-        within, beyond = Signal(bits), Signal(signed(bits), init=-1)
+        within, beyond, negative = Signal(bits), Signal(bits - 1), Signal(init=1)
         now, over, seconds = Signal(bits), Signal(), Signal(32)
         m.d.comb += [
-            over.eq(~beyond[-1]),
+            over.eq(~negative),
             now.eq(Mux(over, beyond, within)),
             self.rate.eq(rate),
         ]
         m.d.sync += [
             step.eq(rate),
-            step_back.eq(rate - SECOND),
+            step_back.eq(rate[fraction:] - SECOND),
             within.eq(now + step),
-            beyond.eq(now + step_back),
+            Cat(beyond, negative).eq(now + Cat(step[:fraction], step_back)),
             seconds.eq(seconds + over),
-            self.time.nanosec.eq(now[RATE_FRACTION_BITS:]),
+            self.time.nanosec.eq(now[fraction:]),
             self.time.sec.eq(seconds + over),
         ]
         with m.If(self.sets):
             m.d.sync += [
-                within.eq(self.to.nanosec << RATE_FRACTION_BITS),
-                beyond.eq(-1),
+                within.eq(self.to.nanosec << fraction),
+                negative.eq(1),
                 seconds.eq(self.to.sec),
             ]
         with m.If(self.sets_rate):
