@@ -286,6 +286,19 @@ def test_a_reader_that_has_answered_with_fragments_is_not_asked_without_need(sen
     assert writer.tick(9.0) == float("inf")
 
 
+def test_a_reader_is_asked_before_the_last_samples_give_way(sent):
+    """One that answers loses nothing at 500 samples per second, though the depth is 10."""
+    writer = serving(sent, Qos(depth=10), Qos(depth=10))
+    for number in range(1, 501):
+        now = 1.0 + 0.002 * number
+        writer.write(b"x", now)
+        beats = sent.take(Heartbeat)
+        if any(not each.final for each in beats):
+            writer.on_ack_nack(THERE, ack(number + 1, count=number), now)
+        sent.clear()
+    assert writer.overwritten == 0
+
+
 def test_a_heartbeat_that_asked_makes_the_next_one_final(sent):
     writer = serving(sent)
     writer.write(b"abcd", 1.0)
