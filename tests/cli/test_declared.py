@@ -77,7 +77,6 @@ DEFAULTS = {
             "bus_bytes": None,
             "direction": None,
             "device": "ecp5",
-            "software": False,
             "seeds": [1, 2, 3],
             "mapping": "",
             "messages": 16,
