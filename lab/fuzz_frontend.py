@@ -292,7 +292,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=Path("build/fuzz"), help="folder of findings")
     options = parser.parse_args(arguments)
     corpus = os.environ.get("FIRM_HDL_CORPUS")
-    folder = Path(corpus) if corpus else Path("tests/frontend/errors")
+    folder = Path(corpus) if corpus else Path(__file__).parents[1] / "tests" / "frontend" / "errors"
     first, count = (0, options.n) if options.only is None else (options.only, 1)
     print(f"--seed {options.seed}, {count} inputs from {folder}", flush=True)
     counts: Counter[str] = Counter()

@@ -10,7 +10,7 @@ from firm_hdl.frontend import interfaces, parse
 from lab.fuzz_frontend import Fuzzer, main
 from tests.depth import by_depth
 
-FOLDER = Path("tests/frontend/errors")
+FOLDER = Path(__file__).parents[2] / "tests" / "frontend" / "errors"
 
 
 def test_damaged_files_end_in_a_model_or_an_error():
