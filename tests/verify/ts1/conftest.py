@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from contextlib import ExitStack, closing
 from functools import cache
 from itertools import count
@@ -12,7 +13,6 @@ import pytest
 
 from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.ros_python import worker
-from firm_hdl.verify.ts1.command import Tally
 from firm_hdl.verify.ts1.judge import judge
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.universe import Universe, write_definitions
@@ -22,16 +22,23 @@ from tests.verify.ts1.nursery import nursed
 
 
 def judged_by(run):
-    """Judge all definitions; return the tally, and the names and failures of those that differ."""
-    with closing(run.judgements()) as shares:
-        found = {number: record for share in shares for number, record in share}
+    """Judge all definitions, all of one oracle.
+
+    Returns
+    -------
+    Counter of (oracle, name of the verdict), int, list
+        The number of definitions that both refuse, and the names and failures of those that differ.
+    """
+    with closing(run.judged(list(run.cases))) as shares:
+        records = {test: record for share in shares for test, record, _ in share}
+    found = [(test, each) for test, record in records.items() for each in record.verdicts]
     wrong = [
-        (run.case(number).full_name, each.verdict.failures)
-        for number, record in sorted(found.items())
-        for each in record.verdicts
+        (test.type, each.verdict.failures)
+        for test, each in found
         if isinstance(each.verdict, Failed)
     ]
-    return Tally(each for record in found.values() for each in record.verdicts), wrong
+    verdicts = Counter((each.oracle, each.verdict.name) for _, each in found)
+    return verdicts, sum(each.is_refused for _, each in found), wrong
 
 
 class Court:
@@ -56,8 +63,8 @@ class Court:
 
     def answer(self, name, type_):
         """Return the answer of an oracle about a type."""
-        (answer,) = self.oracle(name).judge(self.universe.select([type_]))
-        return answer
+        (case,) = self.universe.select([type_])
+        return self.oracle(name).judge(case)
 
     def outcome(self, name, type_):
         """Return the outcome of the comparison."""

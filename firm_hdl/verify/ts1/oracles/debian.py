@@ -6,7 +6,7 @@ has its own oracles, whose names end in the version.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, ClassVar
@@ -14,9 +14,8 @@ from typing import Any, ClassVar
 from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.ros2_wheels import RELEASES, Release
 from firm_hdl.verify.ros_python.worker import ROS_PYTHON, Worker
-from firm_hdl.verify.ts1.case import DefinitionCase
-from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle, Refused
+from firm_hdl.verify.ts1.universe import DefinitionCase
 
 __all__ = ["NEWER", "Genmsg", "RosidlAdapter", "RosidlParser"]
 
@@ -43,9 +42,8 @@ class _Worked(Oracle):
     def version(self) -> str:
         return self._worker.versions.get(self.judge_name, "")
 
-    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
-        for case in cases:
-            yield _answer(self._worker.ask(self._request(case)))
+    def judge(self, case: DefinitionCase) -> Answer:
+        return _answer(self._worker.ask(self._request(case)))
 
     def _request(self, case: DefinitionCase) -> dict[str, Any]:
         return {
@@ -116,12 +114,6 @@ class RosidlParser(_Worked):
     family = "rosidl"
     languages: ClassVar = {"ros2": frozenset({"msg", "srv", "action", "idl"})}
 
-    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
-        for case, answer in zip(cases, super().judge(cases), strict=True):
-            if case.language == "idl" and isinstance(answer, Accepted):
-                _name_as_file(answer.facts, case)
-            yield answer
-
     def alike(self, case: DefinitionCase) -> Mapping[str, str]:
         # rosidl_adapter writes char as uint8 in IDL.
         return {} if case.language == "idl" else {"char": "uint8"}
@@ -137,11 +129,3 @@ def _newer() -> Iterator[type[Oracle]]:
 
 NEWER: tuple[type[Oracle], ...] = tuple(_newer())
 """Oracles of the releases that PyPI has, oldest first."""
-
-
-def _name_as_file(facts: Facts, case: DefinitionCase) -> None:
-    """Name a message of IDL by its file. The name in the text goes to the fact ``names``."""
-    names = list(facts["structure"])
-    if len(names) == 1:
-        facts["names"] = names
-        facts["structure"] = {case.full_name: facts["structure"][names[0]]}

@@ -1,0 +1,654 @@
+"""Deliberate differences between oracles and firm-hdl: a table. docs/errata.md gives the reasons.
+
+A row explains single facts, or that one of the two refuses a definition. Facts that no row explains
+are compared. If the oracle refuses a text, there are no facts: the whole definition is known then.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+from firm_hdl.errors import Diagnostic
+from firm_hdl.frontend.sources import Language
+from firm_hdl.model import Dialect
+from firm_hdl.verify.ts1.facts import Difference, Facts
+from firm_hdl.verify.ts1.universe import DefinitionCase
+
+__all__ = ["KNOWN", "Known"]
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """One deliberate difference: a row of the table.
+
+    Attributes
+    ----------
+    key : str
+        The name of the difference, here and in docs/errata.md.
+    oracles : str
+        Names of the oracles that differ from us, separated by blanks.
+    why : str
+        What differs, in one sentence.
+    dialect : "ros1", "ros2" or None
+    language : Language or None
+        Those of the definitions; `None`: any.
+    where : str
+        A pattern that the code of the definition, or of one that it needs, contains. Comments are
+        no code, and neither are string literals of IDL. It does not limit `ours` and `mend`.
+    ours : tuple of str
+        Patterns for a mistake that we refuse and the oracle accepts: the first finds something in
+        our message, the second matches all words that the message is about.
+    theirs : str
+        A pattern that finds something in the message of the oracle, if it refuses a text that is
+        none of the mistakes of ROS.
+    mend : callable or None
+        Takes the type of a constant or of a field, and its value or default as the oracle has read
+        it. Returns the right one.
+    differs : callable or None
+        Whether a single difference is this one; also takes the code of the definition.
+    """
+
+    key: str
+    oracles: str
+    why: str
+    dialect: Dialect | None = None
+    language: Language | None = None
+    where: str = ""
+    ours: tuple[str, str] | None = None
+    theirs: str = ""
+    mend: Callable[[str, Any], Any] | None = None
+    differs: Callable[[Difference, str], bool] | None = None
+
+    def is_about(self, oracle: str, case: DefinitionCase) -> bool:
+        """Whether this row can explain a difference from an oracle in a definition."""
+        # The names of newer releases' oracles end in "-" and the version.
+        is_oracle = oracle.partition("-")[0] in self.oracles.split()
+        is_dialect = self.dialect in (None, case.dialect)
+        return is_oracle and is_dialect and self.language in (None, case.language)
+
+    def is_in(self, case: DefinitionCase) -> bool:
+        """Whether the code of a definition has what makes the difference."""
+        return re.search(self.where, _code(case), re.MULTILINE) is not None
+
+    def has(self, difference: Difference, case: DefinitionCase) -> bool:
+        """Whether a single difference comes from this one in a definition."""
+        if self.differs is None or not self.differs(difference, _code(case)):
+            return False
+        return self.is_in(case)
+
+    def refuses(self, message: str) -> bool:
+        """Whether an oracle says this if it refuses a definition for the difference."""
+        return bool(self.theirs) and re.search(self.theirs, message, re.DOTALL) is not None
+
+    def explains(self, problem: Diagnostic) -> bool:
+        """Whether it is deliberate that we refuse a definition for a problem."""
+        span = problem.span
+        if self.ours is None or span is None:
+            return False
+        message, words = self.ours
+        text = span.source.text[span.start : span.end]
+        is_one = re.search(message, problem.message) and re.fullmatch(words, text, re.DOTALL)
+        return bool(is_one) and _is_true(problem.message, text, span.source.text)
+
+    def mended(self, facts: Facts) -> Facts:
+        """Return facts with all values and defaults mended."""
+        mend = self.mend
+        if mend is None or "structure" not in facts:
+            return facts
+
+        def member(each: dict[str, Any], part: str) -> dict[str, Any]:
+            return {**each, part: mend(each["type"], each[part])} if part in each else each
+
+        structure = {
+            name: {
+                **message,
+                "fields": [member(each, "default") for each in message.get("fields", ())],
+                "constants": [member(each, "value") for each in message.get("constants", ())],
+            }
+            for name, message in facts["structure"].items()
+        }
+        return {**facts, "structure": structure}
+
+
+_QUIET = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
+
+
+def _code(case: DefinitionCase) -> str:
+    if case.language == "idl":
+        return _QUIET.sub(lambda match: '"' if match[0].startswith('"') else " ", case.text)
+    return re.sub(r"(?m)^\s*#.*", "", case.text)
+
+
+def _is_true(message: str, words: str, text: str) -> bool:
+    """Whether a text has the mistake that we find in it, as far as this is plain."""
+    if "already declared" in message:
+        return len(re.findall(rf"\b{re.escape(words)}\b", text)) > 1
+    if found := re.search(r"value of ([a-z]+)(\d*) must be in (-?\d+)\.\.(\d+)$", message):
+        bits = int(found[2] or (16 if found[1] == "wchar" else 8))
+        least, most = int(found[3]), int(found[4])
+        is_type = most - least + 1 == 1 << bits and least in (0, -(1 << (bits - 1)))
+        is_inside = re.fullmatch(r"-?\d+", words) and least <= int(words) <= most
+        return is_type and not is_inside
+    return True
+
+
+# Mends of values.
+
+
+def _float(kind: str, value: Any) -> Any:
+    """Convert what is given for a floating-point number to one."""
+    if re.split(r"[\[<]", kind, maxsplit=1)[0] not in ("float32", "float64", "long double"):
+        return value
+    if isinstance(value, list):
+        return [_float(kind.partition("[")[0], each) for each in value]
+    try:
+        text = value.partition("#")[0] if isinstance(value, str) else value
+        return value if isinstance(value, bool | None) else float(text)
+    except ValueError:
+        return value
+
+
+def _whole_float(kind: str, value: Any) -> Any:
+    items = value if isinstance(value, list) else [value]
+    return _float(kind, value) if all(type(each) is int for each in items) else value
+
+
+def _bool(kind: str, value: Any) -> Any:
+    return bool(value) if kind == "bool" and type(value) is int else value
+
+
+# Single differences.
+
+
+def _is_value(difference: Difference, code: str = "") -> bool:
+    return difference.path.endswith(("/value", "/default"))
+
+
+def _is_type(difference: Difference, code: str = "") -> bool:
+    return difference.path.endswith("/type")
+
+
+def _is_hash(difference: Difference, code: str = "") -> bool:
+    return difference.path.startswith("hash")
+
+
+def _is_same_text(difference: Difference, code: str = "") -> bool:
+    """Whether only quotes, escapes, comments and forms of numbers distinguish two texts."""
+
+    def plain(value: Any) -> str:
+        text = re.sub(r"[\"'\\\s]", "", str(value).partition("#")[0]).lower()
+        return str(float(text)) if re.fullmatch(r"[-+]?\d+(\.\d*)?", text) else text
+
+    ours, theirs = plain(difference.ours), plain(difference.theirs)
+    return isinstance(difference.ours, str) and _is_value(difference) and ours == theirs
+
+
+def _is_octal(difference: Difference, code: str = "") -> bool:
+    ours, theirs = difference.ours, difference.theirs
+    if not _is_value(difference) or type(ours) is not int or type(theirs) is not int:
+        return False
+    return f"{theirs:o}" == str(ours)
+
+
+def _is_special(difference: Difference, code: str = "") -> bool:
+    names = [str(each).split("[")[0] for each in (difference.ours, difference.theirs)]
+    special = r"(std_msgs|builtin_interfaces)/(msg/)?(Header|Time|Duration)"
+    is_one = re.fullmatch(special, names[1]) and names[0].lower().endswith(names[1][-4:].lower())
+    return _is_hash(difference) or (_is_type(difference) and bool(is_one))
+
+
+def _has_constants_apart(difference: Difference, code: str) -> bool:
+    """Whether all names that only one reader has are those of constants."""
+    if not difference.path.endswith(("/fields", "/constants")):
+        return False
+    apart = {*difference.ours} ^ {*difference.theirs}
+    return all(re.search(rf"\s{each}\s*=", code) for each in apart)
+
+
+def _is_cut(difference: Difference, code: str) -> bool:
+    """Whether words of a type are missing in front of names."""
+    ours, theirs = difference.ours, difference.theirs
+    if not difference.path.endswith("/fields") or len(ours) != len(theirs):
+        return False
+    return all(
+        one in (other, f"long{other}", f"double{other}")
+        for one, other in zip(ours, theirs, strict=True)
+    )
+
+
+def _is_infinite(difference: Difference, code: str = "") -> bool:
+    ours, theirs = difference.ours, difference.theirs
+    is_one = _is_value(difference) and isinstance(ours, float) and not math.isfinite(ours)
+    return is_one and str(theirs) == str(abs(ours))
+
+
+def _is_comment(difference: Difference, code: str = "") -> bool:
+    """Whether blanks at the ends of lines, and empty lines, are all that differs."""
+    lines = [line.rstrip() for line in str(difference.theirs).split("\n")]
+    kept: list[str] = []
+    for is_empty, group in groupby(lines, key=lambda line: line == ""):
+        kept += [""] if is_empty else group
+    return difference.path.endswith("/comment") and "\n".join(kept).strip("\n") == difference.ours
+
+
+def _is_text_bound(difference: Difference, code: str = "") -> bool:
+    """Whether a list has the bound of its texts."""
+    ours, theirs = str(difference.ours), str(difference.theirs)
+    found = re.fullmatch(r"(wstring<=(\w+))\[<=\2\]", theirs)
+    return found is not None and _is_type(difference) and ours == f"{found[1]}[]"
+
+
+def _is_bound_by_name(difference: Difference, code: str = "") -> bool:
+    ours, theirs = str(difference.ours), str(difference.theirs)
+    names = re.sub(r"\b(wstring<=)[A-Za-z_][\w:]*", r"\1N", theirs)
+    return _is_type(difference) and names == re.sub(r"\b(wstring<=)\d+", r"\1N", ours)
+
+
+def _is_list_of_one(difference: Difference, code: str = "") -> bool:
+    ours, theirs = difference.ours, difference.theirs
+    if not isinstance(ours, list) or len(ours) != 1 or not isinstance(theirs, str):
+        return False
+    return theirs.strip("() ").strip("'\"") == str(ours[0])
+
+
+def _is_own_constants(difference: Difference, code: str = "") -> bool:
+    """Whether a list of constants lacks some, or has some twice, that another part has as well."""
+    ours, theirs = difference.ours, difference.theirs
+    if not difference.path.endswith("/constants"):
+        return False
+    is_first = len(theirs) > len(ours) and set(theirs) == set(ours)
+    return is_first or (len(theirs) < len(ours) and set(theirs) <= set(ours))
+
+
+def _is_expression(difference: Difference, code: str) -> bool:
+    """Whether what is declared by the name that a difference is of has an expression."""
+    if _is_hash(difference):
+        return True
+    name = difference.path.split("/")[-2]
+    declared = [
+        f"{each};"
+        for each in re.split(r"[;{}]", code)
+        if re.search(rf"\b{name}\s*(\[|=|,|$)|\btypedef\b", each)
+    ]
+    is_one = any(re.search(_EXPRESSION, each) for each in declared)
+    return is_one and (_is_type(difference) or _is_value(difference))
+
+
+_CONSTANT = r"^[ \t]*\w+[ \t]+"
+_ANNOTATED = r"@\s*(?:default|unit)\s*\("
+# A value, a size or a bound that is no decimal number, no text and no boolean.
+_EXPRESSION = (
+    r"\bconst\s+[\w :]+=\s*(?!(?:-?\s*\d[\d.]*(?:[eE][-+]?\d+)?d?|L?\"|TRUE|FALSE)\s*;)"
+    r"|=\s*-?0\d|\w\s*\[(?!\s*[1-9]\d*\s*\])|\bstring\s*<(?!\s*[1-9]\d*\s*>)"
+    r"|\bwstring\s*<(?!\s*[\w:]+\s*>)"
+    r"|\bsequence\s*<[^;{}]*,(?!\s*[1-9]\d*\s*>)"
+    rf"|{_ANNOTATED}\s*value\s*=\s*(?!(?:-?\s*\d[\d.]*(?:[eE][-+]?\d+)?d?|L?\"|TRUE|FALSE)\s*\))"
+)
+_NO_LITERAL = (
+    r"Unsupported tree|AssertionError|not supported between|only support Literal Sizes"
+    r"|No terminal matches '[ux]'"
+)
+_VALUE = (
+    r"must be in|is not an? (boolean|integer|number)|the default must have|does not fit"
+    r"|expected (TRUE or FALSE|an? (string|number|integer|boolean|list)\b)|is too large"
+)
+
+
+def _idl(key: str, why: str, **more: Any) -> Known:
+    return Known(key, "rosidl_parser", why, language="idl", **more)
+
+
+KNOWN: tuple[Known, ...] = (
+    # rosbags refuses it, or reads it otherwise.
+    Known(
+        "rosbags-crlf",
+        "rosbags",
+        "rosbags refuses lines that end in CR LF.",
+        differs=lambda difference, _: difference.path == "line ends",
+    ),
+    Known(
+        "rosbags-wstring",
+        "rosbags",
+        "rosbags does not know wstring.",
+        dialect="ros2",
+        where=r"^\s*wstring\b",
+        theirs=r"wstring is not there|Could not parse",
+    ),
+    Known(
+        "rosbags-special-types",
+        "rosbags",
+        "rosbags takes time, duration and Header for builtin types where ROS does not.",
+        where=r"^\s*(time|duration|Header)\b",
+        ours=(r"\b(time|duration|Header)\b", r"(time|duration|Header)(\[.*)?"),
+        differs=_is_special,
+    ),
+    Known(
+        "rosbags-constant-names",
+        "rosbags",
+        "rosbags takes constants with lower-case letters for fields, or refuses them.",
+        dialect="ros1",
+        where=rf"{_CONSTANT}(?![A-Z](?:_?[A-Z0-9]+)*\s*=)\w+\s*=",
+        theirs=r"Could not parse",
+        differs=_has_constants_apart,
+    ),
+    Known(
+        "rosbags-placeholders",
+        "rosbags",
+        "rosbags takes a field of this name for the one that messages without fields get.",
+        where=r"^\s*uint8\s+structure_needs_at_least_one_member\b",
+        theirs=r"TypeError|Could not parse",
+        differs=_is_hash,
+    ),
+    Known(
+        "rosbags-texts",
+        "rosbags",
+        "rosbags takes texts without quotes for numbers, and knows no escapes and comments.",
+        where=r"^\s*w?string(<=\d+)?\s+\w+\s*[^\s#]",
+        theirs=r"Could not parse|AssertionError|ValueError|TypesysError",
+        differs=_is_same_text,
+    ),
+    Known(
+        "rosbags-constant-bool",
+        "rosbags",
+        "rosbags keeps a bool constant that is written as a number as a number.",
+        mend=_bool,
+    ),
+    Known(
+        "rosbags-integers",
+        "rosbags",
+        "rosbags reads 010 as 8, and does not know 1_000 and 0o17.",
+        where=rf"{_CONSTANT}\w+\s*=\s*[-+]?(0\d|0[oObB]|[\w]+_)|int\d+ \w+ +[-+]?(0\d|\d+_)",
+        theirs=r"Could not parse|ValueError",
+        differs=_is_octal,
+    ),
+    Known(
+        "rosbags-floats",
+        "rosbags",
+        "rosbags takes floating-point numbers for such only if they have digits and a point.",
+        where=r"^\s*float\d+\s+\w+\s*=\s*[-+\w.]*_",
+        theirs=r"Could not parse",
+        mend=_float,
+    ),
+    Known(
+        "rosbags-char-hash",
+        "rosbags",
+        "rosbags hashes char of a .msg as a character, and rosidl as a uint8.",
+        dialect="ros2",
+        where=r"^\s*char\b",
+        differs=_is_hash,
+    ),
+    # rosbags accepts mistakes.
+    Known(
+        "rosbags-names",
+        "rosbags",
+        "rosbags takes names of fields and constants that ROS 2 refuses.",
+        dialect="ros2",
+        ours=(r"is not a legal (field|constant) name", r"\w+"),
+    ),
+    Known(
+        "rosbags-type-names",
+        "rosbags",
+        "rosbags takes names of messages that ROS 2 refuses.",
+        dialect="ros2",
+        # A file's own name is in no text.
+        ours=(r"not a legal (message|package) name", r"([\w/]*/)?([a-z]\w*|\w*_\w*)|"),
+    ),
+    Known(
+        "rosbags-twice",
+        "rosbags",
+        "rosbags takes what is declared twice.",
+        ours=(r"^(field|constant) .* is already declared", r"\w+"),
+    ),
+    Known(
+        "rosbags-values",
+        "rosbags",
+        "rosbags takes values that do not fit their types.",
+        ours=(_VALUE, r".+"),
+    ),
+    Known(
+        "rosbags-sizes",
+        "rosbags",
+        "rosbags takes arrays and bounds of 0, and in ROS 1 sizes with a sign.",
+        ours=(r"must be at least 1|is not a (length|size|number)", r"[-+]?0*|[-+]\d+"),
+    ),
+    Known(
+        "rosbags-ros2-forms",
+        "rosbags",
+        "rosbags takes bounds and defaults in ROS 1.",
+        dialect="ros1",
+        ours=(r"ROS 1 has no (bounds|defaults)|a field of ROS 1 has no default", r".+"),
+    ),
+    Known(
+        "rosbags-blanks",
+        "rosbags",
+        "rosbags takes blanks in front of a line in ROS 2, and tabs between words in ROS 1.",
+        ours=(r"tabs alone do not|must start in the first column", r"\t+|\w.*"),
+    ),
+    Known(
+        "rosbags-annotations",
+        "rosbags",
+        "rosbags takes lines like @key.",
+        ours=(r"^annotation .* is not supported", r"@\w+.*"),
+    ),
+    # ROS's own readers accept mistakes.
+    Known(
+        "ros1-indented-texts",
+        "genmsg",
+        "genmsg takes an indented string constant for one called 'string X'.",
+        ours=(r"a string constant must start in the first column", r"string"),
+    ),
+    Known(
+        "ros1-constant-names",
+        "genmsg",
+        "genmsg takes anything for the name of a constant.",
+        ours=(
+            r"is not a legal name: letters, digits and underscores, no digit first",
+            r".*\W.*|\d.*|",
+        ),
+    ),
+    Known(
+        "ros1-bool-literals",
+        "genmsg",
+        "genmsg takes any literal of Python for a truth value.",
+        ours=(r"is not a boolean", r"(?!True$|False$|[01]$).*"),
+    ),
+    Known(
+        "ros1-empty-arrays",
+        "genmsg",
+        "genmsg takes arrays of no elements.",
+        ours=(r"must be at least 1, not 0", r"0+"),
+    ),
+    Known(
+        "ros1-64-bit-limits",
+        "genmsg",
+        "genmsg compares with rounded limits, and takes one more than 64 bits hold.",
+        ours=(r"the value of u?int64 must be in", r"\+?(9223372036854775808|18446744073709551616)"),
+    ),
+    Known(
+        "ascii-only",
+        "genmsg rosidl_adapter rosidl_parser",
+        "Names and numbers are written in ASCII.",
+        ours=(r"", r".*[^\x00-\x7f].*"),
+    ),
+    Known(
+        "sizes-of-32-bits",
+        "genmsg rosidl_adapter rosidl_parser rosbags",
+        "Every wire format counts elements in 32 bits, and so do we.",
+        ours=(r"must be at most 4294967295", r"[\d_]{10,}"),
+    ),
+    # rosidl reads a .msg otherwise.
+    Known(
+        "ros2-escaped-quotes",
+        "rosidl_adapter rosidl_parser",
+        "rosidl_adapter loses count of escaped quotes in a list of strings.",
+        where=r"^\s*w?string.*\[.*\\[\"']",
+        theirs=r".",
+        differs=lambda each, _: each.path.endswith("/default") and isinstance(each.ours, list),
+    ),
+    Known(
+        "ros2-backslashes",
+        "rosidl_parser",
+        "rosidl_adapter copies backslashes into IDL, where they begin escapes.",
+        where=r"^\s*w?string.*\\(?![\"'])",
+        theirs=r".",
+        differs=lambda each, _: _is_value(each) and "\\" in repr(each.ours),
+    ),
+    Known(
+        "ros2-infinite-numbers",
+        "rosidl_parser",
+        "rosidl_adapter writes inf and nan into IDL, where they are names.",
+        where=r"^\s*float.*(?i:inf|nan|e\+?\d{3})",
+        theirs=r".",
+        differs=_is_infinite,
+    ),
+    Known(
+        "ros2-comment-blanks",
+        "rosidl_adapter",
+        "Blanks at the end of a comment's lines, and empty lines, do not count for us.",
+        differs=_is_comment,
+    ),
+    Known(
+        "ros2-wstring-sequences",
+        "rosidl_parser",
+        "rosidl_parser takes the bound of the texts in a sequence of wstring for its own.",
+        where=r"\bwstring<=\d+\[\]|\bsequence\s*<\s*wstring\s*<[^<>]*>\s*>",
+        differs=lambda each, _: _is_hash(each) or _is_text_bound(each),
+    ),
+    # rosidl_parser reads IDL otherwise.
+    _idl(
+        "idl-names",
+        "A type in IDL is called by its package and its file, whatever its modules say.",
+        differs=lambda difference, _: difference.path == "scope",
+    ),
+    _idl(
+        "idl-bounds-by-name",
+        "rosidl_parser keeps the name of a constant that bounds a wstring; we have its value.",
+        where=r"\bwstring\s*<\s*[A-Za-z_:]",
+        differs=_is_bound_by_name,
+    ),
+    _idl(
+        "idl-whole-numbers",
+        "rosidl_parser keeps an integer that is given for a floating-point number an integer.",
+        mend=_whole_float,
+    ),
+    _idl(
+        "idl-booleans",
+        "rosidl_parser keeps a boolean constant that is written as a number a number.",
+        mend=_bool,
+    ),
+    Known(
+        "idl-long-double-hash",
+        "rosidl_parser",
+        "rosidl_generator_type_description raises KeyError for a long double; we have a hash.",
+        where=r"\blong\s+double\b",
+        differs=lambda difference, _: difference.theirs == "raises KeyError: 'long double'",
+    ),
+    _idl(
+        "idl-lists-of-one",
+        "Generators fail at a list that is written (1); rosidl_adapter writes (1, ).",
+        differs=_is_list_of_one,
+    ),
+    _idl(
+        "idl-short-annotations",
+        "rosidl_parser does not understand an annotation whose only argument has no name.",
+        where=rf"{_ANNOTATED}(?!\s*\w+\s*=)",
+        theirs=r"TypeError: .* is not subscriptable",
+        differs=lambda each, _: each.path.endswith(("/default", "/unit")),
+    ),
+    _idl(
+        "idl-includes",
+        "rosidl_parser does not look at included files.",
+        where=r"#\s*include\b",
+        theirs=rf"{_NO_LITERAL}|is not there|no name in ROS",
+        differs=lambda each, _: _is_type(each) or _is_value(each) or _is_hash(each),
+    ),
+    _idl(
+        "idl-typedefs",
+        "rosidl_parser does not know typedefs of typedefs, and typedefs with their scopes.",
+        where=r"\btypedef\b",
+        theirs=r"NamedType has no name in ROS|is not there",
+        differs=lambda each, _: _is_type(each) or _is_hash(each),
+    ),
+    _idl(
+        "idl-expressions",
+        "rosidl_parser knows decimal numbers only: no expressions, names or characters.",
+        where=_EXPRESSION,
+        theirs=_NO_LITERAL,
+        differs=_is_expression,
+    ),
+    _idl(
+        "idl-long-names",
+        "rosidl_parser reads 'long longitude' as a long long called itude.",
+        where=r"\blong\s+(long|double)\w+\s*[;,\[]",
+        differs=_is_cut,
+    ),
+    _idl(
+        "idl-service-constants",
+        "rosidl_parser gives the request what request and response both declare, twice.",
+        where=r"(?s)\w+_Constants\b.*\w+_Constants\b",
+        differs=_is_own_constants,
+    ),
+    # rosidl_parser accepts mistakes in IDL, and what we refuse by name.
+    _idl(
+        "idl-file-names",
+        "A file in IDL must declare what it is called; rosidl_parser does not see file names.",
+        ours=(r"^this file must declare", r""),
+    ),
+    _idl(
+        "idl-unseen-bounds",
+        "rosidl_parser takes a wstring whose bound is no constant that its struct sees.",
+        ours=(r"is not declared above", r"[\w:]+"),
+    ),
+    _idl(
+        "idl-twice",
+        "rosidl_parser takes what is declared twice, which C++ does not.",
+        ours=(r"^(field|constant) .* is already declared", r"\w+"),
+    ),
+    _idl(
+        "idl-lengths",
+        "rosidl_parser takes arrays of negative lengths.",
+        ours=(r"must be at least 1", r"-\s*\d+"),
+    ),
+    _idl(
+        "idl-words",
+        "rosidl_parser takes words that run together.",
+        ours=(
+            r"^expected a name, not|is not a type; those of ROS|did you mean",
+            r";|(unsigned|short|long|u?int|octet|boolean|float|double|w?char|w?string)\w+",
+        ),
+    ),
+    _idl(
+        "idl-type-scopes",
+        "rosidl_parser takes types that are not written package::msg::Name.",
+        ours=(
+            r"is not a type; those of ROS",
+            r"(\w+|\w+::(?!(msg|srv|action)::)\w+.*|::.*|(\w+::){3,}\w+|(?:msg|srv|action)::\w+|\w+::\w+)",
+        ),
+    ),
+    _idl(
+        "idl-unsupported",
+        "rosidl_parser ignores annotations that change the bytes on the wire.",
+        ours=(r"^annotation .* is not supported", r"@\s*(optional|mutable|extensibility)\b.*"),
+    ),
+    _idl(
+        "idl-lists-of-lists",
+        "rosidl_parser takes some lists of lists by typedefs.",
+        ours=(r"(sequences|arrays|several dimensions) (is|are) not supported", r".*"),
+    ),
+    _idl(
+        "idl-defaults",
+        "rosidl_parser takes several defaults of a member, and one without a value.",
+        ours=(r"can have only one default|a default needs a value", r"@\s*default.*"),
+    ),
+    _idl(
+        "idl-values",
+        "rosidl_parser takes values that are none of their types.",
+        ours=(_VALUE, r".+"),
+    ),
+)
+"""All rows, in the order in which they are tried."""
