@@ -49,8 +49,10 @@ class Known:
     mend : callable or None
         Takes the type of a constant or of a field, and its value or default as the oracle has read
         it. Returns the right one.
-    differs : callable or None
-        Whether a single difference is this one; also takes the code of the definition.
+    facts : str
+        A pattern that finds something in the path of a fact that may differ; empty: none may.
+    like : callable or None
+        Takes our fact and the oracle's. Returns whether they differ in this way; `None`: any way.
     """
 
     key: str
@@ -62,7 +64,8 @@ class Known:
     ours: tuple[str, str] | None = None
     theirs: str = ""
     mend: Callable[[str, Any], Any] | None = None
-    differs: Callable[[Difference, str], bool] | None = None
+    facts: str = ""
+    like: Callable[[Any, Any], bool] | None = None
 
     def is_about(self, oracle: str, case: DefinitionCase) -> bool:
         """Whether this row can explain a difference from an oracle in a definition."""
@@ -77,9 +80,22 @@ class Known:
 
     def has(self, difference: Difference, case: DefinitionCase) -> bool:
         """Whether a single difference comes from this one in a definition."""
-        if self.differs is None or not self.differs(difference, _code(case)):
+        path, ours, theirs = difference.path, difference.ours, difference.theirs
+        if not self.facts or not re.search(self.facts, path):
             return False
-        return self.is_in(case)
+        if self.like is not None and not self.like(ours, theirs):
+            return False
+        if not self.where or path.startswith("hash"):
+            return self.is_in(case)
+        # What makes the difference must be in the declarations of all names that it is about.
+        names = {path.split("/")[-2]}
+        if re.search(_NAMES, path):
+            names = {*ours} - {*theirs} or {*theirs} - {*ours}
+        is_idl = case.language == "idl"
+        parts = re.split(r"(?<=[;{}])" if is_idl else r"[\r\n]+", _code(case))
+        found = "\n".join(each for each in parts if re.search(self.where, each, re.MULTILINE))
+        declared = r"\b{}\s*[\[;,=]|\btypedef\b|#\s*include\b" if is_idl else r"(?m)^\s*\S+\s+{}\b"
+        return all(re.search(declared.format(name), found) for name in names)
 
     def refuses(self, message: str) -> bool:
         """Whether an oracle says this if it refuses a definition for the difference."""
@@ -162,123 +178,68 @@ def _bool(kind: str, value: Any) -> Any:
     return bool(value) if kind == "bool" and type(value) is int else value
 
 
-# Single differences.
+# Our fact and the oracle's.
 
 
-def _is_value(difference: Difference, code: str = "") -> bool:
-    return difference.path.endswith(("/value", "/default"))
-
-
-def _is_type(difference: Difference, code: str = "") -> bool:
-    return difference.path.endswith("/type")
-
-
-def _is_hash(difference: Difference, code: str = "") -> bool:
-    return difference.path.startswith("hash")
-
-
-def _is_same_text(difference: Difference, code: str = "") -> bool:
+def _is_same_text(ours: Any, theirs: Any) -> bool:
     """Whether only quotes, escapes, comments and forms of numbers distinguish two texts."""
 
     def plain(value: Any) -> str:
         text = re.sub(r"[\"'\\\s]", "", str(value).partition("#")[0]).lower()
         return str(float(text)) if re.fullmatch(r"[-+]?\d+(\.\d*)?", text) else text
 
-    ours, theirs = plain(difference.ours), plain(difference.theirs)
-    return isinstance(difference.ours, str) and _is_value(difference) and ours == theirs
+    return isinstance(ours, str) and plain(ours) == plain(theirs)
 
 
-def _is_octal(difference: Difference, code: str = "") -> bool:
-    ours, theirs = difference.ours, difference.theirs
-    if not _is_value(difference) or type(ours) is not int or type(theirs) is not int:
-        return False
-    return f"{theirs:o}" == str(ours)
+def _is_octal(ours: Any, theirs: Any) -> bool:
+    return type(ours) is type(theirs) is int and f"{theirs:o}" == str(ours)
 
 
-def _is_special(difference: Difference, code: str = "") -> bool:
-    names = [str(each).split("[")[0] for each in (difference.ours, difference.theirs)]
-    special = r"(std_msgs|builtin_interfaces)/(msg/)?(Header|Time|Duration)"
-    is_one = re.fullmatch(special, names[1]) and names[0].lower().endswith(names[1][-4:].lower())
-    return _is_hash(difference) or (_is_type(difference) and bool(is_one))
-
-
-def _has_constants_apart(difference: Difference, code: str) -> bool:
-    """Whether all names that only one reader has are those of constants."""
-    if not difference.path.endswith(("/fields", "/constants")):
-        return False
-    apart = {*difference.ours} ^ {*difference.theirs}
-    return all(re.search(rf"\s{each}\s*=", code) for each in apart)
-
-
-def _is_cut(difference: Difference, code: str) -> bool:
+def _is_cut(ours: list[str], theirs: list[str]) -> bool:
     """Whether words of a type are missing in front of names."""
-    ours, theirs = difference.ours, difference.theirs
-    if not difference.path.endswith("/fields") or len(ours) != len(theirs):
-        return False
-    return all(
+    return len(ours) == len(theirs) and all(
         one in (other, f"long{other}", f"double{other}")
         for one, other in zip(ours, theirs, strict=True)
     )
 
 
-def _is_infinite(difference: Difference, code: str = "") -> bool:
-    ours, theirs = difference.ours, difference.theirs
-    is_one = _is_value(difference) and isinstance(ours, float) and not math.isfinite(ours)
-    return is_one and str(theirs) == str(abs(ours))
+def _is_infinite(ours: Any, theirs: Any) -> bool:
+    return isinstance(ours, float) and not math.isfinite(ours) and str(theirs) == str(abs(ours))
 
 
-def _is_comment(difference: Difference, code: str = "") -> bool:
+def _is_comment(ours: str, theirs: str) -> bool:
     """Whether blanks at the ends of lines, and empty lines, are all that differs."""
-    lines = [line.rstrip() for line in str(difference.theirs).split("\n")]
+    lines = [line.rstrip() for line in theirs.split("\n")]
     kept: list[str] = []
     for is_empty, group in groupby(lines, key=lambda line: line == ""):
         kept += [""] if is_empty else group
-    return difference.path.endswith("/comment") and "\n".join(kept).strip("\n") == difference.ours
+    return "\n".join(kept).strip("\n") == ours
 
 
-def _is_text_bound(difference: Difference, code: str = "") -> bool:
-    """Whether a list has the bound of its texts."""
-    ours, theirs = str(difference.ours), str(difference.theirs)
-    found = re.fullmatch(r"(wstring<=(\w+))\[<=\2\]", theirs)
-    return found is not None and _is_type(difference) and ours == f"{found[1]}[]"
+def _is_text_bound(ours: Any, theirs: Any) -> bool:
+    """Whether a list has the bound of its texts, or hashes differ."""
+    found = re.fullmatch(r"(wstring<=(\w+))\[<=\2\]", str(theirs))
+    return str(ours).startswith("RIHS01_") or (found is not None and ours == f"{found[1]}[]")
 
 
-def _is_bound_by_name(difference: Difference, code: str = "") -> bool:
-    ours, theirs = str(difference.ours), str(difference.theirs)
+def _is_bound_by_name(ours: str, theirs: str) -> bool:
     names = re.sub(r"\b(wstring<=)[A-Za-z_][\w:]*", r"\1N", theirs)
-    return _is_type(difference) and names == re.sub(r"\b(wstring<=)\d+", r"\1N", ours)
+    return names == re.sub(r"\b(wstring<=)\d+", r"\1N", ours)
 
 
-def _is_list_of_one(difference: Difference, code: str = "") -> bool:
-    ours, theirs = difference.ours, difference.theirs
-    if not isinstance(ours, list) or len(ours) != 1 or not isinstance(theirs, str):
-        return False
-    return theirs.strip("() ").strip("'\"") == str(ours[0])
+def _is_list_of_one(ours: Any, theirs: Any) -> bool:
+    items = theirs.strip("() ").strip("'\"") if isinstance(theirs, str) else None
+    return isinstance(ours, list) and list(map(str, ours)) == [items]
 
 
-def _is_own_constants(difference: Difference, code: str = "") -> bool:
+def _is_own_constants(ours: list[str], theirs: list[str]) -> bool:
     """Whether a list of constants lacks some, or has some twice, that another part has as well."""
-    ours, theirs = difference.ours, difference.theirs
-    if not difference.path.endswith("/constants"):
-        return False
-    is_first = len(theirs) > len(ours) and set(theirs) == set(ours)
-    return is_first or (len(theirs) < len(ours) and set(theirs) <= set(ours))
+    if len(theirs) > len(ours):
+        return set(theirs) == set(ours)
+    return len(theirs) < len(ours) and set(theirs) <= set(ours)
 
 
-def _is_expression(difference: Difference, code: str) -> bool:
-    """Whether what is declared by the name that a difference is of has an expression."""
-    if _is_hash(difference):
-        return True
-    name = difference.path.split("/")[-2]
-    declared = [
-        f"{each};"
-        for each in re.split(r"[;{}]", code)
-        if re.search(rf"\b{name}\s*(\[|=|,|$)|\btypedef\b", each)
-    ]
-    is_one = any(re.search(_EXPRESSION, each) for each in declared)
-    return is_one and (_is_type(difference) or _is_value(difference))
-
-
+_VALUES, _TYPES, _NAMES, _HASHES = "/(value|default)$", "/type$", "/(fields|constants)$", "^hash/"
 _CONSTANT = r"^[ \t]*\w+[ \t]+"
 _ANNOTATED = r"@\s*(?:default|unit)\s*\("
 # A value, a size or a bound that is no decimal number, no text and no boolean.
@@ -299,173 +260,149 @@ _VALUE = (
 )
 
 
-def _idl(key: str, why: str, **more: Any) -> Known:
-    return Known(key, "rosidl_parser", why, language="idl", **more)
+def _of(oracles: str, **common: Any) -> Callable[..., Known]:
+    return lambda key, why, **more: Known(key, oracles, why, **common, **more)
 
+
+_rosbags, _genmsg = _of("rosbags"), _of("genmsg")
+_rosidl, _idl = _of("rosidl_parser"), _of("rosidl_parser", language="idl")
 
 KNOWN: tuple[Known, ...] = (
     # rosbags refuses it, or reads it otherwise.
-    Known(
-        "rosbags-crlf",
-        "rosbags",
-        "rosbags refuses lines that end in CR LF.",
-        differs=lambda difference, _: difference.path == "line ends",
-    ),
-    Known(
+    _rosbags("rosbags-crlf", "rosbags refuses lines that end in CR LF.", facts="^line ends$"),
+    _rosbags(
         "rosbags-wstring",
-        "rosbags",
         "rosbags does not know wstring.",
         dialect="ros2",
         where=r"^\s*wstring\b",
         theirs=r"wstring is not there|Could not parse",
     ),
-    Known(
+    _rosbags(
         "rosbags-special-types",
-        "rosbags",
         "rosbags takes time, duration and Header for builtin types where ROS does not.",
         where=r"^\s*(time|duration|Header)\b",
         ours=(r"\b(time|duration|Header)\b", r"(time|duration|Header)(\[.*)?"),
-        differs=_is_special,
+        facts=f"{_TYPES}|{_HASHES}",
     ),
-    Known(
+    _rosbags(
         "rosbags-constant-names",
-        "rosbags",
         "rosbags takes constants with lower-case letters for fields, or refuses them.",
         dialect="ros1",
         where=rf"{_CONSTANT}(?![A-Z](?:_?[A-Z0-9]+)*\s*=)\w+\s*=",
         theirs=r"Could not parse",
-        differs=_has_constants_apart,
+        facts=_NAMES,
     ),
-    Known(
+    _rosbags(
         "rosbags-placeholders",
-        "rosbags",
         "rosbags takes a field of this name for the one that messages without fields get.",
         where=r"^\s*uint8\s+structure_needs_at_least_one_member\b",
         theirs=r"TypeError|Could not parse",
-        differs=_is_hash,
+        facts=_HASHES,
     ),
-    Known(
+    _rosbags(
         "rosbags-texts",
-        "rosbags",
         "rosbags takes texts without quotes for numbers, and knows no escapes and comments.",
         where=r"^\s*w?string(<=\d+)?\s+\w+\s*[^\s#]",
         theirs=r"Could not parse|AssertionError|ValueError|TypesysError",
-        differs=_is_same_text,
+        facts=_VALUES,
+        like=_is_same_text,
     ),
-    Known(
+    _rosbags(
         "rosbags-constant-bool",
-        "rosbags",
         "rosbags keeps a bool constant that is written as a number as a number.",
         mend=_bool,
     ),
-    Known(
+    _rosbags(
         "rosbags-integers",
-        "rosbags",
         "rosbags reads 010 as 8, and does not know 1_000 and 0o17.",
         where=rf"{_CONSTANT}\w+\s*=\s*[-+]?(0\d|0[oObB]|[\w]+_)|int\d+ \w+ +[-+]?(0\d|\d+_)",
         theirs=r"Could not parse|ValueError",
-        differs=_is_octal,
+        facts=_VALUES,
+        like=_is_octal,
     ),
-    Known(
+    _rosbags(
         "rosbags-floats",
-        "rosbags",
         "rosbags takes floating-point numbers for such only if they have digits and a point.",
         where=r"^\s*float\d+\s+\w+\s*=\s*[-+\w.]*_",
         theirs=r"Could not parse",
         mend=_float,
     ),
-    Known(
+    _rosbags(
         "rosbags-char-hash",
-        "rosbags",
         "rosbags hashes char of a .msg as a character, and rosidl as a uint8.",
         dialect="ros2",
         where=r"^\s*char\b",
-        differs=_is_hash,
+        facts=_HASHES,
     ),
     # rosbags accepts mistakes.
-    Known(
+    _rosbags(
         "rosbags-names",
-        "rosbags",
         "rosbags takes names of fields and constants that ROS 2 refuses.",
         dialect="ros2",
         ours=(r"is not a legal (field|constant) name", r"\w+"),
     ),
-    Known(
+    _rosbags(
         "rosbags-type-names",
-        "rosbags",
         "rosbags takes names of messages that ROS 2 refuses.",
         dialect="ros2",
         # A file's own name is in no text.
         ours=(r"not a legal (message|package) name", r"([\w/]*/)?([a-z]\w*|\w*_\w*)|"),
     ),
-    Known(
+    _rosbags(
         "rosbags-twice",
-        "rosbags",
         "rosbags takes what is declared twice.",
         ours=(r"^(field|constant) .* is already declared", r"\w+"),
     ),
-    Known(
-        "rosbags-values",
-        "rosbags",
-        "rosbags takes values that do not fit their types.",
-        ours=(_VALUE, r".+"),
+    _rosbags(
+        "rosbags-values", "rosbags takes values that do not fit their types.", ours=(_VALUE, r".+")
     ),
-    Known(
+    _rosbags(
         "rosbags-sizes",
-        "rosbags",
         "rosbags takes arrays and bounds of 0, and in ROS 1 sizes with a sign.",
         ours=(r"must be at least 1|is not a (length|size|number)", r"[-+]?0*|[-+]\d+"),
     ),
-    Known(
+    _rosbags(
         "rosbags-ros2-forms",
-        "rosbags",
         "rosbags takes bounds and defaults in ROS 1.",
         dialect="ros1",
         ours=(r"ROS 1 has no (bounds|defaults)|a field of ROS 1 has no default", r".+"),
     ),
-    Known(
+    _rosbags(
         "rosbags-blanks",
-        "rosbags",
         "rosbags takes blanks in front of a line in ROS 2, and tabs between words in ROS 1.",
         ours=(r"tabs alone do not|must start in the first column", r"\t+|\w.*"),
     ),
-    Known(
+    _rosbags(
         "rosbags-annotations",
-        "rosbags",
         "rosbags takes lines like @key.",
         ours=(r"^annotation .* is not supported", r"@\w+.*"),
     ),
     # ROS's own readers accept mistakes.
-    Known(
+    _genmsg(
         "ros1-indented-texts",
-        "genmsg",
         "genmsg takes an indented string constant for one called 'string X'.",
         ours=(r"a string constant must start in the first column", r"string"),
     ),
-    Known(
+    _genmsg(
         "ros1-constant-names",
-        "genmsg",
         "genmsg takes anything for the name of a constant.",
         ours=(
             r"is not a legal name: letters, digits and underscores, no digit first",
             r".*\W.*|\d.*|",
         ),
     ),
-    Known(
+    _genmsg(
         "ros1-bool-literals",
-        "genmsg",
         "genmsg takes any literal of Python for a truth value.",
         ours=(r"is not a boolean", r"(?!True$|False$|[01]$).*"),
     ),
-    Known(
+    _genmsg(
         "ros1-empty-arrays",
-        "genmsg",
         "genmsg takes arrays of no elements.",
         ours=(r"must be at least 1, not 0", r"0+"),
     ),
-    Known(
+    _genmsg(
         "ros1-64-bit-limits",
-        "genmsg",
         "genmsg compares with rounded limits, and takes one more than 64 bits hold.",
         ours=(r"the value of u?int64 must be in", r"\+?(9223372036854775808|18446744073709551616)"),
     ),
@@ -488,48 +425,50 @@ KNOWN: tuple[Known, ...] = (
         "rosidl_adapter loses count of escaped quotes in a list of strings.",
         where=r"^\s*w?string.*\[.*\\[\"']",
         theirs=r".",
-        differs=lambda each, _: each.path.endswith("/default") and isinstance(each.ours, list),
+        facts="/default$",
     ),
-    Known(
+    _rosidl(
         "ros2-backslashes",
-        "rosidl_parser",
         "rosidl_adapter copies backslashes into IDL, where they begin escapes.",
         where=r"^\s*w?string.*\\(?![\"'])",
         theirs=r".",
-        differs=lambda each, _: _is_value(each) and "\\" in repr(each.ours),
+        facts=_VALUES,
+        like=lambda ours, _: "\\" in repr(ours),
     ),
-    Known(
+    _rosidl(
         "ros2-infinite-numbers",
-        "rosidl_parser",
         "rosidl_adapter writes inf and nan into IDL, where they are names.",
         where=r"^\s*float.*(?i:inf|nan|e\+?\d{3})",
         theirs=r".",
-        differs=_is_infinite,
+        facts=_VALUES,
+        like=_is_infinite,
     ),
     Known(
         "ros2-comment-blanks",
         "rosidl_adapter",
         "Blanks at the end of a comment's lines, and empty lines, do not count for us.",
-        differs=_is_comment,
+        facts="/comment$",
+        like=_is_comment,
     ),
-    Known(
+    _rosidl(
         "ros2-wstring-sequences",
-        "rosidl_parser",
         "rosidl_parser takes the bound of the texts in a sequence of wstring for its own.",
         where=r"\bwstring<=\d+\[\]|\bsequence\s*<\s*wstring\s*<[^<>]*>\s*>",
-        differs=lambda each, _: _is_hash(each) or _is_text_bound(each),
+        facts=f"{_TYPES}|{_HASHES}",
+        like=_is_text_bound,
     ),
     # rosidl_parser reads IDL otherwise.
     _idl(
         "idl-names",
         "A type in IDL is called by its package and its file, whatever its modules say.",
-        differs=lambda difference, _: difference.path == "scope",
+        facts="^scope$",
     ),
     _idl(
         "idl-bounds-by-name",
         "rosidl_parser keeps the name of a constant that bounds a wstring; we have its value.",
         where=r"\bwstring\s*<\s*[A-Za-z_:]",
-        differs=_is_bound_by_name,
+        facts=_TYPES,
+        like=_is_bound_by_name,
     ),
     _idl(
         "idl-whole-numbers",
@@ -541,57 +480,60 @@ KNOWN: tuple[Known, ...] = (
         "rosidl_parser keeps a boolean constant that is written as a number a number.",
         mend=_bool,
     ),
-    Known(
+    _rosidl(
         "idl-long-double-hash",
-        "rosidl_parser",
         "rosidl_generator_type_description raises KeyError for a long double; we have a hash.",
         where=r"\blong\s+double\b",
-        differs=lambda difference, _: difference.theirs == "raises KeyError: 'long double'",
+        facts="^hash$",
+        like=lambda _, theirs: theirs == "raises KeyError: 'long double'",
     ),
     _idl(
         "idl-lists-of-one",
         "Generators fail at a list that is written (1); rosidl_adapter writes (1, ).",
-        differs=_is_list_of_one,
+        facts="/default$",
+        like=_is_list_of_one,
     ),
     _idl(
         "idl-short-annotations",
         "rosidl_parser does not understand an annotation whose only argument has no name.",
         where=rf"{_ANNOTATED}(?!\s*\w+\s*=)",
         theirs=r"TypeError: .* is not subscriptable",
-        differs=lambda each, _: each.path.endswith(("/default", "/unit")),
+        facts="/(default|unit)$",
     ),
     _idl(
         "idl-includes",
         "rosidl_parser does not look at included files.",
         where=r"#\s*include\b",
         theirs=rf"{_NO_LITERAL}|is not there|no name in ROS",
-        differs=lambda each, _: _is_type(each) or _is_value(each) or _is_hash(each),
+        facts=f"{_TYPES}|{_VALUES}|{_HASHES}",
     ),
     _idl(
         "idl-typedefs",
         "rosidl_parser does not know typedefs of typedefs, and typedefs with their scopes.",
         where=r"\btypedef\b",
         theirs=r"NamedType has no name in ROS|is not there",
-        differs=lambda each, _: _is_type(each) or _is_hash(each),
+        facts=f"{_TYPES}|{_HASHES}",
     ),
     _idl(
         "idl-expressions",
         "rosidl_parser knows decimal numbers only: no expressions, names or characters.",
         where=_EXPRESSION,
         theirs=_NO_LITERAL,
-        differs=_is_expression,
+        facts=f"{_TYPES}|{_VALUES}|{_HASHES}",
     ),
     _idl(
         "idl-long-names",
         "rosidl_parser reads 'long longitude' as a long long called itude.",
         where=r"\blong\s+(long|double)\w+\s*[;,\[]",
-        differs=_is_cut,
+        facts=_NAMES,
+        like=_is_cut,
     ),
     _idl(
         "idl-service-constants",
         "rosidl_parser gives the request what request and response both declare, twice.",
-        where=r"(?s)\w+_Constants\b.*\w+_Constants\b",
-        differs=_is_own_constants,
+        where=r"\bconst\b",
+        facts="/constants$",
+        like=_is_own_constants,
     ),
     # rosidl_parser accepts mistakes in IDL, and what we refuse by name.
     _idl(

@@ -31,7 +31,7 @@ class _Worked(Oracle):
 
     @cached_property
     def _worker(self) -> Worker:
-        return _shared_worker(self.family, self.universe.folder, self.release)
+        return _shared_worker(self.family, str(self.release.python) if self.release else ROS_PYTHON)
 
     def missing(self) -> str | None:
         why = self._worker.missing
@@ -48,6 +48,7 @@ class _Worked(Oracle):
     def _request(self, case: DefinitionCase) -> dict[str, Any]:
         return {
             "oracle": self.judge_name,
+            "folder": self.universe.folder,
             "package": case.package,
             "kind": case.kind,
             "name": case.name,
@@ -65,10 +66,9 @@ class _Worked(Oracle):
 
 
 @cache
-def _shared_worker(family: str, folder: str, release: Release | None) -> Worker:
+def _shared_worker(family: str, python: str) -> Worker:
     # Oracles of one family ask about the same texts, which a shared worker reads only once.
-    python = ROS_PYTHON if release is None else str(release.python)
-    return Worker(family, folder, modules=Path(__file__).parent, python=python)
+    return Worker(family, "", modules=Path(__file__).parent, python=python)
 
 
 def _answer(answer: dict[str, Any]) -> Answer:

@@ -19,17 +19,6 @@ from firm_hdl.verify.ts1.oracles.oracle import Accepted, NotJudged, Refused
 from tests.verify.judged import assert_passed
 from tests.verify.ts1.conftest import need
 
-# These tests start workers as users do: some kill one, or end it, and each family has another one.
-OWN_PROCESSES = {
-    "test_a_failure_of_the_worker_is_an_answer",
-    "test_a_worker_ends_when_it_is_closed_and_may_be_asked_again",
-    "test_a_worker_that_dies_is_replaced",
-    "test_an_invalid_answer_of_a_worker_fails",
-    "test_genmsg_gives_structure_text_and_sum",
-    "test_rosidl_adapter_gives_structure_defaults_and_comments",
-    "test_rosidl_parser_gives_derived_messages_too",
-    "test_whatever_a_definition_is_the_worker_answers",
-}
 MODULES = Path(debian.__file__).parent
 FILES = {
     "p/msg/A.msg": "int8 N=010\nq/B[2] bs\nHeader header\nHeader[] headers\n",
