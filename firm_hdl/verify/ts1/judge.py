@@ -237,7 +237,8 @@ def _needs(universe: Universe, interface: Interface) -> Iterator[DefinitionCase]
     """Yield the definitions of the messages that a definition needs."""
     own = {message.name for message in interface.messages}
     for message in closure(interface.messages):
-        package, *_, name = message.name.split("/")
-        need = None if message.name in own else universe.message_case(package, name)
-        if need is not None:
+        # Builtin messages, such as time, have no package.
+        package, _, base = message.name.rpartition("/")
+        need = universe.message_case(package.partition("/")[0], base)
+        if need is not None and message.name not in own:
             yield need

@@ -137,7 +137,8 @@ _QUIET = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 def _code(case: DefinitionCase) -> str:
     if case.language == "idl":
         return _QUIET.sub(lambda match: '"' if match[0].startswith('"') else " ", case.text)
-    return re.sub(r"(?m)^\s*#.*", "", case.text)
+    # The values of texts may have this sign.
+    return re.sub(r"(?m)^(\s*(?!w?string\b)[^\s#][^\n#]*|\s*)#.*", r"\1", case.text)
 
 
 def _is_true(message: str, words: str, text: str) -> bool:
@@ -182,13 +183,16 @@ def _bool(kind: str, value: Any) -> Any:
 
 
 def _is_same_text(ours: Any, theirs: Any) -> bool:
-    """Whether only quotes, escapes, comments and forms of numbers distinguish two texts."""
+    """Whether only quotes, escapes, comments and forms of numbers distinguish two texts.
+
+    A list has names: rosbags may take a constant for a field.
+    """
 
     def plain(value: Any) -> str:
         text = re.sub(r"[\"'\\\s]", "", str(value).partition("#")[0]).lower()
         return str(float(text)) if re.fullmatch(r"[-+]?\d+(\.\d*)?", text) else text
 
-    return isinstance(ours, str) and plain(ours) == plain(theirs)
+    return isinstance(ours, list) or (isinstance(ours, str) and plain(ours) == plain(theirs))
 
 
 def _is_octal(ours: Any, theirs: Any) -> bool:
@@ -302,9 +306,9 @@ KNOWN: tuple[Known, ...] = (
     _rosbags(
         "rosbags-texts",
         "rosbags takes texts without quotes for numbers, and knows no escapes and comments.",
-        where=r"^\s*w?string(<=\d+)?\s+\w+\s*[^\s#]",
+        where=r"^\s*w?string(<=\d+)?\s+\w+(\s*=|[ \t]+[^\s#])",
         theirs=r"Could not parse|AssertionError|ValueError|TypesysError",
-        facts=_VALUES,
+        facts=f"{_VALUES}|{_NAMES}",
         like=_is_same_text,
     ),
     _rosbags(
@@ -387,7 +391,7 @@ KNOWN: tuple[Known, ...] = (
         "ros1-constant-names",
         "genmsg takes anything for the name of a constant.",
         ours=(
-            r"is not a legal name: letters, digits and underscores, no digit first",
+            r"is not a legal name: |^expected '=' or the end of the line",
             r".*\W.*|\d.*|",
         ),
     ),
@@ -424,22 +428,22 @@ KNOWN: tuple[Known, ...] = (
         "rosidl_adapter rosidl_parser",
         "rosidl_adapter loses count of escaped quotes in a list of strings.",
         where=r"^\s*w?string.*\[.*\\[\"']",
-        theirs=r".",
+        theirs=r"incorrectly quoted",
         facts="/default$",
     ),
     _rosidl(
         "ros2-backslashes",
         "rosidl_adapter copies backslashes into IDL, where they begin escapes.",
         where=r"^\s*w?string.*\\(?![\"'])",
-        theirs=r".",
+        theirs=r"SystemExit|Unexpected|unicodeescape",
         facts=_VALUES,
         like=lambda ours, _: "\\" in repr(ours),
     ),
     _rosidl(
         "ros2-infinite-numbers",
         "rosidl_adapter writes inf and nan into IDL, where they are names.",
-        where=r"^\s*float.*(?i:inf|nan|e\+?\d{3})",
-        theirs=r".",
+        where=r"^\s*float\S*\s+\w+[ \t]*[= ].*(?i:(?<![a-z])(inf|nan)|\de\+?\d{3})",
+        theirs=r"malformed node or string",
         facts=_VALUES,
         like=_is_infinite,
     ),

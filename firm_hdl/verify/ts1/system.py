@@ -215,7 +215,7 @@ class Ts1Run:
                 if not isinstance(verdict, Failed):
                     details.update((each.oracle, verdict.name, text) for text in texts)
                 if is_short:
-                    said = "both refuse" if each.is_refused else "; ".join(texts)
+                    said = "; ".join(texts) or "both refuse" * each.is_refused
                     text = ": ".join(filter(None, [_LABELS[verdict.name], said]))
                     yield f"{self.cases[record.test].full_name}  {each.oracle}  {text}"
         yield f"{'oracle':24} {'agree':>7} {'known':>7} {'differ':>7} {'not judged':>11}"

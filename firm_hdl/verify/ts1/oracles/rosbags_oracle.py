@@ -49,7 +49,8 @@ class Rosbags(Oracle):
             return NotJudged(str(error))
         # Assertions of the parser and code for hashes may raise anything.
         except Exception as error:
-            why = " ".join(str(error).split())[-300:]
+            why = " ".join(str(error).split())
+            why = why if len(why) <= 300 else f"{why[:30]} ... {why[-265:]}"
             is_meant = isinstance(error, TypesysError)
             return Refused(why if is_meant else f"{type(error).__name__} {why}")
 
