@@ -157,7 +157,7 @@ def _both_refuse(oracle: Oracle, case: DefinitionCase, answer: Refused) -> Verdi
 
 def _only_we_refuse(oracle: Oracle, case: DefinitionCase, ours: DefinitionError) -> Verdict:
     rules = [rule for rule in KNOWN if rule.ours is not None and rule.is_about(oracle.name, case)]
-    keys = []
+    keys: list[str] = []
     for problem in ours.diagnostics:
         key = next((rule.key for rule in rules if rule.explains(problem)), None)
         if key is None and _is_unread(oracle, case, ours):

@@ -225,8 +225,8 @@ class Ts1Run:
             yield f"{f'{name} {version}':24} {row[0]:7} {row[1]:7} {row[2]:7} {row[3]:11}{both}"
         for name, why in self.missing.items():
             yield f"{name:24} is not available: {why}"
-        for (name, verdict, text), count in sorted(details.items()):
-            yield f"{_LABELS[verdict]}, {name}: {text}: {count}"
+        for (name, label, text), count in sorted(details.items()):
+            yield f"{_LABELS[label]}, {name}: {text}: {count}"
 
 
 def _universe(request: Request, folder: str) -> Universe:
