@@ -95,7 +95,7 @@ class Known:
         parts = re.split(r"(?<=[;{}])" if is_idl else r"[\r\n]+", _code(case))
         found = "\n".join(each for each in parts if re.search(self.where, each, re.MULTILINE))
         declared = r"\b{}\s*[\[;,=]|\btypedef\b|#\s*include\b" if is_idl else r"(?m)^\s*\S+\s+{}\b"
-        return all(re.search(declared.format(name), found) for name in names)
+        return all(re.search(declared.format(re.escape(name)), found) for name in names)
 
     def refuses(self, message: str) -> bool:
         """Whether an oracle says this if it refuses a definition for the difference."""
@@ -138,7 +138,7 @@ def _code(case: DefinitionCase) -> str:
     if case.language == "idl":
         return _QUIET.sub(lambda match: '"' if match[0].startswith('"') else " ", case.text)
     # The values of texts may have this sign.
-    return re.sub(r"(?m)^(\s*(?!w?string\b)[^\s#][^\n#]*|\s*)#.*", r"\1", case.text)
+    return re.sub(r"(?m)^([ \t]*(?!w?string\b)[^\s#][^\n#]*|[ \t]*)#.*", r"\1", case.text)
 
 
 def _is_true(message: str, words: str, text: str) -> bool:

@@ -137,16 +137,18 @@ class Ts1Run:
             self.cases = _cases(request, originals)
             for name in request.oracles or ORACLES:
                 if universe.dialect in ORACLES[name].languages:
-                    self._find(stack, ORACLES[name](universe))
+                    self._find(ORACLES[name](universe))
             self._stack = stack.pop_all()
         self.context = _Context(request, folder, tuple(self.versions))
 
-    def _find(self, stack: ExitStack, oracle: Oracle) -> None:
-        stack.callback(oracle.close)
-        if (why := oracle.missing()) is None:
-            self.versions[oracle.name] = oracle.version()
-        else:
-            self.missing[oracle.name] = why
+    def _find(self, oracle: Oracle) -> None:
+        try:
+            if (why := oracle.missing()) is None:
+                self.versions[oracle.name] = oracle.version()
+            else:
+                self.missing[oracle.name] = why
+        finally:
+            oracle.close()
 
     def __enter__(self) -> Ts1Run:
         return self
