@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from firm_hdl.errors import DefinitionError
+from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.model import Interface, closure
 from firm_hdl.verify.results.records import OracleVerdict, Record, Test
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
@@ -150,15 +150,18 @@ def compare(
 
 def _both_refuse(oracle: Oracle, case: DefinitionCase, answer: Refused) -> Verdict:
     # An oracle that refuses the definition anyway does not confirm that it has a mistake.
-    for key in _keys_of_refusal(oracle, [case], answer):
-        return NotJudged(f"both refuse, but the oracle refuses all such definitions: {key}")
-    return Passed(1)
+    key = next(_keys_of_refusal(oracle, [case], answer), None)
+    if key is None:
+        return Passed(1)
+    return NotJudged(f"both refuse, but the oracle refuses all such definitions: {key}")
 
 
 def _only_we_refuse(oracle: Oracle, case: DefinitionCase, ours: DefinitionError) -> Verdict:
-    rules = [rule for rule in KNOWN if rule.ours is not None and rule.is_about(oracle.name, case)]
     keys: list[str] = []
     for problem in ours.diagnostics:
+        # The problem may be in a definition that this one needs.
+        about = replace(case, language="idl") if _is_in_idl(problem) else case
+        rules = [rule for rule in KNOWN if rule.is_about(oracle.name, about)]
         key = next((rule.key for rule in rules if rule.explains(problem)), None)
         if key is None and _is_unread(oracle, case, ours):
             return NotJudged("firm-hdl refuses a file that it needs, and the oracle does not read")
@@ -171,17 +174,19 @@ def _only_we_refuse(oracle: Oracle, case: DefinitionCase, ours: DefinitionError)
 
 def _is_unread(oracle: Oracle, case: DefinitionCase, ours: DefinitionError) -> bool:
     """Whether all that we refuse is in files whose language the oracle does not read."""
-    languages = oracle.languages[case.dialect]
-    names = [each.span.source.name if each.span else "" for each in ours.diagnostics]
-    return all(name.endswith(".idl") and "idl" not in languages for name in names)
+    return "idl" not in oracle.languages[case.dialect] and all(map(_is_in_idl, ours.diagnostics))
+
+
+def _is_in_idl(problem: Diagnostic) -> bool:
+    return problem.span is not None and problem.span.source.name.endswith(".idl")
 
 
 def _only_they_refuse(
     universe: Universe, oracle: Oracle, case: DefinitionCase, ours: Interface, answer: Refused
 ) -> Verdict:
     cases = [case, *_needs(universe, ours)]
-    if keys := list(dict.fromkeys(_keys_of_refusal(oracle, cases, answer))):
-        return KnownDifference(tuple(keys[:1]), 1)
+    if (key := next(_keys_of_refusal(oracle, cases, answer), None)) is not None:
+        return KnownDifference((key,), 1)
     what = Said(f"refuses: {answer.message}")
     return _failed([Difference(path="verdict", ours=Said("accepts"), theirs=what)], ())
 

@@ -321,6 +321,12 @@ def test_a_known_difference_of_a_needed_definition_is_one(court, oracle, needed,
     assert_known(court("lyrical", files).outcome(oracle, "p/A"), key)
 
 
+def test_a_mistake_of_a_needed_idl_is_known_by_its_key(court):
+    text = "module p { module msg { struct I { long x; long x; }; }; };"
+    here = court("lyrical", {"p/msg/I.idl": text, "p/msg/A.msg": "I i\n"})
+    assert_known(here.outcome("rosidl_parser", "p/A"), "idl-twice")
+
+
 @pytest.mark.parametrize("members", ["long x; long x;", "@optional long x;"])
 def test_who_does_not_read_idl_does_not_judge_who_needs_what_we_refuse(court, members):
     text = f"module p {{ module msg {{ struct I {{ {members} }}; }}; }};"

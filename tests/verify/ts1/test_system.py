@@ -94,7 +94,7 @@ def test_several_processes_give_the_results_of_one(source):
 
 
 def test_the_report_names_oracles_verdicts_and_types(source, capsys):
-    found = run_ts1(Request(distros=("noetic", ), paths=(source,)), ["rosbags"])  # fmt: skip
+    found = run_ts1(Request(distros=("noetic",), paths=(source,)), ["rosbags"])
     assert not [each for each in found if isinstance(each.verdict, Failed)]
     out = capsys.readouterr().out
     assert "p/A  rosbags  agrees\n" in out
