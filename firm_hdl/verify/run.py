@@ -28,8 +28,7 @@ from firm_hdl.verify.results.file import ResultsError, ResultsWriter
 from firm_hdl.verify.results.verdict import Failed, NotJudged
 from firm_hdl.verify.systems.system import Judged, Recorder, System
 from firm_hdl.verify.systems.tasks import UnknownTypeError
-from firm_hdl.verify.ts1.command import Ts1
-from firm_hdl.verify.ts1.run import each_distro
+from firm_hdl.verify.ts1.system import Ts1, each_distro
 from firm_hdl.verify.ts2.system import Ts2
 from firm_hdl.verify.ts3.system import Ts3
 

@@ -3,11 +3,12 @@
 This file is run by the Python that ROS's modules are installed for. firm-hdl often runs on another
 one, so this file imports nothing of firm-hdl. Its arguments are the name of a family (``genmsg``,
 ``rosidl`` or ``genpy``), a folder of definitions, ``PACKAGE/msg|srv|action/FILE``, and the folder
-of the module ``worker_FAMILY``. The first output line names the readers and their versions. Then
-each input line is a request, and each output line is an answer:
+of the module ``worker_FAMILY``. A request may name another folder of definitions. The first output
+line names the readers and their versions. Then each input line is a request, and each output line
+is an answer:
 
     {"oracle": "genmsg", "package": "p", "kind": "msg", "name": "A", "file": "A.msg", "text": null,
-     "has_events": false}
+     "has_events": false, "folder": "/tmp/definitions"}
     {"facts": {...}} or {"refused": "why"} or {"failed": "why"}
 
 Facts are described in `firm_hdl.verify.ts1.facts`. A ``text`` that is not null replaces the text of
@@ -15,6 +16,7 @@ the file. ``has_events`` says whether services have event messages and types hav
 process ends at the end of its input.
 """
 
+import functools
 import importlib
 import json
 import os
@@ -42,7 +44,8 @@ def main():
     try:
         family = importlib.import_module(f"worker_{sys.argv[1]}")
         del sys.path[0]  # ROS may have modules with the names of our other modules.
-        judges, modules = family.readers(sys.argv[2])
+        readers = functools.lru_cache(maxsize=None)(family.readers)
+        judges, modules = readers(sys.argv[2])
     except Exception as error:
         _send(answers, {"missing": f"{type(error).__name__}: {error}"})
         return
@@ -51,6 +54,7 @@ def main():
     )
     for line in sys.stdin:
         request = json.loads(line)
+        judges, _ = readers(request.get("folder", sys.argv[2]))
         _send(answers, _judge(judges[request["oracle"]], request))
 
 

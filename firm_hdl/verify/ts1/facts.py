@@ -8,8 +8,10 @@ Facts are a dictionary. Each reader gives the parts that it knows:
     field has a ``name``, a ``type`` as ROS 2 writes it with the full names of messages
     (``string<=8[<=3]``, ``std_msgs/msg/Header``), a ``default``, a ``comment`` and a ``unit``. A
     constant has a ``value`` instead of a default, and in ROS 1 the ``text`` of the value.
-``names``
-    The name that a text in IDL itself declares for its message.
+``scope``
+    The modules of a text in IDL around its messages.
+``line ends``
+    "refused" if the oracle refuses the line ends of the text.
 ``show``
     The output of ``rosmsg show`` or ``rossrv show``.
 ``md5``
@@ -22,11 +24,13 @@ Facts are a dictionary. Each reader gives the parts that it knows:
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from firm_hdl.identity import md5sum, proto, type_hash
 from firm_hdl.model import (
+    Action,
     Constant,
     Field,
     FieldType,
@@ -37,12 +41,19 @@ from firm_hdl.model import (
     spelled,
 )
 
-__all__ = ["Difference", "Facts", "count_facts", "differences", "structure"]
+__all__ = ["Difference", "Facts", "Said", "count_facts", "differences", "facts_of"]
 
 Facts: TypeAlias = "dict[str, Any]"
 
 MOST_CHARACTERS = 300
 """The most characters of a value in a difference."""
+
+
+class Said(str):
+    """A text that a difference shows without quotes."""
+
+    __slots__ = ()
+    __repr__ = str.__str__
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,28 +64,59 @@ class Difference:
     ----------
     path : str
         The place of the difference: ``verdict``, or a path through the facts.
-    ours, theirs : str
-        Our fact and the oracle's, in one line each.
+    ours, theirs : object
+        Our fact and the oracle's. Lists of members are lists of their names.
     """
 
     path: str
-    ours: str
-    theirs: str
+    ours: Any
+    theirs: Any
 
     def __str__(self) -> str:
-        return f"{self.path}: firm-hdl {self.ours}; oracle {self.theirs}"
+        return f"{self.path}: firm-hdl {_shown(self.ours)}; oracle {_shown(self.theirs)}"
 
 
-def structure(interface: Interface, alike: Mapping[str, str] | None = None) -> dict[str, Any]:
-    """Describe a model.
+def facts_of(
+    interface: Interface,
+    wanted: Iterable[str],
+    alike: Mapping[str, str] | None = None,
+    show: Callable[[], str] = str,
+) -> Facts:
+    """Return facts about a model.
 
     Parameters
     ----------
     interface : Message, Service or Action
+    wanted : iterable of str
+        Names of the facts. The text of an error that occurs stands for its fact.
     alike : mapping of str to str
         Primitives that the oracle cannot tell from others: their names, and those of the others.
+    show : callable
+        Returns the definition as ``firm-hdl show`` prints it.
     """
-    return {each.name: _message(each, alike or {}) for each in interface.messages}
+    services = interface.services if isinstance(interface, Action) else ()
+    makers: dict[str, Callable[[], Any]] = {
+        "structure": lambda: {m.name: _message(m, alike or {}) for m in interface.messages},
+        "scope": lambda: interface.name.rpartition("/")[0],
+        "line ends": lambda: "accepted",
+        "show": show,
+        "md5": lambda: {
+            each.name: md5sum(each)
+            for each in (interface.messages if isinstance(interface, Action) else [interface])
+        },
+        "hash": lambda: {
+            each.name: type_hash(each) for each in (interface, *interface.messages, *services)
+        },
+        "proto": lambda: proto(interface),
+    }
+    return {name: _made(makers[name]) for name in wanted}
+
+
+def _made(make: Callable[[], Any]) -> Any:
+    try:
+        return make()
+    except Exception as error:  # An error of our code is a difference, too.
+        return f"raises {type(error).__name__}: {error}"
 
 
 def differences(ours: Any, theirs: Any, path: str = "") -> Iterator[Difference]:
@@ -85,16 +127,16 @@ def differences(ours: Any, theirs: Any, path: str = "") -> Iterator[Difference]:
             if key in ours:
                 yield from differences(ours[key], value, step)
             else:
-                yield Difference(path=step, ours="has none", theirs=_show(value))
+                yield Difference(path=step, ours=Said("has none"), theirs=value)
     elif _is_members(ours) and _is_members(theirs):
         names = [[item["name"] for item in items] for items in (ours, theirs)]
         if names[0] != names[1]:
-            yield _differ(path, *names)
+            yield Difference(path=path, ours=names[0], theirs=names[1])
             return
         for label, our, their in zip(names[0], ours, theirs, strict=True):
             yield from differences(our, their, f"{path}/{label}")
     elif not _same(ours, theirs):
-        yield _differ(path, ours, theirs)
+        yield Difference(path=path, ours=ours, theirs=theirs)
 
 
 def count_facts(facts: Any) -> int:
@@ -106,10 +148,6 @@ def count_facts(facts: Any) -> int:
     return 1
 
 
-def _differ(path: str, ours: Any, theirs: Any) -> Difference:
-    return Difference(path=path, ours=_show(ours), theirs=_show(theirs))
-
-
 def _is_members(value: Any) -> bool:
     return isinstance(value, list) and all(isinstance(item, dict) for item in value)
 
@@ -119,7 +157,7 @@ def _same(ours: Any, theirs: Any) -> bool:
     return type(ours) is type(theirs) and repr(ours) == repr(theirs)
 
 
-def _show(value: Any) -> str:
+def _shown(value: Any) -> str:
     text = repr(value)
     return text if len(text) <= MOST_CHARACTERS else f"{text[:MOST_CHARACTERS]}..."
 

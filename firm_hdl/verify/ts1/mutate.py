@@ -11,21 +11,12 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from firm_hdl.verify.ts1.case import DefinitionCase
+from firm_hdl.verify.ts1.universe import DefinitionCase
 
 __all__ = ["mutate", "mutation"]
 
 _MOST_CHARACTERS = 20_000
-_SIGNS: list[str] = [
-    *"=#\"'\\/<>[](){}:;,.-+_@ \t~é\x0b",
-    "<=",
-    "[]",
-    "[3]",
-    "[<=2]",
-    "---",
-    "  ",
-    " = ",
-]
+_SIGNS = [*"=#\"'\\/<>[](){}:;,.-+_@ \t~é\x0b", *"<= [] [3] [<=2] ---".split(), "  ", " = "]
 _NUMBERS = (
     "0 1 2 -1 +1 010 0x10 0b1 1_000 127 128 255 256 -129 65536 4294967295 4294967296 1.5 .5 5. 1e3 "
     "1e400 inf nan true False TRUE \"x\" 'y' [1] [1,2] [] [1,]"
@@ -86,50 +77,24 @@ def _span(generator: random.Random, text: str, pattern: str) -> tuple[int, int] 
     return generator.choice(outside or found) if found else None
 
 
-def _put(generator: random.Random, text: str, pattern: str, words: Sequence[str]) -> str:
-    span = _span(generator, text, pattern)
-    return text if span is None else text[: span[0]] + generator.choice(words) + text[span[1] :]
+def _at(change: Callable[[random.Random, str, int], str]) -> _Rule:
+    """Return a rule that changes a text at a place."""
+    return lambda generator, text: change(generator, text, _place(generator, text))
 
 
-def _drop_character(generator: random.Random, text: str) -> str:
-    place = _place(generator, text)
-    return text[:place] + text[place + 1 :]
+def _put(pattern: str, words: Sequence[str]) -> _Rule:
+    """Return a rule that replaces what a pattern finds in a text by a word."""
 
+    def put(generator: random.Random, text: str) -> str:
+        span = _span(generator, text, pattern)
+        return text if span is None else text[: span[0]] + generator.choice(words) + text[span[1] :]
 
-def _double_character(generator: random.Random, text: str) -> str:
-    place = _place(generator, text)
-    return text[:place] + text[place : place + 1] + text[place:]
-
-
-def _swap_characters(generator: random.Random, text: str) -> str:
-    place = _place(generator, text)
-    return text[:place] + text[place : place + 2][::-1] + text[place + 2 :]
-
-
-def _insert_sign(generator: random.Random, text: str) -> str:
-    place = _place(generator, text)
-    return text[:place] + generator.choice(_SIGNS) + text[place:]
-
-
-def _change_digit(generator: random.Random, text: str) -> str:
-    return _put(generator, text, r"\d", "0123456789")
+    return put
 
 
 def _change_case(generator: random.Random, text: str) -> str:
     span = _span(generator, text, r"[A-Za-z]")
     return text if span is None else text[: span[0]] + text[span[0]].swapcase() + text[span[1] :]
-
-
-def _change_value(generator: random.Random, text: str) -> str:
-    return _put(generator, text, r"(?<==)[^\n#]*|(?<=[<=\[])\d+", _NUMBERS)
-
-
-def _change_type(generator: random.Random, text: str) -> str:
-    return _put(generator, text, r"(?m)^[^\s#]+", _TYPES)
-
-
-def _change_name(generator: random.Random, text: str) -> str:
-    return _put(generator, text, r"(?<= )[A-Za-z_]\w*", _NAMES)
 
 
 def _add_value(generator: random.Random, text: str) -> str:
@@ -179,18 +144,22 @@ def _tokens(generator: random.Random, text: str) -> str:
     return "\n".join(lines)
 
 
+_insert_sign = _at(lambda generator, text, at: text[:at] + generator.choice(_SIGNS) + text[at:])
+_change_value = _put(r"(?<==)[^\n#]*|(?<=[<=\[])\d+", _NUMBERS)
+
 _RULES: tuple[_Rule, ...] = (
-    _drop_character,
-    _double_character,
-    _swap_characters,
+    # Drop, double or swap characters.
+    _at(lambda _, text, at: text[:at] + text[at + 1 :]),
+    _at(lambda _, text, at: text[:at] + text[at : at + 1] + text[at:]),
+    _at(lambda _, text, at: text[:at] + text[at : at + 2][::-1] + text[at + 2 :]),
     _insert_sign,
     _insert_sign,
-    _change_digit,
+    _put(r"\d", "0123456789"),
     _change_case,
     _change_value,
     _change_value,
-    _change_type,
-    _change_name,
+    _put(r"(?m)^[^\s#]+", _TYPES),
+    _put(r"(?<= )[A-Za-z_]\w*", _NAMES),
     _add_value,
     _add_value,
     _lines,

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import copy
+import difflib
 import os
-import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
@@ -19,16 +19,71 @@ from firm_hdl.frontend.sources import (
     Definition,
     EmbeddedOrigin,
     FolderOrigin,
+    Language,
     Origin,
     PackagePlace,
     Sources,
 )
 from firm_hdl.model import Dialect, Interface
-from firm_hdl.verify.ts1.case import DefinitionCase
 
-__all__ = ["Universe", "write_definitions"]
+__all__ = ["DefinitionCase", "Universe", "write_definitions"]
 
-_INCLUDE = re.compile(r'^\s*#\s*include\s*["<](?:[^">]*/)?(\w+)/(\w+)/(\w+)\.idl[">]', re.MULTILINE)
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DefinitionCase:
+    """One definition to judge.
+
+    Attributes
+    ----------
+    kind : "msg", "srv" or "action"
+        The kind of interface that is defined, and the name of the folder of the file.
+    language : "msg", "srv", "action" or "idl"
+        The language of the definition, and the suffix of the file's name.
+    text : str
+        The whole text, with its own line ends.
+    source : str
+        The name of the file, or of a text that comes with firm-hdl.
+    before : str or None
+        The original text of the file, if `text` was changed.
+    """
+
+    dialect: Dialect
+    package: str
+    kind: Kind
+    name: str
+    language: Language
+    text: str
+    source: str = field(default="", compare=False)
+    before: str | None = None
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether the text differs from that of the file."""
+        return self.before is not None
+
+    @property
+    def changes(self) -> list[str]:
+        """Lines that a change has removed (``-``) and added (``+``)."""
+        lines = difflib.unified_diff(
+            (self.before or "").splitlines(), self.text.splitlines(), lineterm="", n=0
+        )
+        return [repr(line)[1:-1] for line in list(lines)[2:] if not line.startswith("@@")]
+
+    @property
+    def full_name(self) -> str:
+        """Name of the type. In ROS 1, it does not contain the kind."""
+        middle = f"{self.kind}/" if self.dialect == "ros2" else ""
+        return f"{self.package}/{middle}{self.name}"
+
+    @property
+    def spelled_name(self) -> str:
+        """Name of the type in the form that the command accepts for any dialect and kind."""
+        return f"{self.package}/{self.kind}/{self.name}"
+
+    @property
+    def file(self) -> str:
+        """Name of the file."""
+        return f"{self.name}.{self.language}"
 
 
 class Universe:
@@ -133,29 +188,7 @@ class Universe:
             name=name,
             language=language,
             text=source.text,
-            included=tuple(self._included(source.text).values()) if language == "idl" else (),
         )
-
-    def _included(self, text: str) -> dict[str, str]:
-        """Return the texts of all files that a text in IDL includes, by the types' names."""
-        found: dict[str, str] = {}
-        pending = [text]
-        while pending:
-            for package, kind, name in _INCLUDE.findall(pending.pop()):
-                with suppress(DefinitionError):
-                    definition = self._sources.find(package, kind, name)
-                    if definition is not None and f"{package}/{kind}/{name}" not in found:
-                        found[f"{package}/{kind}/{name}"] = definition.source.text
-                        pending.append(definition.source.text)
-        return found
-
-    def changed(self, change: Callable[[DefinitionCase], DefinitionCase]) -> Universe:
-        """Return the same definitions with the texts of messages in ``.msg`` changed."""
-        other = copy.copy(self)
-        other._origins = [_AllChanged(each, self.dialect, change) for each in self._origins]
-        other._sources = Sources(other._origins)
-        other.library = Library(self.distro, origins=other._origins)
-        return other
 
     def interface(self, case: DefinitionCase) -> Interface:
         """Read a definition as users do.
@@ -194,34 +227,6 @@ class _Changed:
             return None
         source = Source(name=self._case.file, text=self._case.text)
         return Definition(source=source, language=self._case.language)
-
-
-class _AllChanged:
-    """An origin with all its texts changed."""
-
-    def __init__(
-        self, origin: Origin, dialect: Dialect, change: Callable[[DefinitionCase], DefinitionCase]
-    ) -> None:
-        self._origin, self._dialect, self._change = origin, dialect, change
-        self.packages = origin.packages
-
-    def names(self) -> Iterable[tuple[str, Kind, str]]:
-        return self._origin.names()
-
-    def find(self, package: str, kind: Kind, name: str) -> Definition | None:
-        found = self._origin.find(package, kind, name)
-        if found is None or found.language != "msg":
-            return found
-        case = DefinitionCase(
-            dialect=self._dialect,
-            package=package,
-            kind=kind,
-            name=name,
-            language=found.language,
-            text=found.source.text,
-        )
-        source = Source(name=found.source.name, text=self._change(case).text)
-        return Definition(source=source, language=found.language)
 
 
 def write_definitions(universe: Universe) -> None:

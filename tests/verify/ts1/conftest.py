@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from contextlib import ExitStack, closing
+from collections import Counter
+from contextlib import closing
 from functools import cache
 from itertools import count
 from types import SimpleNamespace
@@ -11,53 +12,51 @@ from types import SimpleNamespace
 import pytest
 
 from firm_hdl.verify.results.verdict import Failed
-from firm_hdl.verify.ros_python import worker
-from firm_hdl.verify.ts1.command import Tally
 from firm_hdl.verify.ts1.judge import judge
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.universe import Universe, write_definitions
-from tests.depth import THOROUGH
 from tests.frontend.workspace import make_files
-from tests.verify.ts1.nursery import nursed
 
 
 def judged_by(run):
-    """Judge all definitions; return the tally, and the names and failures of those that differ."""
-    with closing(run.judgements()) as shares:
-        found = {number: record for share in shares for number, record in share}
+    """Judge all definitions, all of one oracle.
+
+    Returns
+    -------
+    Counter of (oracle, name of the verdict), int, list
+        The number of definitions that both refuse, and the names and failures of those that differ.
+    """
+    with closing(run.judged(list(run.cases))) as shares:
+        records = {test: record for share in shares for test, record, _ in share}
+    found = [(test, each) for test, record in records.items() for each in record.verdicts]
     wrong = [
-        (run.case(number).full_name, each.verdict.failures)
-        for number, record in sorted(found.items())
-        for each in record.verdicts
+        (test.type, each.verdict.failures)
+        for test, each in found
         if isinstance(each.verdict, Failed)
     ]
-    return Tally(each for record in found.values() for each in record.verdicts), wrong
+    verdicts = Counter((each.oracle, each.verdict.name) for _, each in found)
+    return verdicts, sum(each.is_refused for _, each in found), wrong
 
 
 class Court:
     """Definitions in a folder, and the oracles that judge them."""
 
-    def __init__(self, distro, root, files, stack, shared=None):
+    def __init__(self, distro, root, files, embedded):
         (root / "src").mkdir(parents=True, exist_ok=True)
         make_files(root / "src", files)
         self.universe = Universe(distro, [str(root / "src")], str(root / "all"))
-        if shared is None:
-            write_definitions(self.universe)
-        else:
-            write_own_definitions(self.universe, shared(distro))
-        self._stack = stack
+        write_own_definitions(self.universe, embedded(distro))
 
     def oracle(self, name):
         """Return an oracle; if it is not installed, skip the test, or fail in CI."""
         oracle = ORACLES[name](self.universe)
-        self._stack.callback(oracle.close)
         need(name, oracle.missing())
         return oracle
 
     def answer(self, name, type_):
         """Return the answer of an oracle about a type."""
-        (answer,) = self.oracle(name).judge(self.universe.select([type_]))
-        return answer
+        (case,) = self.universe.select([type_])
+        return self.oracle(name).judge(case)
 
     def outcome(self, name, type_):
         """Return the outcome of the comparison."""
@@ -99,19 +98,14 @@ def embedded_definitions(tmp_path_factory):
 
 
 @pytest.fixture
-def court(tmp_path, monkeypatch, request, embedded_definitions):
+def court(tmp_path, monkeypatch, embedded_definitions):
     """A function that makes a court from texts of ``package/kind/file``.
 
-    In `make test`, its oracles' processes are forked, and definitions of firm-hdl itself are
-    written once, which takes less time; except for tests in `OWN_PROCESSES` of their module.
+    Processes of oracles are used by all tests, and definitions of firm-hdl itself are written once.
     """
-    shared = None
-    name = request.function.__name__
-    if not THOROUGH and name not in getattr(request.module, "OWN_PROCESSES", ()):
-        nursed(monkeypatch, worker)
-        shared = embedded_definitions
+    for kind in ORACLES.values():
+        monkeypatch.setattr(kind, "close", lambda self: None)
     numbers = count()
-    with ExitStack() as stack:
-        yield lambda distro, files: Court(
-            distro, tmp_path / str(next(numbers)), files, stack, shared
-        )
+    return lambda distro, files: Court(
+        distro, tmp_path / str(next(numbers)), files, embedded_definitions
+    )

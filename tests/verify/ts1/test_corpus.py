@@ -8,7 +8,7 @@ from functools import cache
 import pytest
 
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.ts1.run import Ts1Run
+from firm_hdl.verify.ts1.system import Ts1Run
 from firm_hdl.verify.ts1.universe import Universe
 from tests.depth import by_depth
 from tests.verify.ts1.conftest import judged_by, need
@@ -28,8 +28,8 @@ def differences(request, oracle):
     """Judge; return the differences, and the numbers of refused and judged definitions."""
     with Ts1Run(replace(request, oracles=(oracle,), jobs=1)) as run:
         need(oracle, run.missing.get(oracle))
-        tally, wrong = judged_by(run)
-    return wrong, tally.refused[oracle], sum(tally.verdicts[oracle, each] for each in JUDGED)
+        verdicts, refused, wrong = judged_by(run)
+    return wrong, refused, sum(verdicts[oracle, each] for each in JUDGED)
 
 
 @pytest.mark.parametrize(

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import ClassVar
 
 import pytest
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.model import Primitive, Sequence, String
 from firm_hdl.verify.results.records import OracleVerdict
-from firm_hdl.verify.results.records import Test as Tested
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.judge import compare, judge, judge_case, record_of
-from firm_hdl.verify.ts1.oracles.oracle import Accepted, Refused
+from firm_hdl.verify.ts1.oracles.oracle import Accepted, Oracle, Refused
 from tests.verify.judged import assert_passed
 from tests.verify.report.samples import a_test
 
@@ -24,50 +25,73 @@ GOOD = {
 ROS1 = {"p/msg/A.msg": "int8 LOW=-1\nstring name\nuint16[] codes\nB b\n", "p/msg/B.msg": "int8 x\n"}
 
 
-class FixedOracle:
-    """An oracle with given answers."""
+class FixedOracle(Oracle):
+    """An oracle with a given answer, which takes the time of a process."""
 
     name = "genmsg"
+    languages: ClassVar = {"ros1": {"msg"}, "ros2": {"msg"}}
+    spent = 0.0
 
-    def alike(self, case):
-        return {}
+    def __init__(self, answer, name="genmsg", seconds=0.0):
+        self.answer, self.name, self.seconds = answer, name, seconds
+
+    def missing(self):
+        return None
+
+    def judge(self, case):
+        FixedOracle.spent += self.seconds
+        if isinstance(self.answer, Exception):
+            raise self.answer
+        return self.answer
+
+    def cpu_seconds(self):
+        return FixedOracle.spent
 
 
-def verdict(court, ours, answer):
-    case = court("noetic", ROS1).universe.select(["p/A"])[0]
-    return compare(FixedOracle(), case, ours, answer)
+def outcome(court, ours, answer, files=ROS1):
+    here = court("lyrical" if files is GOOD else "noetic", files)
+    (case,) = here.universe.select(["p/A"])
+    ours = here.universe.interface(case) if ours is None else ours
+    return judge(here.universe, FixedOracle(answer), case, ours)
 
 
 def refusal():
     return DefinitionError([Diagnostic(message="it is wrong")])
 
 
-def test_both_refuse(court):
-    outcome = verdict(court, refusal(), Refused("no"))
-    assert (outcome.verdict, outcome.is_refused) == (Passed(1), True)
+ACCEPTED = Accepted(
+    {"structure": {"p/A": {"fields": [{"name": n} for n in ("name", "codes", "b")]}}}
+)
 
 
-def test_only_we_refuse(court):
-    outcome = verdict(court, refusal(), Accepted({}))
-    assert isinstance(outcome.verdict, Failed)
-    assert outcome.verdict.details == ("verdict: firm-hdl refuses: it is wrong; oracle accepts",)
-
-
-def test_only_the_oracle_refuses(court):
-    model = court("noetic", ROS1).universe.library.message("p/A")
-    outcome = verdict(court, model, Refused("no"))
-    assert outcome.verdict.details == ("verdict: firm-hdl accepts; oracle refuses: no",)
-
-
-@pytest.mark.parametrize("answer", [Refused("no"), Accepted({})])
-def test_an_exception_that_is_no_refusal_is_a_difference(court, answer):
-    outcome = verdict(court, RecursionError("deep"), answer)
-    assert outcome.verdict.details == ("verdict: firm-hdl raised RecursionError: deep",)
-
-
-def test_unjudged_definitions_are_neither_passed_nor_failed(court):
-    outcome = verdict(court, refusal(), NotJudged("it slept"))
-    assert outcome.verdict == NotJudged("it slept")
+@pytest.mark.parametrize(
+    ("ours", "answer", "verdict"),
+    [
+        (refusal(), Refused("no"), Passed(1)),
+        (None, ACCEPTED, Passed(3)),
+        (refusal(), ACCEPTED, "verdict: firm-hdl refuses: it is wrong; oracle accepts"),
+        (None, Refused("no"), "verdict: firm-hdl accepts; oracle refuses: no"),
+        (RecursionError("deep"), Refused("no"), "verdict: firm-hdl raised RecursionError: deep"),
+        (RecursionError("deep"), ACCEPTED, "verdict: firm-hdl raised RecursionError: deep"),
+        (refusal(), NotJudged("it slept"), NotJudged("it slept")),
+        (None, ValueError("broken"), "the oracle raised ValueError: broken"),
+        # An oracle that accepts a definition without any facts has not judged.
+        (None, Accepted({}), NotJudged),
+        (None, Accepted({"structure": {}}), NotJudged),
+        (None, Accepted({"structure": {"p/A": {}}, "md5": {}}), NotJudged),
+        # What an oracle must not answer.
+        (None, None, Failed),
+    ],
+)
+def test_the_verdict_follows_from_both_readings(court, ours, answer, verdict):
+    found = outcome(court, ours, answer)
+    expected = Failed((verdict,)) if isinstance(verdict, str) else verdict
+    assert (
+        isinstance(found.verdict, expected)
+        if isinstance(expected, type)
+        else (found.verdict == expected)
+    )
+    assert found.is_refused is (isinstance(answer, Refused) and isinstance(ours, DefinitionError))
 
 
 def test_one_oracle_that_judges_is_enough_and_none_is_too_few():
@@ -75,56 +99,51 @@ def test_one_oracle_that_judges_is_enough_and_none_is_too_few():
         each = [
             OracleVerdict(oracle=name, verdict=v) for name, v in zip("abc", verdicts, strict=False)
         ]
-        return record_of(a_test("p/msg/A"), "msg", each).verdict
+        return record_of(a_test("p/msg/A"), "msg", each)
 
     silent, known = NotJudged("it slept"), KnownDifference(("a-key",), 2)
-    assert common() == NotJudged("no oracle that was asked reads .msg files")
-    assert common(silent, NotJudged("it left")) == NotJudged("a: it slept; b: it left")
-    assert common(silent, Passed(3), Passed(4)) == Passed(7)
-    assert common(Passed(3), known, silent) == KnownDifference(("a-key",), 5)
-    assert common(Passed(3), known, Failed(("no",))) == Failed(("c: no",))
-
-
-def test_an_accepting_oracle_without_facts_has_not_judged(court):
-    model = court("noetic", ROS1).universe.library.message("p/A")
-    for facts in ({}, {"structure": {}}, {"structure": {model.name: {}}, "md5": {}}):
-        assert isinstance(verdict(court, model, Accepted(facts)).verdict, NotJudged)
-
-
-def test_comparisons_are_counted(court):
-    model = court("noetic", ROS1).universe.library.message("p/A")
-    part = {"fields": [{"name": name} for name in ("name", "codes", "b")]}
-    facts = {"structure": {model.name: part}}
-    assert assert_passed(verdict(court, model, Accepted(facts))) == 3
-
-
-@pytest.mark.parametrize("answers", [[], [Refused("no")] * 2, [Refused("no")] * 3])
-def test_an_oracle_without_one_answer_per_question_fails(court, answers):
-    here = court("noetic", ROS1)
-    oracle = FixedOracle()
-    oracle.languages, oracle.judges_changes = {"ros1": {"msg"}}, True
-    oracle.judge = lambda cases: iter(answers)
-    found = judge(here.universe, oracle, here.universe.select(["p/A"])[0])
-    why = f"the oracle gave {len(answers)} answers to 1 question"
-    assert found.verdict == Failed((why,))
-
-
-def test_an_invalid_answer_fails(court):
-    here = court("noetic", ROS1)
-    oracle = FixedOracle()
-    oracle.languages, oracle.judges_changes = {"ros1": {"msg"}}, True
-    oracle.cpu_seconds = lambda: 0.0
-    oracle.judge = lambda cases: [None]
-    (case,) = here.universe.select(["p/A"])
-    test = Tested(system="ts1", distro="noetic", type="p/A")
-    (output,) = judge_case(here.universe, [oracle], case, test).verdicts
-    assert isinstance(output.verdict, Failed) and "not None" in output.verdict.failures[0]
+    assert common().verdict == NotJudged("no oracle that was asked reads .msg files")
+    assert common(silent, NotJudged("it left")).verdict == NotJudged("a: it slept; b: it left")
+    assert common(silent, Passed(3), Passed(4)).verdict == Passed(7)
+    assert common(Passed(3), known, silent).verdict == KnownDifference(("a-key",), 5)
+    assert common(Passed(3), known).note == "known difference from b: a-key"
+    assert common(Passed(3), known, Failed(("no",))).verdict == Failed(("c: no",))
 
 
 def test_a_part_that_we_cannot_compute_is_a_difference(court):
-    model = court("lyrical", GOOD).universe.library.message("p/A")
-    outcome = compare(FixedOracle(), None, model, Accepted({"md5": {model.name: "0"}}))
-    assert "raises ValueError" in outcome.verdict.details[0]
+    found = outcome(court, None, Accepted({"md5": {"p/msg/A": "0"}}), GOOD)
+    assert isinstance(found.verdict, Failed) and "raises ValueError" in found.verdict.failures[0]
+
+
+def test_all_oracles_judge_and_their_time_counts_once(court, monkeypatch):
+    here = court("lyrical", GOOD)
+    (case,) = here.universe.select(["p/A"])
+    monkeypatch.setattr(judging.Stopwatch, "stop", lambda self: (SimpleNamespace(), 100.0))
+    oracles = [
+        FixedOracle(Accepted({"structure": {"p/msg/A": {"comment": ""}}}), "one", 1.0),
+        FixedOracle(ValueError("broken"), "two", 2.0),
+        FixedOracle(NotJudged("it slept"), "three", 4.0),
+    ]
+    record = judge_case(here.universe, oracles, case, a_test("p/A"))
+    assert record.cpu_seconds == 107.0
+    assert [(each.oracle, each.verdict) for each in record.verdicts] == [
+        ("one", Passed(1)),
+        ("two", Failed(("the oracle raised ValueError: broken",))),
+        ("three", NotJudged("it slept")),
+    ]
+    assert record.metrics == {"characters": len(case.text), "fields": 3, "depth": 2}
+
+
+def test_changed_definitions_are_only_for_oracles_that_judge_them(court):
+    here = court("lyrical", {"p/msg/A.msg": "int8 x\n", "p/srv/S.srv": "---\n"})
+    case, service = here.universe.select(["p/A", "p/S"])
+    mutant = replace(case, text="int8\n", before=case.text)
+    oracle = FixedOracle(Refused("no"))
+    assert judge(here.universe, oracle, mutant).verdict == Passed(1)
+    oracle.judges_changes = False
+    assert judge(here.universe, oracle, mutant) is None
+    assert isinstance(judge(here.universe, oracle, case).verdict, Failed)
+    assert judge(here.universe, oracle, service) is None
 
 
 MISTAKES = {
@@ -157,18 +176,17 @@ def _with(message, index, **changes):
 
 
 @pytest.mark.parametrize("oracle", ["rosidl_adapter", "rosidl_parser", "rosbags", "genmsg"])
-def test_every_mistake_is_caught(court, oracle, monkeypatch):
+def test_every_mistake_is_caught(court, oracle):
     is_ros1 = oracle == "genmsg"
     here = court("noetic", ROS1) if is_ros1 else court("lyrical", GOOD)
-    case = here.universe.select(["p/A"])[0]
-    (answer,) = here.oracle(oracle).judge([case])
-    model = here.universe.library.message("p/A")
+    (case,) = here.universe.select(["p/A"])
+    answer, model = here.answer(oracle, "p/A"), here.universe.library.message("p/A")
 
-    def outcome(ours):
-        return compare(here.oracle(oracle), case, ours, answer, here.universe)
+    def verdict(ours):
+        return compare(here.universe, here.oracle(oracle), case, ours, answer)
 
-    assert_passed(outcome(model))
-    verdicts = {name: outcome(change(model)).verdict for name, change in MISTAKES.items()}
+    assert_passed(verdict(model))
+    verdicts = {name: verdict(change(model)) for name, change in MISTAKES.items()}
     missed = {name for name, found in verdicts.items() if not isinstance(found, Failed)}
     if is_ros1:  # This dialect has neither bounds nor defaults.
         assert "a field is dropped" not in missed and "a constant has another value" not in missed
@@ -178,23 +196,15 @@ def test_every_mistake_is_caught(court, oracle, monkeypatch):
     assert missed == set()
 
 
-def test_sums_and_hashes_catch_mistakes_by_themselves(court):
-    for distro, files, oracle, part in [
-        ("noetic", ROS1, "genmsg", "md5"),
-        ("lyrical", GOOD, "rosbags", "hash"),
-    ]:
-        here = court(distro, files)
-        facts = here.answer(oracle, "p/A").facts
-        model = here.universe.library.message("p/A")
-        only = Accepted({part: facts[part]})
-        assert_passed(compare(FixedOracle(), None, model, only))
-        outcome = compare(FixedOracle(), None, replace(model, fields=()), only)
-        assert isinstance(outcome.verdict, Failed)
-
-
-def _inject(monkeypatch, mistake):
-    read = judging.read
-    monkeypatch.setattr(judging, "read", lambda universe, case: mistake(read(universe, case)))
+@pytest.mark.parametrize(
+    ("files", "oracle", "part"), [(ROS1, "genmsg", "md5"), (GOOD, "rosbags", "hash")]
+)
+def test_sums_and_hashes_catch_mistakes_by_themselves(court, files, oracle, part):
+    here = court("lyrical" if files is GOOD else "noetic", files)
+    only = Accepted({part: here.answer(oracle, "p/A").facts[part]})
+    assert_passed(outcome(court, None, only, files))
+    wrong = replace(here.universe.library.message("p/A"), fields=())
+    assert isinstance(outcome(court, wrong, only, files).verdict, Failed)
 
 
 WRONG = {
@@ -220,12 +230,12 @@ WRONG = {
 )
 def test_a_front_end_that_accepts_too_much_is_caught(court, distro, oracle, text, monkeypatch):
     here = court(distro, {"p/msg/A.msg": text, "p/msg/Good.msg": "int8 x\n"})
-    outcome = here.outcome(oracle, "p/A")
-    assert (outcome.verdict, outcome.is_refused) == (Passed(1), True)
+    found = here.outcome(oracle, "p/A")
+    assert (found.verdict, found.is_refused) == (Passed(1), True)
     good = here.universe.library.message("p/Good")
     monkeypatch.setattr(judging, "read", lambda universe, case: good)
-    outcome = here.outcome(oracle, "p/A")
-    assert isinstance(outcome.verdict, Failed) and "firm-hdl accepts" in outcome.verdict.details[0]
+    found = here.outcome(oracle, "p/A")
+    assert isinstance(found.verdict, Failed) and "firm-hdl accepts" in found.verdict.details[0]
 
 
 @pytest.mark.parametrize(
@@ -234,11 +244,5 @@ def test_a_front_end_that_accepts_too_much_is_caught(court, distro, oracle, text
 def test_a_front_end_that_accepts_too_little_is_caught(court, distro, oracle, monkeypatch):
     here = court(distro, {"p/msg/A.msg": "int8 x\n"})
     monkeypatch.setattr(judging, "read", lambda universe, case: refusal())
-    outcome = here.outcome(oracle, "p/A")
-    assert isinstance(outcome.verdict, Failed) and "oracle accepts" in outcome.verdict.details[0]
-
-
-def test_an_oracle_judges_only_the_languages_that_it_reads(court):
-    here = court("lyrical", {"p/srv/S.srv": "---\n"})
-    (case,) = here.universe.select(["p/srv/S"])
-    assert judge(here.universe, here.oracle("rosbags"), case) is None
+    found = here.outcome(oracle, "p/A")
+    assert isinstance(found.verdict, Failed) and "oracle accepts" in found.verdict.details[0]

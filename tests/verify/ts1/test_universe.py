@@ -8,9 +8,7 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.verify.ts1.case import DefinitionCase
-from firm_hdl.verify.ts1.explain import _needed_names as needed_names
-from firm_hdl.verify.ts1.universe import Universe, write_definitions
+from firm_hdl.verify.ts1.universe import DefinitionCase, Universe, write_definitions
 from tests.frontend.workspace import make_files
 
 FILES = {
@@ -152,68 +150,6 @@ def test_changed_texts_are_read_in_place_of_the_files(universe_of):
     assert [each.name for each in universe.interface(other).fields] == ["x"]
 
 
-def test_all_messages_are_changed_and_nothing_else(universe_of):
-    universe = universe_of("lyrical", FILES)
-    seen = []
-
-    def change(case):
-        seen.append(case)
-        return replace(case, text=case.text.replace("int8", "int16"), before=case.text)
-
-    changed = universe.changed(change)
-    texts = {case.spelled_name: case.text for case in changed.select([])}
-    expected = {
-        name.rpartition(".")[0]: text.replace("int8", "int16") if name.endswith(".msg") else text
-        for name, text in FILES.items()
-    }
-    assert texts == expected
-    assert {(each.dialect, each.language, each.kind) for each in seen} == {("ros2", "msg", "msg")}
-    assert "q/msg/B" in {each.spelled_name for each in seen}
-    # The original definition is unchanged.
-    assert universe.select(["q/B"])[0].text == "int8 x\n"
-    (case,) = changed.select(["p/A"])
-    (field,) = changed.interface(case).fields
-    assert str(field.type.fields[0].type) == "int16"
-
-
-def test_a_changed_definition_keeps_the_name_of_its_file(universe_of, tmp_path):
-    """Needs are found by the names of the files in which errors are."""
-    universe = universe_of("lyrical", {"p/msg/A.msg": "q/B b\n", "q/msg/B.msg": "int8 x\n"})
-    changed = universe.changed(lambda case: replace(case, text=case.text.replace("x", "1x")))
-    file = str(tmp_path / "src" / "q" / "msg" / "B.msg")
-    with pytest.raises(DefinitionError) as error:
-        changed.interface(changed.select(["p/A"])[0])
-    assert error.value.diagnostics[0].span.source.name == file
-    assert changed.by_source[file].text == "int8 1x\n"
-    # A text that stands for a file has the file's own name, without a folder.
-    (case,) = universe.select(["q/B"])
-    with pytest.raises(DefinitionError, match=r"^B\.msg:1:6: error: "):
-        universe.interface(replace(case, text="int8 1x\n", before=case.text))
-
-
-def idl(name, kind="msg", body="", package="p"):
-    struct = f"struct {name} {{ long a; }};"
-    return f"{body}module {package} {{ module {kind} {{ {struct} }}; }};\n"
-
-
-def test_included_files_are_given_with_those_that_they_include(universe_of):
-    files = {
-        "p/msg/A.idl": idl("A", body='#include "p/msg/B.idl"\n # include <x/y/q/msg/D.idl>\n'),
-        "p/msg/B.idl": idl("B", body='#include "p/msg/C.idl"\n#include "p/msg/A.idl"\n'),
-        "p/msg/C.idl": idl("C", body='#include "p/msg/None.idl"\n#include "p/msg/B.idl"\n'),
-        "p/msg/E.idl": idl("E", body='// #include "p/msg/B.idl"\n'),
-        "q/msg/D.idl": idl("D", package="q"),
-        "q/msg/F.msg": '# include "q/msg/D.idl"\nint8 a\n',
-    }
-    cases = {case.name: case for case in universe_of("lyrical", files).select([])}
-    texts = {name.rpartition("/")[2][0]: text for name, text in files.items()}
-    assert set(cases["A"].included) == {texts["A"], texts["B"], texts["C"], texts["D"]}
-    assert len(cases["A"].included) == 4
-    assert set(cases["C"].included) == {texts["A"], texts["B"], texts["C"], texts["D"]}
-    assert cases["D"].included == cases["E"].included == cases["F"].included == ()
-    assert {case.language for case in cases.values() if case.name != "F"} == {"idl"}
-
-
 def test_a_file_that_is_no_text_is_a_definition_as_well(universe_of, tmp_path):
     universe_of("lyrical", {"p/msg/A.msg": "int8 x\n"})
     folder = tmp_path / "src" / "p"
@@ -297,21 +233,3 @@ def test_definitions_are_linked_to_from_another_folder_and_embedded_ones_written
         assert (folder / f"{name}.{kind}").read_bytes() == text.encode()
     assert not (folder / "geometry_msgs" / "msg").is_symlink()
     assert "float64 x" in texts["geometry_msgs/msg/Point"]
-
-
-def test_all_that_a_type_needs_is_found_at_each_level(tmp_path):
-    files = {
-        "p/msg/A.msg": "B b\nC c\nB[] again\nint8 x\n",
-        "p/msg/B.msg": "D d\nE e\n",
-        "p/msg/C.msg": "E[2] e\nq/F f\n",
-        "p/msg/D.msg": "int8 x\n",
-        "p/msg/E.msg": "int8 x\n",
-        "q/msg/F.msg": "G g\n",
-        "q/msg/G.msg": "int8 x\n",
-    }
-    universe = Universe("lyrical", [str(make_files(tmp_path, files))])
-    (case,) = universe.select(["p/A"])
-    names = [*"BCDE"]
-    expected = {*(f"p/msg/{name}" for name in names), "q/msg/F", "q/msg/G"}
-    found = needed_names(universe.interface(case))
-    assert set(found) == expected and len(found) == len(expected)

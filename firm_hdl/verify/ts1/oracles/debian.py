@@ -6,7 +6,7 @@ has its own oracles, whose names end in the version.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, ClassVar
@@ -14,9 +14,8 @@ from typing import Any, ClassVar
 from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.ros2_wheels import RELEASES, Release
 from firm_hdl.verify.ros_python.worker import ROS_PYTHON, Worker
-from firm_hdl.verify.ts1.case import DefinitionCase
-from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle, Refused
+from firm_hdl.verify.ts1.universe import DefinitionCase
 
 __all__ = ["NEWER", "Genmsg", "RosidlAdapter", "RosidlParser"]
 
@@ -32,7 +31,7 @@ class _Worked(Oracle):
 
     @cached_property
     def _worker(self) -> Worker:
-        return _shared_worker(self.family, self.universe.folder, self.release)
+        return _shared_worker(self.family, str(self.release.python) if self.release else ROS_PYTHON)
 
     def missing(self) -> str | None:
         why = self._worker.missing
@@ -43,13 +42,13 @@ class _Worked(Oracle):
     def version(self) -> str:
         return self._worker.versions.get(self.judge_name, "")
 
-    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
-        for case in cases:
-            yield _answer(self._worker.ask(self._request(case)))
+    def judge(self, case: DefinitionCase) -> Answer:
+        return _answer(self._worker.ask(self._request(case)))
 
     def _request(self, case: DefinitionCase) -> dict[str, Any]:
         return {
             "oracle": self.judge_name,
+            "folder": self.universe.folder,
             "package": case.package,
             "kind": case.kind,
             "name": case.name,
@@ -67,10 +66,9 @@ class _Worked(Oracle):
 
 
 @cache
-def _shared_worker(family: str, folder: str, release: Release | None) -> Worker:
+def _shared_worker(family: str, python: str) -> Worker:
     # Oracles of one family ask about the same texts, which a shared worker reads only once.
-    python = ROS_PYTHON if release is None else str(release.python)
-    return Worker(family, folder, modules=Path(__file__).parent, python=python)
+    return Worker(family, "", modules=Path(__file__).parent, python=python)
 
 
 def _answer(answer: dict[str, Any]) -> Answer:
@@ -116,12 +114,6 @@ class RosidlParser(_Worked):
     family = "rosidl"
     languages: ClassVar = {"ros2": frozenset({"msg", "srv", "action", "idl"})}
 
-    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
-        for case, answer in zip(cases, super().judge(cases), strict=True):
-            if case.language == "idl" and isinstance(answer, Accepted):
-                _name_as_file(answer.facts, case)
-            yield answer
-
     def alike(self, case: DefinitionCase) -> Mapping[str, str]:
         # rosidl_adapter writes char as uint8 in IDL.
         return {} if case.language == "idl" else {"char": "uint8"}
@@ -137,11 +129,3 @@ def _newer() -> Iterator[type[Oracle]]:
 
 NEWER: tuple[type[Oracle], ...] = tuple(_newer())
 """Oracles of the releases that PyPI has, oldest first."""
-
-
-def _name_as_file(facts: Facts, case: DefinitionCase) -> None:
-    """Name a message of IDL by its file. The name in the text goes to the fact ``names``."""
-    names = list(facts["structure"])
-    if len(names) == 1:
-        facts["names"] = names
-        facts["structure"] = {case.full_name: facts["structure"][names[0]]}

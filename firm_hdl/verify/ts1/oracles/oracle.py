@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, TypeAlias
 
 from firm_hdl.model import Dialect
 from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
-from firm_hdl.verify.ts1.universe import Universe
+from firm_hdl.verify.ts1.universe import DefinitionCase, Universe
 
 __all__ = ["Accepted", "Answer", "NotJudged", "Oracle", "Refused"]
 
@@ -45,14 +44,11 @@ class Oracle(ABC):
         The languages that it reads, for each dialect: ``msg``, ``srv``, ``action``, ``idl``.
     judges_changes : bool
         Whether it is asked about mutations, which mostly have mistakes.
-    changes_needs : bool
-        Whether `judge_changed` changes the definitions that a definition needs, too.
     """
 
     name: ClassVar[str]
     languages: ClassVar[Mapping[Dialect, frozenset[str]]]
     judges_changes: ClassVar[bool] = True
-    changes_needs: ClassVar[bool] = False
 
     def __init__(self, universe: Universe) -> None:
         self.universe = universe
@@ -62,15 +58,8 @@ class Oracle(ABC):
         """Return why the oracle cannot be asked here; `None` if it can."""
 
     @abstractmethod
-    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
-        """Yield an answer to each case, in order. All cases are in languages of the oracle."""
-
-    def judge_changed(
-        self, case: DefinitionCase, change: Callable[[DefinitionCase], DefinitionCase]
-    ) -> Answer:
-        """Return the answer to a case with its text changed."""
-        (answer,) = self.judge([change(case)])
-        return answer
+    def judge(self, case: DefinitionCase) -> Answer:
+        """Return the answer to a case in one of its languages."""
 
     def alike(self, case: DefinitionCase) -> Mapping[str, str]:
         """Return the primitives that it cannot tell from others in a case, with the others."""

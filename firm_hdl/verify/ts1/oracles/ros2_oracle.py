@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from typing import ClassVar
 
 from firm_hdl.jobs.processes import ToolError, TooSlowError, run_tool
 from firm_hdl.jobs.programs import which
-from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle
+from firm_hdl.verify.ts1.universe import DefinitionCase
 
 __all__ = ["Ros2Proto"]
 
@@ -28,11 +27,7 @@ class Ros2Proto(Oracle):
     def missing(self) -> str | None:
         return None if which("ros2") else "there is no command 'ros2'; source ROS 2's setup"
 
-    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
-        for case in cases:
-            yield self._judge(case)
-
-    def _judge(self, case: DefinitionCase) -> Answer:
+    def judge(self, case: DefinitionCase) -> Answer:
         command = ["ros2", "interface", "proto", case.full_name]
         try:
             said = run_tool(command, timeout=_MOST_SECONDS, with_errors=False)

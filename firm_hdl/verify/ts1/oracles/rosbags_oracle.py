@@ -7,7 +7,7 @@ are in `firm_hdl.verify.ts1.known`.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from functools import lru_cache
 from importlib import metadata
 from typing import Any, ClassVar
@@ -16,9 +16,9 @@ from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
 
 from firm_hdl.model import Dialect
-from firm_hdl.verify.ts1.case import DefinitionCase
 from firm_hdl.verify.ts1.facts import Facts
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle, Refused
+from firm_hdl.verify.ts1.universe import DefinitionCase
 
 __all__ = ["Rosbags"]
 
@@ -33,9 +33,6 @@ class Rosbags(Oracle):
     name = "rosbags"
     languages: ClassVar = {"ros1": frozenset({"msg"}), "ros2": frozenset({"msg"})}
     judges_changes = False
-    changes_needs = True
-
-    _last: tuple[tuple[str, list[str]], Answer] | None = None
 
     def missing(self) -> str | None:
         return None
@@ -43,46 +40,49 @@ class Rosbags(Oracle):
     def version(self) -> str:
         return metadata.version("rosbags")
 
-    def judge(self, cases: Sequence[DefinitionCase]) -> Iterator[Answer]:
-        for case in cases:
-            yield self.judge_changed(case, lambda case: case)
-
-    def judge_changed(
-        self, case: DefinitionCase, change: Callable[[DefinitionCase], DefinitionCase]
-    ) -> Answer:
+    def judge(self, case: DefinitionCase) -> Answer:
         try:
-            return self._judge(case, change)
+            return self._judge(case)
         except RecursionError:
             return NotJudged("it is nested too deeply for rosbags")
         except _UnreadableError as error:
             return NotJudged(str(error))
         # Assertions of the parser and code for hashes may raise anything.
         except Exception as error:
-            why = " ".join(str(error).split())[-300:]
+            why = " ".join(str(error).split())
+            why = why if len(why) <= 300 else f"{why[:30]} ... {why[-265:]}"
             is_meant = isinstance(error, TypesysError)
             return Refused(why if is_meant else f"{type(error).__name__} {why}")
 
-    def _judge(
-        self, case: DefinitionCase, change: Callable[[DefinitionCase], DefinitionCase]
-    ) -> Answer:
+    def _judge(self, case: DefinitionCase) -> Answer:
         found: dict[str, Any] = {}
-        texts: list[str] = []
-        missing = self._read(case, found, lambda case: _collected(change(case), texts))
-        if missing is not None:
-            return Refused(f"{missing} is not there")
-        if self._last is not None and self._last[0] == (case.full_name, texts):
-            # The texts are the same as in the last question.
-            return self._last[1]
-        answer = self._answer(case, found)
-        self._last = (case.full_name, texts), answer
-        return answer
-
-    def _answer(self, case: DefinitionCase, found: dict[str, Any]) -> Answer:
+        pending = [case]
+        has_returns = False
+        while pending:
+            each = pending.pop()
+            if each.dialect == "ros1" and _OWN_TIME.search(each.text):
+                raise _UnreadableError("rosbags takes builtin_interfaces/Time for time of ROS 1")
+            # Without its line ends, more of a text can be compared than that it is refused.
+            has_returns |= "\r" in each.text
+            text = each.text.replace("\r\n", "\n").replace("\r", "\n")
+            full = f"{each.package}/msg/{each.name}"
+            found[full] = _parsed(text, full)
+            for need in _needs(found[full][1]):
+                if need in found or (case.dialect == "ros1" and need in _TIMES):
+                    continue
+                needed = self.universe.message_case(*need.split("/msg/"))
+                if needed is None:
+                    return Refused(f"{need} is not there")
+                if needed.language != "msg":
+                    raise _UnreadableError(f"it needs {need}, which is written in IDL")
+                pending.append(needed)
         full = f"{case.package}/msg/{case.name}"
         if _contains_itself(full, found):
             return Refused(f"{full} contains itself")
         constants, fields = found[full]
         facts: Facts = {"structure": {case.full_name: _message(constants, fields, case.dialect)}}
+        if has_returns:
+            facts["line ends"] = "refused"
         if case.dialect == "ros2":
             store = get_typestore(Stores.EMPTY)
             # Leave out constants: rosbags writes them into Python code, which may not be valid.
@@ -91,41 +91,11 @@ class Rosbags(Oracle):
             facts["hash"] = {case.full_name: store.hash_rihs01(full)}
         return Accepted(facts)
 
-    def _read(
-        self,
-        root: DefinitionCase,
-        found: dict[str, Any],
-        change: Callable[[DefinitionCase], DefinitionCase],
-    ) -> str | None:
-        """Read a definition and those that it needs; return the name of a type that is missing."""
-        pending = [root]
-        while pending:
-            case = change(pending.pop())
-            if case.dialect == "ros1" and _OWN_TIME.search(case.text):
-                raise _UnreadableError("rosbags takes builtin_interfaces/Time for time of ROS 1")
-            full = f"{case.package}/msg/{case.name}"
-            found[full] = _parsed(case.text, full)
-            for need in _needs(found[full][1]):
-                if need in found or (case.dialect == "ros1" and need in _TIMES):
-                    continue
-                needed = self.universe.message_case(*need.split("/msg/"))
-                if needed is None:
-                    return need
-                if needed.language != "msg":
-                    raise _UnreadableError(f"it needs {need}, which is written in IDL")
-                pending.append(needed)
-        return None
-
 
 @lru_cache(maxsize=1024)
 def _parsed(text: str, full: str) -> Any:
     # Most messages need the same Header, and most texts are read several times.
     return get_types_from_msg(text, full)[full]
-
-
-def _collected(case: DefinitionCase, texts: list[str]) -> DefinitionCase:
-    texts.append(case.text)
-    return case
 
 
 class _UnreadableError(Exception):

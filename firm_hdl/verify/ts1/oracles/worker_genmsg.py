@@ -1,5 +1,6 @@
 """The readers of ROS 1 for `worker_script`: genmsg, and rosmsg on top of it."""
 
+import functools
 import os
 import tempfile
 
@@ -25,11 +26,10 @@ class _Genmsg:
         self.spec_to_str = spec_to_str
         self.folder = folder
         self.temporary = tempfile.TemporaryDirectory(prefix="firm-hdl-ts1-")
-        packages = sorted(os.listdir(folder))
-        self.paths = {
-            kind: {package: [os.path.join(folder, package, kind)] for package in packages}
-            for kind in ("msg", "srv")
-        }
+
+    @functools.cached_property
+    def paths(self):
+        return {name: [os.path.join(self.folder, name, "msg")] for name in os.listdir(self.folder)}
 
     def judge(self, request):
         full_name = f"{request['package']}/{request['name']}"
@@ -43,13 +43,13 @@ class _Genmsg:
     def _msg(self, full_name, file):
         context = self.genmsg.MsgContext.create_default()
         spec = self.genmsg.msg_loader.load_msg_from_file(context, file, full_name)
-        self.genmsg.load_depends(context, spec, self.paths["msg"])
+        self.genmsg.load_depends(context, spec, self.paths)
         return self._facts(context, spec, [spec])
 
     def _srv(self, full_name, file):
         context = self.genmsg.MsgContext.create_default()
         spec = self.genmsg.msg_loader.load_srv_from_file(context, file, full_name)
-        self.genmsg.load_depends(context, spec, self.paths["msg"])
+        self.genmsg.load_depends(context, spec, self.paths)
         return self._facts(context, spec, [spec.request, spec.response])
 
     def _action(self, full_name, file):
@@ -62,7 +62,7 @@ class _Genmsg:
             for name, text in texts.items()
         ]
         for spec in specs:
-            self.genmsg.load_depends(context, spec, self.paths["msg"])
+            self.genmsg.load_depends(context, spec, self.paths)
         facts = {"structure": {}, "md5": {}}
         for spec in specs:
             for key, value in self._facts(context, spec, [spec]).items():

@@ -62,6 +62,8 @@ class _Rosidl:
         is_numbered = not _has_named_bounds(facts["structure"])
         if self.hashes is not None and request["has_events"] and is_numbered:
             facts["hash"] = self.hashes.of(content, request)
+        if request["file"].endswith(".idl"):
+            _name_by_file(facts, request)
         return facts
 
     def _without_placeholders(self, messages, request):
@@ -254,6 +256,28 @@ def _parsed(content, has_events=False, remarks=_no_remarks):
     return found
 
 
+def _name_by_file(facts, request):
+    """Name messages by package and folder; the modules around them in the text are ``scope``."""
+    messages = facts["structure"]
+    scopes = {name.rpartition("/")[0] for name in messages}
+    if len(scopes) != 1:
+        return
+    (scope,) = scopes
+
+    def named(kind):
+        own = f"{request['package']}/{request['kind']}/{kind[len(scope) :].lstrip('/')}"
+        return own if kind.partition("[")[0] in messages else kind
+
+    facts["scope"] = scope
+    facts["structure"] = {
+        named(name): {
+            **message,
+            "fields": [{**each, "type": named(each["type"])} for each in message["fields"]],
+        }
+        for name, message in messages.items()
+    }
+
+
 def _has_named_bounds(messages):
     types = [field["type"] for message in messages.values() for field in message["fields"]]
     return any(re.search(r"<=(?!\d)", each) for each in types)
@@ -305,7 +329,10 @@ def _default(member):
     value = member.get_annotation_value("default")["value"]
     # Lists are texts in Python's syntax, which generators evaluate.
     is_list = type(member.type).__name__ in ("Array", "BoundedSequence", "UnboundedSequence")
-    return list(ast.literal_eval(value)) if is_list and isinstance(value, str) else value
+    if not is_list or not isinstance(value, str):
+        return value
+    items = ast.literal_eval(value)
+    return list(items) if isinstance(items, (list, tuple)) else value
 
 
 class _Hashes:

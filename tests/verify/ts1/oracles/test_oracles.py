@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.jobs import TooSlowError
 from firm_hdl.verify.results.records import Test as Tested
 from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.ros_python.worker import Worker
@@ -20,17 +19,6 @@ from firm_hdl.verify.ts1.oracles.oracle import Accepted, NotJudged, Refused
 from tests.verify.judged import assert_passed
 from tests.verify.ts1.conftest import need
 
-# These tests start workers as users do: some kill one, or end it, and each family has another one.
-OWN_PROCESSES = {
-    "test_a_failure_of_the_worker_is_an_answer",
-    "test_a_worker_ends_when_it_is_closed_and_may_be_asked_again",
-    "test_a_worker_that_dies_is_replaced",
-    "test_an_invalid_answer_of_a_worker_fails",
-    "test_genmsg_gives_structure_text_and_sum",
-    "test_rosidl_adapter_gives_structure_defaults_and_comments",
-    "test_rosidl_parser_gives_derived_messages_too",
-    "test_whatever_a_definition_is_the_worker_answers",
-}
 MODULES = Path(debian.__file__).parent
 FILES = {
     "p/msg/A.msg": "int8 N=010\nq/B[2] bs\nHeader header\nHeader[] headers\n",
@@ -186,8 +174,8 @@ def test_a_failure_of_the_worker_is_an_answer(court):
         _worker = type("W", (), {"ask": lambda self, request: {"failed": "too slow"}})()
 
     here = court("noetic", FILES)
-    (answer,) = FailedOracle(here.universe).judge(here.universe.select(["q/B"]))
-    assert answer == NotJudged("too slow")
+    (case,) = here.universe.select(["q/B"])
+    assert FailedOracle(here.universe).judge(case) == NotJudged("too slow")
 
 
 def test_an_invalid_answer_of_a_worker_fails(court):
@@ -232,55 +220,30 @@ def test_ros2_interface_proto_is_compared_with_ours(court, ros2_command):
 
 
 @pytest.mark.parametrize(
-    ("printed", "told"),
-    [("x", "x"), (r"x\n", "x"), (r"x\n\n", "x\n"), (r"\nx \n", "\nx "), (r"x\r\n", "x")],
+    ("script", "answer"),
+    [
+        (r"printf '\nx \n\n'", Accepted({"proto": "\nx \n"})),
+        ("echo a; echo b >&2; exit 1", NotJudged("ros2 does not have it: b")),
+        ("echo a; echo b; exit 3", NotJudged("ros2 does not have it: b")),
+        ("exit 1", NotJudged("ros2 does not have it: exit status 1")),
+        ("exit 0", NotJudged("ros2 says nothing of it")),
+        ("echo ' '", NotJudged("ros2 says nothing of it")),
+    ],
 )
-def test_ros2_prints_one_line_end_after_its_text(court, ros2_command, printed, told):
-    (ros2_command / "ros2").write_text(f"#!/bin/sh\nprintf '{printed}'\n")
-    answer = court("lyrical", ROS2).answer("ros2", "q/B")
-    assert answer == Accepted({"proto": told})
+def test_an_answer_of_ros2_is_its_text_or_its_last_line(court, ros2_command, script, answer):
+    (ros2_command / "ros2").write_text(f"#!/bin/sh\n{script}\n")
+    assert court("lyrical", ROS2).answer("ros2", "q/B") == answer
 
 
-def test_ros2_is_asked_in_its_own_words_and_not_for_ever(court, ros2_command, monkeypatch):
-    calls = []
-
-    def run(command, **options):
-        calls.append((command, options["timeout"]))
-        raise TooSlowError("it took too long")
-
-    monkeypatch.setattr(ros2_oracle, "run_tool", run)
-    here = court("lyrical", ROS2)
-    for type_, name in (("p/Do", "p/action/Do"), ("p/S", "p/srv/S"), ("p/A", "p/msg/A")):
-        answer = here.answer("ros2", type_)
-        assert isinstance(answer, NotJudged) and answer.reason.startswith("ros2 failed: ")
-        assert calls.pop() == (["ros2", "interface", "proto", name], 60)
-    # One that cannot be run at all has not judged, too.
-    monkeypatch.undo()
+def test_a_ros2_that_is_too_slow_or_cannot_be_run_has_not_judged(court, ros2_command, monkeypatch):
+    monkeypatch.setattr(ros2_oracle, "_MOST_SECONDS", 0.1)
+    (ros2_command / "ros2").write_text("#!/bin/sh\nexec sleep 60\n")
+    answer = court("lyrical", ROS2).answer("ros2", "p/A")
+    assert isinstance(answer, NotJudged) and answer.reason.startswith("ros2 failed: ")
     (ros2_command / "ros2").write_text("#!/nowhere/sh\n")
     monkeypatch.setenv("PATH", str(ros2_command))
-    answer = here.answer("ros2", "p/A")
+    answer = court("lyrical", ROS2).answer("ros2", "p/A")
     assert isinstance(answer, NotJudged) and answer.reason.startswith("ros2 failed: [Errno 2]")
-
-
-@pytest.mark.parametrize(
-    ("script", "why"),
-    [("echo a; echo b >&2; exit 1", "b"), ("echo a; echo b; exit 3", "b"),
-     ("echo a >&2; echo b >&2; exit 1", "b")],
-)  # fmt: skip
-def test_the_last_line_of_ros2_says_why(court, ros2_command, script, why):
-    (ros2_command / "ros2").write_text(f"#!/bin/sh\n{script}\n")
-    answer = court("lyrical", ROS2).answer("ros2", "q/B")
-    assert answer == NotJudged(f"ros2 does not have it: {why}")
-
-
-def test_ros2_without_output_has_not_judged(court, ros2_command):
-    for script in ("exit 0", "echo", "echo ' '"):
-        (ros2_command / "ros2").write_text(f"#!/bin/sh\n{script}\n")
-        outcome = court("lyrical", ROS2).outcome("ros2", "q/B")
-        assert outcome.verdict == NotJudged("ros2 says nothing of it")
-    (ros2_command / "ros2").write_text("#!/bin/sh\nexit 1\n")
-    outcome = court("lyrical", ROS2).outcome("ros2", "q/B")
-    assert outcome.verdict == NotJudged("ros2 does not have it: exit status 1")
 
 
 def test_ros2_is_missing_where_it_is_not_installed(court, monkeypatch):
@@ -300,8 +263,7 @@ def test_a_field_called_as_the_placeholder_of_empty_messages_is_one(court, oracl
     text = text.format("structure_needs_at_least_one_member")
     here = court("lyrical", {"p/msg/A.msg": text})
     assert_passed(here.outcome(oracle, "p/A"))
-    (case,) = here.universe.select(["p/A"])
-    (answer,) = here.oracle(oracle).judge([case])
+    answer = here.answer(oracle, "p/A")
     assert len(answer.facts["structure"]["p/msg/A"]["fields"]) == count
 
 
@@ -314,6 +276,5 @@ def test_the_placeholder_of_empty_messages_is_no_field_in_idl_if_it_is_alone(cou
     text = f"module p {{ module msg {{ struct A {{ {members} }}; }}; }};"
     here = court("lyrical", {"p/msg/A.idl": text})
     assert_passed(here.outcome("rosidl_parser", "p/A"))
-    (case,) = here.universe.select(["p/A"])
-    (answer,) = here.oracle("rosidl_parser").judge([case])
+    answer = here.answer("rosidl_parser", "p/A")
     assert len(answer.facts["structure"]["p/msg/A"]["fields"]) == count

@@ -138,9 +138,10 @@ def test_a_missing_type_is_refused_wherever_it_is(court, distro, oracle):
             files[f"p/{kind}/Bad{number}.{kind}"] = place.format("q/C")
     here = court(distro, files)
     cases = here.universe.select([])
-    answers = list(here.oracle(oracle).judge(cases))
-    assert len(answers) == len(files) == 17
-    for case, answer in zip(cases, answers, strict=True):
+    assert len(cases) == len(files) == 17
+    judge = here.oracle(oracle)
+    for case in cases:
+        answer = judge.judge(case)
         assert isinstance(answer, Refused) == case.name.startswith("Bad"), (case.text, answer)
 
 
@@ -170,7 +171,9 @@ def test_types_that_idl_needs_are_looked_up(court):
     here = court("humble", files)
     cases = [case for case in here.universe.select([]) if case.language == "idl"]
     refused = Refused("_RefusedError: p/msg/C is not there")
-    for case, answer in zip(cases, here.oracle("rosidl_parser").judge(cases), strict=True):
+    oracle = here.oracle("rosidl_parser")
+    for case in cases:
+        answer = oracle.judge(case)
         assert (answer == refused) is case.name.startswith("Bad"), (case.text, answer)
 
 
@@ -180,8 +183,7 @@ def test_line_ends_of_a_changed_text_are_those_of_a_file(court):
     expected = here.answer("rosidl_adapter", "p/A")
     for end in ("\r\n", "\r"):
         changed = replace(case, text=case.text.replace("\n", end), before=case.text)
-        (answer,) = here.oracle("rosidl_adapter").judge([changed])
-        assert answer == expected
+        assert here.oracle("rosidl_adapter").judge(changed) == expected
 
 
 def test_genmsg_reads_a_changed_text_as_a_file_that_is_none_of_the_folder(court):
@@ -190,7 +192,7 @@ def test_genmsg_reads_a_changed_text_as_a_file_that_is_none_of_the_folder(court)
     files = sorted(Path(here.universe.folder).rglob("*"))
     texts = ["string S=\xe9\nint8[0] a\nint8[] b\n", "string S=\udcff\n", case.text]
     changed = [replace(case, text=text, before=case.text) for text in texts]
-    wide, not_utf_8, same = here.oracle("genmsg").judge(changed)
+    wide, not_utf_8, same = map(here.oracle("genmsg").judge, changed)
     assert fields_of(wide) == {"p/A": ["int8[0] a", "int8[] b"]}
     (constant,) = wide.facts["structure"]["p/A"]["constants"]
     assert constant == {"name": "S", "type": "string", "value": "\xe9", "text": "\xe9"}
@@ -204,11 +206,13 @@ def test_a_changed_definition_is_not_what_others_need(court):
     oracle = here.oracle("rosidl_parser-4.9")
     inner, outer = here.universe.select(["q/B", "p/A"])
     mutant = replace(inner, text="float64 y\n", before=inner.text)
-    (changed,) = oracle.judge([mutant])
-    (whole,) = oracle.judge([outer])
-    (original,) = oracle.judge([inner])
+    changed, whole, original = map(oracle.judge, (mutant, outer, inner))
     assert changed.facts["hash"]["q/msg/B"] != original.facts["hash"]["q/msg/B"]
-    assert compare(oracle, outer, here.universe.interface(outer), whole).verdict.name == "passed"
+    assert_passed(compare(here.universe, oracle, outer, here.universe.interface(outer), whole))
+    # A change that contains itself does not, too, say anything of the file.
+    circle = replace(inner, text="p/A a\n", before=inner.text)
+    assert isinstance(oracle.judge(circle), Refused)
+    assert oracle.judge(outer) == whole
 
 
 def test_a_type_without_a_number_has_no_hash(court):
@@ -219,5 +223,29 @@ def test_a_type_without_a_number_has_no_hash(court):
     here = court("lyrical", {"p/msg/A.idl": text.format("3")})
     (case,) = here.universe.select(["p/A"])
     other = replace(case, text=text.format("A_Constants::N"), before=case.text)
-    one, other = here.oracle("rosidl_parser-4.9").judge([case, other])
-    assert "hash" in one.facts and list(other.facts) == ["structure", "names"]
+    one, other = map(here.oracle("rosidl_parser-4.9").judge, (case, other))
+    assert "hash" in one.facts and list(other.facts) == ["structure", "scope"]
+
+
+def test_a_needed_type_is_that_of_the_msg_file_if_there_are_two(court):
+    idl = "module q {{ module msg {{ struct B {{ {} }}; }}; }};"
+    files = {"p/msg/A.msg": "q/B b\n", "q/msg/B.msg": "int8 x\n", "q/msg/B.idl": idl.format("?")}
+    assert fields_of(court("lyrical", files).answer("rosidl_adapter", "p/A"))
+    bad = court("lyrical", {**files, "q/msg/B.msg": "?\n", "q/msg/B.idl": idl.format("long x;")})
+    answer = bad.answer("rosidl_adapter", "p/A")
+    assert isinstance(answer, Refused) and "q/msg/B: " in answer.message
+
+
+def test_messages_of_idl_are_named_by_their_file(court):
+    parts = "struct S_Request { long a; }; struct S_Response { long b; };"
+    text = f"module x {{ module y {{ {parts} }}; }};"
+    files = {"p/srv/S.idl": text, "p/msg/A.idl": "struct A { long a; };"}
+    here = court("lyrical", files)
+    service = here.answer("rosidl_parser-4.9", "p/S").facts
+    assert fields_of(here.answer("rosidl_parser-4.9", "p/S"))["p/srv/S_Event"][1:] == [
+        "p/srv/S_Request[<=1] request",
+        "p/srv/S_Response[<=1] response",
+    ]
+    assert (service["scope"], next(iter(service["hash"]))) == ("x/y", "p/srv/S")
+    message = here.answer("rosidl_parser-4.9", "p/A").facts
+    assert (message["scope"], list(message["structure"])) == ("", ["p/msg/A"])

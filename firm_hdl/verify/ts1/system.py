@@ -1,0 +1,360 @@
+"""TS1 as a test system: judges many definitions in several processes, and prints a summary."""
+
+from __future__ import annotations
+
+import hashlib
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
+from firm_hdl.frontend.search import workspace_folders
+from firm_hdl.verify.results.records import Record, Test
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.systems.options import Request, command_again
+from firm_hdl.verify.systems.system import (
+    Judged,
+    Made,
+    Recorder,
+    System,
+    failure_of,
+    kept,
+    run_tests,
+)
+from firm_hdl.verify.systems.tasks import UnknownTypeError
+from firm_hdl.verify.ts1.judge import judge_case
+from firm_hdl.verify.ts1.mutate import mutation
+from firm_hdl.verify.ts1.oracles import ORACLES
+from firm_hdl.verify.ts1.oracles.oracle import Oracle
+from firm_hdl.verify.ts1.universe import DefinitionCase, Universe, write_definitions
+
+__all__ = ["Ts1", "Ts1Run", "each_distro"]
+
+_MOST_IN_A_SHARE = 32
+_MOST_DETAILS = 8
+
+_MOST_SHOWN = 20
+"""The verdicts on at most this many definitions are printed one by one."""
+
+_LABELS = {
+    Passed.name: "agrees",
+    KnownDifference.name: "known",
+    Failed.name: "differs",
+    NotJudged.name: "not judged",
+}
+"""Texts for the verdicts of an oracle, in the order of the columns."""
+
+
+def each_distro(request: Request) -> list[Request]:
+    """Return a request for each distribution of a request.
+
+    If the request names none, the default distribution is used with paths. Without paths, all
+    distributions that have the types are used.
+
+    Raises
+    ------
+    UnknownTypeError
+        If no distribution has the types.
+    DefinitionError
+        If the active workspace has their packages without the types.
+    """
+    names = request.distros or (
+        [DEFAULT_DISTRO] if request.paths else _distros_with_any_of(request.types)
+    )
+    return [replace(request, distros=(name,)) for name in names]
+
+
+def _distros_with_any_of(types: Sequence[str]) -> list[str]:
+    found = []
+    for distro in DISTROS:
+        try:
+            Universe(distro).select(types)
+        except DefinitionError:
+            continue
+        found.append(distro)
+    if not found:
+        packages = {name.partition("/")[0] for name in types}
+        for distro in DISTROS:
+            if workspace_folders(distro, packages):
+                Universe(distro).select(types)  # Raises an error that says what is wrong.
+        raise UnknownTypeError(f"No distribution has {', '.join(types)}")
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class _Context:
+    """What a process needs to judge definitions of a run."""
+
+    request: Request
+    folder: str
+    oracles: tuple[str, ...]
+
+
+class Ts1Run:
+    """The definitions of one distribution; a context manager, because they are in a folder.
+
+    Parameters
+    ----------
+    request : Request
+        A request for one distribution. `distros`, `paths`, `depends`, `types`, `mutations`, `seed`,
+        `oracles` and `jobs` are used. Mutations are made from the definitions of the types. `seed`
+        is the number of the first mutation.
+
+    Attributes
+    ----------
+    cases : dict of Test to DefinitionCase
+        The definitions or mutations to judge.
+    digest : str
+        A digest of the definitions that mutations are made from.
+    versions : dict of str to str
+        Releases of the oracles that are asked, by name.
+    missing : dict of str to str
+        Why the other oracles cannot be asked, by name.
+
+    Raises
+    ------
+    DefinitionError
+        If a path is not a folder, or a type does not exist.
+    """
+
+    def __init__(self, request: Request) -> None:
+        self.request = request
+        (self.distro,) = request.distros
+        self.versions: dict[str, str] = {}
+        self.missing: dict[str, str] = {}
+        with ExitStack() as stack:
+            folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="firm-hdl-ts1-"))
+            universe = _universe(request, folder)
+            write_definitions(universe)
+            originals = universe.select(request.types)
+            self.digest = _digest(originals)
+            self.cases = _cases(request, originals)
+            for name in request.oracles or ORACLES:
+                if universe.dialect in ORACLES[name].languages:
+                    self._find(ORACLES[name](universe))
+            self._stack = stack.pop_all()
+        self.context = _Context(request, folder, tuple(self.versions))
+
+    def _find(self, oracle: Oracle) -> None:
+        try:
+            if (why := oracle.missing()) is None:
+                self.versions[oracle.name] = oracle.version()
+            else:
+                self.missing[oracle.name] = why
+        finally:
+            oracle.close()
+
+    def __enter__(self) -> Ts1Run:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        # The sessions of other processes end with the processes.
+        if session := _sessions.pop(self.context, None):
+            session.close()
+        self._stack.close()
+
+    def judged(self, tests: Sequence[Test]) -> Made[Test]:
+        """Judge definitions; yield their tests, records and lines to print, in shares."""
+        return run_tests(
+            _judge,
+            self.context,
+            # The longest first, so that none of them is left at the end.
+            sorted(tests, key=lambda test: -len(self.cases[test].text)),
+            lambda test: self.command(test, self.request.oracles),
+            self._lines_of,
+            most=_MOST_IN_A_SHARE,
+            jobs=self.request.jobs,
+        )
+
+    def command(self, test: Test, oracles: Sequence[str] = ()) -> str:
+        """Return the command that judges one definition or one mutation again."""
+        request = self.request
+        number = int(test.options.rpartition("=")[2]) if request.mutations else None
+        return command_again(
+            *([test.type] if number is None else request.types or ["--all"]),
+            systems="ts1",
+            distro=request.distros,
+            path=request.paths,
+            depends=request.depends,
+            oracle=tuple(oracles),
+            mutations=None if number is None else 1,
+            seed=number,
+        )
+
+    def _lines_of(self, record: Record) -> Iterator[str]:
+        """Yield the text to print about a definition for each oracle that differs."""
+        case = self.cases[record.test]
+        failed = [each for each in record.verdicts if isinstance(each.verdict, Failed)]
+        if not failed:
+            yield from failure_of(case.full_name, record)
+        for each in failed:
+            lines = [f"DIFFERS {case.full_name}.{case.language}, {each.oracle}"]
+            lines += [f"    {line}" for line in (case.changes if case.is_changed else ())]
+            details = each.verdict.details
+            lines += [f"    {detail}" for detail in details[:_MOST_DETAILS]]
+            if len(details) > _MOST_DETAILS:
+                lines.append(f"    and {len(details) - _MOST_DETAILS} more")
+            yield "\n".join([*lines, f"    again: {self.command(record.test)}"])
+
+    def summary(self, records: Iterable[Record]) -> Iterator[str]:
+        """Yield the verdicts on a few definitions, the numbers of each oracle, and all keys."""
+        records = list(records)
+        counts: Counter[tuple[str, str]] = Counter()
+        refused: Counter[str] = Counter()
+        details: Counter[tuple[str, str, str]] = Counter()
+        is_short = not self.request.mutations and len(records) <= _MOST_SHOWN
+        for record in records:
+            for each in record.verdicts:
+                verdict, texts = each.verdict, each.verdict.details
+                counts[each.oracle, verdict.name] += 1
+                refused[each.oracle] += each.is_refused
+                if not isinstance(verdict, Failed):
+                    details.update((each.oracle, verdict.name, text) for text in texts)
+                if is_short:
+                    said = "; ".join(texts) or "both refuse" * each.is_refused
+                    text = ": ".join(filter(None, [_LABELS[verdict.name], said]))
+                    yield f"{self.cases[record.test].full_name}  {each.oracle}  {text}"
+        yield f"{'oracle':24} {'agree':>7} {'known':>7} {'differ':>7} {'not judged':>11}"
+        for name, version in self.versions.items():
+            row = [counts[name, verdict] for verdict in _LABELS]
+            both = f"  ({refused[name]} refused by both)" if refused[name] else ""
+            yield f"{f'{name} {version}':24} {row[0]:7} {row[1]:7} {row[2]:7} {row[3]:11}{both}"
+        for name, why in self.missing.items():
+            yield f"{name:24} is not available: {why}"
+        for (name, label, text), count in sorted(details.items()):
+            yield f"{_LABELS[label]}, {name}: {text}: {count}"
+
+
+def _universe(request: Request, folder: str) -> Universe:
+    return Universe(request.distros[0], request.paths, folder, depends=request.depends)
+
+
+def _digest(cases: Sequence[DefinitionCase]) -> str:
+    digest = hashlib.sha256()
+    for case in cases:
+        digest.update(f"{case.spelled_name} {case.language} {len(case.text)}\n".encode())
+        digest.update(case.text.encode("utf-8", "surrogatepass"))
+    return digest.hexdigest()[:16]
+
+
+def _cases(request: Request, originals: Sequence[DefinitionCase]) -> dict[Test, DefinitionCase]:
+    """Return the definitions or mutations to judge, by their tests."""
+    options = [*request.folders, *(f"oracle={name}" for name in request.oracles)]
+    numbers: Sequence[int] = range(request.seed, request.seed + request.mutations)
+    if numbers:
+        options += [f"of={name}" for name in request.types]
+        cases = [(mutation(originals, number), [f"mutation={number}"]) for number in numbers]
+    else:
+        cases = [(case, []) for case in originals]
+    return {
+        Test(
+            system="ts1",
+            distro=request.distros[0],
+            type=case.spelled_name,
+            same=request.distros,
+            options=",".join(options + own),
+        ): case
+        for case, own in cases
+    }
+
+
+class _Session:
+    """The objects of a process for a run: our reader, the definitions, and the oracles."""
+
+    def __init__(self, context: _Context) -> None:
+        self.universe = _universe(context.request, context.folder)
+        self.cases = _cases(context.request, self.universe.select(context.request.types))
+        self.oracles = [ORACLES[name](self.universe) for name in context.oracles]
+        for oracle in self.oracles:
+            # Start the oracle's process now, so that no definition is charged for the time.
+            oracle.missing()
+
+    def close(self) -> None:
+        for oracle in self.oracles:
+            oracle.close()
+
+
+_sessions: dict[_Context, _Session] = {}
+
+
+def _judge(context: _Context, test: Test) -> Record:
+    if context not in _sessions:
+        _sessions[context] = _Session(context)
+    session = _sessions[context]
+    return judge_case(session.universe, session.oracles, session.cases[test], test)
+
+
+class Ts1(System):
+    """The test system of TS1. A test gives one definition, or one mutation, to all oracles.
+
+    Parameters
+    ----------
+    requests : sequence of Request
+        One for each distribution, as for `Ts1Run`. Processes are always on this machine, because
+        oracles read files. The oracles that are named all have to be installed.
+
+    Raises
+    ------
+    DefinitionError
+        When the system is entered, as from `Ts1Run`.
+    """
+
+    name = "ts1"
+
+    def __init__(self, requests: Sequence[Request]):
+        self._requests = requests
+        self._stack = ExitStack()
+        self._runs: list[Ts1Run] = []
+
+    def __enter__(self) -> Ts1:
+        with ExitStack() as stack:
+            self._runs += [stack.enter_context(Ts1Run(each)) for each in self._requests]
+            self._stack = stack.pop_all()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._stack.close()
+
+    @cached_property
+    def tests(self) -> Sequence[Test]:
+        """The tests of all definitions of all distributions, or of their mutations."""
+        return [test for run in self._runs for test in run.cases]
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """The oracles with their versions, and a digest of the definitions to mutate."""
+        oracles = {f"{name} {v}".strip() for run in self._runs for name, v in run.versions.items()}
+        mutated = {run.distro: run.digest for run in self._runs if run.request.mutations}
+        return {"oracles": sorted(oracles), **({"mutated": mutated} if mutated else {})}
+
+    def run(self, recorder: Recorder) -> list[Judged]:
+        """Judge everything. A named oracle that is not installed is a failure."""
+        found = []
+        for run in self._runs:
+            began = time.perf_counter()
+            what = "mutation" if run.request.mutations else "definition"
+            tests = {test: test for test in run.cases}
+            label = f"ts1 {run.distro}"
+            records = kept(tests, recorder, run.judged, label=label, unit=what).values()
+            print(*run.summary(records), sep="\n")
+            differing = sum(
+                max(1, sum(isinstance(each.verdict, Failed) for each in record.verdicts))
+                for record in records
+                if isinstance(record.verdict, Failed)
+            )
+            count = f"{len(records)} {what}{'s' * (len(records) != 1)}"
+            print(f"{count}, {time.perf_counter() - began:.0f} s, {differing} differences")
+            found += [
+                Judged(what=each.test.title, verdict=each.verdict, has_name=what == "definition")
+                for each in records
+            ]
+            for name, why in run.missing.items() if run.request.oracles else ():
+                verdict = Failed((f"is not available: {why}",))
+                found.append(Judged(what=f"oracle {name}", verdict=verdict))
+        return found
