@@ -147,7 +147,13 @@ class _SequencerLogic:
         m, c, state = self.m, self.c, self.state
         ring, traits, flow = state.ring, state.traits, state.flow
         is_begin = traits.begins_run | traits.begins_loop
-        word_before = Cat(ring.lane(state.map_at), ring.beat(state.map_at) - traits.two_word_map)
+        items_at: Value = Cat(
+            ring.lane(state.map_at), ring.beat(state.map_at) - traits.two_word_map
+        )
+        # A choice whose condition is a constant would hide the concatenation from the Verilog back
+        # end, which gives such vectors a net of their own.
+        if not isinstance(traits.takes_rest, Const):
+            items_at = Mux(traits.takes_rest, state.first_at, items_at)
         m.d.comb += [
             state.step_end.eq(state.last_at + 1),
             # limit - last_at - 1.
@@ -165,7 +171,7 @@ class _SequencerLogic:
             state.ends_message.eq(traits.at_end | (flow.exit_ends & state.exits_always)),
             state.ends_packet.eq(state.ends_message & c.ended),
             state.map_at.eq(state.last_at + traits.map_offset.as_signed()),
-            state.items_at.eq(Mux(traits.takes_rest, state.first_at, word_before)),
+            state.items_at.eq(items_at),
         ]
 
     def _allow(self, ready: Value) -> None:
