@@ -21,7 +21,7 @@ VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-thorough test-live lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
+.PHONY: help demo docs linkcheck test test-thorough test-live lint pytest coverage cover generate simulate verify verify-ts1 verify-vhdl \
   verify-corpus verify-languages report prove formal oracles oracles-ros2 fuzz fuzz-hardware mutate bench \
   examples tools ros1 \
   ghdl verilog clean
@@ -29,8 +29,17 @@ unexport PYTHONDONTWRITEBYTECODE
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-16s %s\n", $$1, $$2 }' Makefile
 
-demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
-	$(BIN)/python examples/demo.py
+demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware, and a node that answers
+	@$(BIN)/python examples/demo.py
+
+# Pages, and every link between them; a warning is an error.
+SITE := $(BIN)/python -m sphinx -W --keep-going -q -d build/site-cache
+docs: $(VENV)/.installed-docs ## the documentation as a site, in build/site (a minute)
+	$(SITE) -b html docs build/site
+	@echo "Open build/site/index.html"
+
+linkcheck: $(VENV)/.installed-docs ## links of the documentation to other sites; needs the network
+	$(SITE) -b linkcheck docs build/linkcheck
 
 # What several processes of pytest must not compile at the same time.
 COMPILED := $(VENV)/.compiled $(VENV)/.compiled-nextpnr
@@ -131,7 +140,7 @@ verify-languages: $(VENV)/.installed-dev verilog ## Verilog of four types, in ev
 prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types with all constructs
 	$(BIN)/python -m firm_hdl.equivalence --jobs $(JOBS) $(PROVE_ARGS)
 
-formal: $(COMPILED) ## proofs of blocks and small converters for every input (docs/formal.md), and their twins
+formal: $(COMPILED) ## proofs of blocks and small converters for every input (lab/notes/formal.md), and their twins
 	$(BIN)/python -m firm_hdl.formal --twins --jobs $(JOBS) $(FORMAL_ARGS)
 
 fuzz: $(VENV)/.installed-dev ## a million damaged definitions through the front end; FUZZ_ARGS='-n 1000'
@@ -145,7 +154,7 @@ mutate: $(COMPILED) tools ## faults in the program, and which tests notice (hour
 	$(BIN)/python -m tools.mutation --first --jobs $(JOBS) --each 1 --most 90 $(MUTATE_ARGS)
 
 # Figures of circuits that did not change are kept in build/bench; BENCH_ARGS='--group beats' takes some.
-bench: $(VENV)/.installed-bench oracles ## area, clock rate, cycles, times of software for docs/performance.md (an hour or two)
+bench: $(VENV)/.installed-bench oracles ## area, clock rate, cycles, times of software for lab/notes/performance.md (an hour or two)
 	$(BIN)/python -m firm_hdl.bench --jobs $(JOBS) $(BENCH_ARGS)
 	$(BIN)/firm-hdl build --force geometry_msgs/msg/Twist
 
@@ -222,13 +231,24 @@ clean: ## remove .venv and what tools have cached
 	rm -rf $(VENV) build dist examples/*/work ./*.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
 	find firm_hdl tests examples -name __pycache__ -type d -prune -exec rm -rf {} +
 
+# $(call install,arguments of pip): a line for each package. All that pip says is in pip.log, and is shown if it fails.
+install = @echo "Installing firm-hdl and what it needs into $(VENV), which takes a minute or two:"; \
+  { $(BIN)/python -m pip install --disable-pip-version-check --no-compile --progress-bar off $(1) 2>&1; \
+    echo "ended with $$?"; } | tee $(VENV)/pip.log | while read -r word name rest; do \
+      [ "$$word" != Collecting ] || echo "  $${name%%[<>=!~;]*}"; done; \
+  tail -n 1 $(VENV)/pip.log | grep -qx 'ended with 0' || { cat $(VENV)/pip.log >&2; exit 1; }
+
 # A stamp is newer than pyproject.toml when what that asks for is installed.
 $(VENV)/.installed: pyproject.toml $(VENV)/.created
-	$(BIN)/python $(INSTALL) --editable .
+	$(call install,--editable .)
 	@touch $@
 
 $(VENV)/.installed-dev: pyproject.toml $(VENV)/.created
 	$(BIN)/python $(INSTALL) --editable '.[dev]'
+	@touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-docs: pyproject.toml $(VENV)/.created
+	$(call install,--editable '.[docs]')
 	@touch $@ $(VENV)/.installed
 
 # Each process of pytest would compile the tests if this were not done before.

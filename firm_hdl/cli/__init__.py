@@ -13,10 +13,10 @@ import argparse
 import io
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from contextlib import suppress
 
-__all__ = ["main"]
+__all__ = ["main", "parser_of_all"]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -46,7 +46,7 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _dispatch(arguments: list[str]) -> int:
-    parser = _parser(arguments)
+    parser = _parser([each for each in arguments if not each.startswith("-")][:1])
     if any("\0" in argument for argument in arguments):
         parser.error("an argument contains a NUL character")
     args = parser.parse_args(arguments)
@@ -105,8 +105,15 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
-    """Make a parser with all commands, and with the arguments of the command that is called."""
+def parser_of_all() -> argparse.ArgumentParser:
+    """Make a parser with the arguments of all commands, for their reference."""
+    from firm_hdl.cli.table import COMMANDS
+
+    return _parser(COMMANDS)
+
+
+def _parser(called: Container[str]) -> argparse.ArgumentParser:
+    """Make a parser with all commands, and with the arguments of those that are called."""
     from firm_hdl.cli.table import COMMANDS
 
     parser = argparse.ArgumentParser(
@@ -117,10 +124,9 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
         "--version", action=_Version, nargs=0, help="show program's version number and exit"
     )
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    called = next((each for each in arguments if not each.startswith("-")), None)
     for name, command in COMMANDS.items():
         text = command.help
         sub = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-        if name == called:
+        if name in called:
             command.add(name, sub)
     return parser

@@ -222,7 +222,7 @@ def test_floats_and_fixed_numbers(modules, monkeypatch):
 
 def test_the_tutorial(tmp_path, monkeypatch, capsys, modules):
     """The files of the tutorial, written and run as it says."""
-    page = (EXAMPLES.parents[1] / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    page = (EXAMPLES.parents[1] / "docs" / "tutorial" / "first-node.md").read_text(encoding="utf-8")
     for name, language in (("double.yaml", "yaml"), ("double.py", "py")):
         (text,) = re.findall(rf"^```{language}\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
         (tmp_path / name).write_text(text)

@@ -111,7 +111,7 @@ def test_without_yosys_nothing_is_proved(asked, monkeypatch, capsys):
 @pytest.mark.usefixtures("asked")
 def test_the_table_has_the_proofs_and_the_page_keeps_its_text(tmp_path):
     page = tmp_path / "page.md"
-    begin = "<!-- proofs: written by `python -m firm_hdl.formal --write docs/formal.md` -->"
+    begin = "<!-- proofs: written by `python -m firm_hdl.formal --write lab/notes/formal.md` -->"
     page.write_text(f"before\n{begin}\nold rows\n<!-- end of proofs -->\nafter\n")
     # The answers of the twins, which come later, are not those of the table.
     assert command.main(["--twins", "--write", str(page)]) == 0

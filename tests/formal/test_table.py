@@ -1,4 +1,4 @@
-"""The table in docs/formal.md."""
+"""The table in lab/notes/formal.md."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from firm_hdl.formal.run import all_proofs
 from firm_hdl.formal.solve import Answer
 from firm_hdl.formal.table import replace_table, table
 
-PAGE = Path(__file__).parents[2] / "docs/formal.md"
+PAGE = Path(__file__).parents[2] / "lab/notes/formal.md"
 
 
 def test_only_what_is_proved_has_a_row():
@@ -31,7 +31,7 @@ def test_page_has_a_row_for_each_proof():
     for proof in all_proofs().values():
         claim = proof.claim
         row = f"| {proof.study.block} | {claim.name} | {claim.method} | {claim.reach} |"
-        assert row in text, f"{row}: python -m firm_hdl.formal --write docs/formal.md"
+        assert row in text, f"{row}: python -m firm_hdl.formal --write lab/notes/formal.md"
 
 
 def test_no_block_is_forgotten():
@@ -43,10 +43,10 @@ def test_no_block_is_forgotten():
         *("Deserializer", "Serializer", "Parser", "PacketGate"),
     }
     rows = re.findall(r"^\| `.* [\d.]+ \|$", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
-    assert len(rows) == len(all_proofs()), "python -m firm_hdl.formal --write docs/formal.md"
+    assert len(rows) == len(all_proofs()), "python -m firm_hdl.formal --write lab/notes/formal.md"
 
 
-BEGIN = "<!-- proofs: written by `python -m firm_hdl.formal --write docs/formal.md` -->"
+BEGIN = "<!-- proofs: written by `python -m firm_hdl.formal --write lab/notes/formal.md` -->"
 END = "<!-- end of proofs -->"
 
 

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The README's code, completed to designs: they act on good packets only."""
+"""VHDL of README and documentation, completed to designs: they act on good packets only."""
 
 from __future__ import annotations
 
@@ -16,8 +16,13 @@ from tests.examples.test_examples import load
 from tests.export.vhdl.test_layer import analyse, plan_of, vhdl_of, write
 
 ROOT = Path(__file__).parents[3]
-README = (ROOT / "README.md").read_text()
-BLOCKS = re.findall(r"^```vhdl\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+PIECES = [
+    piece
+    for page in ("docs/howto/vhdl.md", "README.md")
+    for piece in re.findall(r"^```vhdl\n(.*?)^```$", (ROOT / page).read_text(), re.M | re.S)
+]
+# The last page has the statements alone, of the same design as the piece before.
+BLOCKS = [*PIECES[:-1], "...\n".join([*PIECES[-2].split("...\n")[:2], PIECES[-1]])]
 EXAMPLES = ROOT / "examples"
 SAFE = r" and status = STATUS_OK;"
 
@@ -85,9 +90,9 @@ def run(ghdl: str, converters, folder: Path, block: str) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("number", range(2))
-def test_code_of_the_readme_acts_on_good_packets_only(ghdl, converters, tmp_path, number):
-    assert len(BLOCKS) == 2
+@pytest.mark.parametrize("number", range(3))
+def test_code_of_the_pages_acts_on_good_packets_only(ghdl, converters, tmp_path, number):
+    assert len(BLOCKS) == 3
     status, output = run(ghdl, converters, tmp_path, BLOCKS[number])
     assert status == 0 and "PASS 8 packets, 4 speeds" in output, output
 
@@ -97,9 +102,3 @@ def test_code_that_ignores_the_status_fails(ghdl, converters, tmp_path):
     assert count == 1
     status, output = run(ghdl, converters, tmp_path, naive)
     assert status != 0 and "FAIL after" in output, output
-
-
-def test_systemverilog_code_is_that_of_the_example():
-    (piece,) = re.findall(r"^```systemverilog\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
-    example = (EXAMPLES / "sv_motor" / "motor.sv").read_text()
-    assert piece in example and "status.tdata == STATUS_OK" in piece

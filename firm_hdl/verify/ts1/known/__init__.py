@@ -1,4 +1,4 @@
-"""Deliberate differences between oracles and firm-hdl. docs/errata.md gives the reasons.
+"""Deliberate differences between oracles and firm-hdl. docs/reference/errata.md gives the reasons.
 
 Reports name each difference by its key. An entry removes its difference, and the rest is compared
 again (`firm_hdl.verify.ts1.explain`). A difference that is left then is a mistake of the oracle or

@@ -46,7 +46,7 @@ class KnownRule:
     Attributes
     ----------
     key : str
-        The name of the difference, here and in docs/errata.md.
+        The name of the difference, here and in docs/reference/errata.md.
     oracles : set of str
         The oracles that differ from us.
     text : str

@@ -1,4 +1,4 @@
-"""Each deliberate difference occurs, has a key, and is documented in docs/errata.md.
+"""Each deliberate difference occurs, has a key, and is documented in docs/reference/errata.md.
 
 A must-fail twin with one more fault shows that the known difference hides no other.
 """
@@ -19,7 +19,7 @@ from firm_hdl.verify.ts1.known.texts import hidden, renamed, renamed_back, shown
 from tests.verify.judged import assert_known, assert_passed
 from tests.verify.ts1.known.examples import EXAMPLES, Example, drop_last, refuse
 
-ERRATA = Path(__file__).parents[4] / "docs" / "errata.md"
+ERRATA = Path(__file__).parents[4] / "docs" / "reference" / "errata.md"
 
 NAMED = {f"{number} {each.key} {each.oracle}": each for number, each in enumerate(EXAMPLES)}
 JUDGEABLE = {name: each for name, each in NAMED.items() if each.judgeable}
