@@ -51,7 +51,10 @@ linkcheck_anchors = False
 default_role = "literal"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
+# What classes of Amaranth have is documented there.
+autodoc_inherit_docstrings = False
 napoleon_custom_sections = [("Members", "params_style")]
+napoleon_use_ivar = True
 napoleon_use_rtype = False
 
 copybutton_prompt_text = "$ "

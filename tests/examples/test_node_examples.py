@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import io
+import json
 import math
 import random
 import re
@@ -235,3 +236,12 @@ def test_the_tutorial(tmp_path, monkeypatch, capsys, modules):
     assert out == f"{answer}\n"
     rows = [line.split() for line in err.splitlines()]
     assert ["/number", "subscribe", "1", "0"] in rows and ["/double", "publish", "0", "1"] in rows
+
+
+def test_the_line_of_the_robot_is_a_twist():
+    page = (EXAMPLES.parents[1] / "docs" / "tutorial" / "robot.md").read_text(encoding="utf-8")
+    (line,) = re.findall(r"^(\{.*\})$", page, re.MULTILINE)
+    packet = bytes.fromhex(json.loads(line)["packet"])
+    twist = STORE.deserialize_cdr(packet, "geometry_msgs/msg/Twist")
+    assert (twist.linear.x, twist.angular.z) == (0.5, 0.2)
+    assert bytes(STORE.serialize_cdr(twist, "geometry_msgs/msg/Twist")) == packet
