@@ -63,8 +63,8 @@ class Exit:
 class Flow:
     """Step, counters and jumps of a plan. Not a component: logic of one module.
 
-    A *trait* is what a circuit has to know of a step: a field of `step_state`, written
-    together with the step. So traits are valid at the start of a cycle.
+    A *trait* is a constant of a step: a field of `step_state`, registered with the step number. So
+    traits are valid at the start of a cycle.
 
     Parameters
     ----------
@@ -204,8 +204,8 @@ class Flow:
         count : Value
             The length of the current step. If `double` is given: of the step in the cycle before.
         single, double : Value
-            `single`: if the body of the run or loop is executed at all, it is executed once.
-            `double`: if it is executed more than once, it is executed twice.
+            `single`: at most one pass of the body of the run or loop.
+            `double`: two passes; valid only if `single` is 0.
         nul : bool
             Whether the count of a string includes the NUL.
         """
