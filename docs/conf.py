@@ -50,7 +50,7 @@ myst_enable_extensions = ["colon_fence", "deflist"]
 linkcheck_ignore = [r"https?://(localhost|127\.0\.0\.1|192\.168\.).*"]
 linkcheck_anchors = False
 
-smartquotes = False  # Quotes of code that stands in prose.
+smartquotes_action = "De"  # Quotes stay as they are, for code that stands in prose.
 # In docstrings, `name` is code.
 default_role = "literal"
 autodoc_member_order = "bysource"
