@@ -278,7 +278,8 @@ $(VENV)/.created:
 	    echo "Python has no venv; on Debian and Ubuntu: sudo apt-get install python3-venv" >&2; \
 	    exit 1; \
 	  fi; }
-	$(PYTHON) -m venv --clear $(VENV)
+	@echo "Creating $(VENV) ..."
+	@$(PYTHON) -m venv --clear $(VENV)
 	@# Old ones take half as long again for what tests need. Without a newer one, the old one does.
-	-@$(BIN)/python $(INSTALL) --upgrade pip
+	@$(BIN)/python $(INSTALL) --upgrade pip >$(VENV)/pip.log 2>&1 || true
 	@touch $@
