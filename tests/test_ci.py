@@ -17,8 +17,8 @@ GITHUB = ROOT / ".github" / "workflows" / "ci.yml"
 # Top-level keys of GitLab that are not jobs; its file may use these.
 NOT_JOBS = {"stages", "default", "variables", "workflow", "include"}
 JOB_KEYWORDS = {
-    "artifacts", "cache", "extends", "image", "needs", "parallel", "rules", "script", "stage",
-    "timeout", "variables", "when",
+    "artifacts", "cache", "extends", "image", "needs", "parallel", "publish", "rules", "script",
+    "stage", "timeout", "variables", "when",
 }  # fmt: skip
 # Files that targets read and that an earlier job has to write.
 READS = {"simulate": "build/vhdl_out", "report": "build/verify"}
