@@ -13,7 +13,7 @@ import argparse
 import io
 import os
 import sys
-from collections.abc import Container, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 
 __all__ = ["main", "parser_of_all"]
@@ -46,7 +46,7 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _dispatch(arguments: list[str]) -> int:
-    parser = _parser([each for each in arguments if not each.startswith("-")][:1])
+    parser = _parser(arguments)
     if any("\0" in argument for argument in arguments):
         parser.error("an argument contains a NUL character")
     args = parser.parse_args(arguments)
@@ -107,13 +107,11 @@ class _Version(argparse.Action):
 
 def parser_of_all() -> argparse.ArgumentParser:
     """Make a parser with the arguments of all commands, for their reference."""
-    from firm_hdl.cli.table import COMMANDS
-
-    return _parser(COMMANDS)
+    return _parser([], with_all=True)
 
 
-def _parser(called: Container[str]) -> argparse.ArgumentParser:
-    """Make a parser with all commands, and with the arguments of those that are called."""
+def _parser(arguments: Sequence[str], *, with_all: bool = False) -> argparse.ArgumentParser:
+    """Make a parser with all commands, and with the arguments of the command that is called."""
     from firm_hdl.cli.table import COMMANDS
 
     parser = argparse.ArgumentParser(
@@ -124,9 +122,10 @@ def _parser(called: Container[str]) -> argparse.ArgumentParser:
         "--version", action=_Version, nargs=0, help="show program's version number and exit"
     )
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    called = next((each for each in arguments if not each.startswith("-")), None)
     for name, command in COMMANDS.items():
         text = command.help
         sub = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-        if name in called:
+        if with_all or name == called:
             command.add(name, sub)
     return parser
