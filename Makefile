@@ -21,15 +21,24 @@ VERIFY_ARGS ?= --no-share-circuits --bus-bytes 4 --bus-bytes 8
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test pytest lint examples bench nightly lowest thorough verify benches languages prove verify-corpus report \
-  cover generate simulate live tools ghdl verilog oracles oracles-ros2 ros1 clean
+.PHONY: help demo docs linkcheck test pytest lint examples bench nightly lowest thorough verify benches languages prove \
+  verify-corpus report cover generate simulate live tools ghdl verilog oracles oracles-ros2 ros1 clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
 	@echo "make -C lab        what proves firm-hdl to its developers: proofs, fuzzers, the standard benchmark"
 
-demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware
-	$(BIN)/python examples/demo.py
+demo: $(VENV)/.installed ghdl ## real ROS messages through generated hardware, and a node that answers
+	@$(BIN)/python examples/demo.py
+
+# Pages, and every link between them; a warning is an error.
+SITE := $(BIN)/python -m sphinx -W --keep-going -q -d build/site-cache
+docs: $(VENV)/.installed-docs ## the documentation as a site, in build/site (a minute)
+	$(SITE) -b html docs build/site
+	@echo "Open build/site/index.html"
+
+linkcheck: $(VENV)/.installed-docs ## links of the documentation to other sites; needs the network
+	$(SITE) -b linkcheck docs build/linkcheck
 
 # What several processes of pytest must not compile at the same time.
 COMPILED := $(VENV)/.compiled $(VENV)/.compiled-nextpnr
@@ -220,13 +229,24 @@ clean: ## remove .venv and what tools have cached
 	rm -rf $(VENV) $(LOWEST) build dist examples/*/work ./*.egg-info .pytest_cache .hypothesis .mypy_cache .ruff_cache
 	find firm_hdl lab tests examples -name __pycache__ -type d -prune -exec rm -rf {} +
 
+# $(call install,arguments of pip): a line for each package. All that pip says is in pip.log, and is shown if it fails.
+install = @echo "Installing firm-hdl and what it needs into $(VENV), which takes a minute or two:"; \
+  { $(BIN)/python -m pip install --disable-pip-version-check --no-compile --progress-bar off $(1) 2>&1; \
+    echo "ended with $$?"; } | tee $(VENV)/pip.log | while read -r word name rest; do \
+      [ "$$word" != Collecting ] || echo "  $${name%%[<>=!~;]*}"; done; \
+  tail -n 1 $(VENV)/pip.log | grep -qx 'ended with 0' || { cat $(VENV)/pip.log >&2; exit 1; }
+
 # A stamp is newer than pyproject.toml when what that asks for is installed.
 $(VENV)/.installed: pyproject.toml $(VENV)/.created
-	$(BIN)/python $(INSTALL) --editable .
+	$(call install,--editable .)
 	@touch $@
 
 $(VENV)/.installed-dev: pyproject.toml $(VENV)/.created
 	$(BIN)/python $(INSTALL) --editable '.[dev]'
+	@touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-docs: pyproject.toml $(VENV)/.created
+	$(call install,--editable '.[docs]')
 	@touch $@ $(VENV)/.installed
 
 # Each process of pytest would compile the tests if this were not done before.
@@ -256,7 +276,8 @@ $(VENV)/.created:
 	    echo "Python has no venv; on Debian and Ubuntu: sudo apt-get install python3-venv" >&2; \
 	    exit 1; \
 	  fi; }
-	$(PYTHON) -m venv --clear $(VENV)
+	@echo "Creating $(VENV) ..."
+	@$(PYTHON) -m venv --clear $(VENV)
 	@# Old ones take half as long again for what tests need. Without a newer one, the old one does.
-	-@$(BIN)/python $(INSTALL) --upgrade pip
+	@$(BIN)/python $(INSTALL) --upgrade pip >$(VENV)/pip.log 2>&1 || true
 	@touch $@

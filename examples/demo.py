@@ -2,11 +2,13 @@
 
 The demo builds three types. It sends messages that rosbags serialized through their simulated
 deserializer and serializer, and compares the packets that come out byte for byte. If GHDL is
-installed, the test benches of the generated VHDL do the same there. ``make demo`` runs this.
+installed, the test benches of the generated VHDL do the same there. At the end, a simulated node
+answers a message. ``make demo`` runs this.
 """
 
 from __future__ import annotations
 
+import json
 import math
 import shutil
 import subprocess
@@ -30,6 +32,12 @@ __all__ = ["main"]
 OUT = "vhdl_out"
 BUS_BYTES = 8
 MESSAGES = 20
+NODE = Path(__file__).parent / "nodes" / "double" / "double.yaml"
+NEXT = """
+Next:
+  the lesson "Your first converter"    docs/tutorial/first-converter.md, or `make docs`
+  this node in a graph of ROS 2        .venv/bin/firm-hdl node run examples/nodes/double/double.yaml
+  the converters of any other type     .venv/bin/firm-hdl build sensor_msgs/msg/LaserScan"""
 GHDLS = ("ghdl", "ghdl-mcode", "ghdl-llvm", "ghdl-gcc")
 
 
@@ -141,7 +149,31 @@ def main() -> int:
         failures += not is_equal
         print(row.format(*cells, "yes" if is_equal else "NO"), flush=True)
     failures += run_vhdl()
+    failures += run_node(21)
+    print(NEXT)
     return 1 if failures else 0
+
+
+def run_node(number: int) -> int:
+    """Send a number to a simulated node that doubles it; return the number of failures."""
+    print("\nA node that doubles numbers, simulated, without ROS:\n", flush=True)
+    store = get_typestore(Stores.ROS2_JAZZY)
+    kind = "std_msgs/msg/Int32"
+    packet = bytes(store.serialize_cdr(store.types[kind](data=number), kind))
+    line = json.dumps({"topic": "/number", "packet": packet.hex()})
+    run = "from firm_hdl.cli import main; raise SystemExit(main())"
+    options = ["--graph", "none", "--engine", "amaranth"]
+    done = subprocess.run(
+        [sys.executable, "-c", run, "node", "run", str(NODE), *options],
+        input=f"{line}\n", capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if done.returncode or not done.stdout:
+        print(f"FAIL no answer: {done.stderr}", flush=True)
+        return 1
+    answer = json.loads(done.stdout)
+    value: Any = store.deserialize_cdr(bytes.fromhex(answer["packet"]), kind)
+    print(f"to   /number  data: {number}\nfrom {answer['topic']}  data: {value.data}", flush=True)
+    return 0 if value.data == 2 * number else 1
 
 
 def run_vhdl() -> int:

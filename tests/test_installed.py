@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -101,6 +102,30 @@ def test_the_sdist_has_all_tracked_files_and_gives_the_same_wheel(clone, wheel, 
         names = {name.partition("/")[2] for name in archive.getnames()}
     assert names == {*tracked, "PKG-INFO"}
     assert build_wheel(sdist, tmp_path / "wheel").read_bytes() == wheel.read_bytes()
+
+
+def test_the_lines_of_the_readme_install_it(clone):
+    """They are run as they stand. What firm-hdl depends on is here already."""
+    (lines,) = re.findall(
+        r"^```sh\n(python3 -m venv.*?)^```$", (clone / "README.md").read_text(), re.M | re.S
+    )
+    others = [path for path in sys.path if path.endswith(("site-packages", "dist-packages"))]
+    env = {
+        **os.environ,
+        "PATH": f"{sys.base_prefix}/bin:{os.environ['PATH']}",
+        "PYTHONPATH": ":".join(others),
+        "PIP_NO_INDEX": "1",
+        "PIP_NO_BUILD_ISOLATION": "0",  # As pip reads it: "no isolation".
+    }
+    done = subprocess.run(
+        ["sh", "-e", "-c", f"{lines}command -v firm-hdl\nfirm-hdl --version"],
+        cwd=clone, env=env, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.splitlines()[-2:] == [
+        str(clone / "venv" / "bin" / "firm-hdl"),
+        f"firm-hdl {firm_hdl.__version__}",
+    ]
 
 
 def test_what_is_installed_works_in_an_empty_folder(wheel, tmp_path):

@@ -94,7 +94,7 @@ def test_limitations_deny_nothing_that_verify_does(capsys):
     with pytest.raises(SystemExit):
         main(["verify", "--help"])
     output = capsys.readouterr().out
-    page = (Path(__file__).parents[1] / "docs" / "limitations.md").read_text()
+    page = (Path(__file__).parents[1] / "docs" / "reference" / "limits.md").read_text()
     for option, denial in (
         ("--results", r"Only \w+ keeps results"),
         ("--bag", r"[Rr]ecorded messages are not replayed"),

@@ -2,8 +2,8 @@
 
 Wire bytes are rosbags' own. Leaf transfers come from a walk over the objects that rosbags decoded
 and the field definitions that rosbags keeps. The walk shares no code with the model, the layout or
-the plan. So it also shows a mistake that both directions of our converters share. docs/errata.md
-lists where rosbags differs from ROS itself.
+the plan. So it also shows a mistake that both directions of our converters share.
+docs/reference/errata.md lists where rosbags differs from ROS itself.
 """
 
 from __future__ import annotations

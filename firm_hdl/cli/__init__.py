@@ -16,7 +16,7 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 
-__all__ = ["main"]
+__all__ = ["main", "parser_of_all"]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -105,7 +105,12 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
+def parser_of_all() -> argparse.ArgumentParser:
+    """Make a parser with the arguments of all commands, for their reference."""
+    return _parser([], with_all=True)
+
+
+def _parser(arguments: Sequence[str], *, with_all: bool = False) -> argparse.ArgumentParser:
     """Make a parser with all commands, and with the arguments of the command that is called."""
     from firm_hdl.cli.table import COMMANDS
 
@@ -121,6 +126,6 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     for name, command in COMMANDS.items():
         text = command.help
         sub = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-        if name == called:
+        if with_all or name == called:
             command.add(name, sub)
     return parser

@@ -26,7 +26,11 @@ def add_node(command: argparse.ArgumentParser) -> None:
         "clocks, memory and area; build: write the design; "
         "run: join a board, or the design in simulation, with a graph of ROS",
     )
-    command.add_argument("file", metavar="FILE", help="description of a node; see docs/node.md")
+    command.add_argument(
+        "file",
+        metavar="FILE",
+        help="description of a node; the documentation has all keys under Node description",
+    )
     add_path(command)
     command.add_argument(
         "--out", default="node_out", help="folder that build writes to (%(default)s)"

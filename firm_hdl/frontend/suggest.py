@@ -13,7 +13,7 @@ from firm_hdl.frontend.sources import PackagePlace, Sources
 __all__ = ["did_you_mean", "similar_types", "unknown_type"]
 
 # Packages with interfaces that, for at least one distribution, are in ROS's variants desktop or
-# perception but not in rosbags; see docs/limitations.md.
+# perception but not in rosbags; see docs/reference/limits.md.
 _NOT_EMBEDDED = frozenset(
     "action_tutorials_interfaces actionlib_msgs actionlib_tutorials bond composition_interfaces "
     "control_msgs controller_manager_msgs dynamic_reconfigure example_interfaces gazebo_msgs "

@@ -255,8 +255,8 @@ class Flow:
         count : Value
             The length of the current step. If `double` is given: of the step in the cycle before.
         single, double : Value
-            `single`: if the body of the run or loop is executed at all, it is executed once.
-            `double`: if it is executed more than once, it is executed twice.
+            `single`: at most one pass of the body of the run or loop.
+            `double`: two passes; valid only if `single` is 0.
         nul : bool
             Whether the count of a string includes the NUL.
         """

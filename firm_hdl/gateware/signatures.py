@@ -35,7 +35,7 @@ __all__ = [
 ]
 
 LATENCY_CYCLES = {"deserializer": 5, "serializer": 4}
-"""Latency by direction, as ``docs/interface.md`` describes it: from the last beat of a step to
+"""Latency by direction, as in ``docs/reference/streams.md``: from the last beat of a step to
 `valid` of the step's leaves, and from a step's last leaf to `valid` of the beat that it fills.
 ``tests/gateware/test_latency.py`` measures both."""
 

@@ -1,7 +1,7 @@
 """The description of a node, as frozen values: what a file says, checked and completed.
 
-:mod:`firm_hdl.node.reading` makes one of a file; ``docs/node.md`` describes the file. Every other
-part of :mod:`firm_hdl.node` starts from here, and decides nothing again.
+:mod:`firm_hdl.node.reading` makes one of a file; ``docs/reference/node.md`` describes the file.
+Every other part of :mod:`firm_hdl.node` starts from here, and decides nothing again.
 """
 
 from __future__ import annotations

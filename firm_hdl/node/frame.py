@@ -2,7 +2,7 @@
 
 Host and gateware are both made from `HEADER`; neither has an offset of its own. All links carry the
 same frame: 16 bytes of header, then bytes of a message. What lies around it is the link's business.
-Numbers are little-endian. ``docs/node.md`` has the rules for senders and receivers.
+Numbers are little-endian. ``docs/reference/frame.md`` has the rules for senders and receivers.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ def decode_header(frame: bytes) -> Header:
 
 
 def header_table() -> str:
-    """Return the header as a table in Markdown, as ``docs/node.md`` has it."""
+    """Return the header as a table in Markdown, as ``docs/reference/frame.md`` has it."""
     lines = ["| Byte | Bytes | Field | Meaning |", "| --- | --- | --- | --- |"]
     lines += [
         f"| {_OFFSETS[each.name]} | {each.bytes} | `{each.name}` | {each.meaning} |"

@@ -50,7 +50,7 @@ def read_description(
     Parameters
     ----------
     path : str or path
-        A file in YAML; ``docs/node.md`` describes it.
+        A file in YAML; ``docs/reference/node.md`` describes it.
     paths : iterable of str or path
         Folders with ROS packages, searched before those that the file names.
     library : Library or None

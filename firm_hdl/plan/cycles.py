@@ -189,7 +189,7 @@ def serializer_cycles(packets: Sequence[Packet]) -> list[int]:
                 taken = max(taken, lengths.get(step.length, -1) + REPEATED_LENGTH)
                 lengths[step.length] = taken
             cycle = taken + 1
-            # In the cycle after a step, only the upper bound of its size is known.
+            # The packer sees the exact size of a step a cycle later.
             if cycle == placed + 1 and cycle < _sent(sent, start + max_beats - room) + ROOM_AFTER:
                 cycle += 1
             if cycle > placed + 1:

@@ -1,10 +1,10 @@
 """The time that a bad packet can cost a deserializer, found from the plan alone.
 
 After an error, a deserializer completes every sequence whose length it has already transferred, one
-step per cycle (``docs/interface.md``). So what follows the error is at most the steps of a message
-in which every length is 0, and the steps of the elements that one sequence, and one sequence inside
-each of these elements, have claimed. :mod:`firm_hdl.plan.limits` tells how much lengths can claim
-together. The worst packet claims what has the most steps per byte.
+step per cycle (``docs/reference/status.md``). So what follows the error is at most the steps of a
+message in which every length is 0, and the steps of the elements that one sequence, and one
+sequence inside each of these elements, have claimed. :mod:`firm_hdl.plan.limits` tells how much
+lengths can claim together. The worst packet claims what has the most steps per byte.
 """
 
 from __future__ import annotations

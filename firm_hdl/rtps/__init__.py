@@ -1,7 +1,7 @@
 """A participant of DDS on the network, in plain Python: RTPS over UDP (DDSI-RTPS 2.5).
 
 It exchanges samples as bytes, and knows nothing of message types. :mod:`firm_hdl.rtps.ros` has the
-names and conventions of ROS 2 on top. ``docs/rtps.md`` describes what is implemented.
+names and conventions of ROS 2 on top. ``docs/explanation/rtps.md`` describes what is implemented.
 """
 
 from firm_hdl.rtps.endpoints import ClosedError, DataReader, DataWriter

@@ -61,7 +61,7 @@ class Core:
     events : deque
         What happened, oldest first. :meth:`next_event` removes them.
     counters : Counter
-        What came and what became of it; the page docs/rtps.md explains each.
+        What came and what became of it; the page docs/explanation/rtps.md explains each.
     """
 
     def __init__(self, settings: Settings):

@@ -170,7 +170,7 @@ class Participant:
 
     @property
     def counters(self) -> Counter[str]:
-        """What came and went, and what was refused; docs/rtps.md explains each of them."""
+        """What came and went, and what was refused; docs/explanation/rtps.md explains each."""
         with self._lock:
             return Counter(self._core.counters)
 

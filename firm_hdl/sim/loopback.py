@@ -188,13 +188,13 @@ def encode(
 ) -> Encoding:
     """Send messages through a serializer; each leaf moves independently.
 
+    Other parameters and errors are those of :func:`loopback`.
+
     Parameters
     ----------
     values : iterable
         Messages as dicts, as objects (such as those of rosbags), or as transfers (dicts of lists by
         the index of the leaf). Transfers may be invalid on purpose.
-
-    Other parameters and errors are those of :func:`loopback`.
     """
     options = RunOptions(stalls=stalls, deadline=deadline, limit=limit, vcd=vcd)
     if isinstance(values, Mapping | str | bytes) or not isinstance(values, Iterable):

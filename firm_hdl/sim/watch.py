@@ -1,7 +1,8 @@
 """Check the rules of streams.
 
-The rules have the numbers of ``docs/interface.md``. Those that can be observed are checked: two of
-all streams, and two of packets (:func:`firm_hdl.gateware.signatures.packet_layout`).
+The rules have the numbers of ``docs/reference/streams.md``. Those that can be observed are
+checked: two of all streams, and two of packets
+(:func:`firm_hdl.gateware.signatures.packet_layout`).
 
 * Rule 2: once `valid` is high, it stays high until the transfer.
 * Rule 3: once `valid` is high, the payload stays the same until the transfer.
@@ -39,7 +40,7 @@ class StreamRuleError(AssertionError):
     stream : str
         Name of the stream.
     rule : int
-        Number of the rule in ``docs/interface.md``; see :mod:`firm_hdl.sim.watch`.
+        Number of the rule in ``docs/reference/streams.md``; see :mod:`firm_hdl.sim.watch`.
     cycle : int
         Cycle in which the rule was broken, counted from 0.
     """

@@ -1,3 +1,3 @@
-"""The standard benchmark: the figures of ``docs/performance.md`` and of `firm_hdl.estimates`."""
+"""The standard benchmark: the figures of ``lab/notes/performance.md`` and of `firm_hdl.estimates`."""
 
 __all__ = []

@@ -1,4 +1,4 @@
-"""``python -m lab.bench``: the figures of ``docs/performance.md``, with their plots.
+"""``python -m lab.bench``: the figures of ``lab/notes/performance.md``, with their plots.
 
 ``make -C lab bench`` runs this. ``firm-hdl bench`` is the command for chosen types. Figures of
 circuits that did not change are taken from ``build/bench``.
@@ -72,9 +72,11 @@ KEPT_PARTS = "parts.json"
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, and write the page; return 0 if no figure is missing, even if figures got worse."""
     parser = argparse.ArgumentParser(prog="python -m lab.bench", description=__doc__)
-    parser.add_argument("--page", default="docs/performance.md", help="default: %(default)s")
+    parser.add_argument("--page", default="lab/notes/performance.md", help="default: %(default)s")
     parser.add_argument(
-        "--figures", default="docs/figures", help="folder of plots and JSON; default: %(default)s"
+        "--figures",
+        default="lab/notes/figures",
+        help="folder of plots and JSON; default: %(default)s",
     )
     parser.add_argument(
         "--estimates",

@@ -1,4 +1,4 @@
-"""The converters whose figures are in ``docs/performance.md``."""
+"""The converters whose figures are in ``lab/notes/performance.md``."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Proofs that building blocks and converters keep their contracts, for every input on every port.
 
-``docs/formal.md`` has what is proved. ``make -C lab formal`` proves it.
+``lab/notes/formal.md`` has what is proved. ``make -C lab formal`` proves it.
 """
 
 from __future__ import annotations

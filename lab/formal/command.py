@@ -79,7 +79,10 @@ def _parser() -> argparse.ArgumentParser:
         help="time limit of each proof; default: %(default)s",
     )
     parser.add_argument(
-        "--write", type=Path, metavar="PAGE", help="replace the table of a page, docs/formal.md"
+        "--write",
+        type=Path,
+        metavar="PAGE",
+        help="replace the table of a page, lab/notes/formal.md",
     )
     return parser
 

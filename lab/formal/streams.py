@@ -1,7 +1,7 @@
 """Surroundings of a block on streams, and the rules of streams as claims.
 
-A source may offer anything that the rules of streams and packets in ``docs/interface.md`` allow,
-whenever it likes. It breaks no rule by construction, so nothing has to be assumed of it.
+A source may offer anything that the rules of streams and packets in ``docs/reference/streams.md``
+allow, whenever it likes. It breaks no rule by construction, so nothing has to be assumed of it.
 """
 
 from __future__ import annotations

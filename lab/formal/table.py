@@ -1,4 +1,4 @@
-"""The table of proofs in ``docs/formal.md``."""
+"""The table of proofs in ``lab/notes/formal.md``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from lab.formal.solve import Answer
 
 __all__ = ["replace_table", "table"]
 
-_BEGIN = "<!-- proofs: written by `python -m lab.formal --write docs/formal.md` -->"
+_BEGIN = "<!-- proofs: written by `python -m lab.formal --write lab/notes/formal.md` -->"
 _END = "<!-- end of proofs -->"
 
 

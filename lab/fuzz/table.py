@@ -1,8 +1,8 @@
 """The table of a type: what the reference decoder of the fuzzer knows of it.
 
-It is made from the message model alone, by the rules of ``docs/interface.md``. It shares no code
-with the layout, the plan and the circuits: it has its own walk over the fields, its own names of
-leaves, and its own limits of lengths.
+It is made from the message model alone, by the rules of ``docs/reference/streams.md``. It shares
+no code with the layout, the plan and the circuits: it has its own walk over the fields, its own
+names of leaves, and its own limits of lengths.
 """
 
 from __future__ import annotations

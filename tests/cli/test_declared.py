@@ -9,7 +9,7 @@ import argparse
 
 import pytest
 
-from firm_hdl.cli import _parser, main
+from firm_hdl.cli import _parser, main, parser_of_all
 from firm_hdl.cli.table import COMMANDS
 from firm_hdl.errors import UserError
 
@@ -284,3 +284,9 @@ def test_commands_that_are_not_called_are_not_loaded():
     (group,) = [each for each in parser._actions if isinstance(each, argparse._SubParsersAction)]
     known = {name: len(sub._actions) > 1 for name, sub in group.choices.items()}
     assert [name for name, is_known in known.items() if is_known] == ["list"]
+
+
+def test_the_reference_has_the_arguments_of_all_commands():
+    parser = parser_of_all()
+    (group,) = [each for each in parser._actions if isinstance(each, argparse._SubParsersAction)]
+    assert all(len(sub._actions) > 1 for sub in group.choices.values())

@@ -153,5 +153,5 @@ def test_make_examples_runs_every_one():
     text = (ROOT / "Makefile").read_text()
     (named,) = re.findall(r"^HDL_EXAMPLES := (.*)$", text, re.M)
     assert sorted(named.split()) == sorted(path.parent.name for path in EXAMPLES.glob("*/Makefile"))
-    page = (ROOT / "README.md").read_text()
-    assert all(f"(examples/{name}/" in page for name in named.split())
+    page = (ROOT / "docs" / "howto" / "index.md").read_text()
+    assert all(f"`examples/{name}`" in page for name in named.split())

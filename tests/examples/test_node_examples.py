@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import io
+import json
 import math
 import random
 import re
@@ -222,7 +223,7 @@ def test_floats_and_fixed_numbers(modules, monkeypatch):
 
 def test_the_tutorial(tmp_path, monkeypatch, capsys, modules):
     """The files of the tutorial, written and run as it says."""
-    page = (EXAMPLES.parents[1] / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    page = (EXAMPLES.parents[1] / "docs" / "tutorial" / "first-node.md").read_text(encoding="utf-8")
     for name, language in (("double.yaml", "yaml"), ("double.py", "py")):
         (text,) = re.findall(rf"^```{language}\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
         (tmp_path / name).write_text(text)
@@ -235,3 +236,12 @@ def test_the_tutorial(tmp_path, monkeypatch, capsys, modules):
     assert out == f"{answer}\n"
     rows = [line.split() for line in err.splitlines()]
     assert ["/number", "subscribe", "1", "0"] in rows and ["/double", "publish", "0", "1"] in rows
+
+
+def test_the_line_of_the_robot_is_a_twist():
+    page = (EXAMPLES.parents[1] / "docs" / "tutorial" / "robot.md").read_text(encoding="utf-8")
+    (line,) = re.findall(r"^(\{.*\})$", page, re.MULTILINE)
+    packet = bytes.fromhex(json.loads(line)["packet"])
+    twist = STORE.deserialize_cdr(packet, "geometry_msgs/msg/Twist")
+    assert (twist.linear.x, twist.angular.z) == (0.5, 0.2)
+    assert bytes(STORE.serialize_cdr(twist, "geometry_msgs/msg/Twist")) == packet

@@ -40,7 +40,7 @@ def judge(found):
 
 def test_a_node_of_rclpy_meets_the_node_of_the_tutorial(tmp_path):
     folder = peers()
-    page = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "tutorial" / "first-node.md").read_text(encoding="utf-8")
     for name, language in (("double.yaml", "yaml"), ("double.py", "py")):
         (text,) = re.findall(rf"^```{language}\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
         (tmp_path / name).write_text(text)

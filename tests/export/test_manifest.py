@@ -226,7 +226,7 @@ def test_a_bad_packet_holds_a_deserializer_longer_than_the_longest_good_one():
     recovery = made["timing"]["recovery"]
     # All good packets have 52 bytes, and 7 beats.
     assert recovery["longest_packet_cycles"] == 7 < recovery["most_cycles"]
-    # As docs/interface.md says.
+    # As docs/reference/streams.md says.
     assert made["timing"]["latency_cycles"] == {"deserializer": 5, "serializer": 4}
 
 

@@ -144,7 +144,7 @@ def test_an_example_has_the_defaults():
 
 def missing_packages() -> dict[str, set[str]]:
     """Return the missing packages of each distribution, as the documentation lists them."""
-    text = (Path(__file__).parents[2] / "docs" / "limitations.md").read_text()
+    text = (Path(__file__).parents[2] / "docs" / "reference" / "limits.md").read_text()
     table = text.partition("### Packages that do not come with firm-hdl")[2].partition("\n## ")[0]
     rows = dict(re.findall(r"^\| ([a-z, ]+) \| (.*) \|$", table, re.MULTILINE))
     listed = {distro: {*re.findall(r"`(\w+)`", rows[distro])} for distro in ("noetic", "foxy")}

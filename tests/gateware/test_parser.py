@@ -264,7 +264,7 @@ def test_a_packet_that_claims_nearly_a_million_elements_costs_its_own_beats(bus_
     steps = 2 * (len(bomb) // 4 + 4)
     assert max(seen.times) <= max(beats, steps) + LATENCY + 2 * ERROR
     if bus_bytes == 8:
-        # The cycles in `docs/interface.md`.
+        # The cycles in `docs/reference/parts.md`.
         assert run(Parser(message), [bomb] * 3).times == [19, 34, 49]
 
 

@@ -1,7 +1,7 @@
 # amaranth: UnusedElaboratable=no
 """Combinational paths from inputs to outputs, found in the netlist.
 
-docs/interface.md promises them in "Combinational paths".
+docs/reference/streams.md promises them in "Combinational paths".
 """
 
 from __future__ import annotations

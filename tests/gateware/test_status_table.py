@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""A deserializer's errors and transfers, in tables made by hand from docs/interface.md.
+"""A deserializer's errors and transfers, in tables made by hand from docs/reference/status.md.
 
 The tables use no plan and no interpreter. Every wrong packet or message is between good ones, which
 it must not affect; ignored lanes carry noise.

@@ -144,7 +144,7 @@ def test_hashes_of_embedded_types_are_those_of_rosbags(distro):
     store, ours = get_typestore(DISTROS[distro].store), Library(distro)
     names = ours.names()
     differing = [n for n in names if type_hash(ours.message(n)) != store.hash_rihs01(n)]
-    # docs/errata.md: to rosbags, the `char` of a `.msg` is a character.
+    # docs/reference/errata.md: to rosbags, the `char` of a `.msg` is a character.
     assert differing == [n for n in names if has_char(ours.message(n))]
     assert 0 < len(differing) < 6 < len(names)
 
@@ -167,7 +167,7 @@ def test_hashes_of_the_corpus_are_those_of_rosbags(corpus):
         try:
             message = ours.message(name)
         except DefinitionError:
-            continue  # docs/limitations.md
+            continue  # docs/reference/limits.md
         is_known = all(part.name in store.fielddefs for part in closure([message]))
         if is_known and not has_wide(message):
             compared += 1

@@ -274,7 +274,7 @@ def test_the_whole_corpus_has_figures(corpus):
         ours = Library(distro, [corpus / dialect])
         found = []
         for name in ours.interfaces():
-            # Refused: docs/limitations.md lists these types.
+            # Refused: docs/reference/limits.md lists these types.
             with suppress(DefinitionError):
                 found += ours.interface(name).messages
         analyses = Analyses("ros1" if dialect == "ros1" else "cdr")

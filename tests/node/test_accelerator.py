@@ -27,7 +27,7 @@ publish:
 
 def double():
     """Return the accelerator of the tutorial."""
-    page = Path(__file__).parents[2] / "docs" / "tutorial.md"
+    page = Path(__file__).parents[2] / "docs" / "tutorial" / "first-node.md"
     return page.read_text(encoding="utf-8").split("```py\n")[1].split("```")[0]
 
 

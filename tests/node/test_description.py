@@ -361,7 +361,7 @@ def test_damaged_texts_give_errors_and_no_tracebacks(data):
 def test_the_page_quotes_a_description_that_is_right():
     docs = PACKAGES.parent
     text = (docs / "nodes" / "wheels.yaml").read_text(encoding="utf-8")
-    assert f"```yaml\n{text}```" in (docs / "node.md").read_text(encoding="utf-8")
+    assert f"```yaml\n{text}```" in (docs / "reference" / "node.md").read_text(encoding="utf-8")
     assert len(read_description(docs / "nodes" / "wheels.yaml").topics) == 4
 
 

@@ -61,7 +61,7 @@ def test_the_header_is_the_documented_one():
     fields = struct.unpack("<BBHIIHH", encode_header(header))
     assert fields == (0xF1, 1, 0x0102, 0x03040506, 0x0708090A, 0x0B0C, 0x0D0E)
     assert sum(each.bytes for each in HEADER) == HEADER_BYTES == 16
-    page = (PACKAGES.parent / "node.md").read_text(encoding="utf-8")
+    page = (PACKAGES.parent / "reference" / "frame.md").read_text(encoding="utf-8")
     assert header_table() in page
 
 

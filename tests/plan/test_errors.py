@@ -1,4 +1,4 @@
-"""Results of bad packets and bad transfers: docs/interface.md, "Status"."""
+"""Results of bad packets and bad transfers: docs/reference/status.md, "Status"."""
 
 from __future__ import annotations
 

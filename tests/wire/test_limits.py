@@ -161,6 +161,6 @@ def test_limit_of_a_length_is_the_documented_one():
     # 4 bytes of encapsulation, 24 up to the fields, 16 each with padding, and 17 after them.
     fits = (plan.max_message_bytes - 4 - 24 - 17) // 16
     assert fits < limit
-    text = (Path(firm_hdl.__file__).parent.parent / "docs" / "interface.md").read_text()
+    text = (Path(firm_hdl.__file__).parent.parent / "docs" / "reference" / "status.md").read_text()
     sentence = f"the limit is {limit:,} `fields`, and packets of that size can hold {fits:,}."
     assert sentence in " ".join(text.split())

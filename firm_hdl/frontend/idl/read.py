@@ -1,8 +1,8 @@
 """Convert IDL trees to the syntax that all languages share: one message per struct of a file.
 
 The checks are those of rosidl_parser and those of a C++ compiler on the code that ROS 2 generates.
-``docs/errata.md`` lists the differences. All errors are reported, and the parts with errors are
-left out.
+``docs/reference/errata.md`` lists the differences. All errors are reported, and the parts with
+errors are left out.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ class OfferedLength:
     skips : Signal(1)
         The body is skipped: the length is 0, or all items are in the rest.
     single : Signal(1)
-        If the body is executed at all, it is executed once: one element, or one word.
+        At most one pass of the body: one element, or one word.
     rest : Signal(range(lanes + 1))
         Number of items in the rest; always 0 for a loop.
     held : Signal(1)

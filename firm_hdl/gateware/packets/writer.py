@@ -30,8 +30,8 @@ class PacketWriter(wiring.Component):
     whether the packet is kept. At most one packet in the memory is undecided, and it is the newest
     one. So to drop a packet, the writer goes back to the first word of it.
 
-    What becomes of a beat is decided when the beat comes, and registered with it. So the look-ahead
-    for the beat after it begins with registers.
+    The writer decides on arrival whether a beat is kept or dropped, and registers the decision. So
+    the look-ahead for the beat after it begins with registers.
 
     `packets.ready` is a register, or constantly 1 with the policy `"drop"`.
 

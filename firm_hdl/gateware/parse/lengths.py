@@ -97,7 +97,7 @@ class _Meaning(ABC):
 
     @property
     def double(self) -> str:
-        """The body is executed twice, if not at most once (`single`)."""
+        """Two passes of the body; valid only if `single` is 0."""
         return f"double_{self.kind}"
 
 

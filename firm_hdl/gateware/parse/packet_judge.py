@@ -32,7 +32,7 @@ def verdict_layout() -> data.StructLayout:
 class PacketJudge(Judge):
     """Find the packet's first error in wire order, a cycle late. Not a component.
 
-    Nobody sees what follows an error but the verdict. So a step waits only for its bytes, and the
+    After an error, only the status is output. So a step waits only for its bytes, and the
     checks of the bytes are not in the loop that limits the clock rate: what they find is registered
     (`found`), and judged in the next cycle. Meanwhile one more step may be executed, and may even
     end the packet; so the end of a packet takes the same register.

@@ -31,7 +31,7 @@ class ParseState:
     has_leaves : bool
     ring : Ring
     meanings : dict of int to Meaning
-        What the length of a step means, by the step's index.
+        Decoded fields of a step's length, by the step's index.
     flow : Flow
         The step and the counters.
     traits, step : SimpleNamespace, list of Value(1)

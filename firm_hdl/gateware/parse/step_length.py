@@ -44,7 +44,7 @@ class StepLength:
     single : Value(1)
         The body is executed at most once.
     double : Value(1)
-        The body is executed twice, if not at most once (`single`).
+        Two passes of the body; valid only if `single` is 0.
     rest : Value(range(lanes + 1))
         Items in the rest.
     """

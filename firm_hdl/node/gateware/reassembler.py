@@ -22,9 +22,9 @@ REASSEMBLER_COUNTERS = ("late", "cut", "stray", "malformed")
 class Reassembler(wiring.Component):
     """Turn frames into frames of whole messages; mark those that are not whole.
 
-    The rules are those of receivers in ``docs/node.md``, for fragments in their order. A message is
-    sent on while its fragments come, so the last beat says whether it counts: connect `abort` with
-    that of a :class:`PacketFifo`.
+    The rules are those of receivers in ``docs/reference/frame.md``, for fragments in their order.
+    A message is sent on while its fragments come, so the last beat says whether it counts: connect
+    `abort` with that of a :class:`PacketFifo`.
 
     A frame takes as many cycles as it has beats, and 3 more; the first one of a message as many
     again as a header has beats; one that cuts another message 1 more. On Ethernet, preamble,

@@ -3,7 +3,7 @@
 Both directions follow the plan's steps (slices, starts, runs, exits, dynamic alignment) and never
 read the layout, so a wrong plan gives wrong results. Results are exact to the primitive and do not
 depend on the bus width: a packet's first error is the first one in wire order, whichever cycle the
-hardware finds it in (docs/interface.md, "Status").
+hardware finds it in (docs/reference/status.md, "Status").
 """
 
 from firm_hdl.plan.interpret.decode import Decoded, DecodeStatus, Transfer, decode

@@ -145,7 +145,7 @@ class _Reader(Machine):
         """Return the payload of a length, and store the length as it is on the wire."""
         length = wire - 1 if self.plan.has_nul(begin) and wire else wire
         if length > begin.limit or not self.may_claim(begin, wire):
-            # A length is read whole or is 0, so no error came before.
+            # After an error lengths read 0, so this is the first error.
             self.status = "LENGTH"
             wire = length = 0
         self.length = wire

@@ -84,7 +84,7 @@ class Claim:
     least : int
         Smallest count on the wire, a NUL included, that is counted.
     saved : int
-        The length claims as many bytes less, because items may save padding in other places.
+        Subtracted from the claim: items may shorten later padding by up to this many bytes.
     total : int or None
         The budget in bytes, which the outermost sequence renews. `None`: the length is inside this
         sequence and uses its budget.

@@ -1,6 +1,6 @@
 """The known differences between client libraries and ROS's own serializers.
 
-docs/divergences.md explains each, by its key.
+docs/reference/divergences.md explains each, by its key.
 """
 
 from __future__ import annotations

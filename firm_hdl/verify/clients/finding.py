@@ -57,7 +57,7 @@ class KnownDivergence:
     Attributes
     ----------
     key : str
-        The name of the difference, here and in docs/divergences.md.
+        The name of the difference, here and in docs/reference/divergences.md.
     libraries : tuple of str
         Libraries that differ from ROS.
     wires : str

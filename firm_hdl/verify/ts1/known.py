@@ -1,4 +1,4 @@
-"""Deliberate differences between oracles and firm-hdl: a table. docs/errata.md gives the reasons.
+"""Deliberate differences between oracles and firm-hdl: a table. docs/reference/errata.md gives the reasons.
 
 A row explains single facts, or that one of the two refuses a definition. Facts that no row explains
 are compared. If the oracle refuses a text, there are no facts: the whole definition is known then.
@@ -29,7 +29,7 @@ class Known:
     Attributes
     ----------
     key : str
-        The name of the difference, here and in docs/errata.md.
+        The name of the difference, here and in docs/reference/errata.md.
     oracles : str
         Names of the oracles that differ from us, separated by blanks.
     why : str

@@ -2,7 +2,7 @@
 
 Cases and the transfers of their leaves come from rosbags. Every other installed library gets the
 same value, and has to write the same packet. So a mistake of rosbags alone does not pass. Known
-divergences (docs/divergences.md) are reported by their keys.
+divergences (docs/reference/divergences.md) are reported by their keys.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Each message is sent as it was recorded. Its leaves must transfer the values that rosbags decodes.
 The packet that comes out must be the one that rosbags writes for these values. This is the recorded
-packet itself, unless its writer used another form that the format allows. docs/interface.md
+packet itself, unless its writer used another form that the format allows. docs/reference/streams.md
 describes the answers to packets that do not fit. For these, hardware and golden model must agree.
 """
 

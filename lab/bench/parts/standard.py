@@ -1,4 +1,4 @@
-"""The parts whose figures are in ``docs/performance.md``."""
+"""The parts whose figures are in ``lab/notes/performance.md``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-// The reference decoder: what a packet must cause, by the contract in `docs/interface.md`.
+// The reference decoder: what a packet must cause, by the contract in `docs/reference/streams.md`.
 //
 // It goes through the packet primitive by primitive. It knows no steps, bus words or layouts.
 #pragma once

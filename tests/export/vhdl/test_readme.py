@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""The README's code, completed to designs: they act on good packets only."""
+"""VHDL of README and documentation, completed to designs: they act on good packets only."""
 
 from __future__ import annotations
 
@@ -16,8 +16,14 @@ from tests.examples.test_examples import load
 from tests.export.vhdl.test_layer import analyse, plan_of, vhdl_of, write
 
 ROOT = Path(__file__).parents[3]
-README = (ROOT / "README.md").read_text()
-BLOCKS = re.findall(r"^```vhdl\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+PIECES = [
+    piece
+    for page in ("docs/howto/vhdl.md", "README.md")
+    for piece in re.findall(r"^```vhdl\n(.*?)^```$", (ROOT / page).read_text(), re.M | re.S)
+]
+RECORD, STREAMS, WRITER, SHORT = PIECES
+# The README has the statements alone.
+BLOCKS = [RECORD, STREAMS, "...\n".join([*RECORD.split("...\n")[:2], SHORT])]
 EXAMPLES = ROOT / "examples"
 SAFE = r" and status = STATUS_OK;"
 
@@ -38,6 +44,24 @@ entity design is
 end entity;
 architecture rtl of design is
 {signals}
+begin
+{statements}
+end architecture;
+"""
+WRITES = """\
+library ieee;
+use ieee.std_logic_1164.all;
+use work.geometry_msgs_msg_twist_cdr_8_pkg.all;
+entity writes is
+  port (
+    aclk, aresetn, tready, msg_valid : in std_logic;
+    msg : in twist_value_t;
+    msg_ready, tlast, tuser, tvalid : out std_logic;
+    tdata : out std_logic_vector(63 downto 0);
+    tkeep : out std_logic_vector(7 downto 0)
+  );
+end entity;
+architecture rtl of writes is
 begin
 {statements}
 end architecture;
@@ -85,11 +109,15 @@ def run(ghdl: str, converters, folder: Path, block: str) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("number", range(2))
-def test_code_of_the_readme_acts_on_good_packets_only(ghdl, converters, tmp_path, number):
-    assert len(BLOCKS) == 2
-    status, output = run(ghdl, converters, tmp_path, BLOCKS[number])
+@pytest.mark.parametrize("block", BLOCKS, ids=["record", "streams", "README"])
+def test_code_of_the_pages_acts_on_good_packets_only(ghdl, converters, tmp_path, block):
+    status, output = run(ghdl, converters, tmp_path, block)
     assert status == 0 and "PASS 8 packets, 4 speeds" in output, output
+
+
+def test_a_serializer_is_used_as_the_page_says(ghdl, converters, tmp_path):
+    write(tmp_path, {**converters.files, "writes.vhd": WRITES.format(statements=WRITER)})
+    analyse(ghdl, tmp_path, [*converters.manifest["files"], "writes.vhd"])
 
 
 def test_code_that_ignores_the_status_fails(ghdl, converters, tmp_path):
@@ -97,9 +125,3 @@ def test_code_that_ignores_the_status_fails(ghdl, converters, tmp_path):
     assert count == 1
     status, output = run(ghdl, converters, tmp_path, naive)
     assert status != 0 and "FAIL after" in output, output
-
-
-def test_systemverilog_code_is_that_of_the_example():
-    (piece,) = re.findall(r"^```systemverilog\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
-    example = (EXAMPLES / "sv_motor" / "motor.sv").read_text()
-    assert piece in example and "status.tdata == STATUS_OK" in piece

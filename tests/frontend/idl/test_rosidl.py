@@ -1,6 +1,6 @@
 """The reader of IDL, compared with rosidl_parser on real files and on small variations.
 
-``docs/errata.md`` names the groups of variations with other results, on purpose.
+``docs/reference/errata.md`` has the differences on purpose.
 """
 
 from __future__ import annotations

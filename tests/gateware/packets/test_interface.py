@@ -22,7 +22,7 @@ from firm_hdl import (
 )
 from firm_hdl.gateware.packets import Outcome
 
-# docs/interface.md; software and other circuits read these numbers.
+# docs/reference/parts.md; software and other circuits read these numbers.
 ERRORS = {"OK": 0, "TRUNCATED": 1, "TRAILING": 2, "LENGTH": 3, "ENCAPSULATION": 4, "STRING": 5}
 
 

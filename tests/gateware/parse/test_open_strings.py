@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""A string whose last byte is not NUL transfers as a whole; docs/interface.md, ``STRING``."""
+"""A string whose last byte is not NUL transfers as a whole: docs/reference/status.md."""
 
 from __future__ import annotations
 

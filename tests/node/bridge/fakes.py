@@ -27,7 +27,7 @@ class FakeNode:
     """A node of `ECHO`: it publishes each string on topic 2, and answers requests with themselves.
 
     `values` are those of its registers that are not 0; `holds` lets it keep strings. Its control
-    messages are written down here after docs/node.md.
+    messages are written down here after docs/reference/frame.md.
     """
 
     def __init__(self, fingerprint=ECHO.fingerprint, seconds=0):

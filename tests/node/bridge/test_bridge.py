@@ -390,5 +390,5 @@ def test_people_can_read_how_it_does(running, board, graph):
 
 
 def test_all_causes_are_documented():
-    text = (Path(__file__).parents[3] / "docs" / "node.md").read_text()
+    text = (Path(__file__).parents[3] / "docs" / "reference" / "node.md").read_text()
     assert [cause for cause in CAUSES if f"`{cause}`" not in text] == []

@@ -17,8 +17,8 @@ from tests.node.bridge.script import EPOCH, READ, REQUESTS, SET_RATE, SET_TIME, 
 
 REPEAT_SECONDS = Board.repeat_seconds
 
-# Registers of ECHO, as docs/node.md numbers them: from 16 on, those of the link, the node and each
-# topic in turn. What does not count a loss is left out.
+# Registers of ECHO, as docs/reference/frame.md numbers them: from 16 on, those of the link, the
+# node and each topic in turn. What does not count a loss is left out.
 LINK = dict(zip(range(17, 24), "lost late cut stray malformed full large".split(), strict=True))
 NODE = {25: "unknown"}
 GATE = "truncated trailing length encapsulation string full large overrun".split()

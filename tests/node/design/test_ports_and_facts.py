@@ -29,7 +29,7 @@ publish:
   /nothing: {type: std_msgs/msg/Empty}
 """
 OUT, IN = "out", "in"
-# Name, direction, bits, and whether the number has a sign, as docs/node.md describes ports.
+# Name, direction, bits, and whether the number has a sign, as in docs/reference/node.md.
 STREAM = [
     ("s_axis_tdata", IN, 32, False),
     ("s_axis_tkeep", IN, 4, False),

@@ -18,7 +18,7 @@ SIDE = TOPIC | TAG << 16 | LENGTH << 48
 
 
 def header(flags, length, *, sequence=0, fragment=0, topic=TOPIC, tag=TAG):
-    """Return a header, written down after docs/node.md."""
+    """Return a header, written down after docs/reference/frame.md."""
     return struct.pack("<BBHIIHH", 0xF1, flags, topic, length, tag, sequence, fragment)
 
 

@@ -1,5 +1,5 @@
 # amaranth: UnusedElaboratable=no
-"""Frames become messages again: each rule of docs/node.md by frames that are written by hand."""
+"""Frames become messages again: the rules of docs/reference/frame.md, by frames written by hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A node in Python that loops messages, and counts as docs/node.md says; and faults for it."""
+"""A node in Python that loops messages, with the counters of the frame; and faults of it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A minimal case of each known divergence, as docs/divergences.md shows it."""
+"""A minimal case of each known divergence, as docs/reference/divergences.md shows it."""
 
 from __future__ import annotations
 

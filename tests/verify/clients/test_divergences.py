@@ -1,4 +1,4 @@
-"""Each known divergence occurs, has a key, and is documented in docs/divergences.md."""
+"""Each known divergence occurs, has a key, and is documented in docs/reference/divergences.md."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.objects import definition_text
 from tests.verify.clients.examples import EXAMPLES
 
-PAGE = Path(__file__).parents[3] / "docs" / "divergences.md"
+PAGE = Path(__file__).parents[3] / "docs" / "reference" / "divergences.md"
 
 
 @pytest.fixture

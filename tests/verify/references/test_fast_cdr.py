@@ -35,7 +35,7 @@ def test_these_are_all_releases():
 
 def test_errata_are_of_the_releases_that_are_installed():
     root = Path(firm_hdl.__file__).parent
-    page = (root.parent / "docs" / "errata.md").read_text()
+    page = (root.parent / "docs" / "reference" / "errata.md").read_text()
     wire = page.partition("## Definitions")[0]
     for release in ROS2_RELEASES:
         pinned = (root / "verify" / "ros2_wheels" / f"{release.name}.txt").read_text()

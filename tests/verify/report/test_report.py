@@ -334,7 +334,7 @@ def test_who_wrote_the_packets_is_counted():
 
 
 def test_long_reports_are_cut_and_say_so(monkeypatch):
-    assert tables.MOST_ROWS == 1000, "docs/verification.md"
+    assert tables.MOST_ROWS == 1000, "docs/howto/verify.md"
     for module, name, most in ((tables, "MOST_ROWS", 20), (page_writer, "MOST_ARTICLES", 2)):
         monkeypatch.setattr(module, name, most)
     failed = [

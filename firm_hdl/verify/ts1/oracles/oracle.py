@@ -35,8 +35,6 @@ Answer: TypeAlias = "Accepted | Refused | NotJudged"
 class Oracle(ABC):
     """A reader of definitions that shares no code with ours.
 
-    To add one, see ``docs/contributing.md``.
-
     Attributes
     ----------
     name : str
