@@ -1,3 +1,3 @@
-"""The standard benchmark: the figures of ``lab/notes/performance.md`` and of `firm_hdl.estimates`."""
+"""The standard benchmark: figures of ``lab/notes/performance.md`` and `firm_hdl.estimates`."""
 
 __all__ = []

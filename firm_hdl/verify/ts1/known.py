@@ -1,4 +1,6 @@
-"""Deliberate differences between oracles and firm-hdl: a table. docs/reference/errata.md gives the reasons.
+"""Deliberate differences between oracles and firm-hdl: a table.
+
+docs/reference/errata.md gives the reasons.
 
 A row explains single facts, or that one of the two refuses a definition. Facts that no row explains
 are compared. If the oracle refuses a text, there are no facts: the whole definition is known then.
