@@ -327,11 +327,8 @@ def check_traffic(bench):
 
 
 @pytest.mark.parametrize("fault", [_MixesTopics, _ForgetsTags])
+@pytest.mark.sampled(2)
 def test_a_fault_is_found(fault, few):
     description = by_depth(few, read())
     with pytest.raises(AssertionError):
         check_traffic(CoreBench(description, fault(description)))
-
-
-def test_without_a_fault_the_same_traffic_is_right(few):
-    check_traffic(CoreBench(few))

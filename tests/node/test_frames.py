@@ -159,12 +159,6 @@ def test_a_flipped_bit_never_raises_and_memory_is_bounded(sent, data):
         assert all(each.size <= 116 for each in receiver._open.values())
 
 
-def test_a_sender_that_starts_again_is_heard_at_once():
-    first, second = (frames_of([NodeMessage(topic=1, packet=b"a")] * 5) for _ in range(2))
-    out, counters = received(frame for each in (*first, *second) for frame in each)
-    assert len(out) == 10 and counters.lost == counters.late == 0
-
-
 @pytest.mark.parametrize(
     ("expected", "begins", "lost"),
     [(6, 9, 3), (6, 0x8005, 0x7FFF), (6, 0x8006, 0), (65534, 2, 4), (6, 6, 0), (None, 9, 0)],
@@ -178,26 +172,10 @@ def test_what_is_lost_before_a_message_unless_its_sender_begins(expected, begins
         assert (counters.lost, counters.late) == (count, 0), start
 
 
-def test_one_that_starts_far_back_is_heard_without_its_first_message():
-    old = frames_of([NodeMessage(topic=1, packet=b"a")] * 3, sequence=5000)
-    new = frames_of([NodeMessage(topic=1, packet=b"b")] * 3, sequence=100)[1:]
-    out, counters = received(frame for each in (*old, *new) for frame in each)
-    assert len(out) == 5 and counters.late == 0
-    # A number just before the expected one is late.
-    late = frames_of([NodeMessage(topic=1, packet=b"b")] * 2, sequence=4990)[1:]
-    assert received(frame for each in (*old, *late) for frame in each)[1].late == 1
-
-
 def test_a_message_beyond_the_limit_is_counted():
     frames = frames_of([NodeMessage(topic=1, packet=bytes(101))], 48)
     out, counters = received(frames[0], max_bytes=100)
     assert (out, counters.large, counters.stray) == ([], 1, 3)
-
-
-def test_a_message_as_large_as_the_limit_passes():
-    message = NodeMessage(topic=1, packet=bytes(100))
-    out, counters = received(frames_of([message], 48)[0], max_bytes=100)
-    assert (out, counters.large) == ([message], 0)
 
 
 @pytest.mark.parametrize(
@@ -210,77 +188,6 @@ def test_as_many_as_64_numbers_back_are_late(back, passes):
     out, counters = received([*old, *new])
     assert [each.packet for each in out] == [b"a", b"b"][: 1 + passes]
     assert counters.late == (not passes)
-
-
-def test_the_oldest_message_is_cut_if_too_many_are_under_way():
-    messages = [NodeMessage(topic=1, packet=bytes([n] * 20)) for n in range(5)]
-    frames = frames_of(messages, 32)
-    out, counters = received(
-        [*(first for first, _ in frames), *(last for _, last in frames[2:])], max_open=3
-    )
-    assert (out, counters.cut) == (messages[2:], 2)
-
-
-def test_a_fragment_behind_the_last_one_is_no_part_of_a_message():
-    """It came in the place of fragment 0, and has as many bytes."""
-    first, last = frames_of([NodeMessage(topic=1, packet=bytes(20))], 32)[0]
-    behind = first[:14] + b"\5\0" + first[16:]
-    for frames in ([behind, last], [last, behind]):
-        out, counters = received(frames)
-        assert (out, counters.passed) == ([], 0)
-
-
-def test_what_is_late_and_what_is_cut_counts_by_messages():
-    sender = MessageSender(32)
-    first, second, third = (
-        sender.frames(NodeMessage(topic=1, packet=bytes(size))) for size in (1, 40, 40)
-    )
-    # The third overtakes all but one fragment of the second, which is cut, and then late.
-    out, counters = received([*first, second[0], *third, *second])
-    assert [len(each.packet) for each in out] == [1, 40]
-    assert (counters.cut, counters.late, counters.lost, counters.stray) == (1, 1, 1, 0)
-
-
-def test_a_fragment_without_bytes_cuts_its_message():
-    frames = frames_of([NodeMessage(topic=1, packet=bytes(40))], 32)[0]
-    empty = frames[1][:HEADER_BYTES]
-    out, counters = received([frames[0], empty])
-    assert (out, counters.cut) == ([], 1)
-
-
-@pytest.mark.parametrize(("field", "at"), [("topic", 2), ("length", 4), ("tag", 8)])
-def test_fragments_of_different_messages_are_not_put_together(field, at):
-    frames = frames_of([NodeMessage(topic=1, packet=bytes(40), tag=7)], 32)[0]
-    other = bytearray(frames[1])
-    other[at] ^= 1
-    out, counters = received([frames[0], bytes(other)])
-    assert (out, counters.cut) == ([], 1), field
-
-
-def test_a_wrong_length_is_found():
-    frame = bytearray(frames_of([NodeMessage(topic=1, packet=bytes(9))])[0][0])
-    for wrong in (8, 10):
-        frame[4] = wrong
-        assert received([bytes(frame)])[1].cut == 1
-
-
-@pytest.mark.parametrize("order", [(0, 2, 1), (2, 0, 1), (1, 2, 0), (2, 1, 0)])
-def test_two_frames_that_say_they_are_the_last_are_no_message(order):
-    """Fragment 1 of three says so, too, before or after the last one."""
-    frames = [
-        bytearray(frame) for frame in frames_of([NodeMessage(topic=1, packet=bytes(40))], 32)[0]
-    ]
-    frames[1][1] |= 1
-    out, counters = received(bytes(frames[number]) for number in order)
-    assert (out, counters.cut) == ([], 1)
-
-
-def test_frame_sizes_are_checked():
-    for wrong in (16, 40):
-        with pytest.raises(
-            ValueError, match=f"^Frame size must be 16 and a multiple of 16 .* {wrong}$"
-        ):
-            MessageSender(wrong)
 
 
 blocks = st.one_of(
@@ -319,15 +226,6 @@ def test_no_damaged_frame_passes(frame, data):
     reader = ByteStreamReader()
     assert reader.feed(bytes(written)) in ([], [frame])
     assert reader.feed(write_frame(b"next")) == [b"next"]
-
-
-def test_a_block_without_an_end_takes_no_memory():
-    reader = ByteStreamReader(max_bytes=100)
-    for _ in range(1000):
-        assert reader.feed(b"\1" * 1000) == []
-        assert len(reader._block) <= 110
-    assert reader.feed(b"\0" + write_frame(bytes(range(100)))) == [bytes(range(100))]
-    assert reader.counters.large == 1
 
 
 @pytest.mark.parametrize("most", [1, 249, 250, 251, 503, 504, 505, 2000])
