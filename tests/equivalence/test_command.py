@@ -10,7 +10,6 @@ import pytest
 from firm_hdl.cli import main
 from firm_hdl.equivalence import Proof, Tools, command, converters, tools
 from firm_hdl.equivalence.converters import Attempt, ProofTask
-from firm_hdl.equivalence.covering import covering_tasks, write_definitions
 from firm_hdl.jobs import programs
 
 TASK = ProofTask(distro="lyrical", name="a/msg/B", direction="serializer")
@@ -169,29 +168,3 @@ def test_options_of_the_command_reach_every_proof(
     assert {(task.wire, task.distro, task.timeout) for task in asked[1][0]} == {
         ("cdr", "noetic", 300.0)
     }
-
-
-COVERED = {
-    "noetic": "geometry_msgs/Twist nav_msgs/Odometry sensor_msgs/PointCloud2 proved_msgs/Arrays "
-    "proved_msgs/Deep proved_msgs/Fixed proved_msgs/Inner proved_msgs/Nested proved_msgs/Nothing "
-    "proved_msgs/Nothings proved_msgs/Times",
-    "lyrical": "geometry_msgs/msg/Twist nav_msgs/msg/Odometry sensor_msgs/msg/Image "
-    "sensor_msgs/msg/Imu sensor_msgs/msg/JointState sensor_msgs/msg/LaserScan "
-    "sensor_msgs/msg/PointCloud2 tf2_msgs/msg/TFMessage proved_msgs/msg/Arrays "
-    "proved_msgs/msg/Bounded proved_msgs/msg/Deep proved_msgs/msg/Fixed proved_msgs/msg/Inner "
-    "proved_msgs/msg/Nested proved_msgs/msg/Nothing proved_msgs/msg/Nothings proved_msgs/msg/Wide "
-    "proved_msgs/msg/WideFixed",
-}
-
-
-def test_at_least_50_types_of_both_wires_are_covered(tmp_path: Path) -> None:
-    write_definitions(tmp_path)
-    tasks = covering_tasks(tmp_path, timeout=1.0)
-    names = {(task.distro, task.name) for task in tasks}
-    assert len(names) * 2 == len(tasks) >= 100
-    assert {distro for distro, _ in names} == {"noetic", "lyrical"}
-    for distro, wanted in COVERED.items():
-        assert {(distro, name) for name in wanted.split()} <= names
-    ours = {task.paths for task in tasks if task.name.startswith("proved_msgs/")}
-    assert ours == {(str(tmp_path / "noetic"),), (str(tmp_path / "lyrical"),)}
-    assert {task.timeout for task in tasks} == {1.0}

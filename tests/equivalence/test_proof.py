@@ -50,7 +50,6 @@ def test_a_design_is_proved_equal(tools: Tools) -> None:
 
 
 @pytest.mark.parametrize(("what", "rtlil", "vhdl"), _twins()[::EVERY])
-@pytest.mark.sampled(3)
 def test_one_changed_thing_is_found(what: str, rtlil: str, vhdl: Vhdl, tools: Tools) -> None:
     try:
         proof = prove(rtlil, vhdl, tools=tools)

@@ -206,6 +206,19 @@ def test_a_packet_begins_only_with_its_message(field, bus_bytes):
     simulate(dut, watch)
 
 
+def test_a_length_over_its_bound_is_sent_as_promised_and_marked():
+    message = make("ros2", {"name": "string<=3", "z": "uint8"})
+    five = {0: [5], 1: [((1, 2, 3, 4, 5, 0, 0, 0), True)], 2: [9]}
+    good = {0: [1], 1: [((7, 0, 0, 0, 0, 0, 0, 0), True)], 2: [8]}
+    sent = encode(message, [five, good])
+    assert sent.statuses == [Status.LENGTH, Status.OK]
+    assert sent.packet_errors == [True, False]
+    assert sent.packets == [
+        b"\0\1\0\0\6\0\0\0\1\2\3\4\5\0\x09",
+        b"\0\1\0\0\2\0\0\0\7\0\x08",
+    ]
+
+
 @pytest.mark.parametrize("count", [3, 8, 40])
 @pytest.mark.sampled(3)
 def test_elements_far_over_their_bound_are_all_sent(count):
@@ -267,6 +280,13 @@ def test_a_message_of_many_empty_ones_is_an_empty_packet(bus_bytes):
     packets, statuses = loopback(message, [b"", b"", b"x"], bus_bytes=bus_bytes)
     assert packets == [b"", b"", b""]
     assert statuses == [Status.OK, Status.OK, Status.TRAILING]
+
+
+def test_a_cdr_string_of_length_zero_is_empty():
+    message = make("ros2", {"s": "string", "x": "uint32"})
+    packets, statuses = loopback(message, [b"\0\1\0\0\0\0\0\0\5\0\0\0"])
+    assert statuses == [Status.OK]
+    assert packets == [b"\0\1\0\0\1\0\0\0\0\0\0\0\5\0\0\0"]
 
 
 @pytest.mark.parametrize(

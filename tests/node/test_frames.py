@@ -8,7 +8,7 @@ import zlib
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.node.bytestream import ByteStreamReader, write_frame
@@ -22,10 +22,12 @@ from firm_hdl.node.frame import (
     header_table,
 )
 from firm_hdl.node.messages import MessageReceiver, MessageSender, NodeMessage
+from tests.depth import by_depth
 from tests.node import cobs
 from tests.node.samples import PACKAGES
 
 packets = st.one_of(st.binary(max_size=80), st.integers(0, 400).map(bytes))
+some = settings(max_examples=by_depth(30, 100))
 messages = st.lists(
     st.builds(
         NodeMessage,
@@ -65,6 +67,7 @@ def test_the_header_is_the_documented_one():
     assert header_table() in page
 
 
+@some
 @given(
     st.builds(
         Header,
@@ -91,6 +94,7 @@ def test_what_is_no_header_is_refused():
         encode_header(Header(topic=65536, length=0))
 
 
+@some
 @given(messages, st.sampled_from([None, 32, 48, 1472]), st.integers(0, 70000))
 def test_messages_come_back_whole_and_in_order(sent, frame_bytes, sequence):
     frames = frames_of(sent, frame_bytes, sequence)
@@ -100,6 +104,7 @@ def test_messages_come_back_whole_and_in_order(sent, frame_bytes, sequence):
     assert (counters.passed, counters.lost, counters.late, counters.cut) == (len(sent), 0, 0, 0)
 
 
+@some
 @given(messages, st.randoms(use_true_random=False), st.floats(0, 1))
 def test_a_lost_fragment_loses_one_message_and_nothing_else(sent, rng, rate):
     frames = frames_of(sent, 32)
@@ -112,6 +117,7 @@ def test_a_lost_fragment_loses_one_message_and_nothing_else(sent, rng, rate):
         assert counters.lost == last + 1 - len(whole)
 
 
+@some
 @given(messages, st.randoms(use_true_random=False))
 def test_fragments_of_a_message_may_change_their_order(sent, rng):
     frames = frames_of(sent, 48)
@@ -120,6 +126,7 @@ def test_fragments_of_a_message_may_change_their_order(sent, rng):
     assert received(frame for each in frames for frame in each)[0] == sent
 
 
+@some
 @given(messages, st.randoms(use_true_random=False))
 def test_messages_never_change_their_order(sent, rng):
     numbered = [replace(message, tag=number) for number, message in enumerate(sent)]
@@ -134,6 +141,7 @@ def test_messages_never_change_their_order(sent, rng):
     assert counters.passed == len(out)
 
 
+@some
 @given(st.lists(st.binary(max_size=60)), messages)
 def test_garbage_between_frames_is_dropped(garbage, sent):
     frames = [frame for each in frames_of(sent) for frame in each]
@@ -144,6 +152,7 @@ def test_garbage_between_frames_is_dropped(garbage, sent):
     assert out == sent
 
 
+@some
 @given(messages, st.data())
 def test_a_flipped_bit_never_raises_and_memory_is_bounded(sent, data):
     frames = [bytearray(frame) for each in frames_of(sent, 32) for frame in each]
@@ -196,6 +205,7 @@ blocks = st.one_of(
 )
 
 
+@some
 @given(blocks)
 def test_byte_streams_are_cobs_with_the_crc_of_ethernet(frame):
     written = write_frame(frame)
@@ -205,6 +215,7 @@ def test_byte_streams_are_cobs_with_the_crc_of_ethernet(frame):
     assert cobs.encode(data) == written[1:-1]
 
 
+@some
 @given(st.lists(st.tuples(st.binary(max_size=20), blocks), max_size=5), st.data())
 def test_a_reader_finds_the_next_frame_after_any_garbage(pairs, data):
     reader = ByteStreamReader()
@@ -218,6 +229,7 @@ def test_a_reader_finds_the_next_frame_after_any_garbage(pairs, data):
     assert reader.counters.passed == len(pairs)
 
 
+@some
 @given(blocks, st.data())
 def test_no_damaged_frame_passes(frame, data):
     written = bytearray(write_frame(frame))

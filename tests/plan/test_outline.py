@@ -15,7 +15,7 @@ from firm_hdl.wire import lay_out, walk
 from firm_hdl.wire.layout import LoopNode, Trigger
 from tests.depth import by_depth
 from tests.plan.test_random_messages import damaged, typed_values
-from tests.strategies import BUS_WIDTHS
+from tests.strategies import BUS_WIDTHS, make
 
 slow = settings(
     max_examples=by_depth(25, 100),
@@ -63,6 +63,30 @@ def test_lengths_and_their_limits_stay(wire, bus_bytes):
     ]
     # A sequence of numbers that are wider than the bus is a loop in both.
     assert names[0] == names[1]
+
+
+@pytest.mark.parametrize(
+    ("name", "bus_bytes", "steps", "short"),
+    [
+        ("geometry_msgs/msg/Twist", 8, 6, 2),
+        ("sensor_msgs/msg/Imu", 8, 16, 6),
+        ("sensor_msgs/msg/Imu", 1, 115, 21),
+        ("sensor_msgs/msg/PointCloud2", 8, 12, 12),
+        ("visualization_msgs/msg/InteractiveMarker", 8, 73, 59),
+    ],
+)
+def test_bytes_between_lengths_take_few_steps(name, bus_bytes, steps, short):
+    plans = plans_of(load_message(name), "cdr", bus_bytes)
+    assert [len(plan.steps) for plan in plans] == [steps, short]
+
+
+def test_four_bus_words_of_bytes_share_a_step_with_the_length_after_them():
+    """A run would take a cycle for its last word, and the length another one."""
+    element = make("ros1", {"x": "uint64[4]", "t": "string"}, "Element")
+    _, short = plans_of(make("ros1", {"e": (element, "[]")}), "ros1", 8)
+    visits = decode(short, b"\1\0\0\0" + bytes(32 + 4)).steps
+    # The number of elements, the four words with the length, and the end with the rest of `t`.
+    assert [visit.bytes for visit in visits] == [4, 8, 8, 8, 12, 0]
 
 
 def test_elements_without_bytes_are_only_counted():

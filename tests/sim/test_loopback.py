@@ -51,6 +51,7 @@ PACKET = bytes.fromhex(
 TEXT = make("ros2", {"a": "uint8", "s": "string"}, "Text")
 TEXT_PACKET = b"\0\1\0\0\7\0\0\0\3\0\0\0hi\0"
 SHORT, SHORT_PACKET = by_depth((TEXT, TEXT_PACKET), (IMAGE, PACKET))
+TINY, TINY_PACKET = make("ros2", {"a": "uint8"}, "Tiny"), b"\0\1\0\0\7"
 POINT = make(
     "ros2", {"positions": "float64[]", "accelerations": "float64[]", "sec": "int32"}, "Point"
 )
@@ -145,9 +146,9 @@ def test_loopback_has_the_limit_that_is_asked_for():
 
 
 def test_loopback_has_the_deadline_that_is_asked_for():
-    assert loopback(SHORT, [SHORT_PACKET], deadline=20).packets == [SHORT_PACKET]
+    assert loopback(TINY, [TINY_PACKET], deadline=20).packets == [TINY_PACKET]
     with pytest.raises(DeadlineError, match=r"^No transfer in 3 cycles up to cycle"):
-        loopback(SHORT, [SHORT_PACKET], deadline=2)
+        loopback(TINY, [TINY_PACKET], deadline=2)
 
 
 def test_runs_of_a_harness_do_not_depend_on_each_other():
@@ -216,16 +217,16 @@ def test_missing_transfers_hit_the_deadline_with_names():
 
 
 def test_limit_ends_a_run_without_an_end():
-    message = r"^No end after 20 cycles; outstanding: status \(\d of 19\)"
+    message = r"^No end after 20 cycles; outstanding: status \(\d+ of 39\)"
     with pytest.raises(DeadlineError, match=message):
-        loopback(SHORT, [SHORT_PACKET] * 19, limit=20)
+        loopback(TINY, [TINY_PACKET] * 39, limit=20)
 
 
 def test_leaf_stalls_need_gates():
-    harness = Harness(Deserializer(SHORT), Serializer(SHORT))
+    harness = Harness(Deserializer(TINY), Serializer(TINY))
     name = leaf_name(harness.plan, 0)
     with pytest.raises(ValueError, match=rf"^Stream '{name}' can be stalled in a gated harness"):
-        harness.run_packets([SHORT_PACKET], RunOptions(stalls={name: Stalls.bits("01")}))
+        harness.run_packets([TINY_PACKET], RunOptions(stalls={name: Stalls.bits("01")}))
 
 
 def test_harness_needs_a_converter():
@@ -235,23 +236,17 @@ def test_harness_needs_a_converter():
 
 def test_harness_has_the_input_of_its_first_converter():
     with pytest.raises(ValueError, match=r"^Packets need a harness with a deserializer$"):
-        Harness(None, Serializer(SHORT)).run_packets([SHORT_PACKET])
-    for serializer in (None, Serializer(SHORT)):
-        harness = Harness(Deserializer(SHORT), serializer)
+        Harness(None, Serializer(TINY)).run_packets([TINY_PACKET])
+    for serializer in (None, Serializer(TINY)):
+        harness = Harness(Deserializer(TINY), serializer)
         with pytest.raises(ValueError, match=r"^Messages need a harness without a deserializer$"):
             harness.run_messages([])
 
 
-def test_no_packets_are_no_packets():
-    nothing = loopback(SHORT, [])
-    assert tuple(nothing) == ([], [])
-    assert nothing.cycles == 0
-
-
 def test_waveform_is_written(tmp_path):
     path = tmp_path / "loopback.vcd"
-    packets, _ = loopback(SHORT, [SHORT_PACKET], vcd=path)
-    assert packets == [SHORT_PACKET]
+    packets, _ = loopback(TINY, [TINY_PACKET], vcd=path)
+    assert packets == [TINY_PACKET]
     assert "$enddefinitions" in path.read_text()
 
 

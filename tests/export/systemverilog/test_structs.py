@@ -103,6 +103,7 @@ def test_wrong_member_is_seen_by_both_linters(design, verilator):
 # Names.
 
 
+@pytest.mark.thorough
 def test_fields_take_every_word(design, verilator, tmp_path):
     folder = write_packages(tmp_path / "ws", sorted(KEYWORDS))
     design.add(Library("noetic", [folder]).message("all_words/Fields"))

@@ -130,6 +130,7 @@ endmodule
 
 @pytest.mark.usefixtures("iverilog")
 @pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 8]))
+@pytest.mark.thorough
 def test_packets_come_back_in_iverilog(bus_bytes, tmp_path):
     type_ = "sensor_msgs/msg/JointState"
     message = load_message(type_)
