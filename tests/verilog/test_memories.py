@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -138,6 +139,31 @@ def _cells_on_ecp5(text: str, folder: Path) -> list[str]:
         if "top" in m["attributes"]
     )
     return [cell["type"] for cell in module["cells"].values()]
+
+
+def _starts_at_zero(text: str, count: int, standard: str, folder: Path) -> bool:
+    (folder / "t.v").write_text(
+        f"module t;\n{text}  integer n, bad;\n  initial begin\n    #1 bad = 0;\n"
+        f"    for (n = 0; n < {count}; n = n + 1) if (kept[n] !== 0) bad = 1;\n"
+        "    $display(bad);\n  end\nendmodule\n"
+    )
+    _run(folder, need("iverilog", shutil.which("iverilog")), standard, "-Wall", "-o", "t", "t.v")
+    done = subprocess.run(["vvp", "t"], cwd=folder, capture_output=True, text=True, timeout=60)
+    return int(done.stdout) == 0
+
+
+@pytest.mark.parametrize("standard", STANDARDS)
+def test_a_loop_sets_all_words_of_a_large_memory(standard: str, tmp_path: Path) -> None:
+    text = with_initials("  reg [1:0] kept [64:0];\n")
+    assert len(text.splitlines()) == 5
+    assert _starts_at_zero(text, 65, standard, tmp_path)
+    assert not _starts_at_zero(text.replace("< 65", "< 64"), 65, standard, tmp_path)
+
+
+@pytest.mark.parametrize("words", [64, 65])
+def test_memories_that_do_not_start_at_zero_have_a_line_for_each_word(words: int) -> None:
+    text = convert(Stores({"mem": Store(depth=words, init=[0] * (words - 1) + [1])}), name="m")
+    assert text.count("] = ") == words and "integer" not in text
 
 
 def test_a_large_memory_with_an_escaped_name_starts_at_zero() -> None:
