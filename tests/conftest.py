@@ -31,7 +31,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     markers = [*([] if THOROUGH else ["thorough"]), *([] if LIVE else ["live"])]
     left_out = {item for item in items if any(map(item.get_closest_marker, markers))}
     if not THOROUGH:
-        left_out |= not_sampled(items)
+        left_out |= not_sampled(item for item in items if item not in left_out)
     config.hook.pytest_deselected(items=[item for item in items if item in left_out])
     items[:] = [item for item in items if item not in left_out]
 

@@ -64,27 +64,6 @@ def gate(kind, widths, width, *parameters):
 
 
 @pytest.mark.parametrize(
-    ("kind", "widths", "width", "parameters", "bits"),
-    [
-        ("$signal", [3], 3, (), (10, 11, 12)),
-        # GHDL has the most significant operand first.
-        ("$concat2", [1, 2], 3, (), (11, 12, 10)),
-        ("$concatn", [1, 1, 1, 1], 4, (), (13, 12, 11, 10)),
-        ("$extract", [4], 2, (1,), (11, 12)),
-        ("$extract", [4], 2, (2,), (12, 13)),
-        ("$utrunc", [4], 3, (), (10, 11, 12)),
-        ("$strunc", [4], 4, (), (10, 11, 12, 13)),
-        ("$uextend", [2], 4, (), (10, 11, "0", "0")),
-        ("$sextend", [2], 4, (), (10, 11, 11, 11)),
-        ("$sextend", [2], 2, (), (10, 11)),
-        ("$and", [2, 2], 2, (), None),
-    ],
-)
-def test_gates_that_only_rename_bits(kind, widths, width, parameters, bits):
-    assert renamed(gate(kind, widths, width, *parameters)) == bits
-
-
-@pytest.mark.parametrize(
     ("kind", "widths", "width", "parameters"),
     [
         ("$signal", [3], 4, ()),
@@ -142,85 +121,6 @@ def test_a_division_by_zero_may_give_anything(kind):
     driven = {*divided.outputs["Y"], *is_zero.outputs["Y"], *choice.outputs["Y"], *range(10, 14)}
     free = choice.inputs["B"]
     assert len({*free}) == 2 and driven.isdisjoint(free)
-
-
-@pytest.mark.parametrize(
-    ("kind", "cell", "signed"),
-    [
-        *(("$and", "$and", 0), ("$or", "$or", 0), ("$xor", "$xor", 0), ("$xnor", "$xnor", 0)),
-        *(("$add", "$add", 0), ("$sub", "$sub", 0), ("$umul", "$mul", 0), ("$smul", "$mul", 1)),
-        *(("$eq", "$eq", 0), ("$ne", "$ne", 0)),
-        *((f"$u{name}", f"${name}", 0) for name in ("lt", "le", "gt", "ge")),
-        *((f"$s{name}", f"${name}", 1) for name in ("lt", "le", "gt", "ge")),
-    ],
-)
-def test_operators_have_the_sign_of_their_names(kind, cell, signed):
-    width = 1 if cell[1:] in ("eq", "ne", "lt", "le", "gt", "ge") else 3
-    output = tuple(range(200, 200 + width))
-    (found,) = gate_cells(gate(kind, [3, 3], width), output)
-    assert found.kind == cell and found.outputs == {"Y": output}
-    assert found.inputs == {"A": (10, 11, 12), "B": (13, 14, 15)}
-    assert found.parameters == {
-        "A_WIDTH": 3,
-        "B_WIDTH": 3,
-        "Y_WIDTH": width,
-        "A_SIGNED": signed,
-        "B_SIGNED": signed,
-    }
-
-
-@pytest.mark.parametrize(
-    ("kind", "cell", "signed"), [("$lsl", "$shl", 0), ("$lsr", "$shr", 0), ("$asr", "$sshr", 1)]
-)
-def test_the_distance_of_a_shift_has_no_sign(kind, cell, signed):
-    (found,) = gate_cells(gate(kind, [3, 2], 3), (200, 201, 202))
-    assert (found.kind, found.inputs) == (cell, {"A": (10, 11, 12), "B": (13, 14)})
-    assert (found.parameters["A_SIGNED"], found.parameters["B_SIGNED"]) == (signed, 0)
-
-
-@pytest.mark.parametrize(("kind", "cell"), [("$nand", "$and"), ("$nor", "$or")])
-def test_an_inverted_operator_is_two_cells(kind, cell):
-    first, second = gate_cells(gate(kind, [2, 2], 2), (200, 201))
-    assert (first.kind, first.inputs) == (cell, {"A": (10, 11), "B": (12, 13)})
-    assert (second.kind, second.inputs) == ("$not", {"A": first.outputs["Y"]})
-    assert second.outputs == {"Y": (200, 201)}
-
-
-def chosen(cells, values):
-    """Return the values of all nets behind multiplexers."""
-    for each in cells:
-        side = each.inputs["B" if values[each.inputs["S"][0]] else "A"]
-        values |= {to: values[bit] for to, bit in zip(each.outputs["Y"], side, strict=True)}
-    return values
-
-
-@pytest.mark.parametrize("number", range(4))
-def test_choices_are_in_the_order_of_the_selector(number):
-    # Of four, the first one is chosen by 0; of two, the second one by 1.
-    values = {10: number & 1, 11: number >> 1} | {12 + n: f"choice {n}" for n in range(4)}
-    assert chosen(gate_cells(gate("$mux4", [2, 1, 1, 1, 1], 1), (200,)), values)[200] == (
-        f"choice {number}"
-    )
-    if number < 2:
-        values = {10: number, 11: "choice 0", 12: "choice 1"}
-        assert chosen(gate_cells(gate("$mux2", [1, 1, 1], 1), (200,)), values)[200] == (
-            f"choice {number}"
-        )
-    # Of several, the default or that of the only bit that is 1.
-    bits = {10 + n: int(n == number) for n in range(3)}
-    values = bits | {13: "choice 3", **{14 + n: f"choice {n}" for n in range(3)}}
-    assert chosen(gate_cells(gate("$pmux", [3, 1, 1, 1, 1], 1), (200,)), values)[200] == (
-        f"choice {number}"
-    )
-
-
-@pytest.mark.parametrize("parameters", [(), (1, 2)])
-@pytest.mark.parametrize("kind", ["$extract", "$const_UB32", "$const_SB32"])
-def test_gates_of_one_parameter_have_no_other_number_of_them(kind, parameters):
-    given = gate(kind, [4] if kind == "$extract" else [], 2, *parameters)
-    message = f"^GHDL's {re.escape(kind)} g has {len(parameters)} parameters$"
-    with pytest.raises(ProofError, match=message):
-        renamed(given)
 
 
 def test_gates_that_nobody_knows_are_refused():

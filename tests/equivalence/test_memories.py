@@ -29,7 +29,7 @@ def _full_design(deep: bool = False) -> tuple[str, Vhdl]:
 
 
 @pytest.mark.parametrize("name", DESIGNS)
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(2)
 def test_memories_are_proved_equal(name: str, tools: Tools) -> None:
     proof = prove(rtlil_of(DESIGNS[name]), convert(rtlil_of(DESIGNS[name])), tools=tools)
     assert proof.result == "equal", proof
@@ -40,6 +40,7 @@ def test_memories_are_proved_equal(name: str, tools: Tools) -> None:
 
 
 @pytest.mark.parametrize("seed", range(by_depth(2, 6)))
+@pytest.mark.sampled(2)
 def test_random_memories_are_proved_equal(seed: int, tools: Tools) -> None:
     text = rtlil_of(random_stores(seed))
     proof = prove(text, convert(text), tools=tools)
@@ -134,6 +135,7 @@ VHDL_TWINS = {
 
 
 @pytest.mark.parametrize("what", [*VHDL_TWINS][:: by_depth(7, 1)])
+@pytest.mark.sampled(2)
 def test_a_change_of_the_vhdl_is_found(what: str, tools: Tools) -> None:
     text, vhdl = _full_design()
     old, new = VHDL_TWINS[what]
@@ -217,6 +219,7 @@ def test_a_counterexample_names_the_word(tools: Tools) -> None:
         :: by_depth(6, 1)
     ],
 )
+@pytest.mark.sampled(2)
 def test_yosys_makes_the_same_registers_of_a_memory(
     name: str, tools: Tools, tmp_path: Path
 ) -> None:

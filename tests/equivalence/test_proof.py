@@ -50,7 +50,6 @@ def test_a_design_is_proved_equal(tools: Tools) -> None:
 
 
 @pytest.mark.parametrize(("what", "rtlil", "vhdl"), _twins()[::EVERY])
-@pytest.mark.sampled(3)
 def test_one_changed_thing_is_found(what: str, rtlil: str, vhdl: Vhdl, tools: Tools) -> None:
     try:
         proof = prove(rtlil, vhdl, tools=tools)
@@ -140,6 +139,7 @@ class _WithoutMemory(random_designs.RandomDesign):
 # GHDL 2.0's synthesis stops with an internal error at many other seeds, or is wrong: it cuts
 # a number off that is compared with a shorter vector, and takes the wrong bits of a constant.
 @pytest.mark.parametrize("seed", by_depth([0, 6], [0, 1, 6]))
+@pytest.mark.sampled(2)
 def test_random_designs_are_proved_equal(
     seed: int, tools: Tools, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -173,6 +173,7 @@ def test_converters_are_proved_equal(
 @pytest.mark.parametrize(
     ("direction", "part"), [("deserializer", "mover"), ("serializer", "collector")]
 )
+@pytest.mark.sampled(2)
 def test_a_broken_converter_is_found(direction: Direction, part: str, tools: Tools) -> None:
     name, bus_bytes = by_depth(("std_msgs/msg/Bool", 1), ("std_msgs/msg/String", 8))
     rtlil, vhdl = converter_vhdl(load_message(name), direction, bus_bytes=bus_bytes)
@@ -191,6 +192,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
+@pytest.mark.sampled(2)
 def test_proved_vhdl_is_the_vhdl_that_build_writes(direction: Direction, built: Path) -> None:
     _, vhdl = converter_vhdl(load_message(BUILT), direction)
     for file, text in vhdl.files.items():

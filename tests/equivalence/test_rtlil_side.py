@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-from itertools import count, islice
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from firm_hdl.equivalence import ProofError
-from firm_hdl.equivalence.circuit import Circuit, Flop
-from firm_hdl.equivalence.memories import MemoryCircuit
+from firm_hdl.equivalence.circuit import Circuit
 from firm_hdl.equivalence.rtlil_side import read_rtlil
 
 # Inputs `a` (nets 2 and 3), `c` (4) and `r` (5); the register `q` (6 and 7) is an output.
@@ -69,56 +67,12 @@ def cell(kind: str, y: list[int], **parameters: str) -> dict[str, Any]:
     }
 
 
-def flop(data: int, init: str, value: str = "0", **others: Any) -> Flop:
-    given = {"clock": 4, "rising": True, "reset": None, "reset_level": True, **others}
-    return Flop(data=data, init=init, reset_value=value, **given)
-
-
-def test_ports_registers_and_their_initial_values(tmp_path: Path) -> None:
-    circuit = read(tmp_path)
-    # Ports without bits are none.
-    assert circuit.inputs == {"a": (2, 3), "c": (4,), "r": (5,)}
-    assert circuit.outputs == {"o": (6, 7)}
-    assert circuit.signals == {("inner", "q"): (6, 7)}
-    assert circuit.flops == {6: flop(2, "0"), 7: flop(3, "1")}
-    assert circuit.cells == []
-
-
-@pytest.mark.parametrize("rising", [True, False])
-@pytest.mark.parametrize("level", [True, False])
-def test_the_edge_of_a_register_and_its_reset(tmp_path: Path, rising: bool, level: bool) -> None:
-    polarities = {"CLK_POLARITY": f"{rising:d}", "ARST_POLARITY": f"{level:d}"}
-    kept = {
-        **BASE["cells"]["kept"],
-        "type": "$adff",
-        "parameters": {**polarities, "ARST_VALUE": "01"},
-        "connections": {"CLK": [4], "ARST": [5], "D": [3, "x"], "Q": [6, 7]},
-    }
-    flops = read(tmp_path, cells={"kept": kept}).flops
-    given = {"rising": rising, "reset": 5, "reset_level": level}
-    # What is undefined is a net of its own.
-    assert flops == {6: flop(3, "0", "1", **given), 7: flop(8, "1", "0", **given)}
-
-
 def test_registers_without_an_initial_value_start_with_any(tmp_path: Path) -> None:
     with pytest.raises(ProofError, match=r"^a register of the RTLIL has no name \(net 6\)$"):
         read(tmp_path, netnames={"q": {"bits": [6, 7], "attributes": {}}})
     some = {"bits": [6, 7], "attributes": {"init": "1x"}}
     flops = read(tmp_path, netnames={"q": some}).flops
     assert [flops[net].init for net in (6, 7)] == ["x", "1"]
-
-
-def test_operators_keep_their_parameters_and_divisions_their_sign(tmp_path: Path) -> None:
-    circuit = read(tmp_path, cells={"sum": cell("$add", [8, 9], A_SIGNED="1")})
-    (found,) = circuit.cells
-    assert (found.kind, found.parameters) == ("$add", {"A_SIGNED": "1"})
-    assert (found.inputs, found.outputs) == ({"A": (2, 3), "B": (4,)}, {"Y": (8, 9)})
-    for kind in ("$div", "$mod", "$divfloor", "$modfloor"):
-        for signed in (0, 1):
-            cells = {"part": cell(kind, [8, 9], A_SIGNED=f"{signed:032b}")}
-            quotient, *_, choice = read(tmp_path, cells=cells).cells
-            assert quotient.kind == kind and quotient.parameters["A_SIGNED"] == signed
-            assert choice.outputs == {"Y": (8, 9)}
 
 
 @pytest.mark.parametrize(
@@ -167,24 +121,6 @@ def test_a_memory_starts_at_address_0(tmp_path: Path, offset: int) -> None:
         read_rtlil("text", Yosys(module), tmp_path, None)  # type: ignore[arg-type]
     module = {**BASE, "memories": {"mem": {**memory, "start_offset": 0}}}
     assert read_rtlil("text", Yosys(module), tmp_path, None) == read(tmp_path)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("rising", [True, False])
-def test_the_register_of_a_read_port(rising: bool) -> None:
-    numbers = count(100)
-    memory = MemoryCircuit("mem", 4, 2, lambda width: tuple(islice(numbers, width)))
-    constants = {"CLK_ENABLE": "1", "COLLISION_X_MASK": "0", "TRANSPARENCY_MASK": "0"}
-    parameters = {**constants, "WIDTH": "100", "CLK_POLARITY": f"{rising:d}", "INIT_VALUE": "11x0"}
-    ports = {"DATA": [2, 3, 4, 5], "ADDR": [6], "EN": [7], "CLK": [8], "ARST": "0", "SRST": "0"}
-    memory.add([{"type": "$memrd_v2", "parameters": parameters, "connections": ports}], tuple)
-    assert memory.reads == [(2, 3, 4, 5)]
-    # The lowest bit of the initial value is the last one; a bit without a value starts at 0.
-    assert [memory.flops[net].init for net in (2, 3, 4, 5)] == ["0", "0", "1", "1"]
-    assert {(each.clock, each.rising) for each in memory.flops.values()} == {(8, rising)}
-    # The register keeps its value unless it is enabled.
-    (choice,) = (cell for cell in memory.cells if cell.inputs.get("S") == (7,))
-    assert choice.inputs["A"] == (2, 3, 4, 5)
-    assert choice.outputs["Y"] == tuple(memory.flops[net].data for net in (2, 3, 4, 5))
 
 
 @pytest.mark.parametrize(("tops", "found"), [(["0"], 1), (["1"], 2), (["0", "1", "1"], 3)])

@@ -6,19 +6,15 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 from amaranth.back import rtlil as amaranth_rtlil
 from amaranth.hdl import Module, Signal
 
-from firm_hdl.cli import main
-from firm_hdl.equivalence import Proof, ProofError, Tools, command, converters, prove
-from firm_hdl.equivalence import proof as proof_module
+from firm_hdl.equivalence import Proof, ProofError, Tools, command, prove
 from firm_hdl.equivalence.converters import Attempt, ProofTask
 from firm_hdl.equivalence.miter import Claim, Miter
 from firm_hdl.equivalence.solve import solve
-from firm_hdl.equivalence.tools import answer_of
 from firm_hdl.jobs import ToolError, TooSlowError
 from firm_hdl.vhdl.convert import Vhdl, convert
 from tests.depth import by_depth
@@ -78,29 +74,6 @@ def test_claim_that_no_solver_decides_is_undecided(undecided: Proof) -> None:
     assert lines[0].startswith("undecided (") and lines[1].strip() == "output out"
 
 
-def test_the_command_says_undecided_and_fails(
-    undecided: Proof, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(command, "find_tools", lambda: None)
-    monkeypatch.setattr(converters, "prove_converter", lambda *args, **options: undecided)
-    assert main(["prove", "std_msgs/msg/Bool", "--jobs", "1"]) == 1
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines] == ["undecided", "output"] * 2
-
-
-# What the command says of such a proof, and that it proves at all, other tests see.
-@pytest.mark.thorough
-def test_the_command_asks_the_solvers(
-    short_timeouts: Tools, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(proof_module, "find_tools", lambda: short_timeouts)
-    monkeypatch.setattr(converters, "converter_vhdl", lambda *args, **options: factors())
-    assert command.run_proofs([TASK], 1, bar=True) == 1
-    out = capsys.readouterr().out
-    assert out.startswith("undecided ")
-    assert "1 converters of 1 types: 1 undecided\n" in out
-
-
 @pytest.mark.parametrize(
     ("results", "message", "status"),
     [
@@ -132,53 +105,6 @@ def test_summary_and_status_count_each_kind_of_result(
     head = f"{len(results)} converters of {len({*results} and {1})} types: {message}"
     assert head in out
     assert [line.split()[0] for line in out[: len(results)]] == results
-
-
-def test_the_summary_has_the_seconds_of_all_proofs(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    # In the order in which they end: neither the first nor the last took longest.
-    results = [
-        (replace(TASK, name=name), Attempt(proof=proof))
-        for name, proof in (
-            ("p/A", Proof(result="equal", registers=1, claims=1, seconds=2.0)),
-            ("p/C", Proof(result="equal", registers=1, claims=1, seconds=30.5)),
-            ("p/B", None),
-            ("p/A", Proof(result="equal", registers=1, claims=1, seconds=1.0)),
-        )
-    ]
-    monkeypatch.setattr(command, "find_tools", lambda: None)
-    monkeypatch.setattr(command, "run_tasks", lambda tasks, jobs: iter(results))
-    assert command.run_proofs([TASK] * 4, 1, bar=True) == 1
-    assert capsys.readouterr().out.splitlines()[-2:] == [
-        "4 converters of 3 types: 3 equal, 1 failed",
-        f"seconds per converter: median 2.0, most 30.5 (p/C {TASK.direction}), 34 in total",
-    ]
-
-
-@pytest.mark.parametrize(
-    ("changes", "types"),
-    [
-        ({"distro": "noetic"}, 2),
-        ({"name": "a/msg/C"}, 2),
-        ({"wire": "ros1"}, 2),
-        # The other converter of a type, and a wider bus, are converters of the same type.
-        ({"direction": "deserializer"}, 1),
-        ({"bus_bytes": 4}, 1),
-    ],
-)
-def test_the_summary_counts_types_by_distribution_name_and_wire_format(
-    changes: dict[str, Any],
-    types: int,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    tasks = [TASK, replace(TASK, **changes)]
-    equal = Attempt(proof=Proof(result="equal", registers=1, claims=1, seconds=1.0))
-    monkeypatch.setattr(command, "find_tools", lambda: None)
-    monkeypatch.setattr(command, "run_tasks", lambda *_: iter([(task, equal) for task in tasks]))
-    assert command.run_proofs(tasks, 1, bar=True) == 0
-    assert f"2 converters of {types} types: 2 equal\n" in capsys.readouterr().out
 
 
 # Without tools: every way in which the two solvers can end.
@@ -300,22 +226,6 @@ def test_a_difference_names_the_claims_that_fail_and_the_inputs(tmp_path: Path) 
     assert verdict.difference.inputs == {"input i": 0b110}
 
 
-def test_each_solver_has_its_time(tmp_path: Path) -> None:
-    asked: list[tuple[str, float | None]] = []
-
-    class Asked(Solvers):
-        def run_yosys(self, folder: Path, script: str, timeout: float | None = None) -> None:
-            asked.append((script, timeout))
-            super().run_yosys(folder, script, timeout)
-
-    solve(some_miter(), Asked([3], SUCCESS), tmp_path, 70.5)
-    (abc, limit), (sat, longer) = asked
-    assert limit == 70.5 and "check -assert; abc " in abc
-    # Yosys itself ends the search, and needs time for the circuit besides.
-    assert "sat -timeout 70 -prove differs 0 " in sat
-    assert longer is not None and longer > 2 * 70
-
-
 @pytest.mark.parametrize("bits", [[], ["0"] * (CLAIMS - 1), ["0"] * (CLAIMS + 1)])
 def test_an_answer_about_other_claims_is_none(bits: list[str], tmp_path: Path) -> None:
     class Other(Solvers):
@@ -337,13 +247,3 @@ def test_an_answer_about_other_claims_is_none(bits: list[str], tmp_path: Path) -
 def test_a_tool_that_fails_proves_nothing(message: str, match: str, tmp_path: Path) -> None:
     with pytest.raises(ProofError, match=match):
         solve(some_miter(), Solvers(ToolError(message)), tmp_path, 1)
-
-
-def test_what_a_tool_has_written_is_read_once(tmp_path: Path) -> None:
-    file = tmp_path / "claims.json"
-    for text in ("first", "second é"):
-        file.write_text(text, encoding="utf-8")
-        assert answer_of("Yosys", file) == text
-        # The next run may write nothing, and must not get this answer.
-        with pytest.raises(ToolError, match=r"^Yosys ended .* did not write claims\.json"):
-            answer_of("Yosys", file)

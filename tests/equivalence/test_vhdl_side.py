@@ -7,7 +7,6 @@ import re
 import pytest
 
 from firm_hdl.equivalence import ProofError
-from firm_hdl.equivalence.match import word_name
 from firm_hdl.equivalence.vhdl_side import read_vhdl
 from tests.equivalence.test_dump import DUMP
 
@@ -68,26 +67,6 @@ def changed(text, *changes):
     return text
 
 
-def inverters(circuit):
-    """Return the inputs and the output of the circuit that each inverter connects."""
-    inputs = {bits: name for name, bits in circuit.inputs.items()}
-    outputs = {bits: name for name, bits in circuit.outputs.items()}
-    assert {cell.kind for cell in circuit.cells} == {"$not"}
-    return {(inputs[cell.inputs["A"]], outputs[cell.outputs["Y"]]) for cell in circuit.cells}
-
-
-def test_each_instance_has_nets_of_its_own():
-    circuit = read_vhdl(NESTED)
-    assert len(circuit.cells) == 2 and inverters(circuit) == {("a", "y"), ("b", "z")}
-    # Names are in lower case.
-    assert circuit.signals == {
-        ("both", "one", "n"): circuit.outputs["y"],
-        ("both", "two", "n"): circuit.outputs["z"],
-    }
-    crossed = [(r"\one.\a{p4} <- \pair.\a{n9w1}", r"\one.\a{p4} <- \pair.\b{n10w1}")]
-    assert inverters(read_vhdl(changed(NESTED, *crossed))) == {("b", "y"), ("b", "z")}
-
-
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
@@ -140,16 +119,6 @@ RESET = [
 ]
 
 
-def test_the_properties_of_registers():
-    none = ["0"] * 4
-    assert only_flop(read_vhdl(DUMP)) == ((True, None, True), list("1010"), none)
-    falling = changed(DUMP, ("$posedge", "$negedge"))
-    assert only_flop(read_vhdl(falling)) == ((False, None, True), list("1010"), none)
-    reset = read_vhdl(changed(DUMP, *RESET))
-    [net] = reset.inputs["rst"]
-    assert only_flop(reset) == ((True, net, True), list("1010"), list("1010"))
-
-
 def test_a_register_without_a_constant_initial_value_starts_with_any():
     plain = changed(DUMP, ("$idff\n", "$dff\n"), ("      input %4.$init{p6} <- %3.$o{n5w4}\n", ""))
     unknown = changed(DUMP, ("$const_UB32\n      parameters $val=5", "$const_X"))
@@ -161,14 +130,6 @@ def test_a_reset_without_a_constant_value_is_refused():
     loads = [("%4.$rst_val{p10} <- %3.$o{n5w4}", "%4.$rst_val{p10} <- \\top.\\a{n1w4}")]
     with pytest.raises(ProofError, match="asynchronous reset of the VHDL has no constant value"):
         read_vhdl(changed(DUMP, *RESET, *loads))
-
-
-def test_the_first_word_of_a_memory_has_the_highest_bits():
-    whole = read_vhdl(DUMP).outputs["o"]
-    words = read_vhdl(DUMP, {("r",): 2}).signals
-    assert words == {(word_name("r", 0),): whole[2:], (word_name("r", 1),): whole[:2]}
-    with pytest.raises(ProofError, match="memory r of the VHDL has not 3 words"):
-        read_vhdl(DUMP, {("r",): 3})
 
 
 def test_assertions_are_no_part_of_a_circuit():

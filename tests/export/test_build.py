@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import os
 import subprocess
@@ -15,16 +14,13 @@ import pytest
 import firm_hdl
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.backend import Options
-from firm_hdl.export.build import BuildError, Built, build, check_size
+from firm_hdl.export.build import BuildError, Built, build
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, from_yaml
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.export.conftest import hollow_converters
 from tests.export.test_sample import SAMPLE, files
-
-# The package's face has a function of this name.
-build_module = importlib.import_module("firm_hdl.export.build")
 
 ROOT = Path(firm_hdl.__file__).parent.parent
 
@@ -171,54 +167,6 @@ def test_vhdl_compiles_in_the_order_of_the_manifest_and_stimuli_are_the_callers(
 
 
 @pytest.mark.usefixtures("quick")
-def test_manifest_is_complete(tmp_path):
-    built = build_one(tmp_path, "sensor_msgs/msg/Range", bus_bytes=4, max_message_bytes=999)
-    manifest = json.loads((built.folder / "manifest.json").read_text())
-    library = Library()
-    assert manifest["inputs"]["message"] == "sensor_msgs/msg/Range"
-    assert manifest["inputs"]["dependencies"] == [
-        "builtin_interfaces/msg/Time",
-        "std_msgs/msg/Header",
-    ]
-    assert manifest["inputs"]["definition_sha256"] == library.definition_hash(
-        "sensor_msgs/msg/Range"
-    )
-    assert manifest["inputs"]["options"] == {
-        "wire": "cdr",
-        "bus_bytes": 4,
-        "max_message_bytes": 999,
-        "ports": "records",
-    }
-    assert manifest["inputs"]["generator"]["firm-hdl"] == firm_hdl.__version__
-    assert {"name": "ULTRASOUND", "type": "uint8", "value": 0} in manifest["constants"]
-    leaves = {leaf["path"]: leaf for leaf in manifest["leaves"]}
-    # The only field of the type whose name is a keyword.
-    assert leaves["range"] == {
-        "path": "range",
-        "name": "range_field",
-        "kind": "scalar",
-        "type": "float32",
-        "signed": False,
-        "layout": {"lanes": 1, "item_bits": 32, "data_bits": 32},
-    } | {key: leaves["range"][key] for key in ("comment", "unit") if key in leaves["range"]}
-    assert leaves["header.frame_id.items"]["layout"] == {
-        "lanes": 4,
-        "item_bits": 8,
-        "data_bits": 32,
-    }
-    ports = {port["name"]: port for port in manifest["converters"]["serializer"]["ports"]}
-    assert ports["range_field_data"] == {
-        "name": "range_field_data",
-        "direction": "in",
-        "width": 32,
-        "signed": False,
-        "meaning": "range: float32 (IEEE 754 bits).",
-        "leaf": "range",
-    }
-    assert ports["m_axis_tuser"]["direction"] == "out"
-
-
-@pytest.mark.usefixtures("quick")
 def test_plan_and_picture_read_back(tmp_path):
     built = build_one(tmp_path, "sensor_msgs/msg/PointCloud2")
     plan = build_plan(lay_out(Library().message("sensor_msgs/msg/PointCloud2")))
@@ -227,19 +175,6 @@ def test_plan_and_picture_read_back(tmp_path):
     texts = [element.text for element in picture.iter("{http://www.w3.org/2000/svg}text")]
     for text in ("fields.item.name.length uint32", "data: length x uint8", "fields: length times"):
         assert text in texts
-
-
-@pytest.mark.usefixtures("quick")
-def test_comments_and_units_are_in_the_manifest(tmp_path):
-    folder = tmp_path / "src" / "my_msgs" / "msg"
-    folder.mkdir(parents=True)
-    (folder / "Part.msg").write_text("float32 item  # how far [m]\n")
-    (folder / "Whole.msg").write_text("# Parts of it.\nPart[] parts\n")
-    built = build_one(tmp_path / "out", "my_msgs/msg/Whole", paths=[tmp_path / "src"])
-    leaves = json.loads((built.folder / "manifest.json").read_text())["leaves"]
-    found = {leaf["path"]: (leaf.get("comment"), leaf.get("unit")) for leaf in leaves}
-    assert found["parts.item.item"][1] == "m"
-    assert found["parts.length"][1] is None
 
 
 @pytest.mark.usefixtures("quick")
@@ -320,11 +255,6 @@ def test_type_that_amaranth_cannot_elaborate_is_refused_before_writing(tmp_path)
     assert not (tmp_path / "out").exists()
 
 
-def test_size_just_below_the_limit_passes():
-    message = Library().message("sensor_msgs/msg/Imu")
-    check_size(build_plan(lay_out(message), bus_bytes=64))
-
-
 def test_output_is_the_same_everywhere(tmp_path):
     types = by_depth(
         ["std_msgs/msg/MultiArrayDimension"], ["sensor_msgs/msg/JointState", "std_msgs/msg/Empty"]
@@ -362,27 +292,3 @@ def test_several_processes_write_the_same_files(tmp_path):
         assert [each.name for each in built] == types
     assert sorted(each.name for each in reported) == sorted(2 * types)
     assert tree(tmp_path / "1") == tree(tmp_path / "2")
-
-
-@pytest.mark.usefixtures("hollow")
-def test_an_error_in_a_process_is_reported(tmp_path):
-    (tmp_path / "lyrical").write_text("not a folder")
-    with pytest.raises(BuildError, match=r"^'.*lyrical.*' cannot be written: "):
-        build(["std_msgs/msg/Empty", "std_msgs/msg/Bool"], tmp_path, jobs=2)
-
-
-@pytest.mark.usefixtures("hollow")
-def test_what_cannot_be_read_is_not_called_unwritable(tmp_path, monkeypatch):
-    class Reads:
-        name = "reads"
-
-        def check(self, tasks):
-            pass
-
-        def write(self, converters):
-            return (tmp_path / "missing.json").read_text()
-
-    monkeypatch.setattr(build_module, "BACK_ENDS", [Reads()])
-    with pytest.raises(FileNotFoundError) as caught:
-        build(["std_msgs/msg/Empty"], tmp_path / "out")
-    assert caught.value.filename.endswith("missing.json")

@@ -11,14 +11,8 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.export.build import build
-from firm_hdl.export.systemverilog.package import message_package as systemverilog
-from firm_hdl.export.tree import tree_of
 from firm_hdl.frontend import Library
-from firm_hdl.plan import build_plan
-from firm_hdl.wire import lay_out
 from tests.export.systemverilog.hdl import slang
-from tests.export.vhdl.test_layer import layer, own_package
-from tests.frontend.workspace import library
 
 ORDERS = (
     "synthesis translate_off",
@@ -120,42 +114,6 @@ def test_unescaped_pragmas_in_structs_take_effect(verilator, folder, tmp_path):
     for path in (tmp_path / "copy" / "systemverilog").glob("*_sv_pkg.sv"):
         path.write_text(re.sub(r"// # (?=synthesis)", "// ", path.read_text()))
     assert "error: " in lint_output(verilator, tmp_path / "copy")
-
-
-FIELDS = "# About T.\n\n# About x.\n# Two lines.\nfloat32 x\nuint8 y # of y [m]\nuint8[2] z\n"
-IN_VHDL = """\
-  type {name} is record
-    -- # About x.
-    -- # Two lines.
-    x : {x}; -- float32
-    -- # of y
-    y : {y}; -- uint8 [m]
-    z : {z}; -- uint8[2]
-  end record;
-"""
-IN_SYSTEMVERILOG = """\
-  typedef struct packed {
-    // # About x.
-    // # Two lines.
-    float32_stream_t x; // float32
-    // # of y
-    uint8_stream_t y; // uint8 [m]
-    uint8_array_stream_t z; // uint8[2]
-  } t_t;
-"""
-
-
-def test_each_field_has_its_comment_above_it_in_every_record(tmp_path):
-    message = library(tmp_path, {"p/T": FIELDS}).message("p/T")
-    plan = build_plan(lay_out(message))
-    package = tree_of(message, plan).package
-    structs = re.sub(r"(?<=\S) +", " ", systemverilog(package, plan))
-    assert IN_SYSTEMVERILOG in structs and "\n// # About T.\n" in structs
-    text = re.sub(r"(?<=\S) +", " ", own_package(layer(message)))
-    streams = {"x": "float32_stream_t", "y": "uint8_stream_t", "z": "uint8_array_stream_t"}
-    assert IN_VHDL.format(name="t_t", **streams) in text and "\n-- # About T.\n" in text
-    values = {"x": "std_logic_vector(31 downto 0)", "y": "unsigned(7 downto 0)"}
-    assert IN_VHDL.format(name="t_value_t", **values, z="uint8_items_t(0 to 1)") in text
 
 
 def head_of(path: Path) -> str:

@@ -13,10 +13,9 @@ from firm_hdl.export.systemverilog.package import message_package
 from firm_hdl.export.tree import tree_of
 from firm_hdl.export.vhdl.constants import declarations
 from firm_hdl.export.vhdl.package import constants_of as vhdl_constants
-from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
-from tests.frontend.workspace import library, make_files
+from tests.frontend.workspace import library
 
 
 @pytest.mark.parametrize(
@@ -36,54 +35,6 @@ from tests.frontend.workspace import library, make_files
 )
 def test_bits_are_those_of_ieee_754(value: float, size: int, bits: int) -> None:
     assert _float_bits(value, size) == bits
-
-
-FLOATS = {
-    "p/T": "float32 A=1.0\nint8 A_BITS=2\nfloat32 B=2.0\nfloat32 B_BITS=4.0\nint8 b_bits_2=1\n"
-    "float64 TAKEN=0.5\nint8 x\n"
-}
-
-
-def test_bits_of_a_float_have_a_name_that_no_other_constant_has(tmp_path: Path) -> None:
-    message = library(tmp_path, FLOATS, "ros1").message("p/T")
-    named = named_constants(message, ())
-    # In lower case, as for every name that is taken.
-    text = "".join(declarations(named, ["taken_bits"]))
-    kinds = dict(re.findall(r"constant (\w+) *: ([a-z_]+)", text))
-    # The constants of the definition keep their names.
-    assert {name: kinds.pop(name) for name in ("A", "A_BITS", "B", "B_BITS", "b_bits_2")} == {
-        "A": "real",
-        "A_BITS": "signed",
-        "B": "real",
-        "B_BITS": "real",
-        "b_bits_2": "signed",
-    }
-    assert kinds.pop("TAKEN") == "real"
-    # Four floats; names of VHDL have no case.
-    assert list(kinds.values()) == ["std_logic_vector"] * 4
-    given = [name.lower() for name in re.findall(r"constant (\w+)", text)]
-    assert len(set(given)) == len(given) == 10 and "taken_bits" not in given
-
-
-NESTED = {
-    "p/T": "int8 OWN=1\nq/Pose a\nr/Pose b\nint8 x\n",
-    "q/Pose": "int8 ERROR=2\nint8 OTHER=3\nint8 x\n",
-    "r/Pose": "int8 OTHER=4\nint8 x\n",
-}
-
-
-def test_constants_of_types_inside_have_their_names_in_front(tmp_path: Path) -> None:
-    message = library(tmp_path, NESTED, "ros1").message("p/T")
-    own = named_constants(message, (), nested=False)
-    assert [(each.name, each.owner.name) for each in own] == [("OWN", "p/T")]
-    found = named_constants(message, ())
-    assert [(each.name, each.owner.name, each.constant.value) for each in found] == [
-        ("OWN", "p/T", 1),
-        ("POSE_ERROR", "q/Pose", 2),
-        ("POSE_OTHER", "q/Pose", 3),
-        # Two packages have a type of this name.
-        ("POSE_OTHER_r", "r/Pose", 4),
-    ]
 
 
 def test_a_constant_hides_no_word_of_vhdl_and_no_taken_name(tmp_path: Path) -> None:
@@ -117,40 +68,6 @@ def test_a_constant_hides_no_package_that_its_own_uses(tmp_path: Path) -> None:
         assert {each.name for each in found} == {
             f"{name}_CONSTANT" if name in words else name for name in names
         }
-
-
-LONG = """\
-module p { module msg {
-  module T_Constants { const long double L = 0.5; const double D = -0.25; };
-  struct T { long x; };
-}; };
-"""
-
-
-def test_the_bits_of_a_long_double_are_nowhere_defined(tmp_path: Path) -> None:
-    make_files(tmp_path, {"p/msg/T.idl": LONG})
-    message = Library("lyrical", [tmp_path]).message("p/msg/T")
-    text = "".join(declarations(named_constants(message, ()), []))
-    assert re.findall(r"constant (\w+) *: [^:]*:= ([^;]*);", text) == [
-        ("L", "0.5"),
-        ("D", "-0.25"),
-        ("D_BITS", 'x"bfd0000000000000"'),
-    ]
-
-
-NOT_FINITE = {"p/T": "float32 A=inf\nfloat64 B=-inf\nfloat32 C=nan\nfloat64 D=nan\nint8 x\n"}
-
-
-def test_a_float_that_is_no_number_of_vhdl_has_only_its_bits(tmp_path: Path) -> None:
-    message = library(tmp_path, NOT_FINITE, "ros1").message("p/T")
-    text = "".join(declarations(named_constants(message, ()), []))
-    assert re.findall(r'constant (\w+) *: (\w+)[^"]*x"(\w+)"', text) == [
-        ("A_BITS", "std_logic_vector", "7f800000"),
-        ("B_BITS", "std_logic_vector", "fff0000000000000"),
-        ("C_BITS", "std_logic_vector", "7fc00000"),
-        ("D_BITS", "std_logic_vector", "7ff8000000000000"),
-    ]
-    assert text.count("constant ") == 4
 
 
 PIECE = re.compile(r'"((?:[^"]|"")*)"|character\'val\((\d+)\)')

@@ -85,15 +85,6 @@ def test_a_new_back_end_writes_its_files_to_folders_that_were_current(tmp_path, 
     assert not notes.exists()
 
 
-@pytest.mark.usefixtures("quick")
-def test_a_back_end_under_the_name_of_another_is_not_noticed(tmp_path, monkeypatch):
-    build_one(tmp_path)
-    monkeypatch.setattr(Notes, "name", "documents")
-    back_ends = [Notes() if each.name == "documents" else each for each in build_module.BACK_ENDS]
-    monkeypatch.setattr(build_module, "BACK_ENDS", tuple(back_ends))
-    assert build_one(tmp_path).was_current
-
-
 def test_back_ends_have_names_of_their_own():
     names = [each.name for each in build_module.BACK_ENDS]
     assert len({*names}) == len(names) and all(names)

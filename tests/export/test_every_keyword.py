@@ -74,6 +74,7 @@ def records(folder: Path, name: str, work: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("name", ["all_words/Fields", "all_words/Types"])
+@pytest.mark.thorough
 def test_records_take_every_word(ghdl, tmp_path, name):
     folder = write_packages(tmp_path / "ws", sorted(KEYWORDS))
     files = records(folder, name, tmp_path)

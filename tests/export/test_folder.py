@@ -110,14 +110,6 @@ def test_what_is_in_the_way_is_named_and_nothing_changes(folder, tmp_path, name,
     assert state(tmp_path) == before
 
 
-def test_many_files_in_the_way_are_counted(folder):
-    files = {f"T_{number:02}.v": "" for number in range(12)}
-    for name in files:
-        (folder / name).write_text("mine")
-    with pytest.raises(BuildError, match=r": T_00\.v, .*, T_09\.v and 2 more$"):
-        write(folder, files)
-
-
 def test_outdated_files_that_the_user_changed_stay_and_are_named(folder, tmp_path):
     (tmp_path / "mine").write_text("mine")
     (folder / "vhdl" / "T_old.vhd").write_text("mine")
@@ -321,19 +313,6 @@ def test_a_folder_without_rights_is_one_error_and_read_only_files_are_none(folde
     build(folder, 1)
 
 
-def test_a_file_that_is_changed_during_the_build_stays(folder, monkeypatch):
-    original = module.write_new
-
-    def write_new(*given: object, **options: object) -> None:
-        (folder / "vhdl" / "T.vhd").write_text("saved by an editor")
-        original(*given, **options)
-
-    monkeypatch.setattr(module, "write_new", write_new)
-    with pytest.raises(BuildError, match=r"it was changed during the build \('vhdl/T.vhd'\)"):
-        build(folder, 1)
-    assert (folder / "vhdl" / "T.vhd").read_text() == "saved by an editor"
-
-
 def test_only_one_build_at_a_time_writes(folder, monkeypatch):
     monkeypatch.setattr(module, "LOCK_SECONDS", 0.0)
     before = tree(folder)
@@ -343,14 +322,3 @@ def test_only_one_build_at_a_time_writes(folder, monkeypatch):
         build(folder, 1)
     os.close(number)
     assert tree(folder) == before
-
-
-def test_without_locks_temporary_files_may_be_those_of_another_build(folder, monkeypatch):
-    def flock(*given: object) -> None:
-        raise OSError(9, "Bad file descriptor")
-
-    monkeypatch.setattr(module, "flock", flock)
-    other = folder / f".firm-hdl-{'0' * 16}.tmp"
-    other.write_text("half")
-    build(folder, 1)
-    assert tree(folder).keys() == {*VERSIONS[1], "manifest.json", other.name}

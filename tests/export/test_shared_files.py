@@ -59,20 +59,6 @@ def test_packages_declare_the_statuses_and_primitives_of_python():
 @pytest.mark.parametrize(
     ("old", "new", "what"),
     [
-        ('STATUS_ITEMS         : std_logic_vector(7 downto 0) := x"06"', "", "statuses"),
-        ('return "STRING"', 'return "STRINGS"', "names of statuses"),
-        ("data  : unsigned(15 downto 0)", "data  : unsigned(16 downto 0)", "streams"),
-        ("of signed(63 downto 0)", "of unsigned(63 downto 0)", "items"),
-    ],
-)
-def test_other_declarations_in_vhdl_are_seen(old, new, what):
-    assert old in vhdl.types_package()
-    assert list(wrong_in_vhdl(vhdl.types_package().replace(old, new, 1))) == [what]
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "what"),
-    [
         ("8'h06", "8'h07", "statuses"),
         ("logic [15:0] uint16_data_t", "logic signed [15:0] uint16_data_t", "types"),
         ("int8_data_t data", "uint8_data_t data", "streams"),

@@ -17,7 +17,6 @@ from firm_hdl.plan import build_plan, encode
 from firm_hdl.sim import to_transfers
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
-from tests.strategies import make
 
 
 class Loopback(Elaboratable):
@@ -112,6 +111,7 @@ def axi_loopback(type_: str, packets: list[bytes], *, distro: str, bus_bytes: in
 
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 4, 8], [1, 4, 8, 64]))
+@pytest.mark.sampled(2)
 def test_packets_come_back(bus_bytes):
     message = load_message("std_msgs/msg/Header")
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
@@ -205,6 +205,7 @@ def test_tkeep_counts_up_to_the_first_zero():
 
 
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+@pytest.mark.sampled(2)
 def test_no_two_ports_of_any_type_have_one_name(distro):
     library = Library(distro)
     for name in library.names():
@@ -232,23 +233,3 @@ def test_ports_and_their_meaning():
         "out frame_id_items_ready 1 frame_id.items: ready.",
     ]
     assert MAX_INPUT_BITS == 65_535
-
-
-def test_the_meaning_of_data_is_that_of_its_type():
-    fields = {"b": "bool", "f": "float32", "u": "uint16", "s": "string", "n": "float64[3]"}
-    plan = build_plan(lay_out(make("ros2", fields)), bus_bytes=8)
-    ports = {port.name: port for port in ports_of(plan, "deserializer")}
-    assert {name: port.meaning for name, port in ports.items() if port.member == "data"} == {
-        "b_data": "b: bool (1 is true).",
-        "f_data": "f: float32 (IEEE 754 bits).",
-        "u_data": "u: uint16 (unsigned).",
-        "s_length_data": "s.length: number of elements that follow.",
-        "s_items_data": "s.items: 8 x uint8 (unsigned), first item in the lowest bits.",
-        # One item has room in a beat.
-        "n_items_data": "n.items: float64 (IEEE 754 bits), first item in the lowest bits.",
-    }
-    empty = ports_of(build_plan(lay_out(make("ros1", {})), bus_bytes=8), "serializer")
-    meanings = {port.name: port.meaning for port in empty}
-    assert meanings["trigger_data"] == "trigger: always 1; marks one empty message."
-    assert meanings["m_axis_tuser"] == "With tlast: the packet's status is not OK; drop it."
-    assert meanings["aresetn"] == "Synchronous reset, active low."

@@ -9,13 +9,11 @@ from functools import cache
 
 import pytest
 
-from firm_hdl import Deserializer, Parser, Serializer
+from firm_hdl import Deserializer, Parser
 from firm_hdl.gateware.signatures import LATENCY_CYCLES
 from firm_hdl.plan import build_plan, decode
-from firm_hdl.plan.cycles import deserializer_cycles, packet_of
-from firm_hdl.plan.interpret.decode import CHECK_CYCLES
 from firm_hdl.plan.recovery import recovery
-from firm_hdl.sim import Harness, RunOptions, Stalls
+from firm_hdl.sim import RunOptions, Stalls
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.gateware import test_parser
@@ -136,20 +134,6 @@ def test_a_deserializer_refuses_what_claims_too_much(bus_bytes, stalls):
     check_transfers(rx, packets, stalls)
 
 
-def test_a_deserializer_that_does_not_check_claims_is_found():
-    rx = Deserializer(MESSAGE, bus_bytes=8, max_message_bytes=MOST)
-    plan = rx.plan
-    steps = tuple(
-        step if step.begin is None else replace(step, begin=replace(step.begin, claim=None))
-        for step in plan.steps
-    )
-    rx.plan = replace(plan, steps=steps)
-    harness = Harness(rx, None)
-    seen = harness.run_packets([bomb(22, 1000)])
-    assert [status.name for status in seen.statuses] == ["TRUNCATED"]
-    assert decode(plan, bomb(22, 1000)).status == "LENGTH"
-
-
 @pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 8, 64]))
 def test_a_parser_gives_the_same_statuses(bus_bytes):
     parser = Parser(MESSAGE, bus_bytes=bus_bytes, max_message_bytes=MOST)
@@ -207,16 +191,6 @@ def test_a_parser_with_a_larger_budget_is_found():
     assert decode(plan, numbers(100, 80, 301)).status == "LENGTH"
 
 
-@pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 2, 8, 64]))
-def test_counted_lengths_take_the_cycles_of_the_plan(bus_bytes):
-    rx = reader(bus_bytes)
-    packets = [good(rx.plan)] * 2 + [numbers(0) + b"\5", good(rx.plan)]
-    traffic = [packet_of(rx.plan, packet) for packet in packets]
-    assert sum(visit.held for visit in traffic[0].visits) == 2 * CHECK_CYCLES
-    want = [cycle + LATENCY_CYCLES["deserializer"] for cycle in deserializer_cycles(traffic)]
-    assert measure_deserializer(rx, packets) == want
-
-
 @pytest.mark.parametrize("lengths", [(60, 299), (60, 300), (30, 0, 60, 359)])
 def test_recovery_takes_the_cycles_of_the_interpreter_and_at_most_the_bound(lengths):
     rx = reader(8)
@@ -228,11 +202,3 @@ def test_recovery_takes_the_cycles_of_the_interpreter_and_at_most_the_bound(leng
     after = sum(visit.end > len(packet) for visit in visits)
     assert after <= recovery(rx.plan, 1).cycles
     assert status <= recovery(rx.plan, 1).cycles + LATENCY_CYCLES["deserializer"] + beats + 4
-
-
-def test_types_without_nested_lengths_have_no_budget():
-    message = make(
-        "ros1", {"s": "string", "q": "float64[]", "p": (make("ros1", {"x": "int8"}), "[]")}
-    )
-    for kind in (Deserializer, Serializer):
-        assert not kind(message).plan.has_claims

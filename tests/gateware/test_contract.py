@@ -115,6 +115,7 @@ def test_leaves_become_valid_in_wire_order():
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8])
+@pytest.mark.sampled(2)
 def test_a_producer_may_offer_one_leaf_after_the_other(bus_bytes):
     dut = Serializer(POINT, bus_bytes=bus_bytes)
     result = []
@@ -179,6 +180,7 @@ def test_an_empty_sequence_in_an_element_does_not_end_the_message(dialect, bus_b
 
 
 @pytest.mark.parametrize("kinds", [("uint8[]", "uint8[<=1]"), ("uint8[<=1]", "uint8[]")])
+@pytest.mark.sampled(2)
 def test_a_long_sequence_and_a_short_one_have_a_counter_for_the_long_one(kinds):
     message = make("ros2", dict(zip("ab", kinds, strict=True)))
     long, short = (300).to_bytes(4, "little") + bytes(range(150)) * 2, b"\1\0\0\0\7"
@@ -190,6 +192,7 @@ def test_a_long_sequence_and_a_short_one_have_a_counter_for_the_long_one(kinds):
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 2, 4, 8]))
 @pytest.mark.parametrize("field", ["uint8", "uint16[2]", "uint8[40]", "float64[9]", "string"])
+@pytest.mark.sampled(4)
 def test_a_packet_begins_only_with_its_message(field, bus_bytes):
     # On a narrow bus, the encapsulation header has beats of its own.
     dut = Serializer(make("ros2", {"x": field}), bus_bytes=bus_bytes)
@@ -217,6 +220,7 @@ def test_a_length_over_its_bound_is_sent_as_promised_and_marked():
 
 
 @pytest.mark.parametrize("count", [3, 8, 40])
+@pytest.mark.sampled(3)
 def test_elements_far_over_their_bound_are_all_sent(count):
     message = make("ros1", {"e": (make("ros1", {"x": "uint8"}, "E"), "[<=2]"), "z": "uint8"})
     items = list(range(count))
@@ -235,6 +239,7 @@ def converters(bus_bytes, *fields):
 
 
 @pytest.mark.parametrize("slack", range(6))
+@pytest.mark.sampled(2)
 def test_cdr_packets_may_be_padded_by_up_to_three_bytes(slack):
     packet = b"\0\1\0\0\5\0\0\0"
     for bus_bytes in by_depth((1, 8, 16), (1, 2, 4, 8, 16)):
@@ -246,7 +251,7 @@ def test_cdr_packets_may_be_padded_by_up_to_three_bytes(slack):
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 2, 4, 8]))
 @pytest.mark.parametrize("slack", range(5))
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 def test_padding_may_come_long_after_the_message(bus_bytes, slack):
     # The step that ends the message does not see where the packet ends, and its own end is where no
     # step starts.
@@ -267,6 +272,7 @@ def test_padding_may_come_long_after_the_message(bus_bytes, slack):
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 8, 32])
+@pytest.mark.sampled(2)
 def test_a_message_of_many_empty_ones_is_an_empty_packet(bus_bytes):
     empty = make("ros1", {}, "E")
     nested = make("ros1", {"e": empty}, "N")
@@ -274,20 +280,6 @@ def test_a_message_of_many_empty_ones_is_an_empty_packet(bus_bytes):
     packets, statuses = loopback(message, [b"", b"", b"x"], bus_bytes=bus_bytes)
     assert packets == [b"", b"", b""]
     assert statuses == [Status.OK, Status.OK, Status.TRAILING]
-
-
-def test_option_bits_of_the_encapsulation_are_ignored():
-    message = make("ros2", {"x": "uint32"})
-    packets, statuses = loopback(message, [b"\0\1\xff\x03\5\0\0\0"])
-    assert statuses == [Status.OK]
-    assert packets == [b"\0\1\0\0\5\0\0\0"]
-
-
-def test_big_endian_packets_are_refused():
-    message = make("ros2", {"x": "uint32"})
-    packets, statuses = loopback(message, [b"\0\0\0\0\0\0\0\5"])
-    assert statuses == [Status.ENCAPSULATION]
-    assert packets == [b"\0\1\0\0\0\0\0\0"]
 
 
 def test_a_cdr_string_of_length_zero_is_empty():

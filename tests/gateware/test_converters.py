@@ -19,7 +19,7 @@ from tests.strategies import BUS_WIDTHS, make, values
 
 few = settings(
     deadline=None,
-    max_examples=by_depth(3, 12),
+    max_examples=by_depth(2, 12),
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
@@ -80,6 +80,7 @@ QUICK_ENDS = tuple(zip(ENDS, (16, 8, 1, 1), strict=True))
         for bus in (1, 8, 16)
     ],
 )
+@pytest.mark.sampled(2)
 def test_a_packet_may_end_with_a_length_or_a_step_without_bytes(end, bus_bytes):
     rx, tx = (kind(ENDS[end], bus_bytes=bus_bytes) for kind in (Deserializer, Serializer))
     # Strings of 0 and 3 characters, after a whole number of beats and not.

@@ -98,7 +98,7 @@ def case_of(converter, case, bus_bytes):
 
 @every_bus
 @every_type
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(10)
 def test_deserializer(case, bus_bytes):
     rx, packet = case_of(Deserializer, case, bus_bytes)
     harness = Harness(rx, None)
@@ -172,7 +172,7 @@ def offered_one_by_one(tx, packets):
 
 @every_bus
 @every_type
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(10)
 def test_serializer(case, bus_bytes):
     tx, packet = case_of(Serializer, case, bus_bytes)
     plan = tx.plan
@@ -211,6 +211,7 @@ def expected_beats(steps, size, bus_bytes):
     return beats
 
 
+@pytest.mark.thorough
 def test_manifest_states_it(tmp_path):
     (built,) = build(["std_msgs/msg/Bool"], tmp_path)
     manifest = json.loads((built.folder / "manifest.json").read_text())

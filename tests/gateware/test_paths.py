@@ -10,11 +10,6 @@ from collections.abc import Iterator
 
 import pytest
 from amaranth.back import rtlil
-from amaranth.hdl import Cat, Signal
-from amaranth.hdl import Module as Circuit
-from amaranth.lib import wiring
-from amaranth.lib.memory import Memory
-from amaranth.lib.wiring import In, Out
 
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.gateware.signatures import leaf_streams
@@ -175,6 +170,7 @@ LARGE = CASES[2:4]
         *(pytest.param(*each, 2, marks=pytest.mark.thorough) for each in CASES),
     ],
 )
+@pytest.mark.sampled(3)
 def test_paths_are_those_of_the_interface_page(name, distro, bus_bytes):
     message = load_message(name, distro=distro)
     assert paths(Deserializer(message, bus_bytes=bus_bytes)) == {}
@@ -211,56 +207,3 @@ def test_a_step_looks_at_ready_of_leaves_of_one_transfer_a_cycle_later():
     assert len(found.pop("message__frame_id__items__ready")) > 10 and found.pop("orders__ready")
     assert len(found) == 4
     assert found == {port: {port.replace("ready", "valid"), "slow"} for port in found}
-
-
-class Mixed(wiring.Component):
-    """Outputs with paths through every kind of netlist cell, and outputs without paths."""
-
-    def __init__(self):
-        wires = {"a": In(4), "b": In(4), "c": In(1), "d": In(2)}
-        outs = {"sum": Out(4), "bit": Out(1), "chosen": Out(1), "read": Out(4), "late": Out(4)}
-        super().__init__(wires | outs)
-
-    def elaborate(self, platform):
-        m = Circuit()
-        m.submodules.inner = inner = Circuit()
-        m.submodules.memory = memory = Memory(shape=4, depth=4, init=[])
-        write, read = memory.write_port(), memory.read_port(domain="comb")
-        total = Signal(4)
-        inner.d.comb += total.eq(self.a + self.b)
-        m.d.comb += [
-            self.sum.eq(total),
-            self.bit.eq((self.a & self.b)[1]),
-            write.addr.eq(self.d),
-            write.data.eq(self.a),
-            write.en.eq(1),
-            read.addr.eq(self.d),
-            self.read.eq(read.data),
-        ]
-        with m.If(self.c):
-            m.d.comb += self.chosen.eq(self.d[0])
-        m.d.sync += self.late.eq(self.a)
-        return m
-
-
-def test_paths_are_found_through_cells_processes_memories_and_modules():
-    assert paths(Mixed()) == {
-        "sum": {"a", "b"},
-        "bit": {"a", "b"},
-        "chosen": {"c", "d"},
-        "read": {"d"},
-    }
-
-
-def test_bits_of_a_signal_are_distinguished():
-    class Halves(wiring.Component):
-        def __init__(self):
-            super().__init__({"a": In(2), "b": In(2), "x": Out(1), "y": Out(1)})
-
-        def elaborate(self, platform):
-            m = Circuit()
-            both = Signal(2)
-            m.d.comb += [both.eq(Cat(self.a[0], self.b[1])), self.x.eq(both[0]), self.y.eq(both[1])]
-            return m
-
-    assert paths(Halves()) == {"x": {"a"}, "y": {"b"}}

@@ -16,7 +16,7 @@ from firm_hdl.errors import UserError
 from firm_hdl.node import Node
 from firm_hdl.node.build import build_node
 from firm_hdl.node.messages import NodeMessage
-from firm_hdl.node.summary import facts_of, summary
+from firm_hdl.node.summary import facts_of
 from firm_hdl.node.top import NodeTop, node_ports
 from firm_hdl.vhdl.convert import Vhdl
 from tests.export.strikes import left_when_outdated
@@ -40,29 +40,6 @@ publish:
 def built(tmp_path_factory):
     out = tmp_path_factory.mktemp("out")
     return build_node(read(RELAY), out, stimuli=stimuli).folder
-
-
-def test_the_summary_has_topics_ids_cycles_and_clocks():
-    text = summary(read())
-    rows = {tuple(line.split()[:2]): line.split()[2:] for line in text.splitlines()}
-    # 52 bytes, 7 cycles, 50 times a second.
-    twist = ["/cmd_vel", "geometry_msgs/msg/Twist", "52", "128", "drop", "7"]
-    assert rows["1", "subscribe"] == [*twist, "50", "Hz", "0.00035", "MHz"]
-    assert {("4", "request"), ("4", "response")} <= rows.keys()
-    assert "fingerprint" in text and "LUT" in text
-
-
-def test_the_summary_adds_up_memories_and_areas():
-    # A service stores its requests twice, and a link of UDP stores messages, too.
-    stored = 128 + 256 + 64 + 2 * 256 + 256
-    assert f"memory for packets: {stored} bytes\n" in summary(read())
-    assert f"memory for packets: {stored + 1024} bytes\n" in summary(read(link="udp"))
-    topics = facts_of(read())["topics"]
-    found = [store["estimate"] for topic in topics for store in topic["packets"].values()]
-    lut, ff = (sum(each[name] for each in found) for name in ("lut", "ff"))
-    rates = [each["mhz"] for each in found]
-    assert len(found) == 5 and min(rates) < max(rates)
-    assert f": {lut} LUT, {ff} FF, {min(rates):g} MHz; gates" in summary(read())
 
 
 def test_the_manifest_has_what_a_host_needs(built):
@@ -98,12 +75,6 @@ def test_the_vhdl_compiles_in_the_order_of_its_list_and_ghdl_synthesizes_it(buil
     files = {name: (built / "vhdl" / name).read_text() for name in names}
     made = synthesize(Vhdl(top="relay_records", files=files, entities={}), tmp_path)
     assert "entity relay_records" in made and "latch" not in made.lower()
-
-
-def test_a_folder_that_is_current_stays(built):
-    before = (built / "relay_verilog.v").stat().st_mtime_ns
-    again = build_node(read(RELAY), built.parent, stimuli=stimuli)
-    assert again.was_current and (built / "relay_verilog.v").stat().st_mtime_ns == before
 
 
 def test_each_file_goes_when_it_is_outdated(built, tmp_path):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.node import read_description, read_description_text
+from firm_hdl.node import read_description_text
 from tests.node.samples import LIBRARY, read
 
 TOPIC = "subscribe: {a: {type: std_msgs/msg/Bool}}\n"
@@ -64,16 +64,6 @@ def test_lengths_of_names(most, key):
             described(text)
 
 
-def test_remappings_are_relative_to_the_namespace_on_both_sides():
-    node = read(remap="{odom: wheel_odom, ~/calibrate: ~/again, /cmd_vel: /cmd}")
-    assert [t.name for t in node.topics] == [
-        "/cmd",
-        "/robot/names",
-        "/robot/wheel_odom",
-        "/robot/wheels/again",
-    ]
-
-
 def test_a_fingerprint_depends_on_each_part_of_a_topic():
     first = read()
     others = [
@@ -92,31 +82,6 @@ def test_a_fingerprint_depends_on_each_part_of_a_topic():
     # The host needs the same bytes, not the same queues.
     same = replace(first.topics[0], port="other", rate_hz=1.0, written="x")
     assert replace(first, topics=(same, *first.topics[1:])).fingerprint == first.fingerprint
-
-
-def package(folder, name, field):
-    (folder / name / "msg").mkdir(parents=True)
-    (folder / name / "msg" / "A.msg").write_text(f"{field}\n")
-
-
-def test_folders_of_the_caller_come_before_those_of_the_file(tmp_path):
-    for place, field in (("mine", "uint8 x"), ("theirs", "uint64 x")):
-        package(tmp_path / place, "own", field)
-    path = tmp_path / "node.yaml"
-    path.write_text("node: n\npaths: theirs\npublish: {x: {type: own/msg/A}}\n")
-    sizes = []
-    for paths in ([], [tmp_path / "mine"]):
-        (topic,) = read_description(path, paths=paths).topics
-        sizes.append(topic.store("out").message.fields[0].type.bits)
-    assert sizes == [64, 8]
-
-
-def test_memory_of_large_messages(tmp_path):
-    # 4 bytes of encapsulation, and 10,000: two of them, and the next power of two.
-    package(tmp_path, "own", "uint8[10000] x")
-    path = tmp_path / "node.yaml"
-    path.write_text("node: n\npaths: .\npublish: {x: {type: own/msg/A}}\n")
-    assert read_description(path).topics[0].store("out").memory_bytes == 32_768
 
 
 def test_limits_of_a_topic():
@@ -142,14 +107,6 @@ def test_limits_of_a_topic():
     assert store("memory_bytes: 32").memory_bytes == 32
 
 
-@pytest.mark.parametrize("bus_bytes", [8, 16])
-def test_a_memory_has_room_for_two_beats_at_least(bus_bytes):
-    text = f"node: n\nbus_bytes: {bus_bytes}\n" + TOPIC.replace("Bool", "Bool, memory_bytes: %d")
-    assert described(text % (2 * bus_bytes)).topics[0].store("in").memory_bytes == 2 * bus_bytes
-    with pytest.raises(DefinitionError, match=f"from {2 * bus_bytes} to 67108864, not {bus_bytes}"):
-        described(text % bus_bytes)
-
-
 def test_a_caret_stays_below_its_own_value():
     """Of a list or a mapping, within its own line, and no further than its end."""
     with pytest.raises(DefinitionError) as caught:
@@ -161,15 +118,6 @@ def test_a_caret_stays_below_its_own_value():
 
 
 LINK = "node: n\nlink: {%s}\n" + TOPIC
-
-
-def test_the_port_of_a_host_has_limits():
-    text = LINK % "kind: udp, host: 10.0.0.1, host_port: PORT"
-    for port in (1, 65_535):
-        assert described(text.replace("PORT", str(port))).link.host_port == port
-    for port in (0, 65_536):
-        with pytest.raises(DefinitionError, match=f"'host_port' must be .*, not {port}\n"):
-            described(text.replace("PORT", str(port)))
 
 
 @pytest.mark.parametrize(

@@ -122,6 +122,7 @@ def check_cycles(bench, count, **options):
     assert sent == list(range(begin, begin + total))
 
 
+@pytest.mark.thorough
 def test_every_cycle_of_eight_topics_carries_a_beat_in_both_directions():
     check_cycles(CoreBench(eight_topics()), by_depth(3, 6))
 

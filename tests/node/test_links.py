@@ -7,18 +7,15 @@ import random
 
 import pytest
 from amaranth.hdl import Module
-from amaranth.sim import Simulator
 
 from firm_hdl.node import Link
 from firm_hdl.node.bytestream import ByteStreamReader, write_frame
-from firm_hdl.node.links import ByteLink, StreamLink, UartLink, UdpLink, link_of
+from firm_hdl.node.links import ByteLink, StreamLink, UartLink, UdpLink
 from firm_hdl.node.links.ports import datagram_layout
 from firm_hdl.node.messages import NodeMessage
 from firm_hdl.sim import Stalls
 from tests.depth import by_depth
 from tests.gateware.packets.bench import PacketBench, beats
-from tests.node import cobs
-from tests.node.samples import RELAY, read
 from tests.node.traffic import (
     counters_of,
     frames_of,
@@ -58,6 +55,7 @@ def stream_bench(bus):
 
 @pytest.mark.parametrize("bus", by_depth([1, 8], [1, 2, 4, 8, 16]))
 @pytest.mark.parametrize("stalls", by_depth([STALLS], [None, STALLS]))
+@pytest.mark.sampled(2)
 def test_a_stream_carries_messages_both_ways(bus, stalls):
     bench, down, up = stream_bench(bus), some(20, 1), some(20, 2)
     sources = {"frames_in": beats(frames_of(down), bus), "sent": link_beats(up, bus)}
@@ -67,15 +65,6 @@ def test_a_stream_carries_messages_both_ways(bus, stalls):
     assert host == up and counts.lost == counts.cut == 0
     assert seen.packets["frames_out"] == frames_of(up)
     assert seen.sides["frames_out"] == [{message.topic} for message in up]
-
-
-def test_a_stream_loses_no_cycle():
-    bench, messages = stream_bench(8), some(20, 1, (20, 60))
-    sources = {"frames_in": list(beats(frames_of(messages), 8)), "sent": link_beats(messages, 8)}
-    seen, _, _ = bench.run(sources, {"received": 20, "frames_out": 20})
-    for name in ("frames_in", "frames_out"):
-        times = seen.times[name]
-        assert times == list(range(times[0], times[0] + len(times)))
 
 
 def test_what_is_no_frame_of_a_stream_is_dropped():
@@ -139,6 +128,7 @@ WIDTHS = by_depth([(8, 1), (16, 8)], [(8, 1), (8, 4), (1, 8), (16, 16), (2, 2)])
 
 @pytest.mark.parametrize(("bus", "data_bytes"), WIDTHS)
 @pytest.mark.parametrize("stalls", by_depth([STALLS], [None, STALLS]))
+@pytest.mark.sampled(2)
 def test_datagrams_carry_messages_both_ways(bus, data_bytes, stalls):
     memory = {"memory_bytes": 2048, "packets": 16}
     bench, words = udp_bench(bus, data_bytes=data_bytes, host="10.0.0.7", host_port=99, **memory)
@@ -197,6 +187,7 @@ def test_the_node_answers_whom_it_heard_last():
     # Where the receiver stalls, the shortest datagrams follow each other without a pause.
     [(1, 48, Stalls()), (16, 32, Stalls(0.3, max_cycles=3))],
 )
+@pytest.mark.sampled(2)
 def test_the_host_does_not_change_within_a_datagram(data_bytes, datagram_bytes, stalls):
     sizes = {"data_bytes": data_bytes, "datagram_bytes": datagram_bytes}
     bench, words = udp_bench(8, memory_bytes=4096, packets=64, **sizes)
@@ -234,36 +225,6 @@ def test_without_a_host_nothing_is_sent_and_all_is_counted():
         {"sent": link_beats(some(4, 2, (40,)), 8)}, {"sent": 20}, settle=400
     )
     assert seen.others["datagrams_out"] == [] and counters == {"unsent": 8}
-
-
-def test_after_what_was_dropped_without_a_host_all_is_sent_whole():
-    # The shortest datagrams, of two words each, follow each other without a pause.
-    bench, words = udp_bench(16, data_bytes=16, datagram_bytes=32)
-    up, heard = some(2, 2, (200,)), frames_of(some(1, 1, (5,)))[0]
-    sources = {"datagrams_in": words_of(heard, words), "sent": link_beats(up, 16)}
-    # The host is heard in each cycle of a datagram and of the next one.
-    for cycle in range(30, 36):
-        late = {"datagrams_in": Stalls.bits("0" * cycle + "1" * 10**4)}
-        seen, _, counters = bench.run(sources, {"sent": 2 * 13, "received": 1}, stalls=late)
-        datagrams = [each for each, _, _ in datagrams_of(seen.others["datagrams_out"], words)]
-        assert 3 < counters["unsent"] < 2 * 13 - 3
-        assert datagrams == frames_of(up, 32)[counters["unsent"] :]
-
-
-def test_the_port_of_the_node_is_there_while_nothing_is_sent():
-    # A raw port of LiteEth receives what has this port.
-    part = UdpLink(8, Link(kind="udp", memory_bytes=512, packets=8, datagram_bytes=48, port=77))
-    simulator = Simulator(part)
-    simulator.add_clock(1e-6)
-    seen = []
-
-    async def bench(ctx):
-        await ctx.tick().repeat(3)
-        seen.append(ctx.get(part.datagrams_out.payload.dst_port))
-
-    simulator.add_testbench(bench)
-    simulator.run()
-    assert seen == [77]
 
 
 def test_messages_larger_than_the_memory_are_dropped():
@@ -307,17 +268,6 @@ def test_damaged_bytes_lose_their_own_frame_only():
     assert counters["passed"] == 9 and counters["lost"] == 3 and counters["malformed"] >= 2
 
 
-def test_what_is_too_short_for_a_header_is_counted_once():
-    """With and without a whole CRC; two zeros in a row are no frame."""
-    stream = b"".join(b"\0" + cobs.encode(b"abcd"[:size]) + b"\0" for size in (1, 2, 3, 4))
-    # The last one before a frame is as short as can be.
-    stream += b"".join(write_frame(bytes(size)) for size in (1, 15, 0)) + bytes(3)
-    message = some(1, 1, (20,))
-    stream += write_frame(frames_of(message)[0])
-    _, out, counters = byte_bench().run({"bytes_in": list(stream)}, {"received": 1})
-    assert out == message and counters == {"passed": 1, "malformed": 7}
-
-
 def test_a_block_that_is_cut_is_no_frame_whatever_its_crc_says():
     messages = some(3, 1, (20,))
     parts = [bytearray(write_frame(frame)) for frame in frames_of(messages)]
@@ -344,16 +294,6 @@ def test_a_link_stores_as_many_messages_as_it_may():
     _, out, counters = bench.run({"bytes_in": list(stream)}, {"received": 2}, stalls=late)
     # Besides those two, some are on their way to the output.
     assert 2 <= len(out) <= 10 and counters == {"passed": len(out), "full": 20 - len(out)}
-
-
-@pytest.mark.parametrize(("baud", "cycles"), [(13_000_000, 8), (13_600_000, 7), (1_000_000, 100)])
-def test_a_bit_takes_the_nearest_number_of_cycles(baud, cycles):
-    assert UartLink(8, Link(kind="uart", baud=baud), 100e6).cycles == cycles
-
-
-def test_a_bit_of_a_node_takes_cycles_of_its_own_clock():
-    description = read(RELAY, clock_mhz="50", link="{kind: uart, baud: 400000}")
-    assert link_of(description).cycles == 125
 
 
 def test_a_uart_link_talks_to_itself():

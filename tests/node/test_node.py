@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import random
 import struct
-import sys
 
 import pytest
 from amaranth.hdl import DriverConflict, Fragment
@@ -124,14 +123,6 @@ def test_nothing_gets_behind_the_gates_that_is_not_right(seed):
     assert not [m for m in out if m.topic == 4]
 
 
-def test_message_ports_come_out_without_an_accelerator():
-    description = read(echo_text().replace("accelerator: tests.node.accelerators:Echo", ""))
-    node = Node(description)
-    assert node.subscribe.heard.data.length.payload.shape().width == 32
-    assert node.serve.cal.response.success.payload.shape().width == 1
-    assert not hasattr(node, "io")
-
-
 BACK = """\
 node: back
 distro: jazzy
@@ -186,13 +177,6 @@ def test_the_clock_and_all_counters_come_out_and_are_read_by_the_host():
     assert bench.state["sec"] == 0 and times[-1] < bench.state["nanosec"] < times[-1] + 16 * 60
 
 
-@pytest.mark.parametrize("link", ["udp", "uart"])
-def test_other_links_have_their_own_ports(link):
-    node = Node(read(echo_text(link=link)))
-    assert hasattr(node.link, "datagrams_in" if link == "udp" else "rx")
-    assert node.io.strings.shape().width == 8
-
-
 @pytest.mark.parametrize(
     ("name", "message"),
     [
@@ -217,28 +201,6 @@ def test_a_module_beside_the_description_is_found(tmp_path):
         Node(description)
     object.__setattr__(description, "folder", str(tmp_path))
     assert type(Node(description).accelerator) is Echo
-
-
-def test_the_folder_of_the_description_comes_first_and_is_searched_for_the_accelerator_alone(
-    tmp_path, monkeypatch
-):
-    for name, text in (
-        ("there", "raise KeyError"),
-        ("here", "from tests.node.accelerators import *"),
-    ):
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "found_twice.py").write_text(f"{text}\n")
-    monkeypatch.syspath_prepend(tmp_path / "there")
-    description = read(echo_text().replace("tests.node.accelerators", "found_twice"))
-    object.__setattr__(description, "folder", str(tmp_path / "here"))
-    before = list(sys.path)
-    assert type(Node(description).accelerator) is Echo and sys.path == before
-    # Also if nothing is found.
-    (tmp_path / "here" / "found_twice.py").write_text("raise KeyError\n")
-    monkeypatch.delitem(sys.modules, "found_twice")
-    with pytest.raises(DefinitionError, match="raised KeyError"):
-        Node(description)
-    assert sys.path == before
 
 
 def test_the_code_of_an_accelerator_that_is_given_raises_its_own_errors():

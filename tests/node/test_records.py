@@ -20,8 +20,7 @@ from firm_hdl.node.records import message_ports
 from firm_hdl.node.records.messages import other_ports
 from firm_hdl.node.top import node_ports
 from tests.depth import by_depth
-from tests.frontend.workspace import make_files
-from tests.node.samples import LIBRARY, RELAY, read
+from tests.node.samples import RELAY, read
 from tests.tools import run_script
 
 SMALL, LARGE = "std_msgs/msg/UInt16", "sensor_msgs/msg/PointCloud2"
@@ -40,47 +39,12 @@ def built(relay, tmp_path):
     return build_node(description_of(), tmp_path, stimuli=stimuli).folder
 
 
-def test_names_of_records_do_not_collide():
-    description = read(RELAY.replace("/alone", "/in_1/rdy"))
-    ports = node_ports(Node(description))
-    found = {each.member: each for each in message_ports(description, ports)}
-    assert [(each.name, each.ready) for each in found.values()] == [
-        ("subscribe_in_1", "subscribe_in_1_rdy_2"),
-        ("subscribe_in_1_rdy", "subscribe_in_1_rdy_rdy"),
-        ("publish_out_1", "publish_out_1_rdy"),
-    ]
-    own = {name for each in found.values() for name in each.ports}
-    others = [port.name for port in other_ports(ports, list(found.values()))]
-    assert sorted([*own, *others]) == sorted(port.name for port in ports)
-    assert found["publish.out_1"].direction == "serializer"
-
-
-def test_messages_of_services_are_ports_of_their_own():
-    text = "node: n\ndistro: jazzy\nserve:\n  /cal: {type: robot_msgs/srv/Calibrate}\n"
-    description = read_description_text(text, library=LIBRARY)
-    found = message_ports(description, node_ports(Node(description)))
-    assert [(each.name, each.member, each.direction) for each in found] == [
-        ("serve_cal_request", "serve.cal.request", "deserializer"),
-        ("serve_cal_response", "serve.cal.response", "serializer"),
-    ]
-
-
 def test_types_with_one_package_of_vhdl_are_refused(tmp_path):
     for package, name in (("a_b", "C"), ("a", "b_C")):
         folder = tmp_path / package / "msg"
         folder.mkdir(parents=True)
         (folder / f"{name}.msg").write_text("int8 x\n")
     text = "node: n\nsubscribe:\n  /a: {type: a_b/C}\n  /b: {type: a/b_C}\ndistro: noetic\n"
-    description = read_description_text(text, paths=[tmp_path])
-    with pytest.raises(UserError, match="a/b_C and a_b/C would have one package of VHDL, 'a_"):
-        message_ports(description, node_ports(Node(description)))
-
-
-def test_types_inside_of_messages_have_packages_too(tmp_path):
-    files = {"a_b/msg/C.msg": "int8 x\n", "a/msg/b_C.msg": "int8 x\n"}
-    files |= {"own/msg/One.msg": "a_b/C c\n", "own/msg/Two.msg": "a/b_C c\n"}
-    make_files(tmp_path, files)
-    text = "node: n\nsubscribe:\n  /a: {type: own/One}\n  /b: {type: own/Two}\ndistro: noetic\n"
     description = read_description_text(text, paths=[tmp_path])
     with pytest.raises(UserError, match="a/b_C and a_b/C would have one package of VHDL, 'a_"):
         message_ports(description, node_ports(Node(description)))

@@ -109,24 +109,6 @@ def test_padding_is_only_saved_where_it_is_claimed():
         assert any(isinstance(node, LoopNode) for node in walk(lay_out(message).nodes))
 
 
-@pytest.mark.parametrize(("dialect", "limit"), [("ros1", 10), ("ros2", 9)])
-def test_the_nul_of_a_string_takes_room(dialect, limit):
-    layout = lay_out(make(dialect, {"s": "string"}))
-    plan = build_plan(layout, max_message_bytes=layout.min_bytes + 10)
-    assert [begin.limit for begin in plan.begins.values()] == [limit]
-
-
-@pytest.mark.parametrize(("room", "counts"), [(255, False), (256, True)])
-# A bound that no packet has room for makes no difference.
-@pytest.mark.parametrize("kind", ["string", "string<=255", "string<=1000"])
-def test_a_string_is_counted_with_its_nul(kind, room, counts):
-    """A length that can claim 256 bytes is counted; the NUL is one of them."""
-    row = make("ros2", {"s": kind}, "Row")
-    layout = lay_out(make("ros2", {"rows": (row, "[]")}))
-    plan = build_plan(layout, max_message_bytes=layout.min_bytes + room)
-    assert [begin.claim is not None for begin in plan.begins.values()] == [counts, counts]
-
-
 PAIR = make("ros1", {"x": "uint16", "y": "uint16"}, "Pair")
 
 
@@ -134,23 +116,6 @@ def rows(*counts, size=1):
     """Return a sequence of rows in ROS 1: each is a sequence of items of `size` bytes."""
     parts = [count.to_bytes(4, "little") + bytes(count * size) for count in counts]
     return len(counts).to_bytes(4, "little") + b"".join(parts)
-
-
-@pytest.mark.parametrize(("items", "size"), [("uint8[]", 1), ((PAIR, "[]"), 4)])
-def test_the_step_after_a_counted_length_is_held_once(items, size):
-    """The check of a claim of at least 4,096 bytes takes 3 cycles, a refusal 2 more."""
-    row = make("ros1", {"items": items}, "Row")
-    layout = lay_out(make("ros1", {"rows": (row, "[]")}))
-    least = 4096 // size
-    found = decode(build_plan(layout), rows(least - 1, least, least - 1, 0, size=size))
-    (place,) = (place for place, visit in enumerate(found.steps) if visit.held)
-    # The length of the second row, and the number and the first row before it.
-    assert (found.steps[place - 1].end, found.steps[place].held) == (4 + 4 + 4096 - size + 4, 3)
-    # Without a byte of room for as much again.
-    plan = build_plan(layout, max_message_bytes=4 + 8191)
-    found = decode(plan, rows(least, least, 0, size=size))
-    assert found.status == "LENGTH"
-    assert [visit.held for visit in found.steps if visit.held] == [3, 5]
 
 
 @pytest.mark.parametrize(("more", "status"), [(0, "TRUNCATED"), (1, "LENGTH")])
@@ -245,11 +210,3 @@ def test_claims_by_hand(wire, fields, claims):
 def test_a_length_is_counted_from_a_16th_of_the_largest_packet(size, least):
     plan = build_plan(lay_out(make("ros1", {"l": (LIST, "[]")})), max_message_bytes=size)
     assert [begin.claim.least for begin in plan.begins.values()] == [-(-least // 4), least]
-
-
-@pytest.mark.parametrize(("room", "limit"), [(80, 11), (81, 11), (82, 12), (10, 2), (5, 1), (4, 0)])
-def test_room_for_elements_is_counted_with_and_without_padding(room, limit):
-    """Each has 5 bytes, or 8 with padding, of which 14 may be saved."""
-    element = make("ros2", {"y": "uint8", "s": "string"}, "E")
-    plan = build_plan(lay_out(make("ros2", {"e": (element, "[]")})), max_message_bytes=8 + room)
-    assert plan.begins[0].limit == limit

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.plan import build_plan, cycles
+from firm_hdl.plan import build_plan
 from firm_hdl.plan.cycles import (
     cycles_between,
     deserializer_cycles,
     packet_of,
     serializer_cycles,
 )
-from firm_hdl.plan.geometry import may_end_empty, most_beats, ring_beats
+from firm_hdl.plan.geometry import may_end_empty
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
@@ -125,71 +125,3 @@ def test_a_length_whose_claim_is_checked_costs_the_deserializer_three_cycles(cou
     assert (packet.beats, len(packet.visits)) == (1 + 512, steps)
     assert deserializer_cycles([packet] * 2) == [steps - 1 + held, 2 * (steps + held) - 1]
     assert cycles_between(packet) == steps + held
-
-
-@pytest.mark.parametrize(("count", "start"), [(0, 8), (1, 12), (2, 12), (3, 12)])
-@pytest.mark.parametrize("bus_bytes", [8, 16])
-def test_items_start_at_their_alignment_after_the_header_if_there_are_any(count, start, bus_bytes):
-    data = b"\0\1\0\0" + count.to_bytes(4, "little")
-    data += (bytes(4) + bytes(8 * count)) if count else b""
-    packet = packet_for({"q": "float64[]"}, data, bus_bytes, "ros2")
-    assert packet.next_start(0) == start
-
-
-CDR = b"\0\1\0\0"
-TEXT_OF_8 = CDR + b"\x09\0\0\0" + b"abcdefgh\0" + bytes(7 - 4) + bytes(8)
-ITEM = CDR + b"\1\0\0\0" + bytes(4) + bytes(8) + b"\7"
-
-
-@pytest.mark.parametrize(
-    ("fields", "data", "bus_bytes", "dialect", "beats"),
-    [
-        # 16 bytes from lane 7 on, and the rest of the last beat.
-        ({"a": "uint64", "b": "uint64"}, bytes(16), 8, "ros1", [(7 + 16 + 7) // 8]),
-        # On a bus of one byte, there is no rest; a packet without bytes has a beat.
-        ({"a": "uint8"}, b"\7", 1, "ros1", [1]),
-        ({"e": EMPTY}, b"", 1, "ros1", [1]),
-        ({"e": EMPTY}, b"", 8, "ros1", [(7 + 0 + 8) // 8]),
-        # 8 letters, NUL and a number of 8 bytes, with padding of at most 3 bytes: an alignment to 8
-        # is one to 4 within the packet, whose header has 4 bytes.
-        (
-            {"s": "string", "d": "float64"},
-            TEXT_OF_8,
-            8,
-            "ros2",
-            [(7 + 8) // 8, (7 + 17 + 3 + 7) // 8],
-        ),
-        # 4 items and a number of 4 bytes, with padding of at most 3 bytes.
-        (
-            {"a": "uint8[]", "b": "uint32"},
-            CDR + b"\4\0\0\0" + bytes(8),
-            8,
-            "ros2",
-            [(7 + 8) // 8, (7 + 8 + 3 + 7) // 8],
-        ),
-        # Items after padding of at most 3 bytes; an empty sequence has none.
-        ({"a": "float64[]", "d": "uint8"}, ITEM, 8, "ros2", [(7 + 8 + 3) // 8, (7 + 9 + 7) // 8]),
-        ({"a": "float64[]", "d": "uint8"}, CDR + bytes(4) + b"\7", 8, "ros2", [1, 1]),
-    ],
-)
-def test_the_most_beats_of_a_serializer_s_step(fields, data, bus_bytes, dialect, beats):
-    packet = packet_for(fields, data, bus_bytes, dialect)
-    assert [step.max_beats for step in cycles._writes(packet)] == beats
-
-
-def test_packets_of_no_bytes_have_a_beat():
-    packet = packet_for({"e": EMPTY}, b"")
-    assert (packet.bytes, packet.beats) == (0, 1)
-    assert both_cycles([packet] * 3) == ([0, 1, 2],) * 2
-    assert cycles_between(packet) == 1
-
-
-@pytest.mark.parametrize(("bus_bytes", "ring"), [(1, 16), (2, 16), (4, 8), (8, 8), (64, 8)])
-def test_the_ring_is_larger_than_a_step(bus_bytes, ring):
-    assert ring_beats(bus_bytes) == ring
-    for dialect, align in (("ros1", 0), ("ros2", 7)):
-        text = make(dialect, {"s": "string", "x": "float64"}, "T")
-        plan = build_plan(lay_out(make(dialect, {"t": (text, "[]")})), bus_bytes=bus_bytes)
-        # A text's last word, its NUL, padding, and a word of the map, at any lane.
-        assert most_beats(plan) < ring
-        assert most_beats(plan) <= -(-(3 * bus_bytes + 1 + align) // bus_bytes)

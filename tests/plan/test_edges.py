@@ -9,9 +9,7 @@ import pytest
 from firm_hdl import load_message
 from firm_hdl.plan import Edge, build_plan, decode
 from firm_hdl.plan.edges import edges
-from firm_hdl.plan.offsets import paddings
 from firm_hdl.wire import lay_out
-from tests.strategies import make
 
 HEADER = b"\0\1\0\0"
 
@@ -91,72 +89,3 @@ def test_a_loop_that_cannot_turn_again_has_no_such_decision(tmp_path, count, aga
     message = load_message("demo/msg/Outer", paths=[tmp_path])
     found = edges(build_plan(lay_out(message)))
     assert any(edge.way == "loop 0 again" for edge in found) == again
-
-
-@pytest.mark.parametrize(
-    ("size", "ways"),
-    [
-        (1 << 24, {"body", "again"}),
-        # 8 bytes of header and length leave 18 for text and NUL: two bus words, one byte, the NUL.
-        (26, {"body", "again"}),
-        (25, {"body"}),
-        (18, {"body"}),
-        # A bus word and the NUL are the rest.
-        (17, set()),
-        (16, set()),
-    ],
-)
-def test_ways_that_limits_forbid_are_no_decisions(size, ways):
-    text = plan("std_msgs/msg/String", max_message_bytes=size)
-    found = {edge for edge in edges(text) if edge.step != 2}
-    body = {Edge(1, "next")} if "body" in ways else set()
-    again = {Edge(1, "again")} if "again" in ways else set()
-    start = {Edge(0, "next"), *([Edge(0, "body")] if "body" in ways else [])}
-    assert found == start | body | again
-
-
-@pytest.mark.parametrize(("bound", "rest"), [(1, True), (0, False)])
-def test_a_run_that_is_always_empty_has_no_rest(bound, rest):
-    layout = lay_out(make("ros2", {"a": "uint8[]"}))
-    # 8 bytes of header and length.
-    found = edges(build_plan(layout, max_message_bytes=8 + bound))
-    assert (Edge(2, "rest") in found) == rest
-    assert Edge(2, "no rest") in found
-
-
-@pytest.mark.parametrize(("bound", "ways"), [("<=1", {0}), ("<=2", {0, 3}), ("", {0, 3})])
-def test_paddings_count_on_bounds(tmp_path, bound, ways):
-    # Only the second element has three bytes of padding before it.
-    folder = tmp_path / "demo" / "msg"
-    folder.mkdir(parents=True)
-    (folder / "Outer.msg").write_text(f"Inner[{bound}] inner\n")
-    (folder / "Inner.msg").write_text("int32 number\nbool flag\n")
-    built = build_plan(lay_out(load_message("demo/msg/Outer", paths=[tmp_path])))
-    found = {edge.way for edge in edges(built) if edge.way.startswith("padding")}
-    assert found == {f"padding {count}" for count in ways}
-
-
-@pytest.mark.parametrize("bound", [1, 3])
-def test_paddings_count_on_bounds_of_runs(tmp_path, bound):
-    folder = tmp_path / "demo" / "msg"
-    folder.mkdir(parents=True)
-    (folder / "Outer.msg").write_text(f"uint8[<={bound}] items\nstring text\n")
-    built = build_plan(lay_out(load_message("demo/msg/Outer", paths=[tmp_path])), bus_bytes=1)
-    found = {edge.way for edge in edges(built) if edge.way.startswith("padding")}
-    assert found == {f"padding {-count % 4}" for count in range(bound + 1)}
-
-
-def test_paddings_count_from_the_end_of_the_header():
-    # A length, up to 4 bytes of text with its NUL, and up to 4 bytes of padding.
-    built = build_plan(lay_out(make("ros2", {"s": "string<=3", "d": "float64"})), bus_bytes=1)
-    (found,) = paddings(built).values()
-    assert found == {0, 1, 2, 3, 4}
-
-
-@pytest.mark.parametrize(
-    ("kind", "counts"), [("uint8", []), ("uint16", [0, 1]), ("uint32", range(4))]
-)
-def test_paddings_of_each_alignment_are_decisions(kind, counts):
-    built = build_plan(lay_out(make("ros2", {"s": "string", "n": kind})))
-    found = {edge.way for edge in edges(built) if edge.way.startswith("padding")}
-    assert found == {f"padding {count}" for count in counts}

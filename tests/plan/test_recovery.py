@@ -12,7 +12,6 @@ from firm_hdl.plan import Fixed, build_plan, decode
 from firm_hdl.plan.recovery import Recovery, recovery
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
-from tests.steps import calls_at_most
 from tests.strategies import make
 
 AFTER = 4
@@ -60,6 +59,7 @@ def steps_after(plan, packet):
     ],
 )
 @pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 8, 64]))
+@pytest.mark.sampled(3)
 def test_no_packet_takes_longer_than_the_bound(distro, name, bus_bytes):
     most = 8192
     layout = lay_out(load_message(name, distro=distro))
@@ -79,6 +79,7 @@ def diagnostics(distro, most):
 
 @pytest.mark.parametrize("distro", ["lyrical", "noetic"])
 @pytest.mark.parametrize("most", [by_depth(1 << 17, 1 << 24)])
+@pytest.mark.sampled(2)
 def test_the_bound_for_diagnostics_is_close(distro, most):
     plan = diagnostics(distro, most)
     bound = recovery(plan, 1).cycles
@@ -131,52 +132,6 @@ def test_a_string_takes_a_cycle_for_each_word(characters, words):
     assert recovery(plan, 2) == Recovery(cycles=2 + words + AFTER, longest_packet=2 + words)
 
 
-def test_the_longest_packet_has_the_padding_of_its_elements():
-    element = make("ros2", {"a": "uint8", "s": "string"}, "Element")
-    plan = build_plan(lay_out(make("ros2", {"e": (element, "[]")})), max_message_bytes=8008)
-    # 8 bytes, and 8 for each element; a deserializer takes 2 steps for each.
-    assert recovery(plan, 2).longest_packet == pytest.approx(2 + 2 * 1000, abs=2)
-
-
-def test_elements_without_bytes_claim_one_byte_each():
-    empty = make("ros1", {}, "Empty")
-    plan = build_plan(lay_out(make("ros1", {"e": (empty, "[]")})), max_message_bytes=1004)
-    assert recovery(plan, 1).cycles == pytest.approx(1000, abs=9)
-    assert steps_after(plan, bomb(plan, [1000])) + AFTER <= recovery(plan, 1).cycles
-
-
-def test_arrays_of_constant_count_are_part_of_an_element():
-    inner = make("ros1", {"t": "string"}, "Inner")
-    outer = make("ros1", {"i": (inner, "[5]"), "x": "float64[40]"}, "Outer")
-    message = make("ros1", {"o": (outer, "[]"), "z": (inner, "[3]")})
-    plan = build_plan(lay_out(message), max_message_bytes=10_000)
-    for wanted in ([28], [10, 0, 5000], [1, 0, 0, 9000], [27, 1, 2, 3]):
-        packet = bomb(plan, wanted)
-        assert steps_after(plan, packet) + AFTER <= recovery(plan, 1).cycles
-
-
-@pytest.mark.parametrize("outer", ["[]", "[<=40]"])
-def test_an_array_of_messages_recovers_like_its_elements_one_by_one(outer):
-    inner = make("ros1", {"t": "string"}, "Inner")
-    found = []
-    for fields in ({"i": (inner, "[2]")}, {"a": inner, "b": inner}):
-        message = make("ros1", {"o": (make("ros1", fields, "Outer"), outer)})
-        found.append(recovery(build_plan(lay_out(message), max_message_bytes=10_000), 2))
-    assert found[0] == found[1]
-    # Texts of a word per cycle, and 8 bytes of lengths in two cycles.
-    assert found[0].longest_packet >= 1250
-
-
-@pytest.mark.parametrize(("bound", "cycles"), [("<=1", 3), ("<=2", 6), ("<=3", 12), ("", 4000)])
-def test_the_longest_packet_takes_its_beats_or_its_steps(bound, cycles):
-    # Each element has 4 beats, and 3 steps, as the last one takes two words.
-    element = make("ros1", dict.fromkeys("abcd", "uint64"), "Element")
-    layout = lay_out(make("ros1", {"e": (element, f"[{bound}]")}))
-    plan = build_plan(layout, max_message_bytes=4 + 32 * 1000)
-    # Packets of at most two elements have few beats, so that only steps are counted.
-    assert recovery(plan, 2).longest_packet == 2 + cycles
-
-
 def test_the_worst_packet_claims_what_has_the_most_steps_per_byte():
     """Rows of a byte array: a row is a step in 4 bytes, and a word of bytes a step in 8."""
     row = make("ros1", {"a": "uint8[]"}, "Row")
@@ -193,19 +148,3 @@ def test_what_padding_may_save_is_claimed_beside_the_budget():
     # 8 bytes and 2 steps: 1,001 of them. Texts take the other 20 bytes, and 499 uncounted ones.
     rest = -(-(20 + 499) // 8)
     assert recovery(plan, 1).cycles == 1 + 2 * 1001 + rest + AFTER
-
-
-@pytest.mark.parametrize(("bound", "words"), [(2, 1), (16, 2), (17, 3)])
-def test_a_short_sequence_takes_few_words(bound, words):
-    plan = build_plan(lay_out(make("ros2", {"a": f"uint8[<={bound}]"}, "T"), "ros1"))
-    assert recovery(plan, 2).longest_packet == 2 + words
-
-
-def test_large_elements_are_not_followed_step_by_step():
-    element = make("ros1", {"a": "uint8[131072]"}, "Element")
-    plan = build_plan(lay_out(make("ros1", {"e": (element, "[]")})))
-    # Three elements alone have 49,152 words.
-    with calls_at_most(100_000):
-        found = recovery(plan, 2)
-    # 16 MiB have room for 127 whole elements beside the length.
-    assert found.longest_packet == 2 + 127 * (131072 // 8)

@@ -81,13 +81,6 @@ def test_a_plan_prints_as_an_engineer_reads_it():
     assert body_of(text_of(MESSAGE, max_message_bytes=280)) == BODY
 
 
-def test_the_first_line_sums_it_up():
-    first = text_of(MESSAGE).splitlines()[0]
-    assert first == (
-        "# Plan of p/msg/T on cdr, bus of 8 bytes: 6 leaves, 2 runs, 1 loop level, 7 steps."
-    )
-
-
 @pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
 def test_reading_gives_the_same_plan(bus_bytes):
     plan = build_plan(lay_out(MESSAGE), bus_bytes=bus_bytes)
@@ -108,33 +101,6 @@ def test_names_that_yaml_takes_for_values_stay_names(bus_bytes):
     assert list(yaml.safe_load(text)["leaves"]) == names
     if bus_bytes == 8:
         assert list(yaml.safe_load(text)["steps"]["step 0"].values())[:4] == names[:4]
-
-
-def test_every_step_names_the_loops_that_it_is_in():
-    line = make("ros2", {"points": (POINT, "[]")}, "Line")
-    text = text_of(make("ros2", {"lines": (line, "[]"), "more": (POINT, "[<=3]")}), bus_bytes=8)
-    lines, points = "in loop 0 (lines.length)", "in loop 1 (lines.item.points.length)"
-    both, more = f"{lines}, {points}", "in loop 0 (more.length)"
-    assert re.findall(r"^  step \d+:(?:  # (.*))?$", text, re.MULTILINE) == [
-        "packet bytes 0..7", lines, both, both, both, "", more, more, more, "",
-    ]  # fmt: skip
-
-
-def test_leaves_without_bytes_print_where_they_become_valid():
-    empty = make("ros1", {}, "E")
-    message = make("ros1", {"a": "uint8", "e": empty, "f": empty, "b": "byte"})
-    plan = build_plan(lay_out(message))
-    text = to_yaml(plan)
-    assert "    0: a\n    at 1: [e.trigger, f.trigger]\n    1: b\n" in text
-    assert "  b: signed byte\n" in text
-    assert from_yaml(text) == plan
-
-
-def test_items_wider_than_the_bus_name_their_loop():
-    plan = build_plan(lay_out(make("ros1", {"a": "float64[]"})), bus_bytes=2)
-    text = to_yaml(plan)
-    assert "    0..3: a.items, 1 item, bytes 4..7 of 8, last of loop 0\n" in text
-    assert from_yaml(text) == plan
 
 
 def test_what_lengths_claim_is_printed_and_read():
@@ -196,20 +162,6 @@ def test_a_plan_that_is_not_sound_is_printed_and_read_too(which, changes):
         plan = damaged(plan, path.split("."), new)
     assert plan != PLANS[which]
     assert from_yaml(to_yaml(plan)) == plan
-
-
-def test_lines_have_at_most_100_columns():
-    ends = []
-    for length in range(10, 40):
-        name = "n" * length
-        text = text_of(make("ros1", {name: "string", "e": (PAIRS, "[]")}))
-        lines = text.splitlines()
-        assert max(map(len, lines)) <= 100
-        flat = f"    starts: {{run: {name}.items, count: {name}.length, "
-        flat += "limit: 16777208, body: step 1}"
-        assert (flat in lines) == (len(flat) <= 100)
-        ends.append(flat in lines)
-    assert True in ends and False in ends
 
 
 MISTAKES = [

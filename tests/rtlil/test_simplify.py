@@ -219,30 +219,6 @@ def test_cases_without_effect_are_removed() -> None:
     assert body_of(other, choice) == (other, choice)
 
 
-def test_an_empty_arm_before_one_that_matches_the_same_stays() -> None:
-    default = Assign(target=(Y,), value=(Slice("t", 0, 2), Slice("s", 0, 2)))
-    other = Assign(target=(Y,), value=(Bits("1010"),))
-    wild = Switch(
-        selector=(S,),
-        cases=(Case(patterns=("001",), body=()), Case(patterns=("0--",), body=(other,))),
-    )
-    assert body_of(default, wild) == (default, wild)
-    plain = Switch(
-        selector=(S,),
-        cases=(Case(patterns=("001",), body=()), Case(patterns=("001", "010"), body=(other,))),
-    )
-    (_, found) = body_of(default, plain)
-    assert found == Switch(selector=(S,), cases=(Case(patterns=("010",), body=(other,)),))
-    # An arm whose patterns an earlier arm has is never taken, and is no default.
-    third = Assign(target=(Y,), value=(Bits("0110"),))
-    cases = tuple(
-        Case(patterns=(pattern,), body=(statement,))
-        for pattern, statement in (("001", other), ("001", third), ("010", third))
-    )
-    (_, found) = body_of(default, Switch(selector=(S,), cases=cases))
-    assert found == Switch(selector=(S,), cases=(cases[0], cases[2]))
-
-
 def test_neighbouring_parts_are_assigned_at_once() -> None:
     default = Assign(target=(Y,), value=(Slice("t", 0, 2), Slice("s", 0, 2)))
 

@@ -5,19 +5,14 @@ The design is a register in a stream: a payload leaves one cycle after it enters
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import pytest
 from amaranth.hdl import Cat, Module, Signal
 
-from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.sim import DeadlineError, StreamRuleError
 from firm_hdl.sim.bench import RESET_CYCLES, WORD_BITS, Bench, Ports
-from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.job import Job, RunOptions
 from firm_hdl.sim.stalls import Stalls
 from tests.sim.components import Relay
-from tests.strategies import make
 
 
 class Run:
@@ -65,11 +60,6 @@ def test_payloads_leave_in_the_next_cycle():
     # 0, 1 and 2 in; 1, 2 and 3 out; four cycles of silence.
     assert run.go() == 8
     assert run.taken == {"o0": [(1, 5), (2, 6), (3, 7)]}
-
-
-@pytest.mark.parametrize("settle", [1, 2, 9])
-def test_silence_ends_a_run(settle):
-    assert Run([[5, 6, 7]], settle=settle).go() == 4 + settle
 
 
 def test_a_bench_runs_job_after_job_from_reset():
@@ -120,39 +110,12 @@ def test_between_runs_is_a_reset_or_a_new_start(keeps_state):
     ]
 
 
-def test_a_run_begins_without_the_payloads_of_the_one_before():
-    # These payloads have a word of their own, after that of the control bits.
-    relay_bench = RelayBench(keeps_state=True, bits=WORD_BITS)
-    relay_bench.run([1, (1 << WORD_BITS) - 1])
-    assert [row[2] for row in relay_bench.run([0, 5])[:3]] == [0, 0, 5]
-
-
-def test_runs_with_waveforms_begin_from_reset(tmp_path):
-    relay_bench = RelayBench(keeps_state=False)
-    runs = [relay_bench.run([5, 6], vcd=tmp_path / f"{number}.vcd") for number in range(2)]
-    assert runs[0] == runs[1] == relay_bench.run([5, 6])
-    texts = [(tmp_path / f"{number}.vcd").read_text() for number in range(2)]
-    # Each begins with the time of the day.
-    first, second = (text.partition("$timescale")[2] for text in texts)
-    assert "payload" in first and first == second
-
-
 def test_a_run_that_failed_is_followed_by_a_reset():
     relay_bench = RelayBench(keeps_state=True)
     with pytest.raises(DeadlineError, match="No end after 4 cycles"):
         relay_bench.run([5], stalls={"o": Stalls.bits("0" * 9 + "1")}, limit=4)
     second = relay_bench.run([7])
     assert second[0] == [5 + 1 + RESET_CYCLES, 0, 0, 0]
-
-
-def test_a_bench_that_keeps_its_state_writes_no_waveforms(tmp_path):
-    with pytest.raises(ValueError, match=r"^A bench that keeps its state writes no waveforms$"):
-        RelayBench(keeps_state=True).run([5], vcd=tmp_path / "x.vcd")
-
-
-def test_nothing_to_do_is_over_after_the_silence():
-    run = Run([[]])
-    assert run.go() == 4 and run.taken == {"o0": []}
 
 
 @pytest.mark.parametrize(
@@ -169,32 +132,6 @@ def test_stalls_delay_by_exactly_their_cycles(stalls, taken):
     run = Run([[1, 2, 3]], stalls={name: Stalls.bits(bits) for name, bits in stalls.items()})
     run.go()
     assert run.taken["o0"] == taken
-
-
-def test_streams_do_not_wait_for_each_other():
-    run = Run([[1, 2], [], [3]], stalls={"o0": Stalls.bits("0001")})
-    run.go()
-    assert run.taken == {"o0": [(3, 1), (7, 2)], "o1": [], "o2": [(1, 3)]}
-
-
-def test_stalled_source_does_not_stall_others():
-    run = Run([[1, 2], [3], [4]], stalls={"i0": Stalls.bits("0001"), "i1": Stalls.bits("01")})
-    run.go()
-    assert run.taken == {"o0": [(4, 1), (8, 2)], "o1": [(2, 3)], "o2": [(1, 4)]}
-
-
-def test_each_stream_has_the_stalls_of_its_own_name():
-    """A payload enters and leaves in the first cycles that the two patterns let through."""
-    stalls = Stalls(0.7, 1, 9, seed=4)
-
-    def free(name, after):
-        return next(n for n, stalled in enumerate(stalls.cycles(name)) if n > after and not stalled)
-
-    times = [free(f"o{n}", free(f"i{n}", -1)) for n in range(4)]
-    assert len(set(times)) == 4
-    run = Run([[5]] * 4, stalls=stalls)
-    run.go()
-    assert run.taken == {f"o{n}": [(time, 5)] for n, time in enumerate(times)}
 
 
 @pytest.mark.parametrize("bits", [WORD_BITS // 4, WORD_BITS // 2, WORD_BITS - 3, WORD_BITS, 400])
@@ -227,23 +164,11 @@ def test_deadline_is_the_most_cycles_without_a_transfer():
         Run([[1]], expected=2).go()
 
 
-def test_the_longest_stall_of_any_stream_is_added_to_the_deadline():
-    for longest, cycles in ((0, 7), (3, 9), (4, 10)):
-        # It is the longest one, not all of them together.
-        stalls = {"o0": Stalls.bits("1" + "0" * longest), "i1": Stalls.bits("10")}
-        with pytest.raises(DeadlineError, match=f"^No transfer in {cycles} cycles"):
-            Run([[1], [2]], expected=3, deadline=5, stalls=stalls).go()
-
-
 def test_missed_deadline_names_offering_sources():
     run = Run([list(range(9)), [1]], fault="block", expected=99, deadline=20)
     with pytest.raises(DeadlineError, match=r"offered and not taken: i0$"):
         run.go()
     assert [value for _, value in run.taken["o0"]] == [0, 1, 2, 3]
-
-
-def test_silence_that_ends_a_run_in_time_is_no_missed_deadline():
-    assert Run([[1]], deadline=3, settle=4).go() == 6
 
 
 @pytest.mark.parametrize(("limit", "ends"), [(8, True), (7, False)])
@@ -254,21 +179,6 @@ def test_limit_is_the_most_cycles_of_a_run(limit, ends):
     else:
         with pytest.raises(DeadlineError, match=r"^No end after 7 cycles; outstanding: something$"):
             run.go()
-
-
-def test_silence_begins_anew_while_something_is_offered():
-    """A payload that a sink has not taken ends the silence, even if no more is expected."""
-    run = Run([[1, 2]], expected=1, stalls={"o0": Stalls.bits("0100000000")}, settle=4)
-    # Transfers in cycles 1 and 11, then four cycles of silence.
-    assert run.go() == 16
-    assert run.taken["o0"] == [(1, 1), (11, 2)]
-
-
-def test_silence_is_counted_from_the_last_transfer():
-    # Transfers in cycles 0 and 1, then in 3 and 4.
-    run = Run([[1, 2]], expected=1, stalls={"i0": Stalls.bits("1001")}, settle=4)
-    assert run.go() == 9
-    assert run.taken["o0"] == [(1, 1), (4, 2)]
 
 
 @pytest.mark.parametrize(("fault", "rule"), [("drop", "2"), ("change", "3")])
@@ -288,58 +198,3 @@ def test_probes_are_seen_in_each_cycle_and_before_the_first():
     cycles = run.go()
     assert len(seen) == cycles + 1
     assert seen[:5] == [[0, 0], [0, 2], [5, 3], [6, 1], [6, 0]]
-
-
-def test_payloads_may_be_more_than_the_payload():
-    def payloads(relays):
-        return {"o0": Cat(relays[0].o.payload, relays[0].i.valid)}
-
-    run = Run([[5, 6]], payloads=payloads)
-    run.go()
-    assert run.taken["o0"] == [(1, 5 + 256), (2, 6)]
-
-
-@pytest.mark.parametrize("name", ["a", "b", "c"])
-def test_a_limit_leaves_time_for_the_stalls_of_every_stream(name):
-    harness = SimpleNamespace(bench=SimpleNamespace(names=["a", "b", "c"]))
-
-    def limit(stalls, messages=2, size=11):
-        return Harness._limit(harness, messages, size, stalls)
-
-    assert limit(None) == 10_000 + 50 * (11 + 16)
-    assert limit({name: Stalls.bits("1000")}) == 10_000 + 50 * (11 + 16) * 4
-    assert limit(None, size=3) == 10_000 + 50 * (3 + 16)
-    assert limit(None, messages=0) == 10_000 + 50 * 11
-
-
-def test_a_limit_counts_the_bytes_of_packets_or_the_transfers_of_messages():
-    counted = []
-
-    class Counted(Harness):
-        def _limit(self, messages, size, stalls):
-            counted.append((messages, size))
-            return super()._limit(messages, size, stalls)
-
-    message = make("ros1", {"x": "uint8", "s": "string"})
-    packet = bytes.fromhex("07 03000000 616263")
-    received = Counted(Deserializer(message, bus_bytes=2), None).run_packets([packet] * 2)
-    transfers = {leaf: sent[: len(sent) // 2] for leaf, sent in received.transfers.items()}
-    Counted(None, Serializer(message, bus_bytes=2)).run_messages([transfers] * 3)
-    # A number, a length, and two transfers of three characters.
-    assert counted == [(2, 16), (3, 12)]
-
-
-@pytest.mark.parametrize("name", ["a", "b", "c"])
-def test_leaves_without_gates_are_not_stalled(name):
-    harness = SimpleNamespace(leaf_ports=["a", "b", "c"])
-    with pytest.raises(ValueError, match=f"^Stream '{name}' can be stalled in a gated harness"):
-        Harness._refuse_leaf_stalls(harness, {name: Stalls.bits("10")})
-    # Stalls of all streams are those of the streams that can be stalled.
-    for stalls in (
-        None,
-        Stalls.bits("10"),
-        {},
-        {"other": Stalls.bits("10")},
-        {name: Stalls.bits("1")},
-    ):
-        Harness._refuse_leaf_stalls(harness, stalls)

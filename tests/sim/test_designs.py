@@ -147,6 +147,7 @@ def test_every_helper_has_a_domain(period: float) -> None:
         (ClockDomain("own"), r"^The clock domain 'own' has no clock: call add_clock"),
     ],
 )
+@pytest.mark.sampled(3)
 def test_a_stream_in_another_domain_is_an_error(domain: Any, error: str) -> None:
     with pytest.raises(ClockDomainError, match=error):
         run(Loop(whole), domain=domain)
@@ -247,6 +248,7 @@ def test_a_wrong_member_is_answered_with_the_right_ones() -> None:
         ),
     ],
 )
+@pytest.mark.sampled(2)
 def test_the_streams_that_wait_are_named(connect: Any, statuses: bool, error: str) -> None:
     with pytest.raises(DeadlineError, match=error):
         run(Loop(connect, statuses=statuses))

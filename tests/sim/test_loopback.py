@@ -29,7 +29,6 @@ from firm_hdl.sim import (
 )
 from firm_hdl.sim.bench import Bench, Ports
 from firm_hdl.sim.job import Job
-from firm_hdl.sim.record import Recorder
 from firm_hdl.sim.transfers import PendingTransfers, split_transfers, transfer_table
 from firm_hdl.wire import lay_out
 from tests.depth import THOROUGH, by_depth
@@ -52,6 +51,7 @@ PACKET = bytes.fromhex(
 TEXT = make("ros2", {"a": "uint8", "s": "string"}, "Text")
 TEXT_PACKET = b"\0\1\0\0\7\0\0\0\3\0\0\0hi\0"
 SHORT, SHORT_PACKET = by_depth((TEXT, TEXT_PACKET), (IMAGE, PACKET))
+TINY, TINY_PACKET = make("ros2", {"a": "uint8"}, "Tiny"), b"\0\1\0\0\7"
 POINT = make(
     "ros2", {"positions": "float64[]", "accelerations": "float64[]", "sec": "int32"}, "Point"
 )
@@ -84,12 +84,6 @@ WAY = {
         {"positions": [0.5] * count, "accelerations": [1.0], "sec": 1} for count in (0, 1, 3)
     ],
 }
-
-
-def test_loopback_unpacks_as_packets_and_statuses():
-    packets, statuses = loopback(SHORT, [SHORT_PACKET, SHORT_PACKET])
-    assert packets == [SHORT_PACKET, SHORT_PACKET]
-    assert statuses == [Status.OK, Status.OK]
 
 
 def test_loopback_returns_all_observations():
@@ -125,6 +119,7 @@ def gated():
         {"message": Stalls.bits("001"), "message.data": Stalls.none},
     ],
 )
+@pytest.mark.sampled(2)
 def test_stalls_change_nothing_but_the_time(stalls):
     free, packets = without_stalls(), [PACKET] * 3
     if isinstance(stalls, Stalls) or THOROUGH:
@@ -151,9 +146,9 @@ def test_loopback_has_the_limit_that_is_asked_for():
 
 
 def test_loopback_has_the_deadline_that_is_asked_for():
-    assert loopback(SHORT, [SHORT_PACKET], deadline=20).packets == [SHORT_PACKET]
+    assert loopback(TINY, [TINY_PACKET], deadline=20).packets == [TINY_PACKET]
     with pytest.raises(DeadlineError, match=r"^No transfer in 3 cycles up to cycle"):
-        loopback(SHORT, [SHORT_PACKET], deadline=2)
+        loopback(TINY, [TINY_PACKET], deadline=2)
 
 
 def test_runs_of_a_harness_do_not_depend_on_each_other():
@@ -222,16 +217,16 @@ def test_missing_transfers_hit_the_deadline_with_names():
 
 
 def test_limit_ends_a_run_without_an_end():
-    message = r"^No end after 20 cycles; outstanding: status \(\d of 19\)"
+    message = r"^No end after 20 cycles; outstanding: status \(\d+ of 39\)"
     with pytest.raises(DeadlineError, match=message):
-        loopback(SHORT, [SHORT_PACKET] * 19, limit=20)
+        loopback(TINY, [TINY_PACKET] * 39, limit=20)
 
 
 def test_leaf_stalls_need_gates():
-    harness = Harness(Deserializer(SHORT), Serializer(SHORT))
+    harness = Harness(Deserializer(TINY), Serializer(TINY))
     name = leaf_name(harness.plan, 0)
     with pytest.raises(ValueError, match=rf"^Stream '{name}' can be stalled in a gated harness"):
-        harness.run_packets([SHORT_PACKET], RunOptions(stalls={name: Stalls.bits("01")}))
+        harness.run_packets([TINY_PACKET], RunOptions(stalls={name: Stalls.bits("01")}))
 
 
 def test_harness_needs_a_converter():
@@ -241,34 +236,18 @@ def test_harness_needs_a_converter():
 
 def test_harness_has_the_input_of_its_first_converter():
     with pytest.raises(ValueError, match=r"^Packets need a harness with a deserializer$"):
-        Harness(None, Serializer(SHORT)).run_packets([SHORT_PACKET])
-    for serializer in (None, Serializer(SHORT)):
-        harness = Harness(Deserializer(SHORT), serializer)
+        Harness(None, Serializer(TINY)).run_packets([TINY_PACKET])
+    for serializer in (None, Serializer(TINY)):
+        harness = Harness(Deserializer(TINY), serializer)
         with pytest.raises(ValueError, match=r"^Messages need a harness without a deserializer$"):
             harness.run_messages([])
 
 
-def test_no_packets_are_no_packets():
-    nothing = loopback(SHORT, [])
-    assert tuple(nothing) == ([], [])
-    assert nothing.cycles == 0
-
-
 def test_waveform_is_written(tmp_path):
     path = tmp_path / "loopback.vcd"
-    packets, _ = loopback(SHORT, [SHORT_PACKET], vcd=path)
-    assert packets == [SHORT_PACKET]
+    packets, _ = loopback(TINY, [TINY_PACKET], vcd=path)
+    assert packets == [TINY_PACKET]
     assert "$enddefinitions" in path.read_text()
-
-
-def test_deadline_of_a_decoder_names_the_leaves_that_are_missing():
-    plan = plan_of(IMAGE)
-    table = transfer_table(plan, IMAGE)
-    recorder = Recorder(plan, 1, decodes=True, encodes=False, table=table)
-    recorder.bits[0].append(1)
-    assert recorder.outstanding().startswith(
-        "status (0 of 1), message.header.stamp.nanosec (1), message.header.frame_id.length (1), "
-    )
 
 
 @pytest.mark.parametrize(
@@ -347,13 +326,6 @@ def test_transfers_after_the_end_are_recorded(stalls):
     assert got == [7, 7]
 
 
-def test_cycles_of_a_run_that_fails_are_counted():
-    harness = Harness(Deserializer(IMAGE), None)
-    with pytest.raises(DeadlineError):
-        harness.run_packets([PACKET] * 9, RunOptions(limit=20))
-    assert harness.bench.cycles == 21
-
-
 def test_one_transfer_too_many_is_not_taken():
     transfers = to_transfers(plan_of(IMAGE), IMAGE, VALUE)
     result = encode(IMAGE, [{leaf: list(each) for leaf, each in transfers.items()}])
@@ -383,14 +355,3 @@ def test_gates_stay_open_after_what_is_offered():
     seen = harness.run_packets([PACKET] * 4, RunOptions(stalls=stalls, observe=observe))
     assert seen.packets == [PACKET] * 4
     assert waited > 20 and not fell
-
-
-def test_a_gate_is_closed_while_it_stalls_though_a_transfer_waits():
-    rx, tx = Deserializer(IMAGE), Serializer(IMAGE)
-    first, *_ = leaf_streams(tx.message, tx.tree).values()
-    harness = Harness(rx, tx, gated=True, probes=[first.valid])
-    offered = []
-    stalls = {"message": Stalls.bits("0" * 40 + "1" * 400)}
-    options = RunOptions(stalls=stalls, observe=lambda values: offered.append(values[0]))
-    assert harness.run_packets([PACKET], options).packets == [PACKET]
-    assert offered.index(1) >= 40

@@ -43,6 +43,7 @@ class Wires(wiring.Component):
 
 @pytest.mark.parametrize("stalls", STALLS)
 @pytest.mark.parametrize(("message", "value"), [(IMAGE, VALUE), (JOINTS, TRAJECTORY)])
+@pytest.mark.sampled(2)
 def test_messages_pass_an_accelerator(message, value, stalls):
     dut = Wires(message)
     i, o = MessagePort(dut.i, message), MessagePort(dut.o, message)
@@ -62,6 +63,7 @@ def test_messages_pass_an_accelerator(message, value, stalls):
 
 
 @pytest.mark.parametrize("stalls", STALLS)
+@pytest.mark.sampled(3)
 def test_packets_become_messages(stalls):
     rx = Deserializer(IMAGE)
     port = MessagePort(rx.message, IMAGE)
@@ -216,17 +218,6 @@ def test_deadline_of_a_message_allows_for_the_longest_stall_of_any_leaf(leaf):
     assert got == [dict.fromkeys("rgba", 1.0)]
 
 
-def test_silence_of_1000_cycles_is_no_missed_deadline_of_a_message():
-    dut = Wires(COLOUR)
-    o = MessagePort(dut.o, COLOUR)
-
-    async def sink(ctx):
-        await o.receive(ctx)
-
-    with pytest.raises(DeadlineError, match=r"^No transfer of a message in 1001 cycles"):
-        run_testbenches(dut, sink)
-
-
 def test_missing_leaves_are_told_in_the_order_of_the_message_with_their_numbers():
     message = make("ros2", {"v": "uint8[]", "n": "uint8"})
     dut = Wires(message)
@@ -240,24 +231,4 @@ def test_missing_leaves_are_told_in_the_order_of_the_message_with_their_numbers(
         await o.receive(ctx, deadline=3)
 
     with pytest.raises(DeadlineError, match=r": message\.v\.items \(2\), message\.n \(1\)$"):
-        run_testbenches(dut, source, sink)
-
-
-def test_leaves_that_are_offered_and_not_awaited_do_not_put_off_the_deadline():
-    dut = Wires(COLOUR)
-    i, o = MessagePort(dut.i, COLOUR), MessagePort(dut.o, COLOUR)
-
-    async def source(ctx):
-        for leaf in (0, 1, 2):
-            ctx.set(i.streams[leaf].valid, 1)
-
-    async def sink(ctx):
-        await o.receive(ctx, deadline=5)
-
-    message = (
-        r"^No transfer of a message in 6 cycles; outstanding: message\.a \(1\); "
-        r"offered while no logic drives `ready`: design\.o\.r, design\.o\.g, design\.o\.b; "
-        r"offered while `ready` is low: design\.i\.r, design\.i\.g, design\.i\.b$"
-    )
-    with pytest.raises(DeadlineError, match=message):
         run_testbenches(dut, source, sink)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firm_hdl.gateware.signatures import leaf_shape, packet_layout
+from firm_hdl.gateware.signatures import leaf_shape
 from firm_hdl.plan import Leaf
 from firm_hdl.sim.payloads import (
     PacketCollector,
@@ -52,21 +52,6 @@ def test_bits_are_those_of_the_stream(leaf, payload, value):
     assert decoder_of(leaf)(bits) == payload
     # The simulator returns a signed signal in this form.
     assert leaf.kind == "items" or decoder_of(leaf)(value) == payload
-
-
-def test_missing_lanes_are_zero():
-    leaf = Leaf(path=("a",), kind="items", type="uint8", signed=False, lanes=4)
-    assert encoder_of(leaf)(((1, 2), True)) == encoder_of(leaf)(((1, 2, 0, 0), True))
-
-
-def test_beats_have_the_layout_of_packets():
-    beats = [packet_layout(4).from_bits(bits) for bits in packet_beats(b"abcdef", 4)]
-    assert [(list(b.data), b.count, b.last) for b in beats] == [
-        ([97, 98, 99, 100], 4, 0),
-        ([101, 102, 0, 0], 2, 1),
-    ]
-    (empty,) = packet_beats(b"", 4)
-    assert packet_layout(4).from_bits(empty).count == 0
 
 
 @given(packets=st.lists(st.binary(max_size=40)), bus_bytes=st.sampled_from([1, 2, 8, 64]))

@@ -33,7 +33,7 @@ def test_right_stream_passes():
     assert relay("") == list(range(1, 9))
 
 
-def test_valid_that_falls_is_rule_1():
+def test_valid_that_falls_is_rule_2():
     with pytest.raises(StreamRuleError) as caught:
         relay("drop")
     error = caught.value
@@ -43,7 +43,7 @@ def test_valid_that_falls_is_rule_1():
     )
 
 
-def test_payload_that_changes_is_rule_2():
+def test_payload_that_changes_is_rule_3():
     with pytest.raises(
         StreamRuleError,
         match=r"^Stream 'dut\.o' breaks rule 3 in cycle \d+: payload changed from 0x1 to 0x0 ",

@@ -84,6 +84,7 @@ PORTS = """, .{name}_in__payload({name}_beats[{name}_at]), .{name}_in__valid({na
 
 @pytest.mark.usefixtures("iverilog")
 @pytest.mark.parametrize("standard", ["-g2005", "-g2012"])
+@pytest.mark.sampled(2)
 def test_converters_in_a_design_of_two_types_and_two_clocks(standard: str, tmp_path: Path) -> None:
     linear = [dict.fromkeys("xyz", 0.5 * k) for k in range(100)]
     sent = {
@@ -118,6 +119,7 @@ endmodule
 
 @pytest.mark.usefixtures("iverilog")
 @pytest.mark.parametrize("seed", [5, 8, 14, 15, 40, 59])
+@pytest.mark.sampled(2)
 def test_any_design_behaves_as_in_amaranth(seed: int, tmp_path: Path) -> None:
     written, simulated = RandomDesign(seed), RandomDesign(seed)
     inputs = {signal.name: signal for signal in simulated.inputs}

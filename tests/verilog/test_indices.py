@@ -37,6 +37,7 @@ def test_two_elements_never_get_one_name() -> None:
 
 
 @pytest.mark.parametrize("converter", [Deserializer, Serializer])
+@pytest.mark.sampled(2)
 def test_no_name_of_a_converter_has_an_index(converter: type) -> None:
     design = converter(load_message(by_depth("shape_msgs/msg/Plane", "sensor_msgs/msg/Imu")))
     assert r"payload.data[1]" in rtlil.convert(design, emit_src=False)

@@ -12,7 +12,6 @@ import pytest
 
 from firm_hdl.equivalence import find_tools
 from firm_hdl.jobs import ProgramMissingError
-from firm_hdl.rtlil import rtlil_of as rtlil_text
 from firm_hdl.verilog import convert
 from firm_hdl.verilog.memories import settled_memories, with_initials
 from tests.depth import by_depth
@@ -68,6 +67,7 @@ def test_memories_behave_as_in_amaranth(name: str, standard: str, tmp_path: Path
         ("odd depth", "mem[2] = 8'h03", "mem[2] = 8'h02"),
     ],
 )
+@pytest.mark.sampled(5)
 def test_a_changed_memory_is_noticed(name: str, old: str, new: str, tmp_path: Path) -> None:
     text = _verilog(name)
     assert old in text
@@ -77,19 +77,11 @@ def test_a_changed_memory_is_noticed(name: str, old: str, new: str, tmp_path: Pa
 @pytest.mark.usefixtures("verilator")
 @pytest.mark.parametrize("standard", ["1364-2005", "1800-2012"])
 @pytest.mark.parametrize("name", ["several", "transparent", "lanes", "a structure"])
+@pytest.mark.sampled(4)
 def test_verilator_reads_memories(name: str, standard: str, tmp_path: Path) -> None:
     (tmp_path / "stores.v").write_text(_verilog(name))
     waived = ["-Wno-UNUSEDSIGNAL", "-Wno-WIDTH"]
     _run(tmp_path, "verilator", "--lint-only", "-Wall", *waived, f"+{standard}ext+v", "stores.v")
-
-
-def test_only_write_ports_of_one_clock_have_an_order() -> None:
-    text = rtlil_of(DESIGNS["two write ports"])
-    masks = re.findall(r"PRIORITY_MASK (\S+)", settled_memories(text))
-    assert masks == ["0", "1'1"]
-    first, clock, rest = text.partition("connect \\CLK \\clk [0]")
-    other = settled_memories(f"{first}connect \\CLK \\rst [0]{rest}")
-    assert clock and re.findall(r"PRIORITY_MASK (\S+)", other) == ["0", "1'0"]
 
 
 @pytest.mark.parametrize(("other", "masks"), [(0, ["1'0", "2'10"]), (1, ["1'0", "2'01"])])
@@ -172,13 +164,6 @@ def test_a_loop_sets_all_words_of_a_large_memory(standard: str, tmp_path: Path) 
 def test_memories_that_do_not_start_at_zero_have_a_line_for_each_word(words: int) -> None:
     text = convert(Stores({"mem": Store(depth=words, init=[0] * (words - 1) + [1])}), name="m")
     assert text.count("] = ") == words and "integer" not in text
-
-
-def test_a_memory_of_a_megabyte_is_a_few_lines() -> None:
-    """Each bit and each word would be a digit of RTLIL and a line of Verilog."""
-    store = Stores({"mem": Store(shape=64, depth=1 << 17)})
-    assert len(rtlil_text(store, name="m")) < 10_000
-    assert len(convert(store, name="m")) < 10_000
 
 
 def test_a_large_memory_with_an_escaped_name_starts_at_zero() -> None:

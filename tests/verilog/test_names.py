@@ -35,6 +35,7 @@ def test_parts_are_put_together_in_the_order_of_their_bits() -> None:
 
 @pytest.mark.usefixtures("verilator")
 @pytest.mark.parametrize("keeps", [True, False])
+@pytest.mark.sampled(2)
 def test_a_vector_is_no_loop_through_its_parts(tmp_path: Path, keeps: bool, monkeypatch) -> None:
     if not keeps:
         monkeypatch.setattr("firm_hdl.verilog.yosys.whole_vectors", lambda design: design)
@@ -79,6 +80,7 @@ def test_ports_that_are_parts_have_the_name_of_the_whole() -> None:
         ["std_msgs/msg/MultiArrayLayout"], ["sensor_msgs/msg/JointState", "geometry_msgs/msg/Twist"]
     ),
 )
+@pytest.mark.sampled(2)
 def test_every_signal_of_a_converter_has_a_name(direction: str, name: str) -> None:
     converter = Deserializer if direction == "deserializer" else Serializer
     text = convert(Top(converter(load_message(name))), name="t")

@@ -80,18 +80,7 @@ def test_a_forked_process_starts_its_own():
         assert own not in others and process() == own
 
 
-def test_only_its_owner_uses_and_ends_it(monkeypatch):
-    own, ended = process(), []
-    last = runtime._started[-1]
-    monkeypatch.setattr(runtime, "hang_up", ended.append)
-    monkeypatch.setattr(last, "owner", os.getpid() + 1)
-    assert not last.is_usable
-    last.close()
-    assert ended == []
-    monkeypatch.undo()
-    assert last.is_usable and process() == own
-
-
+@pytest.mark.thorough
 def test_a_process_that_died_is_an_error_and_the_next_run_starts_another():
     dead = process()
     os.kill(dead, signal.SIGSTOP)
@@ -100,24 +89,6 @@ def test_a_process_that_died_is_an_error_and_the_next_run_starts_another():
         run_yosys("write_rtlil")
     ends.wait()
     assert process() != dead
-
-
-def test_a_python_without_the_runtime_says_why(monkeypatch, tmp_path):
-    broken = tmp_path / "script.py"
-    broken.write_text("import no_such_runtime\n")
-    monkeypatch.setattr(runtime, "_SCRIPT", broken)
-    monkeypatch.setattr(runtime, "_started", [])
-    with pytest.raises(YosysError, match=r"(?s)^the process .* died; .*'no_such_runtime'"):
-        run_yosys("write_rtlil")
-
-
-def test_what_the_runtime_says_is_the_error(monkeypatch, tmp_path):
-    failing = tmp_path / "script.py"
-    failing.write_text("""input(); print('{"failed": "mmap failed to reserve memory"}')""")
-    monkeypatch.setattr(runtime, "_SCRIPT", failing)
-    monkeypatch.setattr(runtime, "_started", [])
-    with pytest.raises(YosysError, match=r"^mmap failed to reserve memory$"):
-        run_yosys("write_rtlil")
 
 
 FAILS = """\

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from amaranth.hdl import Cat, ClockDomain, Const, Instance, IOPort, Module, Signal, unsigned
+from amaranth.hdl import Const, Instance, Module, Signal, unsigned
 from amaranth.lib import enum
 from amaranth.lib.memory import Memory
 
@@ -139,47 +139,6 @@ def test_foreign_names_and_generics_stay_exact(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("ghdl")
-def test_a_component_without_ports(tmp_path: Path) -> None:
-    m, a, o = Module(), Signal(name="a"), Signal(name="o")
-    m.submodules.u = Instance("marker")
-    m.d.comb += o.eq(~a)
-    vhdl = convert(m, name="t", ports=[a, o])
-    assert "component marker is\n  end component;" in vhdl.files["t.vhd"]
-    analyse(vhdl, tmp_path)
-
-
-@pytest.mark.usefixtures("ghdl")
-def test_an_output_that_the_design_itself_drives_is_an_input_of_a_component(
-    tmp_path: Path,
-) -> None:
-    m, a = Module(), Signal(4, name="a")
-    m.submodules.memory = memory = Memory(shape=4, depth=4, init=[1])
-    m.submodules.inner = inner = Module()
-    driven = [Signal(4, name=f"o{number}") for number in range(7)]
-    register, operator, choice, wire, foreign, below, cleared = driven
-    m.domains.fast = fast = ClockDomain(async_reset=True)
-    m.d.comb += [fast.clk.eq(a[0]), fast.rst.eq(a[1])]
-    m.d.fast += cleared.eq(a)
-    inner.d.sync += below.eq(a)
-    m.d.sync += register.eq(a)
-    m.d.comb += [operator.eq(a + 1), wire.eq(a)]
-    with m.Switch(a):
-        with m.Case(1):
-            m.d.comb += choice.eq(3)
-        with m.Case(2):
-            m.d.comb += choice.eq(a)
-    read = memory.read_port(domain="comb")
-    m.d.comb += read.addr.eq(a)
-    m.submodules.u = Instance("source", o_Q=foreign)
-    for number, value in enumerate([*driven, read.data]):
-        m.submodules[f"u{number}"] = Instance(f"sink{number}", i_D=value)
-    vhdl = convert(m, name="t", ports=[a, *driven, read.data])
-    assert vhdl.files["t.vhd"].count("D : in std_logic_vector(3 downto 0)") == 8
-    assert vhdl.files["t.vhd"].count("Q : out std_logic_vector(3 downto 0)") == 1
-    analyse(vhdl, tmp_path)
-
-
-@pytest.mark.usefixtures("ghdl")
 def test_nothing_else_has_the_name_of_a_component(tmp_path: Path) -> None:
     """VHDL does not tell upper from lower case, so a primitive ``PLL`` has the name of ``pll``."""
     m, inner = Module(), Module()
@@ -211,55 +170,6 @@ def test_nothing_else_has_the_name_of_a_component(tmp_path: Path) -> None:
     analyse(vhdl, tmp_path)
 
 
-@pytest.mark.usefixtures("ghdl")
-def test_names_of_attributes_stay_and_nothing_else_has_them(tmp_path: Path) -> None:
-    """Tools know attributes by name; Amaranth's own platforms use names with dots."""
-    m, a, o = Module(), Signal(2, name="a"), Signal(2, name="ASYNC_REG")
-    for name in ("KEEP", "amaranth.vivado.false_path", "signal", "async_reg"):
-        r = Signal(2, name="keep", attrs={"keep": 1, name: "x"} if name != "KEEP" else {"keep": 2})
-        m.d.sync += r.eq(a)
-        m.d.comb += o[0].eq(r[0]) if name == "KEEP" else []
-        a = r
-    m.d.comb += o[1].eq(a[1])
-    vhdl = convert(m, name="t", ports=[o])
-    text = vhdl.files["t.vhd"]
-    declared = re.findall(r"^  attribute (\S+) : (\w+);$", text, re.M)
-    assert dict(declared) == {
-        "keep": "integer",
-        "\\amaranth.vivado.false_path\\": "string",
-        "\\signal\\": "string",
-        "async_reg": "string",
-    }
-    assert text.count("attribute keep of ") == 4 and len(declared) == 4
-    assert text.count("attribute \\signal\\ of ") == 1
-    names = {*vhdl.entities["t"].signals.values(), *vhdl.entities["t"].ports.values()}
-    assert not {name.lower() for name in names} & {"keep", "async_reg"}
-    analyse(vhdl, tmp_path)
-
-
-@pytest.mark.usefixtures("ghdl")
-def test_the_mode_of_pads_is_that_of_all_of_them(tmp_path: Path) -> None:
-    m = Module()
-    both, came, left, inside, x = (
-        IOPort(width, name=name)
-        for name, width in (("both", 4), ("came", 2), ("left", 2), ("inside", 2), ("x", 4))
-    )
-    m.submodules.u = Instance("unit", io_P=both[0], i_C=came[0], o_L=left[0], io_I=inside)
-    # Bits of a pad that another use makes `inout`, together with bits of one that has one way.
-    m.submodules.v = Instance("reader", i_C=Cat(both[1], came[1]), i_X=x[:2])
-    m.submodules.w = Instance("writer", o_L=Cat(left[1], both[2]), i_X=x[2:])
-    vhdl = convert(m, name="t", ports=[both, came, left, inside, x])
-    words = " ".join(vhdl.files["t.vhd"].split())
-    two = "std_logic_vector(1 downto 0)"
-    for ports in (
-        f"P : inout std_logic; C : in std_logic; L : out std_logic; I : inout {two}",
-        f"C : in {two}; X : in {two}",
-        f"L : out {two}; X : in {two}",
-    ):
-        assert f"port ( {ports} );" in words
-    analyse(vhdl, tmp_path)
-
-
 @pytest.mark.parametrize("unsigned_ports", [False, True])
 def test_an_output_is_converted_if_an_instance_has_another_type(unsigned_ports: bool) -> None:
     top, inner, a = Module(), Module(), Signal(4, name="a")
@@ -273,35 +183,3 @@ def test_an_output_is_converted_if_an_instance_has_another_type(unsigned_ports: 
     assert ("f <= unsigned(f_i);" in text) == unsigned_ports == ("f_i : std" in files["top.vhd"])
     assert ("b <= std_logic_vector(b_i);" in text) == (not unsigned_ports)
     assert text.count("<=") == 1 and "q => f" in text and "p => c" in text
-
-
-@pytest.mark.parametrize("unsigned_ports", [False, True])
-def test_a_pad_of_both_ways_is_a_vector_whatever_other_ports_are(unsigned_ports: bool) -> None:
-    m, pad, a = Module(), IOPort(4, name="pad"), Signal(4, name="a")
-    m.submodules.u = Instance("unit", io_P=pad, i_a=a)
-    files = convert(m, name="t", ports=[pad, a], unsigned_ports=unsigned_ports).files
-    words = " ".join(files["t.vhd"].partition("\narchitecture")[0].split())
-    other = "unsigned" if unsigned_ports else "std_logic_vector"
-    assert "pad : inout std_logic_vector(3 downto 0)" in words
-    assert f"a : in {other}(3 downto 0)" in words
-
-
-def test_choices_of_computed_values_have_their_names() -> None:
-    m = Module()
-    a, b, o = (Signal(2, name=name) for name in "abo")
-    kind = Signal(Kind, name="kind")
-    m.d.comb += kind.eq(a + b)
-    with m.Switch(kind):
-        with m.Case(Kind.IDLE):
-            m.d.comb += o.eq(3)
-        with m.Case(Kind.BUSY, Kind.DONE):
-            m.d.comb += o.eq(1)
-        with m.Case(3):
-            m.d.comb += o.eq(2)
-    found = [line.strip() for line in text_of(m, a, b, o).splitlines() if "when" in line]
-    assert found == [
-        'when "00" =>  -- IDLE',
-        'when "01" | "10" =>  -- BUSY or DONE',
-        'when "11" =>',
-        "when others =>",
-    ]

@@ -8,9 +8,9 @@ from amaranth.hdl import Module, Signal, signed
 from amaranth.lib import enum
 
 from firm_hdl.vhdl.convert import convert
-from tests.vhdl.gallery import GALLERY, conditions, memories, operators, registers
+from tests.vhdl.gallery import GALLERY, conditions, registers
 
-SUBJECTS = [conditions, memories, operators, registers]
+SUBJECTS = [conditions, registers]
 
 
 def test_every_subject_has_designs() -> None:

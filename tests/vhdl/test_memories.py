@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from amaranth.hdl import Cat, ClockDomain, Const, Module, Signal, Value
+from amaranth.hdl import Module
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import Component, In, Out
 
@@ -25,6 +24,7 @@ def _vhdl(name: str) -> Vhdl:
 
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.sampled(2)
 def test_memories_behave_as_in_amaranth(name: str, tmp_path: Path) -> None:
     inputs, outputs, steps, wanted = simulated(DESIGNS[name], steps=STEPS, seed=len(name))
     assert difference(wanted, simulate(_vhdl(name), steps, inputs, outputs, tmp_path)) is None
@@ -42,6 +42,7 @@ def test_memories_behave_as_in_amaranth(name: str, tmp_path: Path) -> None:
         ("odd depth", '2 => "00000011"', '2 => "00000010"'),
     ],
 )
+@pytest.mark.sampled(6)
 def test_a_changed_memory_is_noticed(name: str, old: str, new: str, tmp_path: Path) -> None:
     vhdl = _vhdl(name)
     text = vhdl.files["stores.vhd"]
@@ -54,6 +55,7 @@ def test_a_changed_memory_is_noticed(name: str, old: str, new: str, tmp_path: Pa
 # GHDL infers no RAM for a single word, nor for a memory with constant addresses.
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("name", sorted(set(DESIGNS) - {"one word", "odd depth", "contents alone"}))
+@pytest.mark.sampled(3)
 def test_ghdl_infers_a_ram(name: str, tmp_path: Path) -> None:
     output = synthesize(_vhdl(name), tmp_path)
     for memory, store in DESIGNS[name].items():
@@ -142,47 +144,6 @@ def test_a_wrong_bench_fails(tmp_path: Path) -> None:
     command = [GHDL, "--elab-run", "--std=08", "bench", "--ieee-asserts=disable"]
     process = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert process.returncode != 0 and "unknown address" in process.stdout + process.stderr
-
-
-def text_of(depth: int, enable: Callable[[Signal], Value], *, domain: str = "sync") -> str:
-    """Return the VHDL of a memory of 8 bits with two write ports, one of them with lanes."""
-    m = Module()
-    m.domains.other = other = ClockDomain(reset_less=True)
-    m.submodules.memory = memory = Memory(shape=8, depth=depth, init=[])
-    first, second = memory.write_port(granularity=2), memory.write_port(domain=domain)
-    read = memory.read_port(domain="comb")
-    given, address, wanted = Signal(8, name="given"), Signal(2, name="address"), Signal(4, name="w")
-    m.d.comb += [other.clk.eq(given[7]), first.en.eq(enable(wanted)), second.en.eq(1)]
-    m.d.comb += [port.data.eq(given) for port in (first, second)]
-    m.d.comb += [port.addr.eq(address) for port in (first, second, read)]
-    return convert(m, name="t", ports=[given, address, wanted, read.data]).files["t.vhd"]
-
-
-@pytest.mark.parametrize(("depth", "guards"), [(3, 3), (4, 0)])
-def test_an_address_is_tested_only_if_the_memory_has_fewer_words(depth: int, guards: int) -> None:
-    text = text_of(depth, lambda wanted: wanted[0].replicate(4))
-    assert text.count(f"unsigned(address) < {depth}") == guards
-    assert ("<" in text.replace("<=", "")) == bool(guards)
-
-
-def test_only_enabled_lanes_are_written() -> None:
-    text = text_of(4, lambda wanted: Cat(Const(0b01, 2), wanted[2], Const(0, 1)))
-    body = [line.strip() for line in text.partition("\nbegin\n")[2].splitlines()]
-    start = body.index("if rising_edge(clk) then") + 1
-    word = "memory(to_integer(unsigned(address)))"
-    assert body[start : start + 5] == [
-        f"{word}(1 downto 0) <= unsigned(given(1 downto 0));",
-        "if w(2) = '1' then",
-        f"{word}(5 downto 4) <= unsigned(given(5 downto 4));",
-        "end if;",
-        f"{word} <= unsigned(given);",
-    ]
-
-
-def test_a_memory_is_written_at_each_of_its_clocks() -> None:
-    text = text_of(4, lambda wanted: wanted, domain="other")
-    assert "process (clk, given(7))" in text
-    assert "if rising_edge(clk) then" in text and "if rising_edge(given(7)) then" in text
 
 
 @pytest.mark.parametrize(("to", "bypasses"), [(2, True), (1, False)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 from amaranth.asserts import AnyConst
-from amaranth.hdl import Cat, ClockDomain, Module, Signal
+from amaranth.hdl import ClockDomain, Module, Signal
 
 from firm_hdl.vhdl.convert import convert
 
@@ -88,29 +88,6 @@ def test_names_of_the_design_come_before_names_made_for_operators() -> None:
     assert made.startswith("add_")
     taken = names(made)
     assert taken[made] == made and taken[wire] == f"{made}_2"
-
-
-def test_the_parts_of_a_signal_are_named_by_their_lowest_bits() -> None:
-    m = Module()
-    a, q = Signal(12, name="a"), Signal(12, name="q")
-    m.domains.fast = fast = ClockDomain()
-    m.d.comb += fast.clk.eq(a[0])
-    m.d.comb += q[:3].eq(a[9:])
-    m.d.fast += q[3:8].eq(a[3:8])
-    m.d.sync += q[8:].eq(a[8:])
-    text = convert(m, name="t", ports=[a, q, fast.rst]).files["t.vhd"]
-    for name, width in (("q_3", 5), ("q_8", 4)):
-        assert f"  signal {name} : unsigned({width - 1} downto 0) := (others => '0');" in text
-
-
-def test_a_part_of_an_operator_gives_the_operator_no_name() -> None:
-    m = Module()
-    a, b = Signal(8, name="a"), Signal(8, name="b")
-    o, p = Signal(8, name="o"), Signal(4, name="p")
-    total = a + b
-    m.d.comb += [o.eq(Cat(total[:4], a[4:])), p.eq(total[2:6])]
-    text = convert(m, name="t", ports=[a, b, o, p]).files["t.vhd"]
-    assert "signal add_" in text and "o_0" not in text
 
 
 def test_signals_inside_have_other_names_than_ports_whatever_their_case() -> None:

@@ -208,5 +208,6 @@ def test_each_operator_gives_what_python_gives(table: str, tmp_path: Path) -> No
 
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("change", [(" > ", " >= "), ("sign_extend", "resize")])
+@pytest.mark.sampled(2)
 def test_a_changed_operator_is_noticed(change: tuple[str, str], tmp_path: Path) -> None:
     assert compared(TABLES["inputs"], tmp_path, change) is not None

@@ -45,7 +45,7 @@ def _run(design: RandomDesign, vhdl: Vhdl, steps: Steps, folder: Path) -> Steps:
 
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("seed", _seeds())
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(10)
 def test_vhdl_behaves_as_in_amaranth(seed: int, tmp_path: Path) -> None:
     design, vhdl, steps, want = _design_and_vhdl(seed)
     assert difference(want, _run(design, vhdl, steps, tmp_path)) is None
@@ -53,6 +53,7 @@ def test_vhdl_behaves_as_in_amaranth(seed: int, tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("seed", [1, 36])
+@pytest.mark.sampled(2)
 def test_no_latches_are_synthesized(seed: int, tmp_path: Path) -> None:
     # GHDL 2.0 itself fails for constants of more than 32 bits in products, and for some memories.
     _, vhdl, _, _ = _design_and_vhdl(seed)
@@ -61,6 +62,7 @@ def test_no_latches_are_synthesized(seed: int, tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("seed", [3, 4, 5])
+@pytest.mark.sampled(3)
 def test_a_changed_operator_is_noticed(seed: int, tmp_path: Path) -> None:
     """Must-fail twin of the test above: most changed operators must cause a difference."""
     design, vhdl, steps, want = _design_and_vhdl(seed)

@@ -154,6 +154,7 @@ def _ports(component: Any) -> tuple[dict[str, Value], dict[str, Value]]:
         ["geometry_msgs/msg/Twist", "sensor_msgs/msg/PointCloud2", "std_msgs/msg/Empty"],
     ),
 )
+@pytest.mark.sampled(3)
 def test_converters_behave_in_ghdl_as_in_amaranth(
     name: str, converter: Any, bus_bytes: int, tmp_path: Path
 ) -> None:

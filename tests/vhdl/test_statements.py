@@ -107,36 +107,6 @@ def switch_on(wire: str, **bodies: str) -> Switch:
     return Switch(selector=(Slice("s", 0, 2),), cases=tuple(cases))
 
 
-@pytest.mark.parametrize(
-    ("one", "other", "together"),
-    [
-        # The same cases.
-        ({"b01": "0001"}, {"b01": "0010"}, True),
-        ({"b01": "0001", "other": "0010"}, {"b01": "0010", "other": "0011"}, True),
-        # Different cases, of which at most one matches.
-        ({"b01": "0001"}, {"b10": "0010", "b01": "0100"}, True),
-        # A default, or cases that overlap, must keep their order.
-        ({"b01": "0001", "other": "0010"}, {"b01": "0010"}, False),
-        ({"b01": "0001"}, {"b10": "0010", "other": "0011"}, False),
-    ],
-)
-def test_one_choice_is_written_once(one: dict, other: dict, together: bool) -> None:
-    first, second = switch_on("p", **one), switch_on("q", **other)
-    both = merged((first,), (second,))
-    assert (len(both) == 1) == together
-    for state in STATES:
-        assert run(both, state, {}) == run((first, second), state, {}), state
-
-
-def test_a_choice_of_a_bit_is_joined_only_if_its_arms_are_the_same() -> None:
-    def bit(wire: str, *patterns: str) -> Switch:
-        cases = tuple(Case(patterns=(p,), body=(assign(wire, "0001"),)) for p in patterns)
-        return Switch(selector=(Slice("u", 0, 1),), cases=cases)
-
-    assert len(merged((bit("p", "1"),), (bit("q", "1"),))) == 1
-    assert len(merged((bit("p", "1"),), (bit("q", "0"),))) == 2
-
-
 def test_no_statement_overtakes_another_one_of_its_register() -> None:
     on_t = Switch(
         selector=(Slice("t", 0, 2),), cases=(Case(patterns=("01",), body=(assign("p", "0001"),)),)
@@ -146,10 +116,3 @@ def test_no_statement_overtakes_another_one_of_its_register() -> None:
     both = merged(first, second)
     for state in STATES:
         assert run(both, state, {}) == run(second, state, run(first, state, {})), state
-
-
-def test_later_statements_join_later_ones() -> None:
-    first = (switch_on("p", b00="0000"), assign("p", "0001"), switch_on("p", b01="0010"))
-    second = (switch_on("q", b01="0001"), switch_on("q", b00="0010"), assign("q", "1111"))
-    both = merged(first, second)
-    assert [type(each).__name__ for each in both] == ["Switch", "Assign", "Switch", "Assign"]

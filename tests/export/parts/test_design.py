@@ -17,7 +17,6 @@ from firm_hdl.export.design import (
     core_file,
     design_folder,
     inputs_of_design,
-    vhdl_folder,
     write_design,
 )
 
@@ -96,21 +95,6 @@ def test_an_error_names_the_file_that_cannot_be_written(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(UserError, match=r"/gate' cannot be written: .*/file'\)$"):
         write(tmp_path / "file" / "gate")
-
-
-def test_what_cannot_be_read_is_not_called_unwritable(tmp_path):
-    missing = tmp_path / "missing"
-    with pytest.raises(FileNotFoundError) as caught:
-        write(tmp_path / "gate", make_files=lambda: {"file": missing.read_text()})
-    assert caught.value.filename == str(missing)
-
-
-def test_the_list_of_vhdl_is_in_compile_order():
-    assert vhdl_folder({"b.vhd": "1", "a.vhd": "2"}) == {
-        "vhdl/b.vhd": "1",
-        "vhdl/a.vhd": "2",
-        "vhdl/files.txt": "b.vhd\na.vhd\n",
-    }
 
 
 def test_a_core_has_both_languages_and_what_is_added():

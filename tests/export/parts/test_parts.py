@@ -62,6 +62,7 @@ def verilator_finds(folder, file, top):
     return run([verilator, "--lint-only", "-Wall", *waivers, "--top-module", top, file], folder)
 
 
+@pytest.mark.sampled(2)
 def test_the_verilog_compiles_in_both_languages(built, tmp_path):
     iverilog = need("iverilog", shutil.which("iverilog"))
     file = built / f"{built.name}_verilog.v"
@@ -73,6 +74,7 @@ def test_each_file_goes_when_it_is_outdated(built, tmp_path):
     assert left_when_outdated(built, tmp_path / built.name) == set()
 
 
+@pytest.mark.sampled(2)
 def test_verilator_finds_nothing(built, tmp_path):
     top = f"{built.name}_verilog"
     assert verilator_finds(tmp_path, built / f"{top}.v", top) == (0, "")

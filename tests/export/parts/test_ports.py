@@ -262,17 +262,3 @@ def leaves_after_reset(cycles, phase):
 @pytest.mark.parametrize("phase", range(5))
 def test_a_reset_of_two_edges_of_the_slower_clock_empties_a_crossing(phase):
     assert not leaves_after_reset(10, phase)
-
-
-def test_a_shorter_reset_may_not_empty_a_crossing():
-    assert any(leaves_after_reset(4, phase) for phase in range(5))
-
-
-def test_a_value_without_bits_has_no_port():
-    # The only input needs no number.
-    one, two = (
-        {port.name: port.width for port in part_ports(make_part("arbiter", bus_bytes=1, inputs=n))}
-        for n in (1, 2)
-    )
-    assert "m_axis_tid" not in one and two["m_axis_tid"] == 1
-    assert all(one.values())

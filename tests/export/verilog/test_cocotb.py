@@ -102,6 +102,7 @@ def test_packets_come_back_through_cocotb(folder, tmp_path):
 
 
 @pytest.mark.usefixtures("iverilog")
+@pytest.mark.thorough
 def test_process_that_waits_for_its_first_change_fails(folder, tmp_path):
     manifest = json.loads((folder / "manifest.json").read_text())
     text = (folder / manifest["converters"]["deserializer"]["verilog"]).read_text()
@@ -123,6 +124,7 @@ NOISE = {
 
 @pytest.mark.parametrize("noise", NOISE)
 @pytest.mark.usefixtures("iverilog")
+@pytest.mark.thorough
 def test_deserializer_that_does_not_ignore_noise_fails(folder, tmp_path, noise):
     manifest = json.loads((folder / "manifest.json").read_text())
     text = (folder / manifest["converters"]["deserializer"]["verilog"]).read_text()

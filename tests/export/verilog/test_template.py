@@ -53,6 +53,7 @@ def messages(tmp_path: Path) -> list[Message]:
 
 @pytest.mark.parametrize("bus_bytes", [1, 8])
 @pytest.mark.parametrize("direction", DIRECTIONS)
+@pytest.mark.sampled(2)
 def test_icarus_takes_templates_in_both_languages(iverilog, tmp_path, direction, bus_bytes):
     for message in messages(tmp_path):
         write_stub(message, direction, bus_bytes, tmp_path)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import random
 import re
-import resource
 import subprocess
 from pathlib import Path
 
@@ -13,12 +11,10 @@ import pytest
 
 import firm_hdl
 from firm_hdl import Deserializer, Serializer, load_message
-from firm_hdl.errors import UserError
 from firm_hdl.export.top import DIRECTIONS, Top, ports_of
 from firm_hdl.plan import Plan, build_plan, encode
 from firm_hdl.sim import to_transfers
-from firm_hdl.verilog import convert, out_of_memory
-from firm_hdl.verilog.runtime import YosysError
+from firm_hdl.verilog import convert
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 
@@ -41,6 +37,7 @@ def verilog_of(type_: str, direction: str, bus_bytes: int = 8, distro: str = "ly
         ("std_msgs/Empty", "noetic"),
     ],
 )
+@pytest.mark.sampled(2)
 def test_every_port_is_there_with_its_width(type_, distro, direction):
     text = verilog_of(type_, direction, distro=distro)
     module = text[: text.index("endmodule")]
@@ -55,6 +52,7 @@ def test_every_port_is_there_with_its_width(type_, distro, direction):
 
 
 @pytest.mark.parametrize("direction", DIRECTIONS)
+@pytest.mark.sampled(2)
 def test_text_does_not_depend_on_the_machine(direction):
     # A plan of one step has signals without bits.
     text = verilog_of("std_msgs/msg/Empty", direction)
@@ -71,6 +69,7 @@ def test_text_does_not_depend_on_the_machine(direction):
     # test_hygiene.py lints the files of larger types.
     ["std_msgs/msg/Empty", *by_depth([], ["sensor_msgs/msg/JointState"])],
 )
+@pytest.mark.sampled(2)
 def test_verilator_finds_nothing(type_, direction, tmp_path):
     (tmp_path / "top.v").write_text(verilog_of(type_, direction))
     waivers = [f"-Wno-{name}" for name in WAIVED]
@@ -131,6 +130,7 @@ endmodule
 
 @pytest.mark.usefixtures("iverilog")
 @pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 8]))
+@pytest.mark.thorough
 def test_packets_come_back_in_iverilog(bus_bytes, tmp_path):
     type_ = "sensor_msgs/msg/JointState"
     message = load_message(type_)
@@ -165,45 +165,3 @@ def test_packets_come_back_in_iverilog(bus_bytes, tmp_path):
             statuses.append(int(words[0]))
     assert came == packets
     assert statuses == [0] * 8
-
-
-def broken(message):
-    """Return a Yosys whose runtime fails, as wasmtime may."""
-
-    def run(script):
-        raise YosysError(message)
-
-    return run
-
-
-def test_errors_of_the_system_are_passed_on(monkeypatch):
-    top = Top(Deserializer(load_message("std_msgs/msg/Bool")))
-    message = "failed to write the module\n\nCaused by:\n    File too large (os error 27)"
-    runs = "firm_hdl.verilog.yosys.run_yosys"
-    monkeypatch.setattr(runs, broken(message))
-    with pytest.raises(UserError, match=r"^m: Yosys cannot be run: File too large$"):
-        convert(top, name="m")
-    monkeypatch.setattr(runs, broken("a fault"))
-    with pytest.raises(YosysError, match=r"^a fault$"):
-        convert(top, name="m")
-
-
-def test_lack_of_memory_states_what_yosys_needs_and_what_there_is(monkeypatch):
-    runs = "firm_hdl.verilog.yosys.run_yosys"
-    monkeypatch.setattr(runs, broken("mmap failed: Cannot allocate memory (os error 12)"))
-    limits = {resource.RLIMIT_AS: (5_300_000_000, resource.RLIM_INFINITY)}
-    monkeypatch.setattr(resource, "getrlimit", limits.__getitem__)
-    top = Top(Deserializer(load_message("std_msgs/msg/Bool")))
-    with pytest.raises(UserError, match=r"^m: .* 4\.1 GB .* this process may have 5\.3 GB"):
-        convert(top, name="m")
-    limits[resource.RLIMIT_AS] = (resource.RLIM_INFINITY, 5_300_000_000)
-    pages = {"SC_AVPHYS_PAGES": 500_000, "SC_PAGE_SIZE": 4_096}
-    monkeypatch.setattr(os, "sysconf", pages.__getitem__)
-    assert out_of_memory().endswith("; 2.0 GB are free now")
-    assert "reserves" not in out_of_memory(None)
-
-    def sysconf(name: str) -> int:
-        raise ValueError(name)
-
-    monkeypatch.setattr(os, "sysconf", sysconf)
-    assert out_of_memory().endswith("; the amount of free memory is unknown on this system")

@@ -42,6 +42,7 @@ def write_folder(folder: Path, name: str, distro: str, bus_bytes: int) -> list[b
         ),
     ],
 )
+@pytest.mark.sampled(4)
 def test_passes(ghdl, tmp_path, name, distro, bus_bytes):
     folder = tmp_path / "with space"
     packets = write_folder(folder, name, distro, bus_bytes)

@@ -196,7 +196,7 @@ VALID = r"(status_valid +=> )m_axis_status_tvalid"
         ),
     ],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 def test_bench(ghdl, tmp_path, side, changes, output):
     write_folder(tmp_path, "std_msgs/msg/UInt8", "lyrical", 8)
     (file,) = tmp_path.glob(f"*_8_{side}_flat.vhd")

@@ -200,34 +200,6 @@ def test_idle_offers_nothing_and_all_ready_takes_everything():
         assert ("'1'" if kind == "IDLE" else "'0'") not in values
 
 
-def test_comments_and_units_stand_above_their_fields(tmp_path):
-    folder = tmp_path / "my_msgs" / "msg"
-    folder.mkdir(parents=True)
-    (folder / "Part.msg").write_text(
-        "# A part.\n\nbool b\n\n# How far it is, in °.\nfloat32 far  # really [m]\n"
-    )
-    text = own_package(layer(load_message("my_msgs/msg/Part", paths=[tmp_path])))
-    assert "    -- # How far it is, in deg.\n" in text
-    assert "\n-- # A part.\n" in text
-    assert "    far : float32_stream_t;  -- float32 [m]\n" in text
-
-
-def test_constants_have_their_values():
-    text = re.sub(" +:", " :", own_package(layer(nasty())))
-    for line in (
-        # `severity error` must stay usable.
-        'constant ERROR_CONSTANT : unsigned(7 downto 0) := x"01";  -- uint8 1',
-        'constant range_field : unsigned(7 downto 0) := x"02";  -- uint8 2',
-        'constant LEAST : signed(63 downto 0) := x"8000000000000000";',
-        'constant MOST : unsigned(63 downto 0) := x"ffffffffffffffff";',
-        'constant THIRD_BITS : std_logic_vector(31 downto 0) := x"3eaaaa9f";',
-        "constant TINY : real := 1.0e-300;",
-        "constant YES : std_logic := '1';",
-        '"say ""h" &\n    character\'val(195) &\n    character\'val(182) &\n    """ # all of it";',
-    ):
-        assert line in text, line
-
-
 def test_types_are_shared_and_no_two_names_meet():
     made = layer(nasty())
     text = "".join(made.packages.values())

@@ -12,7 +12,7 @@ import pytest
 from firm_hdl import Deserializer, load_message
 from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.backend import Output
-from firm_hdl.export.record_top import RecordTop, record_ports, why_no_record
+from firm_hdl.export.record_top import RecordTop, why_no_record
 from firm_hdl.export.tree import taken_names, tree_of
 from firm_hdl.export.vhdl.parts import packets_text
 from firm_hdl.export.vhdl.values import values_of
@@ -118,6 +118,7 @@ def check(ghdl: str, folder: Path, message: Message, bus_bytes: int) -> None:
         ),
     ],
 )
+@pytest.mark.sampled(2)
 def test_whole_messages_come_back(ghdl, tmp_path, name, distro, bus_bytes):
     check(ghdl, tmp_path, load_message(name, distro=distro), bus_bytes)
 
@@ -130,6 +131,7 @@ def test_whole_messages_come_back(ghdl, tmp_path, name, distro, bus_bytes):
         *by_depth([], [("noetic", 8), ("noetic", 1), ("noetic", 16), ("lyrical", 4)]),
     ],
 )
+@pytest.mark.thorough
 def test_arrays_and_nasty_names_come_back(ghdl, tmp_path, distro, bus_bytes):
     check(ghdl, tmp_path / "vhdl", arrays(tmp_path, distro), bus_bytes)
 
@@ -161,38 +163,12 @@ def test_swapped_members_fail(ghdl, tmp_path):
 
 
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])
+@pytest.mark.sampled(2)
 def test_arrays_are_analysed_without_warnings(ghdl, tmp_path, distro):
     vhdl = hollow_arrays(tmp_path, distro)
     write(tmp_path / "vhdl", vhdl.files)
     analyse(ghdl, tmp_path / "vhdl", [*vhdl.manifest["files"], *vhdl.manifest["bench"]["files"]])
     assert "--warn-hide" in WARNINGS
-
-
-def test_package_reads_like_the_definition(tmp_path):
-    vhdl = hollow_arrays(tmp_path, "noetic")
-    text = vhdl.files["array_msgs_arrays_ros1_8_pkg.vhd"]
-    start = text.index("  type arrays_value_t is record\n")
-    record = text[start : text.index("  end record;\n", start)]
-    # The comment of a long line is above the line.
-    record = re.sub(r"\n    (--.*)\n(.*)", r"\n\2 \1", record.replace("work.array_msgs_", ""))
-    assert [" ".join(line.split()) for line in record.splitlines()[1:]] == [
-        "range_field : std_logic; -- range: bool",
-        "flags : bool_items_t(0 to 10); -- bool[11]",
-        "corners : point_ros1_8_pkg.point_values_t(0 to 2); -- array_msgs/Point[3]",
-        "other : range_ros1_8_pkg.range_value_t; -- array_msgs/Range",
-        "signal_field : int16_items_t(0 to 4); -- signal: int16[5]",
-        "POINT : point_ros1_8_pkg.point_value_t; -- array_msgs/Point",
-        "data : signed(7 downto 0); -- byte",
-        "letter : unsigned(7 downto 0); -- char",
-        "when_field : work.builtin_time_ros1_8_pkg.time_value_t; -- when: time",
-        "speed : std_logic_vector(31 downto 0); -- float32 [m/s]",
-        "value : inside_ros1_8_pkg.inside_value_t; -- array_msgs/Inside",
-        "values : inside_ros1_8_pkg.inside_values_t(0 to 1); -- array_msgs/Inside[2]",
-        "std_logic_vector_2 : signed(63 downto 0); -- std_logic_vector: int64",
-    ]
-    assert vhdl.manifest["record_view"]["message_type"] == "arrays_value_t"
-    inner = vhdl.files["array_msgs_range_ros1_8_pkg.vhd"]
-    assert "constant RANGE_VALUE_BITS " in inner
 
 
 @pytest.mark.parametrize(
@@ -248,36 +224,6 @@ def test_no_constant_hides_what_a_package_declares():
     assert {"VECTOR3_ALL_READY", "to_vector3_value", "to_vector3_values"} <= set(declared)
     taken = taken_names(made.tree.package, build_plan(lay_out(message), bus_bytes=8))
     assert {name.lower() for name in declared} <= taken | PREDEFINED
-
-
-def test_an_array_of_one_bool_is_a_vector_of_one_bit():
-    message = make("ros2", {"a": "bool", "b": "bool[1]", "c": "uint8"}, "Flags")
-    text = own_package(layer(message))
-    assert "    bits(0) := value.a;\n    bits(1 downto 1) := to_slv(value.b);\n" in text
-    assert "    value.a := all_bits(0);\n" in text
-    assert "    value.b := to_bool_items(all_bits(1 downto 1));\n" in text
-
-
-def test_ports_are_those_of_the_converter_around_the_record():
-    """Clock and reset, packets, the record and the status, in this order, as for flat ports."""
-    plan = build_plan(lay_out(load_message("std_msgs/msg/Bool")), bus_bytes=1)
-    packet = "tdata 8", "tkeep 1", "tlast 1"
-    status = ["out m_axis_status_tdata 8", "out m_axis_status_tvalid 1"]
-    status.append("in m_axis_status_tready 1")
-    for direction, base, more in (("deserializer", "s_axis", ()), ("serializer", "m_axis", ("",))):
-        ports = [
-            f"{port.direction} {port.name} {port.width}"
-            for port in record_ports(plan, direction, 13)
-        ]
-        to, fro = ("out", "in") if direction == "deserializer" else ("in", "out")
-        beat = [*packet, *("tuser 1" for _ in more), "tvalid 1"]
-        assert ports == [
-            *("in aclk 1", "in aresetn 1"),
-            *(f"{fro} {base}_{name}" for name in beat),
-            f"{to} {base}_tready 1",
-            *(f"{to} msg_data 13", f"{to} msg_valid 1", f"{fro} msg_ready 1"),
-            *status,
-        ]
 
 
 USERS_OWN = """\

@@ -11,7 +11,6 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
-import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
@@ -24,13 +23,13 @@ from firm_hdl.wire import lay_out
 from tests.export.test_packaging import STUBS, fusesoc, run
 from tests.tools import need
 
-SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
+WARM, PRESS = "sensor_msgs/msg/Temperature", "sensor_msgs/msg/FluidPressure"
 
 
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory) -> list[Path]:
     out = tmp_path_factory.mktemp("built")
-    return [each.folder / "vhdl" for each in build([SCAN, CLOUD], out)]
+    return [each.folder / "vhdl" for each in build([WARM, PRESS], out)]
 
 
 def unique_files(folders: Iterable[Path], listed: str) -> list[Path]:
@@ -43,17 +42,15 @@ def unique_files(folders: Iterable[Path], listed: str) -> list[Path]:
 
 
 def packets(frame_id: str) -> tuple[bytes, bytes]:
-    """Serialize a scan, and a cloud without points that has its header."""
+    """Serialize a temperature, and a pressure of 0 that has its header."""
     store = get_typestore(Stores.ROS2_HUMBLE)
     stamp = store.types["builtin_interfaces/msg/Time"](sec=-5, nanosec=7)
     header = store.types["std_msgs/msg/Header"](stamp=stamp, frame_id=frame_id)
-    ranges = np.arange(5, dtype=np.float32)
-    scan = store.types[SCAN](header, *(0.5,) * 7, ranges=ranges, intensities=ranges[:2])
-    nothing = np.zeros(0, dtype=np.uint8)
-    cloud = store.types[CLOUD](header, 1, 0, [], False, 0, 0, nothing, True)
+    warm = store.types[WARM](header, 0.5, 0.25)
+    press = store.types[PRESS](header, 0.0, 0.0)
     return (
-        bytes(store.serialize_cdr(scan, SCAN)),
-        bytes(store.serialize_cdr(cloud, CLOUD)),
+        bytes(store.serialize_cdr(warm, WARM)),
+        bytes(store.serialize_cdr(press, PRESS)),
     )
 
 
@@ -61,8 +58,8 @@ DESIGN = """\
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
-use work.sensor_msgs_msg_laserscan_cdr_8_pkg.all;
-use work.sensor_msgs_msg_pointcloud2_cdr_8_pkg.all;
+use work.sensor_msgs_msg_temperature_cdr_8_pkg.all;
+use work.sensor_msgs_msg_fluidpressure_cdr_8_pkg.all;
 
 entity design is
 end entity;
@@ -72,10 +69,10 @@ architecture sim of design is
   signal s_data, m_data : std_logic_vector(63 downto 0);
   signal s_keep, m_keep : std_logic_vector(7 downto 0);
   signal s_last, s_valid, s_ready, m_last, m_valid, m_ready, m_user : std_logic;
-  signal scan      : laser_scan_t;
-  signal scan_rdy  : laser_scan_ready_t;
-  signal cloud     : point_cloud2_t;
-  signal cloud_rdy : point_cloud2_ready_t;
+  signal warm      : temperature_t;
+  signal warm_rdy  : temperature_ready_t;
+  signal press     : fluid_pressure_t;
+  signal press_rdy : fluid_pressure_ready_t;
   signal sent, came, bytes, total : natural;
 begin
   aclk <= not aclk after 5 ns when now < 100 us;
@@ -87,33 +84,27 @@ begin
       aclk => aclk, aresetn => aresetn, tdata => s_data, tkeep => s_keep, tlast => s_last,
       tvalid => s_valid, tready => s_ready, packets => sent, done => open);
 
-  rx : entity work.sensor_msgs_msg_laserscan_cdr_8_deserializer
+  rx : entity work.sensor_msgs_msg_temperature_cdr_8_deserializer
     port map (
       aclk => aclk, aresetn => aresetn, s_axis_tdata => s_data, s_axis_tkeep => s_keep,
       s_axis_tlast => s_last, s_axis_tvalid => s_valid, s_axis_tready => s_ready,
-      msg => scan, rdy => scan_rdy, m_axis_status_tdata => open, m_axis_status_tvalid => open,
+      msg => warm, rdy => warm_rdy, m_axis_status_tdata => open, m_axis_status_tvalid => open,
       m_axis_status_tready => '1');
 
   process (all) begin
-    scan_rdy <= LASER_SCAN_ALL_READY;
-    scan_rdy.header <= cloud_rdy.header;
-    cloud <= POINT_CLOUD2_IDLE;
-    cloud.header <= scan.header;
-    cloud.height <= (data => to_unsigned(1, 32), valid => '1');
-    cloud.width.valid <= '1';
-    cloud.fields.length.valid <= '1';
-    cloud.is_bigendian.valid <= '1';
-    cloud.point_step.valid <= '1';
-    cloud.row_step.valid <= '1';
-    cloud.data.length.valid <= '1';
-    cloud.is_dense <= (data => '1', valid => '1');
+    warm_rdy <= TEMPERATURE_ALL_READY;
+    warm_rdy.header <= press_rdy.header;
+    press <= FLUID_PRESSURE_IDLE;
+    press.header <= warm.header;
+    press.fluid_pressure.valid <= '1';
+    press.variance.valid <= '1';
   end process;
 
-  tx : entity work.sensor_msgs_msg_pointcloud2_cdr_8_serializer
+  tx : entity work.sensor_msgs_msg_fluidpressure_cdr_8_serializer
     port map (
       aclk => aclk, aresetn => aresetn, m_axis_tdata => m_data, m_axis_tkeep => m_keep,
       m_axis_tlast => m_last, m_axis_tuser => m_user, m_axis_tvalid => m_valid,
-      m_axis_tready => m_ready, msg => cloud, rdy => cloud_rdy, m_axis_status_tdata => open,
+      m_axis_tready => m_ready, msg => press, rdy => press_rdy, m_axis_status_tdata => open,
       m_axis_status_tvalid => open, m_axis_status_tready => '1');
 
   sink : entity work.firm_hdl_axis_sink
@@ -161,21 +152,6 @@ def test_another_header_is_found(ghdl, folders, tmp_path):
     assert "FAIL packet 1" in output and "PASS" not in output
 
 
-def test_shared_files_have_one_text(folders):
-    one, other = ({path.name: path for path in folder.iterdir()} for folder in folders)
-    both = {name for name in {*one} & {*other} if name.endswith((".vhd", ".core"))}
-    assert {
-        "builtin_interfaces_msg_time_cdr_8_pkg.vhd",
-        "firm_hdl_bus_8_pkg.core",
-        "firm_hdl_bus_8_pkg.vhd",
-        "firm_hdl_types_pkg.vhd",
-        "std_msgs_msg_header_cdr_8_pkg.core",
-        "std_msgs_msg_header_cdr_8_pkg.vhd",
-    } <= both
-    for name in both:
-        assert one[name].read_text() == other[name].read_text(), name
-
-
 def test_package_of_a_type_is_the_same_wherever_the_type_is():
     library = Library("lyrical")
     texts: dict[str, tuple[str, str]] = {}
@@ -193,20 +169,6 @@ def test_package_of_a_type_is_the_same_wherever_the_type_is():
             assert text == before, f"{each.name} in {name} and in {owner}"
             shared += owner != name
     assert shared > 100
-
-
-@pytest.mark.parametrize("name", ["sensor_msgs/msg/JointState", "nav_msgs/msg/Odometry"])
-def test_shared_packages_state_which_others_they_use(name):
-    message = Library("lyrical").message(name)
-    plan = build_plan(lay_out(message))
-    core = {way: Core(entity=way, names={}) for way in ("deserializer", "serializer")}
-    made = user_layer(message, plan, name="t", cores=core)
-    before = set()
-    for each in made.shared:
-        used = set(re.findall(r"\bwork\.(\w+)", made.packages[f"{each.name}.vhd"]))
-        assert set(each.needs) == used - {each.name, "firm_hdl_types_pkg"}, each.name
-        assert before.issuperset(each.needs)
-        before.add(each.name)
 
 
 def test_the_manifest_states_which_packages_each_one_uses(folders):
@@ -304,8 +266,8 @@ def test_tools_have_each_file_once(folders, tmp_path):
     shutil.copytree(folders[0].parents[1], tmp_path / "cores")
     (tmp_path / "both.core").write_text(
         "CAPI=2:\nname: my:own:both:1\nfilesets:\n  all:\n    depend:\n"
-        "      - firm-hdl:lyrical:sensor_msgs_msg_laserscan_cdr_8\n"
-        "      - firm-hdl:lyrical:sensor_msgs_msg_pointcloud2_cdr_8\n"
+        "      - firm-hdl:lyrical:sensor_msgs_msg_temperature_cdr_8\n"
+        "      - firm-hdl:lyrical:sensor_msgs_msg_fluidpressure_cdr_8\n"
         "targets:\n  default:\n    filesets: [all]\n"
         "  sim:\n    default_tool: ghdl\n    filesets: [all]\n    toplevel: x\n"
     )
@@ -319,14 +281,14 @@ def test_tools_have_each_file_once(folders, tmp_path):
 
 HEADERS = """\
 library mine;
-use mine.sensor_msgs_msg_laserscan_cdr_8_pkg.all;
-use mine.sensor_msgs_msg_pointcloud2_cdr_8_pkg.all;
+use mine.sensor_msgs_msg_temperature_cdr_8_pkg.all;
+use mine.sensor_msgs_msg_fluidpressure_cdr_8_pkg.all;
 entity headers is end entity;
 architecture sim of headers is
-  signal scan : laser_scan_t;
-  signal cloud : point_cloud2_t;
+  signal warm : temperature_t;
+  signal press : fluid_pressure_t;
 begin
-  cloud.header <= scan.header;
+  press.header <= warm.header;
 end architecture;
 """
 
@@ -355,13 +317,3 @@ def test_vhdl_compiles_as_a_library_of_vunit(ghdl, folders, tmp_path):
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
-
-
-@pytest.mark.usefixtures("hollow")
-def test_what_a_folder_had_before_it_is_built_anew_does_not_count(similar, tmp_path):
-    options = {"out": tmp_path / "out"}
-    build(["p/A"], library=Library("noetic", [similar]), **options)
-    # `A` now has what `B` has, whose package has the same name.
-    (similar / "p" / "msg" / "A.msg").write_text("INNER a\n")
-    made = build(["p/A", "p/B"], library=Library("noetic", [similar]), **options)
-    assert len(made) == 2

@@ -6,18 +6,13 @@ from __future__ import annotations
 import re
 import struct
 import subprocess
-from itertools import pairwise
-
-import pytest
 
 from firm_hdl.export.constants import named_constants
-from firm_hdl.export.top import leaf_names, ports_of
 from firm_hdl.export.tree import tree_of
-from firm_hdl.export.vhdl.bus import bus_package
 from firm_hdl.export.vhdl.constants import comment, declarations
 from firm_hdl.export.vhdl.types import types_package
 from firm_hdl.gateware import record_layout
-from firm_hdl.names.identifiers import flat_names, scope_names
+from firm_hdl.names.identifiers import scope_names
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
 from tests.export.vhdl.test_layer import layer, vhdl_of, write
@@ -53,18 +48,6 @@ def test_constants_of_two_types_of_one_name_are_all_there(tmp_path):
         assert re.search(rf"constant {entry.name} +: signed\(7 downto 0\) := {value};", text)
 
 
-def test_packages_of_names_that_meet_are_told_apart(tmp_path):
-    """VHDL ignores case, so the names of the types are one."""
-    files = {"p/T": "a/AB x\na/Ab y\na/ABC z\n", "a/AB": "int8 x"}
-    files |= {"a/Ab": "int16 x", "a/ABC": "int32 x"}
-    message = library(tmp_path, files).message("p/T")
-    made = layer(message)
-    names = [node.package for node in tree_of(message, plan_of(message)).root.children]
-    assert len({name.lower() for name in names}) == 3
-    for name, item in zip(names, ("int8", "int16", "int32"), strict=True):
-        assert re.search(rf"\bx +: {item}_stream_t;", made.packages[f"{name}.vhd"]), name
-
-
 def test_types_of_one_name_have_records_of_their_own(tmp_path):
     message = library(tmp_path, TWO).message("p/T")
     root = tree_of(message, plan_of(message)).root
@@ -83,38 +66,6 @@ def test_types_of_one_name_have_records_of_their_own(tmp_path):
         ]
     own = made.packages[f"{made.package}.vhd"]
     assert f"a : work.{a.package}.part_t;" in own and f"b : work.{b.package}.part_t;" in own
-
-
-SAME = {
-    "p/T": "int8 a_b\nIn a\nint8 a_b_c\nIn2 a_b_d\nint8 A_B\nint8 s_axis\nint8 m_axis_status\n"
-    "int8 aclk\nint8 aresetn\nint8 msg\nint8 rdy",
-    "p/In": "int8 b\nint8 b_c\nIn2 b_d",
-    "p/In2": "int8 e",
-}
-
-
-def test_ports_that_would_have_one_name_have_two(tmp_path):
-    message = library(tmp_path, SAME, "ros1").message("p/T")
-    plan = build_plan(lay_out(message), bus_bytes=8)
-    names = leaf_names(plan)
-    assert len(names) == len(plan.leaves) == 15 - 2
-    assert len({name.lower() for name in names.values()}) == len(names)
-    for direction in ("deserializer", "serializer"):
-        ports = [port.name.lower() for port in ports_of(plan, direction)]
-        assert len({*ports}) == len(ports)
-    # Of several ports with one name, the first on the wire keeps the name.
-    assert names["a_b",] == "a_b" and names["a", "b_c"] == "a_b_c"
-    assert names["a", "b"] != "a_b" and names["a_b_c",] != "a_b_c"
-    assert names["s_axis",] != "s_axis" and names["m_axis_status",] != "m_axis_status"
-
-
-def test_reserved_names_count_whatever_their_case():
-    assert flat_names([("S_AXIS",), ("s", "axis")], ["s_axis"]).keys() == {
-        ("S_AXIS",), ("s", "axis")
-    }  # fmt: skip
-    given = flat_names([("S_AXIS",), ("s", "axis")], ["s_Axis"])
-    assert len({name.lower() for name in given.values()} | {"s_axis"}) == 3
-    assert scope_names(["a", "A", "a_2"], ["B"]) == {"a": "a", "A": "A_3", "a_2": "a_2"}
 
 
 NUMBERS = {
@@ -316,33 +267,3 @@ def test_items_and_vectors_are_the_same_in_any_range(ghdl, tmp_path):
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
     assert "ALL" in done.stdout + done.stderr
-
-
-@pytest.mark.parametrize("bus_bytes", [1, 2, 8, 16])
-def test_items_have_as_many_lanes_as_the_bus(tmp_path, bus_bytes):
-    message = library(tmp_path, {"p/T": "uint16[] a\nfloat64[5] b\nstring c"}).message("p/T")
-    plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
-    text = bus_package(bus_bytes)
-    for leaf in plan.leaves:
-        if leaf.kind == "items":
-            primitive = {"a": "uint16", "b": "float64", "c": "uint8"}[leaf.path[0]]
-            kind = f"{primitive}_items_t(0 to {leaf.lanes - 1});"
-            assert f"  type {primitive}_items_stream_t is record\n    data  : {kind}" in text
-    assert [leaf.lanes for leaf in plan.leaves if leaf.kind == "items"] == [
-        max(1, bus_bytes // 2),
-        max(1, bus_bytes // 8),
-        bus_bytes,
-    ]
-
-
-def test_a_comment_is_indented_like_its_declaration(tmp_path):
-    made, _ = vhdl_of(library(tmp_path, TWO).message("p/T"), hollow=True)
-    seen = 0
-    for text in made.files.values():
-        lines = text.splitlines()
-        for line, below in pairwise(lines):
-            if re.match(r" *--", line) and below.strip(" );"):
-                indents = [len(each) - len(each.lstrip()) for each in (line, below)]
-                assert indents[0] == indents[1], (line, below)
-                seen += 1
-    assert seen > 20

@@ -19,6 +19,7 @@ PACKETS = [
 
 
 @pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 8, 32]))
+@pytest.mark.thorough
 def test_wstrings_pass(ghdl, tmp_path, bus_bytes):
     folder = tmp_path / "my_msgs" / "msg"
     folder.mkdir(parents=True)

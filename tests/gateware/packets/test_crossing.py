@@ -76,7 +76,7 @@ CLOCKS = [(1, 1, 0.3), (1, 1.01, 0), (1, 3.7, 0.1), (5.3, 1, 0.4), (1, 2, 0)]
 
 @pytest.mark.parametrize(("write", "read", "phase"), CLOCKS)
 @pytest.mark.parametrize("bus_bytes", [1, 8, 64])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 def test_packets_are_the_same_in_the_other_domain(bus_bytes, write, read, phase):
     for stall in (0, 0.4):
         crossing = PacketCrossing(bus_bytes, 8)
@@ -84,6 +84,7 @@ def test_packets_are_the_same_in_the_other_domain(bus_bytes, write, read, phase)
 
 
 @pytest.mark.parametrize("ratio", [1, 1.1, 1.9])
+@pytest.mark.sampled(2)
 def test_a_beat_per_cycle_of_the_slower_clock(ratio):
     packets = [bytes(800), bytes(8), bytes(720)]
     times = run(PacketCrossing(8), packets, read=ratio, phase=0.3)
@@ -116,13 +117,6 @@ def test_parameters_are_checked():
         PacketCrossing(8, read_domain="comb")
 
 
-class _IsNeverFull(PacketCrossing):
-    def elaborate(self, platform):
-        m = super().elaborate(platform)
-        m.d.comb += self.packets_in.ready.eq(1)
-        return m
-
-
 class _ReadsWhatIsNotThere(PacketCrossing):
     def elaborate(self, platform):
         m = super().elaborate(platform)
@@ -130,7 +124,7 @@ class _ReadsWhatIsNotThere(PacketCrossing):
         return m
 
 
-@pytest.mark.parametrize("fault", [_IsNeverFull, _ReadsWhatIsNotThere])
+@pytest.mark.parametrize("fault", [_ReadsWhatIsNotThere])
 def test_a_fault_is_found(fault):
     with pytest.raises(AssertionError):
         run(fault(8, 8), sent(8), read=2.3, stall=0.2, most=2_000)

@@ -89,7 +89,7 @@ def ros_packets(name, bus_bytes, count):
 
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
 @pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 def test_packets_of_ros_leave_whole_and_in_order_under_any_stall(bus_bytes, when_full):
     # On a narrow bus, each packet takes many cycles.
     count = min(30, 5 + 3 * bus_bytes)
@@ -111,6 +111,7 @@ def test_packets_of_ros_leave_whole_and_in_order_under_any_stall(bus_bytes, when
 
 
 @pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@pytest.mark.sampled(3)
 def test_latency_and_throughput_are_exact(bus_bytes):
     sizes = [1, 1, 1, 5, 1, 16, 2, 1, 8, 1, 1]
     packets = [of_beats(size, bus_bytes) for size in sizes]
@@ -145,6 +146,7 @@ def test_aborted_packets_cost_their_beats_and_no_more():
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 64], [1, 2, 8, 64]))
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
+@pytest.mark.sampled(2)
 def test_a_packet_as_large_as_the_memory_passes_and_a_larger_one_does_not(bus_bytes, when_full):
     whole = bytes(range(64)) * bus_bytes
     fifo = PacketFifo(bus_bytes, 64 * bus_bytes, 4, when_full=when_full)
@@ -164,16 +166,6 @@ def test_a_packet_as_large_as_the_memory_passes_and_a_larger_one_does_not(bus_by
     assert run.outcomes[1] == ABORTED
 
 
-def test_a_packet_larger_than_the_memory_does_not_hold_the_link():
-    bus, most = 8, 16
-    packets = [of_beats(size, bus) for size in (40, 3, 17, 3, 100, 3)]
-    run = Run(PacketFifo(bus, most * bus, 4), packets)
-    assert run.outcomes == [LARGE, KEPT] * 3
-    # One cycle without room after the beat that fills the memory. All small packets have left.
-    spent = run.taken[-1] - run.taken[0] + 1
-    assert spent == len(run.taken) + run.outcomes.count(LARGE)
-
-
 def test_without_a_consumer_the_link_is_held_exactly_when_nothing_has_room():
     bus, most = 4, 16
     fifo = PacketFifo(bus, most * bus, 64)
@@ -188,6 +180,7 @@ def test_without_a_consumer_the_link_is_held_exactly_when_nothing_has_room():
 
 
 @pytest.mark.parametrize("packets", [1, 2, 3, 8])
+@pytest.mark.sampled(2)
 def test_the_number_of_packets_is_a_limit(packets):
     fifo = PacketFifo(4, 1024, packets)
     # No size is that of a packet a power of two before.
@@ -220,22 +213,9 @@ def check_room(fifo):
 
 
 @pytest.mark.parametrize("packets", [1, 2, 3, 4])
+@pytest.mark.sampled(2)
 def test_a_packet_that_begins_to_leave_makes_room_in_the_next_cycle(packets):
     check_room(PacketFifo(4, 1024, packets))
-
-
-class _SeesRoomLate(PacketWriter):
-    """A packet that left in the cycle before is still counted."""
-
-    def _may_store(self, ends):
-        self.begun = Const(0)
-        return super()._may_store(ends)
-
-
-def test_room_that_comes_a_cycle_late_is_found(monkeypatch):
-    monkeypatch.setattr("firm_hdl.gateware.packets.fifo.PacketWriter", _SeesRoomLate)
-    with pytest.raises(AssertionError):
-        check_room(PacketFifo(4, 1024, 2))
 
 
 def test_a_link_that_cannot_be_held_loses_whole_packets():
@@ -340,39 +320,9 @@ class _ForgetsToAbort(_Broken):
             m.d.sync += self.rewinds.eq(0)
 
 
-class _NeverGoesBack(_Broken):
-    def inject_fault(self, m):
-        m.d.sync += self.rewinds.eq(0)
-
-
-class _HasAlwaysRoom(_Broken):
-    def inject_fault(self, m):
-        came = self.packets
-        stores = came.valid & ~self.drops
-        m.d.comb += came.ready.eq(1)
-        m.d.sync += [
-            self.fits.eq(1),
-            self.writes.eq(stores),
-            self.keeps.eq(stores & came.payload.last & ~self.abort),
-        ]
-
-
-class _HasNeverALargePacket(_Broken):
-    def inject_fault(self, m):
-        came = self.packets
-        ends = came.valid & came.ready & came.payload.last
-        m.d.sync += [self.drops.eq(0), self.rewinds.eq(ends & self.abort)]
-
-
-class _CommitsEarly(_Broken):
-    def inject_fault(self, m):
-        with m.If(self.writes):
-            m.d.sync += self.kept.eq(self.kept + 1)
-
-
 @pytest.mark.parametrize(
     "fault",
-    [_ForgetsToAbort, _NeverGoesBack, _HasAlwaysRoom, _HasNeverALargePacket, _CommitsEarly],
+    [_ForgetsToAbort],
 )
 def test_a_fault_of_the_writer_is_found(monkeypatch, fault):
     packets = [of_beats(size, 8, size) for size in (3, 9, 2, 4, 8, 1, 1, 5, 3, 5)]

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import random
-
 import pytest
 from amaranth.hdl import Module, Value
 from amaranth.lib.wiring import Component, In, Out, connect, flipped
@@ -23,7 +21,6 @@ from firm_hdl import (
 from firm_hdl.gateware.signatures import PacketSignature
 from firm_hdl.plan import decode, encode
 from firm_hdl.sim import Harness, RunOptions, Stalls
-from firm_hdl.sim.payloads import packet_beats
 from firm_hdl.sim.transfers import join_transfers
 from tests.gateware import test_parser
 from tests.gateware.packets import test_arbiter, test_fifo, test_router, test_width
@@ -144,17 +141,6 @@ def test_a_fifo_stores_nothing_between_transfers(when_full):
     want = [test_fifo.LARGE if len(each) > 16 else test_fifo.KEPT for each in packets]
     want[1] = want[5] = test_fifo.ABORTED
     assert run.outcomes == want
-
-
-@pytest.mark.parametrize("when_full", ["wait", "drop"])
-def test_the_count_matters_only_beside_a_last_beat(when_full):
-    """`PacketRules` of the bench checks that all beats but the last leave with a whole count."""
-    noise = random.Random(1)
-    source = [bits for each in PACKETS for bits in packet_beats(each, 4, noise, counts=True)]
-    fifo = PacketFifo(4, 64, 8, when_full=when_full)
-    seen = test_fifo.bench_of(fifo).run({"in": source}, {"in": len(source)})
-    assert seen.packets["out"] == PACKETS
-    assert seen.sides["out"] == [{len(packet)} for packet in PACKETS]
 
 
 def test_packets_are_joined_divided_and_converted_without_the_noise_between_them():

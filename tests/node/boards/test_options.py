@@ -7,12 +7,11 @@ import pty
 import re
 import socket
 import termios
-from types import SimpleNamespace
 
 import pytest
 
 from firm_hdl.errors import UserError
-from firm_hdl.node.boards import BoardError, board_of, udp
+from firm_hdl.node.boards import board_of
 from firm_hdl.node.boards.bytestreams import ByteBoard
 from firm_hdl.node.bytestream import write_frame
 from tests.node.accelerators import echo_text
@@ -42,66 +41,6 @@ def test_a_message_over_tcp_waits_for_no_other_and_little_is_held():
         # Linux doubles it, and would begin with 2.5 MB on the loopback interface.
         assert option(board, socket.SOL_SOCKET, socket.SO_SNDBUF) <= 2 << 16
         assert not os.get_blocking(board.fileno())
-        board.close()
-
-
-def test_a_burst_of_datagrams_has_room_both_ways(monkeypatch):
-    asked = []
-
-    class Socket(socket.socket):
-        def setsockopt(self, *option):
-            asked.append(option)
-
-    monkeypatch.setattr(udp, "socket", SimpleNamespace(**{**vars(socket), "socket": Socket}))
-    board = board_of("udp://127.0.0.1:9", ECHO)
-    board.open()
-    board.close()
-    assert asked == [
-        (socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20),
-        (socket.SOL_SOCKET, socket.SO_SNDBUF, 4 << 20),
-    ]
-
-
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("", 0))
-        return probe.getsockname()[1]
-
-
-@pytest.mark.parametrize(
-    ("own_address", "is_same_port"), [("192.0.2.9", True), ("127.0.0.1", False)]
-)
-def test_the_port_is_that_of_the_board_unless_it_is_on_this_host(
-    monkeypatch, own_address, is_same_port
-):
-    """Cores such as LiteEth have one port for both directions."""
-    port = free_port()
-
-    class Socket(socket.socket):
-        def getsockname(self):
-            return (own_address, 5)
-
-    monkeypatch.setattr(udp, "socket", SimpleNamespace(**{**vars(socket), "socket": Socket}))
-    board = board_of(f"udp://127.0.0.1:{port}", ECHO)
-    board.open()
-    with socket.socket(fileno=os.dup(board.fileno())) as own:
-        assert (own.getsockname()[1] == port) is is_same_port
-    board.close()
-
-
-def test_a_port_that_is_used_is_no_error(monkeypatch):
-    class Socket(socket.socket):
-        def getsockname(self):
-            return ("192.0.2.9", 5)
-
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
-        other.bind(("", 0))
-        port = other.getsockname()[1]
-        monkeypatch.setattr(udp, "socket", SimpleNamespace(**{**vars(socket), "socket": Socket}))
-        board = board_of(f"udp://127.0.0.1:{port}", ECHO)
-        board.open()
-        assert board.send([b"x"])
-        assert other.recv(9) == b"x"
         board.close()
 
 
@@ -254,10 +193,3 @@ def test_a_message_counts_as_sent_only_if_all_of_its_datagrams_had_room(room, ta
     board._socket = own = Full(room)
     assert board.send([b"a", b"b"]) is taken
     assert own.sent == [b"a", b"b"][:room] and not board.counters.total()
-
-
-@pytest.mark.parametrize(("waiting", "found"), [(0, [0]), (255, [255, 0]), (300, [256, 44, 0])])
-def test_so_many_datagrams_are_taken_at_once(waiting, found):
-    board = board_of("udp://127.0.0.1:9", ECHO)
-    board._socket = Full(waiting)
-    assert [len(board.receive()) for _ in found] == found

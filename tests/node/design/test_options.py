@@ -25,11 +25,6 @@ def mistakes(text, **options):
     return [line.removeprefix("<description>:") for line in lines if ": error: " in line]
 
 
-def store(text):
-    (topic,) = described(text).topics
-    return topic.stores[0][1]
-
-
 # Topics.
 
 
@@ -59,11 +54,6 @@ def test_memory_of_a_topic(fields, memory, tmp_path):
     assert (made.memory_bytes, made.max_message_bytes, made.packets) == (memory, memory, 16)
 
 
-def test_the_limit_of_lengths_is_that_of_the_memory():
-    text = "node: n\npublish: {/a: {type: geometry_msgs/msg/Twist, memory_bytes: 256}}\n"
-    assert store(text).max_message_bytes == 256
-
-
 @pytest.mark.parametrize(
     ("option", "values", "wrong"),
     [
@@ -78,17 +68,6 @@ def test_numbers_of_a_topic(option, values, wrong):
     for value in wrong:
         (only,) = mistakes(f"node: n\n{TOPIC % f', {option}: {value}'}")
         assert only.startswith(f"2:{43 + len(option)}: error: '{option}' must be from ")
-
-
-def test_numbers_of_a_node():
-    for mhz in (1, 1000, 156.25):
-        assert described(f"node: n\nclock_mhz: {mhz}\n{TOPIC % ''}").clock_hz == mhz * 1e6
-    for mhz in ("0.999", "1000.001"):
-        assert mistakes(f"node: n\nclock_mhz: {mhz}\n{TOPIC % ''}") == [
-            f"2:12: error: 'clock_mhz' must be from 1 to 1000, not {mhz}"
-        ]
-    for width in (1, 2, 4, 8, 16):
-        assert described(f"node: n\nbus_bytes: {width}\n{TOPIC % ''}").bus_bytes == width
 
 
 def test_a_service_is_refused_for_its_response(tmp_path):
@@ -107,20 +86,6 @@ def test_a_service_is_refused_for_its_response(tmp_path):
 
 def linked(options, more=""):
     return f"node: n\nlink: {{{options}}}\n{more}{TOPIC % ''}"
-
-
-def test_widths_of_a_udp_core():
-    for width in (1, 2, 4, 8, 16):
-        assert described(linked(f"kind: udp, data_bytes: {width}")).link.data_bytes == width
-    for width in (0, 3, 12, 17, 32):
-        (only,) = mistakes(linked(f"kind: udp, data_bytes: {width}"))
-        assert only.startswith("2:31: error: 'data_bytes' must be ") and only.endswith(f" {width}")
-
-
-def test_memories_of_a_link_are_powers_of_two():
-    assert described(linked("kind: udp, memory_bytes: 128")).link.memory_bytes == 128
-    (only,) = mistakes(linked("kind: uart, memory_bytes: 96"))
-    assert only == "2:34: error: 'memory_bytes' must be a power of two: 96"
 
 
 @pytest.mark.parametrize(("mhz", "fits"), [(4, True), (3.9, False)])
@@ -178,11 +143,6 @@ def test_the_fastest_uart():
 )
 def test_a_mistake_is_said_once(text, wanted):
     assert mistakes(text) == [wanted]
-
-
-def test_mistakes_come_in_the_order_of_the_text():
-    text = "remap: {/x: /y}\nclock_mhz: 0\nbus_bytes: 3\nnode: a-b\n" + TOPIC % ", depth: 0"
-    assert [each.split(":")[0] for each in mistakes(text)] == ["1", "2", "3", "4", "5"]
 
 
 def test_a_caret_reaches_the_end_of_a_text_without_an_end_of_line():

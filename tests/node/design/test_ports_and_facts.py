@@ -8,14 +8,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from firm_hdl.errors import UserError
-from firm_hdl.node import Node, read_description_text
+from firm_hdl.node import Node
 from firm_hdl.node import build as node_build
-from firm_hdl.node import top as node_top
 from firm_hdl.node.benches import link_script
 from firm_hdl.node.build import build_node
 from firm_hdl.node.top import node_ports
-from tests.frontend.workspace import make_files
 from tests.node.samples import read
 
 SIGNED = """\
@@ -84,19 +81,6 @@ def test_a_uart_has_two_ports():
     assert not any("axis" in name for name in found)
 
 
-def test_a_node_has_as_many_input_bits_as_amaranth_elaborates(monkeypatch, tmp_path):
-    bits = sum(port[2] for port in ports_of(read(SIGNED)).values() if port[1] == IN)
-    monkeypatch.setattr(node_top, "MAX_INPUT_BITS", bits)
-    assert ports_of(read(SIGNED))
-    monkeypatch.setattr(node_top, "MAX_INPUT_BITS", bits - 1)
-    message = rf"^The node has {bits} input bits, and Amaranth elaborates at most {bits - 1}$"
-    with pytest.raises(ValueError, match=message):
-        node_ports(Node(read(SIGNED)))
-    with pytest.raises(UserError, match=message):
-        build_node(read(SIGNED), tmp_path)
-    assert list(tmp_path.iterdir()) == []
-
-
 @pytest.fixture
 def given(monkeypatch):
     """What :func:`build_node` asks to be written; nothing is, and no circuit is made."""
@@ -126,20 +110,3 @@ def test_a_design_is_current_only_with_the_same_frames(given, tmp_path):
 def test_a_folder_is_written_again_only_if_that_is_asked_for(force, given, tmp_path):
     build_node(read(SIGNED), tmp_path, force=force)
     assert (given[0].force, given[0].folder) == (force, tmp_path / "tiny")
-
-
-def test_a_uart_has_no_benches_to_name(given, tmp_path):
-    build_node(read(SIGNED), tmp_path)
-    build_node(read(SIGNED, link="uart"), tmp_path)
-    stream, uart = (each.facts["bench"] for each in given)
-    assert (stream["verilog"], stream["vhdl"], uart) == ("tiny_tb", "tiny_tb", None)
-
-
-def test_the_manifest_says_why_there_are_no_records(given, tmp_path):
-    make_files(tmp_path, {"a_b/msg/C.msg": "int8 x\n", "a/msg/b_C.msg": "int8 x\n"})
-    text = "node: n\nsubscribe:\n  /a: {type: a_b/C}\n  /b: {type: a/b_C}\ndistro: noetic\n"
-    build_node(read_description_text(text, paths=[tmp_path]), tmp_path / "out")
-    records = given[0].facts["records"]
-    assert not records["built"] and "would have one package of VHDL" in records["reason"]
-    # The plain ports are there all the same.
-    assert {"subscribe_a_x_data", "subscribe_b_x_data"} <= {each["name"] for each in given[0].ports}

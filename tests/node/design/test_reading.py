@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend import Library
 from firm_hdl.node import read_description, read_description_text
 from tests.node.samples import LIBRARY
 
@@ -18,16 +17,6 @@ def described(text):
 
 def names(text):
     return [topic.name for topic in described(text).topics]
-
-
-def test_lines_may_end_as_on_windows():
-    text = f"node: n\r\nsubscribe:\r\n  /a: {BOOL}\r\n"
-    assert described(text) == described(text.replace("\r", ""))
-    with pytest.raises(DefinitionError) as caught:
-        described(text.replace("Bool}", "Bool, depth: 0}"))
-    place, line, caret = str(caught.value).splitlines()
-    assert place.startswith("<description>:3:40: error: 'depth' must be")
-    assert line == "  /a: {type: std_msgs/msg/Bool, depth: 0}" and caret == f"{' ' * 39}^"
 
 
 @pytest.mark.parametrize("size", [262_144, 262_145])
@@ -91,20 +80,6 @@ def test_a_topic_has_one_type_by_whatever_names(first, second, more):
     described(served.replace("subscribe", "serve"))
 
 
-def test_the_complete_name_of_a_topic_has_a_limit():
-    """The namespace counts; the name of the node does for its private names."""
-    for written, length in ((f"{'x' * 45}", 247), (f"{'x' * 46}", 248), (f"~/{'x' * 43}", 248)):
-        text = f"node: nn\nnamespace: /{'y' * 200}\npublish:\n  {written}: {BOOL[:-1]}, port: p}}\n"
-        text = text.replace("nn\n", "n\n") if length == 247 else text
-        if length == 247:
-            assert len(names(text)[0]) == 247
-            continue
-        with pytest.raises(
-            DefinitionError, match=r":4:3: error: .* at most 247 characters, not 248"
-        ):
-            described(text)
-
-
 @pytest.mark.parametrize(
     ("name", "port"),
     [("/a_b", "a_b"), ("/a__b/c_", "a_b_c"), ("/_a/B/_/c1", "a_B_c1"), ("/a/b", "a_b")],
@@ -131,45 +106,6 @@ def test_a_port_belongs_to_the_first_topic_that_has_it():
         f"<description>:{line}:3: error: the port '{port}' is already that of '/a/b'"
         for line, port in ((4, "a_b"), (5, "A_b"))
     ]
-
-
-def test_a_service_has_no_policies():
-    text = "node: n\nserve: {/a: {type: robot_msgs/srv/Calibrate, %s}}\n"
-    for option in ("depth: 3", "reliability: reliable", "when_full: drop"):
-        key = option.partition(":")[0]
-        with pytest.raises(
-            DefinitionError, match=f":2:46: error: a topic of 'serve' has no '{key}'"
-        ):
-            described(text % option)
-    (topic,) = described(text % "rate_hz: 5, packets: 3, port: p").topics
-    assert (topic.rate_hz, topic.port) == (5.0, "p")
-    assert [store.packets for _, store in topic.stores] == [3, 3]
-
-
-def test_policies_of_ros_1():
-    text = "node: n\npublish: {/a: {type: std_msgs/Bool, %s}}\n"
-    noetic = Library("noetic")
-    for key, value in (("reliability", "best_effort"), ("history", "keep_all")):
-        with pytest.raises(DefinitionError, match=f":2:37: error: ROS 1 has no '{key}'"):
-            read_description_text(text % f"{key}: {value}", library=noetic)
-    # A latched topic, and the size of its queue.
-    (topic,) = read_description_text(
-        text % "durability: transient_local, depth: 2", library=noetic
-    ).topics
-    assert (topic.qos.durability, topic.qos.depth) == ("transient_local", 2)
-
-
-def test_sizes_of_ros_1_have_no_encapsulation():
-    """A Vector3 has three numbers of 8 bytes there, and two of them need 48 bytes."""
-    text = (
-        "node: n\ndistro: %s\npublish: {/a: {type: geometry_msgs/Vector3, max_message_bytes: %d}}\n"
-    )
-    for distro, least, memory in (("noetic", 24, 64), ("jazzy", 28, 64)):
-        (topic,) = read_description_text(text % (distro, least)).topics
-        store = topic.store("out")
-        assert store is not None and store.memory_bytes == memory
-        with pytest.raises(DefinitionError, match=f"must be from {least} to 4294967295"):
-            read_description_text(text % (distro, least - 1))
 
 
 @pytest.mark.parametrize("name", ["a:B", "a.b_1:C", "a:B.C", "_a.b.c:_D"])

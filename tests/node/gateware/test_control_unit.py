@@ -112,6 +112,7 @@ SETS_RATE = [9, 0xFFFF_FFFE]
 
 
 @pytest.mark.parametrize("bus", [1, 8, 16])
+@pytest.mark.sampled(2)
 def test_every_request_has_its_response(bus):
     bench = UnitBench(bus)
     # Each request is answered before the next one comes.
@@ -124,6 +125,7 @@ def test_every_request_has_its_response(bus):
 
 
 @pytest.mark.parametrize("size", [1, 8, 9, 15, 17, 24, 31, 40])
+@pytest.mark.sampled(4)
 def test_a_request_of_another_size_is_none(size):
     bench = UnitBench(8)
     requests = [(request(SET_RATE, 3) * 4)[:size], request(READ, 4)]

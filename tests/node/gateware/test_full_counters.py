@@ -11,8 +11,6 @@ from amaranth.sim import Simulator
 
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.node.gateware.reassembler import Reassembler
-from firm_hdl.node.links import bytestream
-from tests.node import cobs
 
 MOST = 0xFFFF_FFFF
 
@@ -79,41 +77,5 @@ def test_lost_messages_are_counted_up_to_the_largest_value(before, gap, after):
         # The next one follows, so none is missing.
         await take(6 + gap)
         assert ctx.get(part.lost) == after
-
-    simulated(part, use)
-
-
-@pytest.mark.parametrize(
-    ("frames", "total"),
-    [
-        pytest.param(0, 2, marks=pytest.mark.thorough),
-        (7, 9),
-        pytest.param(MOST - 2, MOST, marks=pytest.mark.thorough),
-        (MOST - 1, MOST),
-        (MOST, MOST),
-    ],
-)
-def test_malformed_frames_of_both_kinds_are_counted_up_to_the_largest_value(
-    monkeypatch, frames, total
-):
-    """Besides so many frames with a wrong header, a byte stream has two that are too short."""
-
-    class Receiver(bytestream.FrameReceiver):
-        def elaborate(self, platform):
-            m = Module()
-            m.d.comb += [self.frames.ready.eq(1), self.counters.malformed.eq(frames)]
-            return m
-
-    monkeypatch.setattr(bytestream, "FrameReceiver", Receiver)
-    part = bytestream.ByteLink(1, None)
-
-    async def use(ctx):
-        ctx.set(part.bytes_in.valid, 1)
-        for byte in (b"\0" + cobs.encode(b"ab")) * 2 + b"\0":
-            ctx.set(part.bytes_in.payload, byte)
-            await ctx.tick().until(part.bytes_in.ready)
-        ctx.set(part.bytes_in.valid, 0)
-        await ctx.tick().repeat(60)
-        assert ctx.get(part.counters.malformed) == total
 
     simulated(part, use)

@@ -8,46 +8,15 @@ import struct
 import pytest
 
 from firm_hdl.node.gateware.fragmenter import Fragmenter
-from firm_hdl.node.gateware.header import HeaderInsert, HeaderStrip
 from tests.gateware.packets.bench import PacketBench, beats
-from tests.node.traffic import link_output
 
 BUS = 8
 TOPIC, TAG, LENGTH = 0xFEDC, 0x89AB_CDEF, 0xA1B2_C3D4
-SIDE = TOPIC | TAG << 16 | LENGTH << 48
 
 
 def header(flags, length, *, sequence=0, fragment=0, topic=TOPIC, tag=TAG):
     """Return a header, written down after docs/reference/frame.md."""
     return struct.pack("<BBHIIHH", 0xF1, flags, topic, length, tag, sequence, fragment)
-
-
-def test_a_header_has_all_bits_of_its_numbers():
-    """The first message says that the sender has started, also if it has no bytes."""
-    part = HeaderInsert(BUS)
-    bench = PacketBench(part, {"i": part.i}, {"o": (part.frames, BUS, part.topic)})
-    packets = [b"", b"abc", b"", b"x" * 20]
-    seen = bench.run({"i": list(beats(packets, BUS, [SIDE] * 4))}, {"o": 4})
-    assert seen.packets["o"] == [
-        header(3 if number == 0 else 1, LENGTH, sequence=number) + packet
-        for number, packet in enumerate(packets)
-    ]
-    assert seen.sides["o"] == [{TOPIC}] * 4
-
-
-def test_all_bits_of_a_header_are_read():
-    part = HeaderStrip(BUS)
-    events = {name: (getattr(part, name), getattr(part, name)) for name in ("passes", "malformed")}
-    bench = PacketBench(part, {"i": part.frames}, {"o": link_output(part.o, BUS)}, events=events)
-    packets = [b"", b"abc", b"x" * 20]
-    frames = [header(0xFF, LENGTH, sequence=7) + packet for packet in packets]
-    # What is no header, or not that of a whole message.
-    wrong = [header(0xFE, 3) + b"abc", header(1, 3, fragment=1) + b"abc", header(0xFE, 0)]
-    wrong += [header(1, 0)[:15], header(1, 0, fragment=256), b""]
-    mixed = [frame for pair in zip(wrong, [*frames, *frames], strict=True) for frame in pair]
-    seen = bench.run({"i": list(beats(mixed, BUS))}, {"o": 6})
-    assert seen.packets["o"] == packets * 2 and seen.sides["o"] == [{SIDE}] * 6
-    assert len(seen.events["passes"]) == len(seen.events["malformed"]) == 6
 
 
 @pytest.mark.parametrize("length", [65_536, 65_544, 0x0100_0008, 0xFFFF_FFFF])

@@ -11,7 +11,6 @@ from firm_hdl.frontend import Library
 from firm_hdl.node import Node, read_description_text
 from firm_hdl.node.messages import NodeMessage
 from firm_hdl.sim import Stalls
-from tests.frontend.workspace import make_files
 from tests.gateware.packets.bench import PacketBench, beats
 from tests.node.samples import read
 from tests.node.test_core import CoreBench
@@ -89,13 +88,6 @@ def test_publications_wait_or_are_dropped(bench, topic, drops):
     assert counters == {"passed": len(found), "bytes_low": 6 * len(found)}
 
 
-def test_a_message_has_the_size_that_the_description_allows_at_most(bench):
-    sent = [NodeMessage(topic=SHORT, packet=string(text)) for text in (b"abc", b"abcd", b"ab")]
-    seen = bench.run(sent, want={"short": 2}, settle=40)
-    assert seen.packets["short"] == [string(b"abc"), string(b"ab")]
-    assert bench.counters(SHORT, "in") == {"passed": 2, "length": 1, "bytes_low": 12 + 11}
-
-
 ROS_1 = """\
 node: n
 bus_bytes: 4
@@ -123,14 +115,3 @@ def test_messages_of_ros_1_pass_through_gates_and_converters():
     seen = bench.run({"in": list(beats(sent, 4))}, {"out": 3}, settle=30)
     out, _ = received_by_host(seen.packets["out"])
     assert out == [NodeMessage(topic=2, packet=packet) for packet in good]
-
-
-def test_services_of_ros_1_take_their_own_requests(tmp_path):
-    make_files(tmp_path, {"own/srv/Set.srv": "bool on\n---\nbool ok\n"})
-    text = "node: n\nserve: {/a: {type: own/Set, memory_bytes: 64}}\n"
-    bench = CoreBench(read_description_text(text, library=Library("noetic", [tmp_path])))
-    # A boolean of one byte, and one that has the encapsulation of ROS 2 before it.
-    sent = [NodeMessage(topic=1, packet=packet, tag=5) for packet in (b"\1", b"\0\1\0\0\1")]
-    seen = bench.run(sent, want={"a": 1}, settle=40)
-    assert seen.packets["a"] == [b"\1"] and seen.sides["a"] == [{5}]
-    assert bench.counters(1, "in")["trailing"] == 1

@@ -105,6 +105,7 @@ def run(design, engine, packets, stalls, cache: Path) -> tuple[list[Packet], lis
         ],
     ),
 )
+@pytest.mark.sampled(2)
 def test_converters_do_as_in_the_harness(name, bus_bytes, stalls, tmp_path):
     packets = packets_of(name, bus_bytes)
     message = message_of(name)

@@ -181,28 +181,6 @@ def test_a_program_is_compiled_once(source, tmp_path, monkeypatch):
     assert count() == 3 and count() == 0
 
 
-def test_an_interrupted_compilation_goes_on(source, tmp_path, monkeypatch):
-    """Ctrl-C ends the compilers; what they had compiled is not compiled again."""
-    fails = 'case "$*" in *-c*Slow*) touch "$0.begun"; sleep 60;; esac'
-    compiler = script(tmp_path, "compiler", f"{COMPILES}; {fails}; {WRITES}")
-    Path(f"{compiler}.version").write_text("1")
-    monkeypatch.setenv("CXX", compiler)
-
-    def interrupt(stage: str) -> None:
-        if stage.startswith("compiled"):
-            raise KeyboardInterrupt
-
-    monkeypatch.setattr(compilers, "_REPORT_SECONDS", -1.0)
-    started = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        compilers.program_of(lambda: source, cache=tmp_path / "cache", report=interrupt)
-    assert time.monotonic() - started < 50
-    script(tmp_path, "compiler", f"{COMPILES}; {WRITES}")
-    compilers.program_of(lambda: source, cache=tmp_path / "cache")
-    compiled = [line for line in Path(f"{compiler}.calls").read_text().splitlines() if "-c" in line]
-    assert sum("main.cpp" in line for line in compiled) == 1
-
-
 def test_a_compiler_that_fails_is_quoted(source, tmp_path, monkeypatch):
     compiler = script(tmp_path, "compiler", f"{COMPILES}; seq 1000; echo 'error'; exit 1")
     Path(f"{compiler}.version").write_text("1")
@@ -214,23 +192,6 @@ def test_a_compiler_that_fails_is_quoted(source, tmp_path, monkeypatch):
     assert lines[1:3] == ["1", "2"]
     assert lines[-1] == "... and 989 more lines"
     assert list((tmp_path / "cache").iterdir()) == []
-
-
-def test_a_compiler_that_writes_nothing(source, tmp_path, monkeypatch):
-    monkeypatch.setenv("CXX", "true")
-    with pytest.raises(BuildError, match=r"did not write object\.o"):
-        compilers.program_of(lambda: source, cache=tmp_path / "cache")
-    monkeypatch.setenv("CXX", script(tmp_path, "broken", "exit 1"))
-    with pytest.raises(BuildError, match="broken --version failed: exit status 1"):
-        compilers.program_of(lambda: source, cache=tmp_path / "cache")
-
-
-def test_a_program_that_cannot_start(source, tmp_path, monkeypatch):
-    compiler = script(tmp_path, "compiler", f"{COMPILES}; {WRITES}")
-    Path(f"{compiler}.version").write_text("1")
-    monkeypatch.setenv("CXX", compiler)
-    with pytest.raises(BuildError, match=r"cannot be started: .*Exec format error"):
-        FastSimulation(Awkward(), engine="verilator", cache=tmp_path / "cache")
 
 
 def test_a_cache_that_cannot_be_used_is_named(source, tmp_path, monkeypatch):

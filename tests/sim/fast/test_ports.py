@@ -9,7 +9,7 @@ from amaranth.lib import data, enum, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl import PacketSignature
-from firm_hdl.sim.fast.ports import Ports, bytes_of, ports_of
+from firm_hdl.sim.fast.ports import Ports, ports_of
 
 
 class Color(enum.Enum, shape=unsigned(3)):
@@ -62,48 +62,6 @@ def test_only_beats_of_bytes_are_packets(shape, bus_bytes):
     assert port.last_bit == (port.width - 1 if bus_bytes else None)
 
 
-def test_members_in_any_nesting_have_a_direction_and_a_number():
-    one = {"go": Out(1, init=1), "back": In(5)}
-    inner = wiring.Signature(one | {"s": Out(stream.Signature(9)).array(2)})
-    # Amaranth cannot turn arrays of streams.
-    other = wiring.Signature(one | {"s": Out(stream.Signature(9)), "t": In(stream.Signature(9))})
-    found = ports(
-        {
-            "first": In(stream.Signature(8)),
-            "plain": Out(3),
-            "seen": Out(inner).array(1, 2),
-            "turned": In(other),
-        }
-    )
-    assert [(each.number, each.name, each.is_input) for each in found.streams] == [
-        (0, "first", True),
-        (1, "seen.0.0.s.0", False),
-        (2, "seen.0.0.s.1", False),
-        (3, "seen.0.1.s.0", False),
-        (4, "seen.0.1.s.1", False),
-        (5, "turned.s", True),
-        (6, "turned.t", False),
-    ]
-    assert [each.name for each in found.outputs] == [
-        *("plain", "seen.0.0.go", "seen.0.1.go", "turned.back")
-    ]
-    assert [(each.name, each.init) for each in found.inputs] == [
-        *(("seen.0.0.back", None), ("seen.0.1.back", None), ("turned.go", 1))
-    ]
-    assert found.plain_port("turned.go", is_input=True)[0] == 2
-    assert found.plain_port("turned.back", is_input=False)[0] == 3
-    # Each is a stream of its own.
-    assert len({id(each.port) for each in found.streams}) == 7
-
-
-def test_a_signature_that_was_turned_before_has_the_other_direction():
-    turned = stream.Signature(8).flip()
-    found = ports({"sent": Out(turned), "received": In(turned)})
-    assert [(each.name, each.is_input) for each in found.streams] == [
-        *(("sent", True), ("received", False))
-    ]
-
-
 def test_a_stream_without_a_handshake_is_found_by_its_constants():
     always = {"always_ready": True, "always_valid": True}
     (port,) = ports({"o": Out(stream.Signature(8, **always))}).streams
@@ -114,15 +72,6 @@ def test_a_stream_without_a_handshake_is_found_by_its_constants():
         ports({"i": In(stream.Signature(8, **always))})
     (port,) = ports({"i": In(stream.Signature(8, always_ready=True))}).streams
     assert port.is_always_ready and port.is_input
-
-
-@pytest.mark.parametrize(
-    ("bits", "expected"), [(0, 1), (1, 1), (8, 1), (9, 2), (16, 2), (17, 3), (100, 13)]
-)
-def test_a_value_has_whole_bytes_and_at_least_one(bits, expected):
-    assert bytes_of(bits) == expected
-    found = ports({"p": Out(bits), "s": Out(stream.Signature(bits))})
-    assert found.plain[0].bytes == found.streams[0].bytes == expected
 
 
 @pytest.mark.parametrize(
@@ -197,8 +146,3 @@ def test_a_name_that_is_wrong_is_told_with_those_that_there_are():
     ]:
         with pytest.raises(ValueError, match=rf"{message}$"):
             call()
-
-
-def test_what_is_no_component_has_no_ports():
-    with pytest.raises(TypeError, match=r"must be a component of amaranth\.lib\.wiring, not 5$"):
-        ports_of(5)
