@@ -34,7 +34,7 @@ ORACLE_NAMES = (
 """Oracles of TS1: :data:`firm_hdl.verify.ts1.oracles.ORACLES`."""
 
 SIMULATOR_NAMES = ("ghdl", "iverilog", "verilator")
-"""Simulators of exported text: :data:`firm_hdl.verify.simulators.SIMULATORS`."""
+"""Simulators of exported text: :data:`firm_hdl.verify.simulators.programs.SIMULATORS`."""
 
 CLIENT_NAMES = (
     "firm-hdl",

@@ -9,8 +9,9 @@ import firm_hdl.verify.ts3.acceptance as acceptance
 from firm_hdl.cases.make import Case
 from firm_hdl.frontend import Library
 from firm_hdl.plan import Edge, build_plan
-from firm_hdl.verify import Options, accept
 from firm_hdl.verify.results.verdict import NotJudged
+from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.ts3.acceptance import accept
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.strategies import make
@@ -160,7 +161,7 @@ def test_types_near_the_limit_are_not_stalled(monkeypatch, whole):
     monkeypatch.setattr(effort, "LARGE_WORK", 1)
     once = accept("lyrical", HEADER)
     assert assert_passed(once) and once.note == "neither stalled nor damaged"
-    assert once.cycles == whole.cycles and once.packets < whole.packets / 2
+    assert once.cycles < whole.cycles and once.packets < whole.packets / 2
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from firm_hdl.verify import choices
 from firm_hdl.verify.references.choice import WRITERS
 from firm_hdl.verify.references.clients import CLIENTS
 from firm_hdl.verify.run import SYSTEMS
-from firm_hdl.verify.simulators import SIMULATORS
+from firm_hdl.verify.simulators.programs import SIMULATORS
 from firm_hdl.verify.ts1.oracles import ORACLES
 
 
