@@ -100,12 +100,11 @@ VERIFY_MAY_IMPORT = {
     "report": {"results"},
 }
 VERIFY_MAY_IMPORT["request"] = {"board", "systems", "ts3"}
-VERIFY_MAY_IMPORT["board_arguments"] = {"board", "request"}
 VERIFY_MAY_IMPORT["run"] = {
     *("bench", "board", "clients", "references", "report", "request", "results"),
     *("systems", "ts1", "ts2", "ts3"),
 }
-VERIFY_MAY_IMPORT["command"] = {"board_arguments", "choices", "request", "run", "systems"}
+VERIFY_MAY_IMPORT["command"] = {"board", "choices", "request", "run", "systems"}
 VERIFY_MAY_IMPORT["__main__"] = {"command"}
 VERIFY_MAY_IMPORT["verify"] = set()
 

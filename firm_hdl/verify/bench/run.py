@@ -27,7 +27,7 @@ from firm_hdl.jobs.processes import ToolError, made_by, run_tool
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
 from firm_hdl.sim.payloads import encoder_of
-from firm_hdl.verify.references.choice import WIDE_REFERENCES, may_stand_in
+from firm_hdl.verify.references.clients import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.texts import first_difference
 from firm_hdl.verify.systems.options import Options

@@ -28,7 +28,7 @@ from firm_hdl.node.control import FIFO_COUNTERS, GATE_COUNTERS, LINK_COUNTERS, r
 from firm_hdl.plan import Plan, build_plan
 from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.verify.board.talk import Talk, room_for
-from firm_hdl.verify.references.choice import may_stand_in
+from firm_hdl.verify.references.clients import may_stand_in
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.system import Trial

@@ -17,7 +17,7 @@ from firm_hdl.sim.fast.engines import EngineName, expected_engine
 from firm_hdl.verify.board.description import chosen_loops
 from firm_hdl.verify.board.judge import judge_loop
 from firm_hdl.verify.board.talk import SILENT_SECONDS, Talk, TalkError
-from firm_hdl.verify.references.choice import find_references
+from firm_hdl.verify.references.clients import find_references
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import (
     Failed,

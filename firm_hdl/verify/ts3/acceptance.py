@@ -39,7 +39,7 @@ from firm_hdl.plan import Edge, build_plan
 from firm_hdl.plan.edges import edges
 from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.sim.stalls import Stalls
-from firm_hdl.verify.references.choice import WIDE_REFERENCES, may_stand_in
+from firm_hdl.verify.references.clients import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.results.records import PlanCoverage, Record, Test
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from firm_hdl.frontend import DISTROS
-from firm_hdl.verify.references.choice import find_references
+from firm_hdl.verify.references.clients import find_references
 from firm_hdl.verify.results.records import Record, Test, settled
 from firm_hdl.verify.results.texts import clipped
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed

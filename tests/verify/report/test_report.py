@@ -11,9 +11,8 @@ from html.parser import HTMLParser
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.verify.report import html as page_writer
-from firm_hdl.verify.report import tables
-from firm_hdl.verify.report.command import FORMATS
+from firm_hdl.verify.report import formats, tables
+from firm_hdl.verify.report.formats import FORMATS
 from firm_hdl.verify.report.outcomes import count, failures_of, outcomes_of
 from firm_hdl.verify.report.summary import summarise
 from firm_hdl.verify.results.file import Results, ResultsWriter
@@ -275,7 +274,7 @@ def test_verdicts_of_oracles_are_counted_and_known_differences_named():
 
 def test_long_reports_are_cut_and_say_so(monkeypatch):
     assert tables.MOST_ROWS == 1000, "docs/verification.md"
-    for module, name, most in ((tables, "MOST_ROWS", 20), (page_writer, "MOST_ARTICLES", 2)):
+    for module, name, most in ((tables, "MOST_ROWS", 20), (formats, "_MOST_ARTICLES", 2)):
         monkeypatch.setattr(module, name, most)
     failed = [
         replace(FAILED, test=a_test(f"z{n}_msgs/msg/F{n}"), verdict=Failed((f"it is {n}",)))

@@ -8,9 +8,14 @@ from firm_hdl.cases.make import make_cases
 from firm_hdl.cases.oracle import distro_oracle
 from firm_hdl.cli import main
 from firm_hdl.frontend import Library
-from firm_hdl.verify.references.choice import WRITERS, find_references, usable_references
 from firm_hdl.verify.references.client import Refusal, UnsupportedError
-from firm_hdl.verify.references.clients import CLIENTS, client
+from firm_hdl.verify.references.clients import (
+    CLIENTS,
+    WRITERS,
+    client,
+    find_references,
+    usable_references,
+)
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.ts3.acceptance import accept
