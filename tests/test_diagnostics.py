@@ -5,8 +5,8 @@ from __future__ import annotations
 import pickle
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span, UserError, described
-from firm_hdl.verify.ts3.acceptance import accept
 from tests.steps import calls_at_most
+from tests.verify.judged import accept
 
 
 def diagnostic(text, start, end, message="no"):

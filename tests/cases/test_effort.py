@@ -11,11 +11,10 @@ from firm_hdl.frontend import Library
 from firm_hdl.plan import Edge, build_plan
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.ts3.acceptance import accept
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.strategies import make
-from tests.verify.judged import assert_passed
+from tests.verify.judged import accept, assert_passed
 
 HEADER = "std_msgs/msg/Header"
 PIXELS = by_depth(600, 3000)

@@ -15,8 +15,7 @@ from firm_hdl.cases.user_oracle import judge_of, oracle_name
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.ts3.acceptance import accept
-from tests.verify.judged import assert_passed
+from tests.verify.judged import accept, assert_passed
 
 
 def own(folder: Path, text: str, distro: str = "lyrical", name: str = "Own") -> Message:

@@ -21,10 +21,10 @@ from firm_hdl.verify.references.clients import CLIENTS
 from firm_hdl.verify.results.verdict import Passed
 from firm_hdl.verify.simulators.programs import Verilator
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.ts3.acceptance import accept
 from firm_hdl.verify.ts3.confirm import confirm
 from tests.depth import by_depth
 from tests.tools import need
+from tests.verify.judged import accept
 
 BOOL = "std_msgs/msg/Bool"
 SILENT = {0: "#!/bin/sh\nexit 0\n", 1: "#!/bin/sh\nexit 1\n"}

@@ -347,10 +347,7 @@ def run_tests(
             if isinstance(result, Exception):
                 died = Failed((f"{type(result).__name__}: {result}",))
                 result = [Record(test=test, verdict=died) for test in share]
-            records = [
-                replace(each, verdict=clipped_verdict(each.verdict), command=command(each.test))
-                for each in result
-            ]
+            records = [replace(each, command=command(each.test)) for each in result]
             yield [(each.test, each, lines_of(each)) for each in records]
 
 

@@ -44,7 +44,7 @@ from firm_hdl.verify.results.records import PlanCoverage, Record, Test
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.system import Trial, recorded
-from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
+from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.circuit import Circuit
 from firm_hdl.verify.ts3.compare import (
     Expected,
@@ -53,27 +53,13 @@ from firm_hdl.verify.ts3.compare import (
     transfer_differences,
 )
 from firm_hdl.verify.ts3.confirm import confirm
-from firm_hdl.verify.ts3.task import command_of, test_of
+from firm_hdl.verify.ts3.task import command_of
 from firm_hdl.wire import Wire, lay_out
 
-__all__ = ["Acceptance", "accept", "accept_message", "accepted", "confirm_cases", "measured"]
+__all__ = ["Acceptance", "accept_message", "accepted", "confirm_cases", "measured"]
 
 WAVEFORM_FOLDER = "waveforms"
 """The folder that the command for a waveform writes to."""
-
-
-def accept(distro: str, name: str, options: Options | None = None) -> Record:
-    """Run all cases of a type. Errors are not raised, but are in the record.
-
-    Parameters
-    ----------
-    distro : str
-    name : str
-        ``package/Type`` or ``package/msg/Type``.
-    """
-    options = options or Options()
-    task = TypeUnderTest(distro=distro, name=name, same=(distro,))
-    return accepted(options, test_of(task, options))
 
 
 def accepted(options: Options, test: Test) -> Record:

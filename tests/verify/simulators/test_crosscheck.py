@@ -14,10 +14,9 @@ from firm_hdl.jobs.programs import ProgramMissingError, find_ghdl
 from firm_hdl.verify.results.records import Record
 from firm_hdl.verify.simulators.trace import read_row
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.ts3.acceptance import accept
 from firm_hdl.vhdl.convert import Vhdl, convert
 from tests.depth import by_depth
-from tests.verify.judged import assert_passed
+from tests.verify.judged import accept, assert_passed
 from tests.verify.samples import SAMPLE
 
 HEADER = "std_msgs/msg/Header"

@@ -18,10 +18,9 @@ from firm_hdl.verify.simulators import programs
 from firm_hdl.verify.simulators.programs import Icarus, TextSimulator, Verilator
 from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.ts3.acceptance import accept
 from firm_hdl.verilog import convert
 from tests.depth import by_depth
-from tests.verify.judged import assert_passed
+from tests.verify.judged import accept, assert_passed
 
 HEADER = "std_msgs/msg/Header"
 BOOL = "std_msgs/msg/Bool"

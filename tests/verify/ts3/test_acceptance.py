@@ -15,8 +15,8 @@ from firm_hdl.gateware.signatures import Status
 from firm_hdl.verify.__main__ import main
 from firm_hdl.verify.results.verdict import Passed
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.ts3.acceptance import accept
 from tests.depth import by_depth
+from tests.verify.judged import accept
 
 HEADER = "std_msgs/msg/Header"
 

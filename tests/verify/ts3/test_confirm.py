@@ -18,10 +18,9 @@ from firm_hdl.verify.references.clients import (
 )
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.ts3.acceptance import accept
 from firm_hdl.verify.ts3.confirm import confirm
 from tests.tools import need
-from tests.verify.judged import NAN_KEY, assert_passed
+from tests.verify.judged import NAN_KEY, accept, assert_passed
 
 FAST_CDR = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
 CDR = (*FAST_CDR, "cyclonedds")

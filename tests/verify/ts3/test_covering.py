@@ -20,9 +20,8 @@ from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.ts3.acceptance import accept
 from tests.depth import THOROUGH, by_depth
-from tests.verify.judged import NAN_KEY, assert_passed
+from tests.verify.judged import NAN_KEY, accept, assert_passed
 from tests.verify.ts3.stand_ins import STAND_INS, stand_in_package
 
 FOLDER = Path(__file__).parents[1] / "covering"

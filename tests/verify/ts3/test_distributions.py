@@ -9,9 +9,8 @@ import pytest
 
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.tasks import collect_tasks
-from firm_hdl.verify.ts3.acceptance import accept
 from tests.depth import THOROUGH, by_depth
-from tests.verify.judged import assert_passed
+from tests.verify.judged import accept, assert_passed
 
 TASKS = list(collect_tasks((), ()))
 WIDTHS = (8, 4)

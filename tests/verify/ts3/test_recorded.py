@@ -9,8 +9,7 @@ from firm_hdl.cli import main
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.tasks import collect_tasks
-from firm_hdl.verify.ts3.acceptance import accept
-from tests.verify.judged import assert_passed
+from tests.verify.judged import accept, assert_passed
 
 pytestmark = pytest.mark.usefixtures("same_circuit")
 
