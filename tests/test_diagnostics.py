@@ -5,8 +5,8 @@ from __future__ import annotations
 import pickle
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span, UserError, described
-from firm_hdl.verify import accept
 from tests.steps import calls_at_most
+from tests.verify.judged import accept
 
 
 def diagnostic(text, start, end, message="no"):
@@ -103,4 +103,4 @@ def test_failure_to_run_a_type_has_the_message_for_users(monkeypatch):
         raise UserError("Yosys needs memory")
 
     monkeypatch.setattr("firm_hdl.verify.ts3.acceptance.library_of", refused)
-    assert accept("lyrical", "std_msgs/msg/Bool").failures == ["Yosys needs memory"]
+    assert accept("lyrical", "std_msgs/msg/Bool").failures == ("Yosys needs memory",)

@@ -34,7 +34,7 @@ ORACLE_NAMES = (
 """Oracles of TS1: :data:`firm_hdl.verify.ts1.oracles.ORACLES`."""
 
 SIMULATOR_NAMES = ("ghdl", "iverilog", "verilator")
-"""Simulators of exported text: :data:`firm_hdl.verify.simulators.SIMULATORS`."""
+"""Simulators of exported text: :data:`firm_hdl.verify.simulators.programs.SIMULATORS`."""
 
 CLIENT_NAMES = (
     "firm-hdl",
@@ -52,7 +52,7 @@ CLIENT_NAMES = (
 WRITER_NAMES = ("genpy", "fastcdr", "fastcdr-2.2", "fastcdr-2.3", "cyclonedds")
 """Client libraries that can be references of TS3.
 
-They are the keys of :data:`firm_hdl.verify.references.choice.WRITERS`.
+They are the keys of :data:`firm_hdl.verify.references.clients.WRITERS`.
 """
 
 NO_REFERENCE = "none"

@@ -7,22 +7,18 @@ import sys
 
 from firm_hdl.arguments import (
     add_depends,
+    add_engine,
     add_jobs,
     add_path,
     add_types_or_all,
     add_wire,
     number_between,
     positive,
+    seconds,
 )
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.plan import BUS_BYTES
-from firm_hdl.verify.board_arguments import (
-    add_board_arguments,
-    check_board,
-    distros_of,
-    write_node,
-)
 from firm_hdl.verify.choices import (
     CLIENT_NAMES,
     LONGEST,
@@ -33,7 +29,7 @@ from firm_hdl.verify.choices import (
     SYSTEM_NAMES,
     WRITER_NAMES,
 )
-from firm_hdl.verify.request import resolve
+from firm_hdl.verify.request import Workload, resolve
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 
@@ -63,7 +59,7 @@ def run_verify(given: argparse.Namespace) -> int:
         # Report a type that cannot be used before simulators and oracles are imported.
         work = resolve(request)
         if given.write_node is not None:
-            return write_node(work, given.write_node)
+            return _write_node(work, given.write_node)
     except UnknownTypeError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
@@ -76,7 +72,7 @@ def _request(given: argparse.Namespace) -> Request:
     """Check the arguments, and turn them into a request."""
     _check_replay(given)
     _check_libraries(given)
-    check_board(given)
+    _check_board(given)
     # Without named types, ``--bag`` means all types of the recordings.
     is_all = given.all or (bool(given.bag) and not given.types)
     if bool(given.types) == is_all and not (given.node and not is_all):
@@ -90,7 +86,7 @@ def _request(given: argparse.Namespace) -> Request:
         references = tuple(name for name in dict.fromkeys(given.reference) if name != NO_REFERENCE)
     return Request(
         types=tuple(given.types),
-        distros=distros_of(given),
+        distros=_distros_of(given),
         paths=tuple(given.path),
         depends=tuple(given.depends),
         systems=tuple(given.systems or (("board",) if given.board else _USUAL_SYSTEMS)),
@@ -189,7 +185,7 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
     ts3 = parser.add_argument_group("options of ts3")
     _add_cases(ts3)
     _add_replay(parser.add_argument_group("options of ts3 with recordings"))
-    add_board_arguments(parser.add_argument_group("boards"))
+    _add_board(parser.add_argument_group("boards"))
     _add_libraries(parser.add_argument_group("client libraries"), ts3)
     _add_results(parser.add_argument_group("results"))
     parser.set_defaults(default_of=parser.get_default)
@@ -299,6 +295,77 @@ def _add_results(group: argparse._ArgumentGroup) -> None:
         help=f"{PROCESSES}, or dask://HOST:PORT for a cluster that runs ts2 and ts3; "
         "default: %(default)s",
     )
+
+
+def _add_board(group: argparse._ArgumentGroup) -> None:
+    """Add the arguments to a group of a parser."""
+    group.add_argument(
+        "--board",
+        metavar="BOARD",
+        help="send the cases of ts3 through a board that sends them back: sim, udp://HOST[:PORT], "
+        "tcp://HOST:PORT or serial:///dev/DEVICE[?baud=RATE]",
+    )
+    group.add_argument(
+        "--node",
+        metavar="FILE",
+        help="description of the node on the board; without TYPE, all types that it sends back; "
+        "default: that of --write-node",
+    )
+    group.add_argument(
+        "--write-node",
+        metavar="FILE",
+        help="test nothing, but write the description of a node that sends the types back, for "
+        "firm-hdl node build",
+    )
+    add_engine(group, "--board sim")
+    group.add_argument(
+        "--silent-seconds",
+        type=seconds,
+        metavar="S",
+        help="a board that says nothing for so long fails; default: 5, or 60 for sim",
+    )
+
+
+def _distros_of(given: argparse.Namespace) -> tuple[str, ...]:
+    """Return the distributions; a node has one."""
+    distros = tuple(given.distro or ())
+    has_node = given.board is not None or given.write_node is not None
+    return (DEFAULT_DISTRO,) if has_node and not distros else distros
+
+
+def _check_board(given: argparse.Namespace) -> None:
+    """Refuse arguments that cannot be combined with a board."""
+    has_node = given.board is not None or given.write_node is not None
+    if given.systems is not None and ("board" in given.systems) != (given.board is not None):
+        given.usage_error("--systems board needs --board, and the reverse")
+    for name in ("node", "engine", "silent_seconds"):
+        if given.board is None and getattr(given, name) != given.default_of(name):
+            given.usage_error(f"--{name.replace('_', '-')} needs --board")
+    if not has_node:
+        return
+    if given.all or given.bag:
+        given.usage_error("a board takes named types, or those of --node")
+    if given.wire is not None:
+        given.usage_error("a board has the wire format of its distribution: not with --wire")
+    if len(given.distro or ()) > 1 or len(set(given.bus_bytes or ())) > 1:
+        given.usage_error("a board has one --distro and one --bus-bytes")
+    if given.node is None:
+        return
+    if given.write_node is not None:
+        given.usage_error("argument --write-node: not allowed with argument --node")
+    if given.distro or given.bus_bytes:
+        given.usage_error("--distro and --bus-bytes are those of --node")
+    if set(given.systems or ()) - {"board"}:
+        given.usage_error("--node is for the test system board alone")
+
+
+def _write_node(work: Workload, path: str) -> int:
+    """Write the description of a node for the types of a request; return the exit status."""
+    from firm_hdl.verify.board.description import write_description
+
+    write_description(work.request, [task.name for task in work.tasks], path)
+    print(f"wrote   {path}")
+    return 0
 
 
 def _executor(text: str) -> str:

@@ -9,12 +9,12 @@ import firm_hdl.verify.ts3.acceptance as acceptance
 from firm_hdl.cases.make import Case
 from firm_hdl.frontend import Library
 from firm_hdl.plan import Edge, build_plan
-from firm_hdl.verify import Options, accept
 from firm_hdl.verify.results.verdict import NotJudged
+from firm_hdl.verify.systems.options import Options
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.strategies import make
-from tests.verify.judged import assert_passed
+from tests.verify.judged import accept, assert_passed
 
 HEADER = "std_msgs/msg/Header"
 PIXELS = by_depth(600, 3000)
@@ -160,7 +160,7 @@ def test_types_near_the_limit_are_not_stalled(monkeypatch, whole):
     monkeypatch.setattr(effort, "LARGE_WORK", 1)
     once = accept("lyrical", HEADER)
     assert assert_passed(once) and once.note == "neither stalled nor damaged"
-    assert once.cycles == whole.cycles and once.packets < whole.packets / 2
+    assert once.cycles < whole.cycles and once.packets < whole.packets / 2
 
 
 @pytest.fixture

@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from firm_hdl.cases.make import Case, run_lengths
-from firm_hdl.verify import RosbagsOracle, distro_oracle, make_cases
+from firm_hdl.cases.make import Case, make_cases, run_lengths
+from firm_hdl.cases.oracle import RosbagsOracle, distro_oracle
 
 DEEP = """
 string[] names

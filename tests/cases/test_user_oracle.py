@@ -14,8 +14,8 @@ from firm_hdl.cases.oracle import RosbagsOracle, distro_oracle
 from firm_hdl.cases.user_oracle import judge_of, oracle_name
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
-from firm_hdl.verify import Options, accept
-from tests.verify.judged import assert_passed
+from firm_hdl.verify.systems.options import Options
+from tests.verify.judged import accept, assert_passed
 
 
 def own(folder: Path, text: str, distro: str = "lyrical", name: str = "Own") -> Message:

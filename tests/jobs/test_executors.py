@@ -12,8 +12,11 @@ import pytest
 
 from firm_hdl.jobs import executors
 from firm_hdl.jobs.executors import ExecutorError, check_executor, run_each
-from firm_hdl.verify import Options, collect_tasks, run_tasks
-from firm_hdl.verify.ts3.result import record_of
+from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.system import run_tests
+from firm_hdl.verify.systems.tasks import collect_tasks
+from firm_hdl.verify.ts3.acceptance import accepted
+from firm_hdl.verify.ts3.task import test_of
 from tests.verify.judged import assert_passed, without_times
 
 TASKS = [(f"task {number}", (number,)) for number in range(30)]
@@ -134,8 +137,17 @@ class TestDask:
         tasks = collect_tasks(["humble"], ["std_msgs/Bool", "std_msgs/String", "std_msgs/Header"])
         here, there = (
             {
-                task.name: without_times(record_of(task, result, options))
-                for task, result in run_tasks(tasks, options, 2, executor=where)
+                test.type: without_times(record)
+                for share in run_tests(
+                    accepted,
+                    options,
+                    [test_of(task, options) for task in tasks],
+                    lambda test: test.type,
+                    lambda record: (),
+                    executor=where,
+                    jobs=2,
+                )
+                for test, record, _ in share
             }
             for where in ("processes", executor)
         )

@@ -6,7 +6,7 @@ import pytest
 
 from firm_hdl.jobs.programs import ProgramMissingError, find_ghdl
 from firm_hdl.verify.references.clients import client
-from firm_hdl.verify.simulators import TextSimulator, simulator
+from firm_hdl.verify.simulators.programs import TextSimulator, simulator
 from tests.cases.conftest import make_message
 from tests.tools import need
 

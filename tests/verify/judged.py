@@ -1,4 +1,4 @@
-"""Assertions about verdicts: a pass needs a judge that found the result correct."""
+"""TS3 on a type, and assertions about verdicts: a pass needs a judge that found it correct."""
 
 from __future__ import annotations
 
@@ -6,14 +6,25 @@ from dataclasses import replace
 
 from firm_hdl.verify.results.records import Seconds
 from firm_hdl.verify.results.verdict import KnownDifference, Passed
+from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.tasks import TypeUnderTest
+from firm_hdl.verify.ts3.acceptance import accepted
+from firm_hdl.verify.ts3.task import test_of
 
-__all__ = ["NAN_KEY", "TIME_KEY", "assert_known", "assert_passed", "without_times"]
+__all__ = ["NAN_KEY", "TIME_KEY", "accept", "assert_known", "assert_passed", "without_times"]
 
 
 NAN_KEY = "python-signalling-nan"
 """Key for NaN values that Python floats change, in libraries that confirm packets."""
 TIME_KEY = "rosbags-time-signs"
 """Key for ROS 1 seconds, which rosbags reads as signed, and genpy as unsigned."""
+
+
+def accept(distro, name, options=None):
+    """Run TS3 on a type in this process; return its record."""
+    options = options or Options()
+    task = TypeUnderTest(distro=distro, name=name, same=(distro,))
+    return accepted(options, test_of(task, options))
 
 
 def assert_passed(result, known=()):

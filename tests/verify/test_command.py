@@ -18,7 +18,6 @@ from firm_hdl.verify.__main__ import main as alias
 from firm_hdl.verify.references.client import ClientMissingError
 from firm_hdl.verify.results.file import ResultsError
 from firm_hdl.verify.results.verdict import Failed, Passed
-from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Judged, System
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from tests.depth import by_depth
@@ -52,7 +51,7 @@ def test_type_passes_and_the_cross_check_is_counted(ghdl, capsys):
     assert main(["verify", *BOOL, "--simulator", "ghdl"]) == 0
     output = capsys.readouterr().out
     assert "lyrical     1 of    1 types pass (8-byte bus)\n" in output
-    assert "ghdl: 1 of 1 types the same in every cycle; " in output
+    assert "ghdl: replayed every cycle of 1 types, 1 pass" in output
 
 
 @pytest.mark.parametrize("arguments", [["--simulator", "ghdl"], ["--systems", "bench"]])
@@ -77,7 +76,7 @@ def test_unknown_types_and_folders_are_errors(capsys, tmp_path):
 
 def test_all_with_a_folder_is_all_in_the_folder(capsys, tmp_path, monkeypatch):
     own_package(tmp_path)
-    for name in by_depth(("Deep", "Middle", "Inner"), ()):
+    for name in by_depth(("Deep", "Middle", "Inner", "Runs"), ()):
         (tmp_path / "own_msgs" / "msg" / f"{name}.msg").unlink()
     (tmp_path / "own_msgs" / "msg" / "Wide.msg").write_text("wstring text\n")
     arguments = ["verify", "--all", "--path", str(tmp_path), "--cases", "1", "--jobs", "1"]
@@ -86,7 +85,7 @@ def test_all_with_a_folder_is_all_in_the_folder(capsys, tmp_path, monkeypatch):
     wide = "rosbags has no wstring, which own_msgs/msg/Wide.text is"
     assert f"not judged: own_msgs/msg/Wide (lyrical), ts3, 8-byte bus: {wide}\n" in output.out
     # Messages; request, response and event of a service; and one unjudged message.
-    count = by_depth(1, 4) + 3
+    count = by_depth(0, 4) + 3
     assert f"lyrical     {count} of    {count} types pass (8-byte bus)\n" in output.out
     assert f"\n1 of {count + 1} types not judged\n" in output.out
 
@@ -129,18 +128,6 @@ def test_the_active_workspace_is_searched(capsys, tmp_path, monkeypatch):
     assert capsys.readouterr().err.endswith("error: No distribution has a_msgs/msg/A\n")
 
 
-def test_notes_on_many_types_are_printed_once(capsys, tmp_path):
-    (tmp_path / "p" / "msg").mkdir(parents=True)
-    for name in ("A", "B", "C"):
-        # rosbags reads the second line as a field.
-        (tmp_path / "p" / "msg" / f"{name}.msg").write_text("uint8 a\nuint8 b=1\n")
-    arguments = ["--all", "--path", str(tmp_path), "--distro", "noetic", "--cases", "1"]
-    assert main(["verify", "--jobs", "1", *arguments, "--no-stalls", "--no-broken"]) == 0
-    notes = [line for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")]
-    why = "rosbags cannot read the definition, and was given the fields as they were resolved"
-    assert notes == [f"note: p/A (noetic): {why}", f"note: 2 more types: {why}"]
-
-
 def test_every_system_runs_even_if_the_first_fails(monkeypatch):
     ran = []
 
@@ -168,16 +155,6 @@ def test_every_system_runs_even_if_the_first_fails(monkeypatch):
     assert ran == ["ts1", "ts3", "ts3", "ts3"]
 
 
-def test_default_systems_may_be_named_beside_client_libraries(monkeypatch):
-    asked = []
-    monkeypatch.setattr(run, "run_workload", lambda work: asked.append(work.request) or 0)
-    words = ["verify", "--all", "--sut", "rosbags"]
-    assert main(words) == 0
-    named = ["--systems", "ts3", "--simulator", "python", "--executor", "processes"]
-    assert main([*words, *named]) == 0
-    assert asked == [Request(libraries=("rosbags",))] * 2
-
-
 ERRORS = [
     BuildError("no room"),
     ClientMissingError("no room"),
@@ -200,28 +177,6 @@ def test_an_error_of_the_user_has_status_1_and_a_line_of_text(monkeypatch, capsy
     assert capsys.readouterr() == ("", "error: no room\n")
     assert alias(["std_msgs/Bool"]) == 1
     assert capsys.readouterr() == ("", "error: no room\n")
-
-
-def test_the_module_takes_all_types_unless_some_are_named(monkeypatch, capsys):
-    asked = []
-    monkeypatch.setattr(run, "run_workload", lambda work: asked.append(work.request) or 5)
-    assert alias(["--systems", "ts1"]) == 5
-    assert alias(["--systems", "ts1", "std_msgs/Bool"]) == 5
-    assert [(each.types, each.is_named) for each in asked] == [
-        ((), False),
-        (("std_msgs/Bool",), True),
-    ]
-    # Types of a node are named by its description.
-    assert alias(["--board", "sim", "--node", "/nowhere/node.yaml"]) == 1
-    assert "/nowhere/node.yaml" in capsys.readouterr().err
-    with pytest.raises(SystemExit) as left:
-        alias(["--node", "x.yaml"])
-    assert left.value.code == 2 and "--node needs --board" in capsys.readouterr().err
-    # Wrong calls name the module.
-    with pytest.raises(SystemExit) as left:
-        alias(["--all", "std_msgs/Bool"])
-    assert left.value.code == 2
-    assert "python -m firm_hdl.verify: error: name types, or all" in capsys.readouterr().err
 
 
 def test_interruption_has_a_status_of_its_own(monkeypatch, capsys):

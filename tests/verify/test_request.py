@@ -9,10 +9,9 @@ from typing import ClassVar
 
 import pytest
 
-import firm_hdl.verify.request as module
 import firm_hdl.verify.run as run
 from firm_hdl.cli import main
-from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.errors import DefinitionError
 from firm_hdl.verify.request import Workload, resolve
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.verdict import NotJudged, Passed
@@ -181,27 +180,6 @@ def test_results_are_bound_to_all_options_and_inputs(tmp_path, fixed, capsys):
     assert run.run_workload(workload(**given)) == 0
 
 
-def test_definitions_that_are_refused_fail_a_run_that_passes(tmp_path, fixed, capsys):
-    fixed(ts3=Passed(1))
-    problem = Diagnostic(message="it is wrong")
-    given = {"results": str(tmp_path / "r.jsonl"), "report": str(tmp_path / "r.md")}
-    assert run.run_workload(workload({str(problem): problem}, **given)) == 1
-    output = capsys.readouterr()
-    assert output.err == "error: it is wrong\n"
-    assert output.out == f"wrote   {tmp_path / 'r.md'}\n" and (tmp_path / "r.md").exists()
-    (session,) = read_results(tmp_path / "r.jsonl").sessions
-    assert session["definitions that are refused"] == "1: error: it is wrong"
-
-
-def test_what_is_not_judged_counts_for_the_run_as_for_each_system(fixed, capsys):
-    fixed(ts1=Passed(1), ts3=NotJudged("nobody knows"))
-    lines = "not judged: it by ts3: nobody knows\n1 of 2 tests was not judged"
-    assert run.run_workload(workload(systems=("ts1", "ts3"))) == 0
-    assert capsys.readouterr().out == f"{lines}\n"
-    assert run.run_workload(workload(systems=("ts1", "ts3"), types=("p/A",))) == 1
-    assert capsys.readouterr().out == f"{lines}, although named, so the run fails\n"
-
-
 def test_a_run_without_a_judged_test_is_no_success():
     passed = Judged(what="a", verdict=Passed(1))
     silent = [Judged(what=name, verdict=NotJudged("no")) for name in "bc"]
@@ -217,39 +195,11 @@ def test_a_run_without_a_judged_test_is_no_success():
     assert run.concluded([*silent, passed], is_named=False)[-1] == "2 of 3 tests were not judged"
 
 
-def test_the_file_of_results_names_the_first_of_the_refused_definitions(tmp_path, fixed, capsys):
-    fixed(ts3=Passed(1))
-    problems = {f"error: {name}": Diagnostic(message=name) for name in "bac"}
-    assert run.run_workload(workload(problems, results=str(tmp_path / "r.jsonl"))) == 1
-    (session,) = read_results(tmp_path / "r.jsonl").sessions
-    assert session["definitions that are refused"] == "3: error: a"
-    # All of them are printed, in their order.
-    assert capsys.readouterr().err == "error: b\nerror: a\nerror: c\n"
-
-
 def test_types_of_a_recording_are_of_the_distribution_that_was_named(tmp_path):
     bag = str(make_recording(tmp_path, "mcap"))
     for given, distro in (((), "lyrical"), (("humble",), "humble")):
         found = names_of(resolve(Request(bags=(bag,), distros=given)))
         assert {each for each, _ in found} == {distro}
-
-
-@pytest.mark.parametrize(
-    ("distros", "asked"),
-    [((), ["lyrical"]), (("noetic", "iron"), ["noetic", "iron"])],
-)
-def test_the_workspace_of_each_distribution_is_searched_for_packages(monkeypatch, distros, asked):
-    calls = []
-
-    def folders(distro, packages):
-        calls.append((distro, sorted(packages)))
-        return []
-
-    monkeypatch.setattr(module, "workspace_folders", folders)
-    types = ("no_msgs/Such", "own_msgs/msg/Other", "no_msgs/srv/More")
-    with pytest.raises(UnknownTypeError):
-        resolve(Request(types=types, distros=distros))
-    assert calls == [(distro, ["no_msgs", "own_msgs"]) for distro in asked]
 
 
 def test_a_board_without_a_node_sends_the_named_types_back():

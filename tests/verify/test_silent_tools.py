@@ -9,22 +9,22 @@ import stat
 import pytest
 
 import firm_hdl.verify.ros_python.worker as worker
+from firm_hdl.cases.make import make_cases
+from firm_hdl.cases.oracle import distro_oracle
 from firm_hdl.cli import main
 from firm_hdl.equivalence import ProofError, Tools, find_tools, prove
 from firm_hdl.equivalence.converters import converter_vhdl
 from firm_hdl.frontend import Library
-from firm_hdl.jobs.processes import ToolError
 from firm_hdl.jobs.programs import ProgramMissingError
-from firm_hdl.verify import Options, accept, distro_oracle, make_cases
 from firm_hdl.verify.clients.judge import LibraryComparison
-from firm_hdl.verify.references.client import ClientDiedError, each_answered
 from firm_hdl.verify.references.clients import CLIENTS
-from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
-from firm_hdl.verify.simulators import Verilator
-from firm_hdl.verify.simulators.crosscheck import Comparison
+from firm_hdl.verify.results.verdict import Passed
+from firm_hdl.verify.simulators.programs import Verilator
+from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.ts3.confirm import confirm
 from tests.depth import by_depth
 from tests.tools import need
+from tests.verify.judged import accept
 
 BOOL = "std_msgs/msg/Bool"
 SILENT = {0: "#!/bin/sh\nexit 0\n", 1: "#!/bin/sh\nexit 1\n"}
@@ -103,16 +103,6 @@ def test_cross_check_does_not_pass_with_a_silent_compiler(fake):
     result = accept("lyrical", BOOL, options)
     (failure,) = result.verdict.failures
     assert failure == f"Verilator: {compiler} ended without an error, but did not write replay"
-
-
-def test_comparison_of_no_cycle_is_no_pass():
-    assert Comparison(failures=()).verdict == NotJudged("no cycle was compared")
-    assert Comparison(failures=(), cycles=3).verdict == Passed(3)
-    assert isinstance(Comparison(failures=("",), cycles=3).verdict, Failed)
-
-
-def test_error_of_a_tool_has_a_text():
-    assert str(ToolError(" \n")) == "it failed without output"
 
 
 @functools.cache
@@ -214,10 +204,3 @@ def test_library_that_does_not_answer_everything_fails(library_here, is_referenc
     trial = LibraryComparison(*both, "cdr").judge(message, [{"data": True}, {"data": False}])
     (failure,) = trial.verdict.failures
     assert failure.startswith("few gave ") and " questions" in failure
-
-
-def test_each_question_has_its_answer():
-    assert each_answered("a", [1, 2], "xy") == "xy"
-    for answers in ("", "x", "xyz"):
-        with pytest.raises(ClientDiedError, match=rf"^a gave {len(answers)} answers to 2 quest"):
-            each_answered("a", [1, 2], answers)

@@ -8,21 +8,17 @@ import random
 import signal
 import sys
 from collections import Counter
-from dataclasses import replace
 
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.verify.results.file import ResultsWriter, read_results
 from firm_hdl.verify.results.records import Record, from_json, to_json
-from firm_hdl.verify.results.verdict import Failed, NotJudged
+from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.system import run_shares, shares_of
 from firm_hdl.verify.ts1 import system as ts1_system
 from firm_hdl.verify.ts1.oracles import ORACLES
-from firm_hdl.verify.ts1.oracles.oracle import Refused
-from firm_hdl.verify.ts2 import system as ts2
 from tests.frontend.workspace import make_files
 from tests.verify.judged import assert_known, assert_passed, without_times
 
@@ -128,61 +124,6 @@ def test_an_oracle_that_was_asked_for_and_is_missing_fails_the_run(tmp_path, mon
     assert f"failed: {why}" in page.read_text()
 
 
-def test_a_named_type_has_to_be_judged_beside_mutations(tmp_path, capsys):
-    make_files(tmp_path, {"src/p/msg/A.msg": "wstring w\n", "src/p/msg/B.msg": "int8 x\n"})
-    command = ["--path", tmp_path / "src", "--reference", "none", "--cases", "1", "--no-stalls"]
-    assert verify("--systems", "ts1,ts3", *command, "--mutations", "2", "p/msg/A", "p/msg/B") == 1
-    assert "although named, so the run fails" in capsys.readouterr().out
-
-
-def misread(monkeypatch):
-    refuse = lambda self, case: Refused("I do not like it")  # noqa: E731
-    monkeypatch.setattr(ORACLES["rosbags"], "judge", refuse)
-
-
-def misplan(monkeypatch):
-    def misaligned(*arguments):
-        plan = plan_of(*arguments)
-        return replace(plan, steps=tuple(replace(step, align=1) for step in plan.steps))
-
-    monkeypatch.setattr(ts2, "plan_of", misaligned)
-
-
-@pytest.mark.parametrize(
-    ("system", "breaks", "output"),
-    [
-        ("ts1", misread, "oracle refuses: I do not like it"),
-        ("ts2", misplan, "bytes of padding before it"),
-    ],
-)
-def test_faults_fail_in_the_record_and_in_the_report(
-    tmp_path, monkeypatch, capsys, system, breaks, output
-):
-    path, page = tmp_path / "r.jsonl", tmp_path / "r.html"
-    command = ["--systems", system, "--results", path, "--report", page]
-    name = "sensor_msgs/msg/JointState"
-    breaks(monkeypatch)
-    assert verify(*command, name, BOOL) == 1
-    records = read_results(path).records.values()
-    failed = {r.test.type: r for r in records if isinstance(r.verdict, Failed)}
-    assert output in failed[name].verdict.failures[0]
-    text = page.read_text()
-    assert output in text and failed[name].command in text and "✗" in text
-    printed = capsys.readouterr().out
-    monkeypatch.undo()
-    # The fault is gone, but the file still has the old result, and the command reports it.
-    assert verify(*command, name, BOOL) == 1
-    again = capsys.readouterr().out
-    assert f"have a result in {path}" in again
-    assert summary_of(printed) == summary_of(again)
-
-
-def summary_of(text):
-    """Return the counts of a report, without times."""
-    marks = ("rosbags 0", "lyrical  ", "different circuits", "golden plans")
-    return [line for line in text.splitlines() if any(mark in line for mark in marks)]
-
-
 def test_golden_plans_have_records_of_their_own(tmp_path, capsys):
     golden, path = tmp_path / "golden", tmp_path / "r.jsonl"
     name = "sensor_msgs/msg/Imu"
@@ -196,34 +137,6 @@ def test_golden_plans_have_records_of_their_own(tmp_path, capsys):
     assert verify(*command, "--results", tmp_path / "new.jsonl") == 1
     verdicts = [r.verdict.name for r in read_results(tmp_path / "new.jsonl").records.values()]
     assert verdicts == ["passed", "failed"]
-
-
-def test_recorded_tests_are_not_repeated(tmp_path, monkeypatch, capsys):
-    path = tmp_path / "r.jsonl"
-    assert verify(*ALL, "--results", path, BOOL, CHAR) == 0
-    first = capsys.readouterr().out
-
-    def never(*arguments):
-        raise AssertionError("it was tested before")
-
-    for where in ("ts2.system._checked", "ts1.system.judge_case", "ts3.system.accept"):
-        monkeypatch.setattr(f"firm_hdl.verify.{where}", never)
-    assert verify(*ALL, "--results", path, BOOL, CHAR) == 0
-    again = capsys.readouterr().out
-    for what in ("2 of 2 definitions", "2 of 2 plans", "2 of 2 types"):
-        assert f"{what} have a result in {path}\n" in again
-    assert summary_of(again) == summary_of(first) != []
-    # Must-fail twin: a test without a record is run.
-    assert verify(*ALL, "--results", tmp_path / "new.jsonl", BOOL) == 1
-    assert "it was tested before" in capsys.readouterr().out
-
-
-def test_other_oracles_are_another_run(tmp_path, monkeypatch, capsys):
-    path = tmp_path / "r.jsonl"
-    assert verify("--systems", "ts1", "--results", path, BOOL) == 0
-    monkeypatch.setattr(ORACLES["rosbags"], "version", lambda self: "9.9")
-    assert verify("--systems", "ts1", "--results", path, BOOL) == 1
-    assert 'and is ["rosbags 9.9"]' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("system", ["ts1", "ts2"])

@@ -27,12 +27,11 @@ from firm_hdl.jobs.processes import ToolError, made_by, run_tool
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
 from firm_hdl.sim.payloads import encoder_of
-from firm_hdl.verify.references.choice import WIDE_REFERENCES, may_stand_in
+from firm_hdl.verify.references.clients import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.texts import first_difference
-from firm_hdl.verify.results.verdict import Failed, Passed
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.systems.system import Stopwatch, recorded
+from firm_hdl.verify.systems.system import Stopwatch, Trial, recorded
 from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.confirm import confirm
 
@@ -50,18 +49,21 @@ def run_bench(given: tuple[Options, str], test: Test) -> Record:
         How to build the type (its paths and wire), and the command of GHDL.
     """
     options, ghdl = given
-    return recorded(test, lambda watch: _run_bench(test, options, ghdl, watch))
 
+    def run(trial: Trial) -> None:
+        # The cases of the verdict are the packets that came out as the oracle wrote them.
+        try:
+            with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
+                packets, transfers = _packets_and_transfers(
+                    test, options, ghdl, Path(folder), trial.watch
+                )
+        except (AssertionError, ToolError) as error:
+            trial.failures.append(str(error))
+            return
+        trial.judged = trial.record.packets = packets
+        trial.record.metrics = {"transfers": float(transfers)}
 
-def _run_bench(test: Test, options: Options, ghdl: str, watch: Stopwatch) -> Record:
-    """Return a record whose cases are the packets that came out as the oracle wrote them."""
-    try:
-        with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
-            packets, transfers = _packets_and_transfers(test, options, ghdl, Path(folder), watch)
-    except (AssertionError, ToolError) as error:
-        return Record(test=test, verdict=Failed((str(error),)))
-    metrics = {"transfers": float(transfers)}
-    return Record(test=test, verdict=Passed(packets), packets=packets, metrics=metrics)
+    return recorded(test, run)
 
 
 def _packets_and_transfers(

@@ -28,12 +28,12 @@ from firm_hdl.node.control import FIFO_COUNTERS, GATE_COUNTERS, LINK_COUNTERS, r
 from firm_hdl.plan import Plan, build_plan
 from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.verify.board.talk import Talk, room_for
-from firm_hdl.verify.references.choice import may_stand_in
+from firm_hdl.verify.references.clients import may_stand_in
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.ts3.acceptance import confirm_cases
 from firm_hdl.verify.ts3.compare import packet_differences
-from firm_hdl.verify.ts3.result import Result
 from firm_hdl.wire import lay_out
 
 __all__ = ["judge_loop"]
@@ -82,9 +82,9 @@ def judge_loop(
     description: Description,
     loop: tuple[Topic, Topic],
     options: Options,
-    result: Result,
+    trial: Trial,
 ) -> None:
-    """Send the cases of a type through a board, and add to `result`.
+    """Send the cases of a type through a board, and add to the trial.
 
     Parameters
     ----------
@@ -105,19 +105,19 @@ def judge_loop(
     assert store is not None
     message, wire = store.message, description.wire
     judge = _judge_of(message, description.distro, options)
-    result.note = judge.note
+    trial.record.note = judge.note
     plan = build_plan(
         lay_out(message, wire),
         bus_bytes=description.bus_bytes,
         max_message_bytes=store.max_message_bytes,
     )
-    result.shape = digest(plan)
+    trial.record.shape = digest(plan)
     cases = all_cases(judge.oracle, judge.name, plan, seed=options.seed, most=options.most_cases)
-    cases = _fitting(cases, min(room_for(description, loop), store.max_message_bytes), result)
-    result.cases = len(cases)
-    result.metrics = figures(message, plan, [case.packet for case in cases])
-    confirm_cases(message, wire, cases, options, result, judge.oracle)
-    if isinstance(result.obstacle, NotJudged):
+    cases = _fitting(cases, min(room_for(description, loop), store.max_message_bytes), trial)
+    trial.record.cases = len(cases)
+    trial.record.metrics = figures(message, plan, [case.packet for case in cases])
+    confirm_cases(message, wire, cases, options, trial, judge.oracle)
+    if isinstance(trial.obstacle, NotJudged):
         return
     runs = [_good_run(plan, cases)]
     if options.broken:
@@ -125,13 +125,13 @@ def judge_loop(
         runs.append(_damaged_run(plan, cases, rng, room_for(description, loop)))
     talk.take(loop[1])
     for number, run in enumerate(runs):
-        result.watch.enter("simulation")
-        got = _sent(talk, description, loop, run, result)
-        result.watch.enter("testing")
-        result.packets += len(run.packets)
+        trial.watch.enter("simulation")
+        got = _sent(talk, description, loop, run, trial)
+        trial.watch.enter("testing")
+        trial.record.packets += len(run.packets)
         # As in TS3, what follows damage is judged by the golden model, and does not count.
-        result.judged += len(got) if number == 0 else 0
-    result.watch.enter("testing")
+        trial.judged += len(got) if number == 0 else 0
+    trial.watch.enter("testing")
 
 
 def _judge_of(message: Message, distro: str, options: Options) -> Judge:
@@ -144,13 +144,13 @@ def _judge_of(message: Message, distro: str, options: Options) -> Judge:
     return judge_of(message, distro if is_own else None, stand_in=stand_in)
 
 
-def _fitting(cases: Sequence[Case], room: int, result: Result) -> list[Case]:
+def _fitting(cases: Sequence[Case], room: int, trial: Trial) -> list[Case]:
     """Return the cases for which a board has room; note how many there are of the others."""
     found = [case for case in cases if max(len(case.sent), len(case.packet)) <= room]
     if not found:
         raise NotJudgedError(f"every case is larger than the {room} bytes that the node takes")
     if len(found) < len(cases):
-        result.add_note(
+        trial.record.add_note(
             f"{len(cases) - len(found)} of {len(cases)} cases are larger than the {room} bytes "
             "that the node takes, and were left out"
         )
@@ -197,7 +197,7 @@ def _sent(
     description: Description,
     loop: tuple[Topic, Topic],
     run: _Run,
-    result: Result,
+    trial: Trial,
 ) -> list[bytes]:
     """Send a run; return what came back, and add what is wrong to the failures."""
     before = _counters(talk, description, loop)
@@ -214,8 +214,8 @@ def _sent(
         failures.append(f"{run.where}: messages and frames: {', '.join(losses)}")
     elif losses:
         # Only requests for registers were lost, and repeated.
-        result.add_note(f"the link lost requests of control: {', '.join(losses)}")
-    result.failures += failures
+        trial.record.add_note(f"the link lost requests of control: {', '.join(losses)}")
+    trial.failures += failures
     return got
 
 

@@ -7,35 +7,36 @@ answer fails all that are left at once, with the same text.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, cast
 
-from firm_hdl.cases import NotJudgedError
-from firm_hdl.errors import DefinitionError, UserError, described
+from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.node import Description, Topic
 from firm_hdl.node.boards import Board, board_of
 from firm_hdl.sim.fast.engines import EngineName, expected_engine
 from firm_hdl.verify.board.description import chosen_loops
 from firm_hdl.verify.board.judge import judge_loop
 from firm_hdl.verify.board.talk import SILENT_SECONDS, Talk, TalkError
-from firm_hdl.verify.references.choice import find_references
-from firm_hdl.verify.results.records import Record, Test, clipped_verdict
+from firm_hdl.verify.references.clients import find_references
+from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import (
     Failed,
     KnownDifference,
     NotJudged,
     Passed,
 )
-from firm_hdl.verify.systems.options import Request, command_again
+from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import (
     Judged,
     Made,
     Recorder,
     System,
+    Trial,
     failure_of,
     judged,
     kept,
 )
-from firm_hdl.verify.ts3.result import Result
+from firm_hdl.verify.ts3.task import command_of, words_of
 
 __all__ = ["Boards"]
 
@@ -132,8 +133,7 @@ class Boards(System):
         with Talk(self._board, self._description, silent) as talk:
             is_open, gone = False, ""
             for loop in left:
-                result = Result(distro=self._description.distro, name=loop[0].type)
-                result.command = self._command()
+                trial = Trial.of(self._test(loop))
                 try:
                     if gone:
                         raise TalkError(gone)
@@ -141,37 +141,31 @@ class Boards(System):
                         talk.open()
                 except TalkError as error:
                     gone = str(error)
-                    result.failures.append(gone)
+                    trial.failures.append(gone)
                 else:
-                    is_open = self._judge(talk, loop, result)
-                record = self._record(self._test(loop), result)
+                    is_open = self._judge(talk, loop, trial)
+                record = replace(trial.end(), command=self._command())
                 yield [(loop, record, self._lines(record))]
 
-    def _judge(self, talk: Talk, loop: tuple[Topic, Topic], result: Result) -> bool:
+    def _judge(self, talk: Talk, loop: tuple[Topic, Topic], trial: Trial) -> bool:
         """Judge a type; return whether the talk can go on."""
         try:
-            judge_loop(talk, self._description, loop, self._request, result)
+            judge_loop(talk, self._description, loop, self._request, trial)
         except TalkError as error:
-            result.failures.append(str(error))
+            trial.failures.append(str(error))
             return False
-        except NotJudgedError as error:
-            result.obstacle = NotJudged(str(error) or type(error).__name__)
         except (UserError, DefinitionError):
             # What is wrong with a node is wrong for all types.
             raise
-        except Exception as error:  # The other types are tested in any case.
-            result.failures.append(described(error))
+        except Exception as error:
+            trial.stop(error)
         return True
 
     def _test(self, loop: tuple[Topic, Topic]) -> Test:
         request, description = self._request, self._description
-        own = [f"board={request.board}", f"seed={request.seed}"]
-        own += [] if request.node is None else [f"node={request.node}"]
-        own += [] if request.most_cases is None else [f"cases={request.most_cases}"]
-        own += [] if request.broken else ["no-broken"]
-        if request.references is not None:
-            own.append(f"references={'+'.join(request.references)}")
-        own += request.folders
+        # A board is not stalled, whatever was asked for.
+        options = replace(request, stalled=True)
+        node = [] if request.node is None else [f"node={request.node}"]
         return Test(
             system=self.name,
             distro=description.distro,
@@ -179,43 +173,23 @@ class Boards(System):
             same=(description.distro,),
             wire=description.wire,
             bus_bytes=description.bus_bytes,
-            options=",".join(own),
+            options=",".join([f"board={request.board}", *words_of(options, *node)]),
         )
 
     def _command(self) -> str:
         """Return the command that repeats the tests. The node depends on all of its types."""
         request = self._request
-        node = request.node
-        return command_again(
+        return command_of(
+            request,
             *request.types,
             board=request.board,
-            node=node,
+            node=request.node,
             engine=None if request.engine == "auto" else request.engine,
             silent_seconds=request.silent_seconds,
-            distro=None if node else self._description.distro,
-            path=request.paths,
-            depends=request.depends,
-            bus_bytes=None if node else self._description.bus_bytes,
-            seed=request.seed,
-            no_broken=not request.broken,
-            cases=request.most_cases,
-            reference=("none",) if request.references == () else request.references,
-        )
-
-    def _record(self, test: Test, result: Result) -> Record:
-        seconds, processor = result.watch.stop()
-        return Record(
-            test=test,
-            verdict=clipped_verdict(result.verdict),
-            note=result.note,
-            seconds=seconds,
-            cpu_seconds=processor,
-            cases=result.cases,
-            packets=result.packets,
-            metrics=result.metrics,
-            shape=result.shape,
-            written_by=("rosbags", *result.written_by) if result.cases else (),
-            command=result.command,
+            distro=None if request.node else self._description.distro,
+            bus_bytes=None if request.node else self._description.bus_bytes,
+            # What a board does not have.
+            **dict.fromkeys(("max_message_bytes", "simulator", "wire", "no_stalls", "vcd")),
         )
 
     def _lines(self, record: Record) -> Iterator[str]:

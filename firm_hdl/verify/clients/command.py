@@ -15,9 +15,8 @@ from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.clients.judge import LibraryResult
 from firm_hdl.verify.clients.run import command_of, comparison_of, judge_types, reference_of
 from firm_hdl.verify.clients.shrink import shrunk
-from firm_hdl.verify.references.choice import find_clients
 from firm_hdl.verify.references.client import ClientMissingError, Refusal
-from firm_hdl.verify.references.clients import CLIENTS, REFERENCES, close_clients
+from firm_hdl.verify.references.clients import CLIENTS, REFERENCES, close_clients, find_clients
 from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.results.texts import clipped
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed

@@ -4,25 +4,16 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from firm_hdl.export.build import BuildError
 from firm_hdl.files import write_file
-from firm_hdl.verify.report.as_json import to_json
-from firm_hdl.verify.report.html import to_html
-from firm_hdl.verify.report.markdown import to_markdown
-from firm_hdl.verify.report.summary import Summary, summarise
+from firm_hdl.verify.report.formats import FORMATS
+from firm_hdl.verify.report.summary import summarise
 from firm_hdl.verify.results.file import ResultsError, read_results
 
-__all__ = ["FORMATS", "add_report_arguments", "run_report", "write_report"]
-
-FORMATS: Mapping[str, Callable[[Summary], str]] = {
-    "html": to_html,
-    "md": to_markdown,
-    "json": to_json,
-}
-"""Functions that write reports, by the suffixes of file names."""
+__all__ = ["add_report_arguments", "run_report", "write_report"]
 
 
 def add_report_arguments(parser: argparse.ArgumentParser) -> None:

@@ -157,9 +157,9 @@ class OracleVerdict:
     is_refused: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(slots=True, kw_only=True)
 class Record:
-    """The result of a test.
+    """The result of a test. While the test runs, its figures are added.
 
     Attributes
     ----------
@@ -174,7 +174,7 @@ class Record:
     cases, packets, cycles, beats : int
         Cases of the type; packets and cycles of all runs; beats of one run of all cases.
     coverage : PlanCoverage or None
-    metrics : mapping of str to float
+    metrics : dict of str to float
         Figures of the type and of its plan.
     shape : str
         Digest of the plan without names. Types with equal digests have the same circuit.
@@ -201,13 +201,22 @@ class Record:
     cycles: int = 0
     beats: int = 0
     coverage: PlanCoverage | None = None
-    metrics: Mapping[str, float] = field(default_factory=dict)
+    metrics: dict[str, float] = field(default_factory=dict)
     shape: str = ""
     same_as: str = ""
     verdicts: tuple[OracleVerdict, ...] = ()
     written_by: tuple[str, ...] = ()
     command: str = ""
     waveform_command: str = ""
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """The failures; none if the test did not fail."""
+        return self.verdict.failures if isinstance(self.verdict, Failed) else ()
+
+    def add_note(self, what: str) -> None:
+        """Add to the note."""
+        self.note = "; ".join(filter(None, [self.note, what]))
 
     def __post_init__(self) -> None:
         if not isinstance(self.verdict, Passed | Failed | NotJudged | KnownDifference):
@@ -319,7 +328,7 @@ def _read(hint: Any, given: Any) -> Any:
         return _verdict(given)
     if get_origin(hint) is tuple and isinstance(given, list | tuple):
         return tuple(_read(kinds[0], each) for each in given)
-    if get_origin(hint) is Mapping and isinstance(given, dict):
+    if get_origin(hint) is dict and isinstance(given, dict):
         return {name: _read(kinds[1], each) for name, each in given.items()}
     # A value that is `None` is not in the JSON, so the other type of the union applies.
     hint = kinds[0] if get_origin(hint) is UnionType else hint

@@ -27,7 +27,7 @@ class Options:
     most_cases : int or None
     simulator : str
         ``python``, or the simulator of exported text in which every run is replayed: a key of
-        :data:`firm_hdl.verify.simulators.SIMULATORS`.
+        :data:`firm_hdl.verify.simulators.programs.SIMULATORS`.
     paths : tuple of str
         Folders with ROS packages. They are searched before the distribution's own types.
     depends : tuple of str

@@ -12,7 +12,7 @@ from abc import ABC, abstractmethod
 from collections import defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, TypeAlias, TypeVar
 
 from tqdm import tqdm
@@ -25,7 +25,7 @@ from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import WIRE_OF
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import STAGES, Record, Seconds, Test, clipped_verdict, settled
-from firm_hdl.verify.results.verdict import Failed, NotJudged, Verdict
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 from firm_hdl.verify.systems.options import Request, command_again
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 
@@ -35,6 +35,7 @@ __all__ = [
     "Recorder",
     "Stopwatch",
     "System",
+    "Trial",
     "TypesSystem",
     "failure_of",
     "judged",
@@ -210,23 +211,78 @@ class Stopwatch:
         return seconds, cpu_seconds() - self._began_cpu
 
 
-def recorded(test: Test, run: Callable[[Stopwatch], Record]) -> Record:
-    """Run a test, and return its record. An exception becomes the verdict."""
-    watch = Stopwatch()
+@dataclass(slots=True, kw_only=True)
+class Trial:
+    """A test that runs, and what it has found so far.
+
+    Attributes
+    ----------
+    record : Record
+        Receives figures and notes. Its verdict, its times and nothing else are set at the end.
+    failures : list of str
+        Failures in the order in which they were found.
+    judged : int
+        The number of cases that were compared with an oracle.
+    known : tuple of str
+        Keys of the known differences that were found.
+    obstacle : NotJudged or None
+        Why the test cannot be judged.
+    watch : Stopwatch
+    """
+
+    record: Record
+    failures: list[str] = field(default_factory=list)
+    judged: int = 0
+    known: tuple[str, ...] = ()
+    obstacle: NotJudged | None = None
+    watch: Stopwatch = field(default_factory=Stopwatch)
+
+    @classmethod
+    def of(cls, test: Test) -> Trial:
+        """Begin a test."""
+        return cls(record=Record(test=test, verdict=NotJudged("it has not ended")))
+
+    @property
+    def verdict(self) -> Verdict:
+        """The worst that was found; nothing judged is no pass."""
+        if self.failures:
+            return Failed(tuple(self.failures))
+        if self.obstacle is not None:
+            return self.obstacle
+        if not self.judged:
+            return NotJudged("nothing was compared with an oracle")
+        if self.known:
+            return KnownDifference(self.known, self.judged)
+        return Passed(self.judged)
+
+    def stop(self, error: Exception) -> None:
+        """Add what ended the test. The other tests run in any case."""
+        if isinstance(error, NotJudgedError):
+            self.obstacle = NotJudged(str(error) or type(error).__name__)
+        else:
+            self.failures.append(described(error))
+
+    def end(self) -> Record:
+        """Return the record of the test, which ends here."""
+        seconds, processor = self.watch.stop()
+        verdict = clipped_verdict(self.verdict)
+        return replace(self.record, verdict=verdict, seconds=seconds, cpu_seconds=processor)
+
+
+def recorded(test: Test, run: Callable[[Trial], None]) -> Record:
+    """Run a test, which adds to its trial; return its record. An exception is in the verdict."""
+    trial = Trial.of(test)
     try:
-        record = run(watch)
-    except NotJudgedError as error:
-        record = Record(test=test, verdict=NotJudged(str(error) or type(error).__name__))
-    except Exception as error:  # The other types are tested in any case.
-        record = Record(test=test, verdict=Failed((described(error),)))
-    seconds, processor = watch.stop()
-    return replace(record, seconds=seconds, cpu_seconds=processor)
+        run(trial)
+    except Exception as error:
+        trial.stop(error)
+    return trial.end()
 
 
 def failure_of(what: str, record: Record) -> Iterator[str]:
     """Yield the text to print if a test failed: what it tests, and its failures."""
-    if isinstance(record.verdict, Failed):
-        yield "\n".join([f"FAIL {what}", *(f"    {line}" for line in record.verdict.failures)])
+    if record.failures:
+        yield "\n".join([f"FAIL {what}", *(f"    {line}" for line in record.failures)])
 
 
 def kept(
@@ -291,10 +347,7 @@ def run_tests(
             if isinstance(result, Exception):
                 died = Failed((f"{type(result).__name__}: {result}",))
                 result = [Record(test=test, verdict=died) for test in share]
-            records = [
-                replace(each, verdict=clipped_verdict(each.verdict), command=command(each.test))
-                for each in result
-            ]
+            records = [replace(each, command=command(each.test)) for each in result]
             yield [(each.test, each, lines_of(each)) for each in records]
 
 

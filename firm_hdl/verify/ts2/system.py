@@ -14,6 +14,7 @@ from typing import Any
 
 from tqdm import tqdm
 
+from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases.figures import digest, figures
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
@@ -26,7 +27,7 @@ from firm_hdl.verify.systems.system import (
     Judged,
     Made,
     Recorder,
-    Stopwatch,
+    Trial,
     TypesSystem,
     failure_of,
     judged,
@@ -45,23 +46,25 @@ YAML_STEPS = 2000
 MOST_IN_A_SHARE = 16
 
 
-def check_plan(message: Message, test: Test, wire: Wire | None, watch: Stopwatch) -> Record:
+def check_plan(message: Message, wire: Wire | None, trial: Trial) -> None:
     """Plan a type for the bus of a test, and check the plan. The plan is the only case."""
     if wrong := refusals(message):
-        return Record(test=test, verdict=NotJudged(wrong[0].message))
+        raise NotJudgedError(wrong[0].message)
+    record = trial.record
     try:
-        plan = plan_of(message, wire, test.bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)
+        plan = plan_of(message, wire, record.test.bus_bytes, DEFAULT_MAX_MESSAGE_BYTES)
     except (BuildError, DefinitionError) as error:
-        return Record(test=test, verdict=Failed((str(error),)))
-    watch.enter("testing")
-    problems = list(check(plan, lay_out(message, wire)))
+        trial.failures.append(str(error))
+        return
+    trial.watch.enter("testing")
+    trial.failures += check(plan, lay_out(message, wire))
     if len(plan.steps) <= YAML_STEPS and from_yaml(to_yaml(plan)) != plan:
-        problems.append("the plan in YAML, read back, is another one")
-    metrics = figures(message, plan, ())
+        trial.failures.append("the plan in YAML, read back, is another one")
+    record.metrics = figures(message, plan, ())
     # The plan has no cases, so this figure means nothing.
-    metrics.pop("case_bytes", None)
-    verdict = Failed(tuple(problems)) if problems else Passed(1)
-    return Record(test=test, verdict=verdict, shape=digest(plan), metrics=metrics)
+    record.metrics.pop("case_bytes", None)
+    record.shape = digest(plan)
+    trial.judged = 1
 
 
 class Ts2(TypesSystem):
@@ -168,9 +171,9 @@ class Ts2(TypesSystem):
 def _checked(options: Options, test: Test) -> Record:
     """Read, plan and check one type. An exception becomes the verdict."""
 
-    def run(watch: Stopwatch) -> Record:
+    def run(trial: Trial) -> None:
         message = library_of(test.distro, options).message(test.type)
-        return check_plan(message, test, options.wire, watch)
+        check_plan(message, options.wire, trial)
 
     return recorded(test, run)
 

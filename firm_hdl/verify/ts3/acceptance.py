@@ -14,6 +14,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterable, Sequence
 from collections.abc import Set as AbstractSet
+from dataclasses import replace
 from itertools import chain
 from typing import Any
 
@@ -33,16 +34,16 @@ from firm_hdl.cases.make import Case
 from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.cases.user_oracle import Judge, judge_of
 from firm_hdl.cases.wide_oracle import WideOracle
-from firm_hdl.errors import described
 from firm_hdl.model import Message
 from firm_hdl.plan import Edge, build_plan
 from firm_hdl.plan.edges import edges
 from firm_hdl.plan.interpret import decode, encode
 from firm_hdl.sim.stalls import Stalls
-from firm_hdl.verify.references.choice import WIDE_REFERENCES, may_stand_in
-from firm_hdl.verify.results.records import PlanCoverage
+from firm_hdl.verify.references.clients import WIDE_REFERENCES, may_stand_in
+from firm_hdl.verify.results.records import PlanCoverage, Record, Test
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.system import Trial, recorded
 from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.circuit import Circuit
 from firm_hdl.verify.ts3.compare import (
@@ -52,71 +53,66 @@ from firm_hdl.verify.ts3.compare import (
     transfer_differences,
 )
 from firm_hdl.verify.ts3.confirm import confirm
-from firm_hdl.verify.ts3.result import Result, command_of
+from firm_hdl.verify.ts3.task import command_of
 from firm_hdl.wire import Wire, lay_out
 
-__all__ = ["Acceptance", "accept", "accept_message", "confirm_cases", "measured"]
+__all__ = ["Acceptance", "accept_message", "accepted", "confirm_cases", "measured"]
+
+WAVEFORM_FOLDER = "waveforms"
+"""The folder that the command for a waveform writes to."""
 
 
-def accept(distro: str, name: str, options: Options | None = None) -> Result:
-    """Run all cases of a type. Errors are not raised, but are in the result.
+def accepted(options: Options, test: Test) -> Record:
+    """Run all cases of the type of a test."""
 
-    Parameters
-    ----------
-    distro : str
-    name : str
-        ``package/Type`` or ``package/msg/Type``.
-    """
+    def run(message: Message, judge: Judge, options: Options, trial: Trial) -> None:
+        accept_message(message, judge.oracle, judge.name, options, trial)
 
-    def run(message: Message, judge: Judge, options: Options, result: Result) -> None:
-        accept_message(message, judge.oracle, judge.name, options, result)
-
-    return measured(distro, name, options or Options(), run)
+    return measured(options, test, run)
 
 
 def measured(
-    distro: str,
-    name: str,
-    options: Options,
-    run: Callable[[Message, Judge, Options, Result], None],
-) -> Result:
-    """Find a type and its oracle, call `run` with them, and return the result with its times.
+    options: Options, test: Test, run: Callable[[Message, Judge, Options, Trial], None]
+) -> Record:
+    """Find the type of a test and its oracle, and call `run` with them; return the record.
 
     Parameters
     ----------
     run : callable
-        Adds to the result. An exception of `run` goes into the result as well.
+        Adds to the trial. An exception of `run` goes into the record as well.
     """
-    result = Result(distro=distro, name=name, command=command_of(options, distro, name))
-    try:
-        message = library_of(distro, options).message(name)
+
+    def found(trial: Trial) -> None:
+        message = library_of(test.distro, options).message(test.type)
         judge = judge_of(
             message,
-            None if options.paths or options.bags else distro,
+            None if options.paths or options.bags else test.distro,
             stand_in=not options.bags and may_stand_in(message, options.references),
         )
-        result.note = judge.note
-        run(message, judge, options, result)
-    except NotJudgedError as error:
-        result.obstacle = NotJudged(str(error) or type(error).__name__)
-    except Exception as error:  # The other types are tested in any case.
-        result.failures.append(described(error))
-    result.seconds, result.cpu_seconds = result.watch.stop()
-    return result
+        trial.record.note = judge.note
+        run(message, judge, options, trial)
+
+    waveform = replace(options, vcd=WAVEFORM_FOLDER, simulator="python")
+    return replace(
+        recorded(test, found),
+        command=command_of(options, test.type, distro=test.distro),
+        waveform_command=command_of(waveform, test.type, distro=test.distro),
+    )
 
 
 def accept_message(
-    message: Message, oracle: RosbagsOracle, name: str, options: Options, result: Result
+    message: Message, oracle: RosbagsOracle, name: str, options: Options, trial: Trial
 ) -> None:
-    """Run all cases of a message type that the oracle knows by `name`, and add to `result`."""
+    """Run all cases of a message type that the oracle knows by `name`, and add to the trial."""
     wire: Any = options.wire or message.wire
-    run = Acceptance(message, wire, options, result)
+    run = Acceptance(message, wire, options, trial)
     cases = all_cases(oracle, name, run.plan, seed=options.seed, most=options.most_cases)
     bare = bare_packets(run.plan, cases)
-    result.cases = len(cases)
-    result.metrics = figures(message, run.plan, [case.packet for case in cases])
-    confirm_cases(message, run.plan.wire, cases, options, result, oracle)
-    result.watch.enter("testing")
+    record = trial.record
+    record.cases = len(cases)
+    record.metrics = figures(message, run.plan, [case.packet for case in cases])
+    confirm_cases(message, run.plan.wire, cases, options, trial, oracle)
+    trial.watch.enter("testing")
     taken = run.check_golden_model(cases, bare)
     if not options.simulated:
         return
@@ -124,7 +120,7 @@ def accept_message(
         packets = [*(case.sent for case in cases), *(packet for _, packet in bare)]
         numbers = set(packets_to_simulate(run.plan, packets, taken))
         if len(numbers) < len(taken):
-            result.add_note(f"simulated in part: {len(numbers)} of {len(taken)} packets")
+            record.add_note(f"simulated in part: {len(numbers)} of {len(taken)} packets")
             run.cover(taken[number] for number in numbers)
         bare = [pair for number, pair in enumerate(bare, len(cases)) if number in numbers]
         cases = [case for number, case in enumerate(cases) if number in numbers]
@@ -132,7 +128,7 @@ def accept_message(
     if is_large(run.plan, cases):
         cases = cases_to_disturb(run.plan, cases)
         if not cases:
-            result.add_note("neither stalled nor damaged")
+            record.add_note("neither stalled nor damaged")
     if options.stalled and cases:
         run.circuit.interrupt([case.sent for case in cases])
         run.check_circuit(cases, stalls_for(f"{options.seed}/{name}"))
@@ -146,23 +142,25 @@ def confirm_cases(
     wire: Wire,
     cases: Sequence[Case],
     options: Options,
-    result: Result,
+    trial: Trial,
     oracle: RosbagsOracle,
 ) -> None:
-    """Compare other libraries' packets, and add to `result`.
+    """Compare other libraries' packets, and add to the trial.
 
     If the oracle is a :class:`.WideOracle`, one of the libraries must support the wide text.
     """
     found = confirm(message, wire, cases, options.references)
-    result.written_by, result.known = found.by, found.known
-    result.failures += found.failures
+    if cases:
+        trial.record.written_by = ("rosbags", *found.by)
+    trial.known = found.known
+    trial.failures += found.failures
     if isinstance(oracle, WideOracle) and not set(WIDE_REFERENCES) & set(found.by):
-        result.failures.append(
+        trial.failures.append(
             f"{WIDE_REFERENCES[0]} could not write wide text, which rosbags has not"
         )
     if options.references and found.unable:
         # These libraries were asked for by name.
-        result.obstacle = NotJudged("; ".join(found.unable.values()))
+        trial.obstacle = NotJudged("; ".join(found.unable.values()))
 
 
 class Acceptance:
@@ -173,7 +171,7 @@ class Acceptance:
     message : Message
     wire : Wire
     options : Options
-    result : Result
+    trial : Trial
         Receives failures and figures.
     max_message_bytes : int or None
         The limit of the converters; `None`: `message_limit` of the type.
@@ -197,10 +195,10 @@ class Acceptance:
         message: Message,
         wire: Wire,
         options: Options,
-        result: Result,
+        trial: Trial,
         max_message_bytes: int | None = None,
     ):
-        self._options, self._result = options, result
+        self._options, self._trial = options, trial
         layout = lay_out(message, wire)
         if max_message_bytes is None:
             max_message_bytes = message_limit(layout.min_bytes)
@@ -209,10 +207,10 @@ class Acceptance:
         )
         if reason := too_large(self.plan, layout.min_bytes):
             raise NotJudgedError(reason)
-        result.shape = digest(self.plan)
+        trial.record.shape = digest(self.plan)
         self._random = random.Random(f"{options.seed}/{message.name}/broken")
         if options.simulated:
-            self.circuit = Circuit(message, self.plan, options, result)
+            self.circuit = Circuit(message, self.plan, options, trial)
 
     def check_golden_model(
         self, cases: Sequence[Case], bare: Sequence[tuple[Case, bytes]]
@@ -221,7 +219,7 @@ class Acceptance:
 
         The golden model alone is judged if the circuit is not to be simulated.
         """
-        failures, plan = self._result.failures, self.plan
+        failures, plan = self._trial.failures, self.plan
         leaves = {leaf.path: number for number, leaf in enumerate(plan.leaves)}
         taken: list[AbstractSet[Edge]] = []
         for case, packet in chain(((case, case.sent) for case in cases), bare):
@@ -244,14 +242,14 @@ class Acceptance:
                 failures.append(f"{where}: status {status} when encoding")
         self.cover(taken)
         if not self._options.simulated:
-            self._result.judged += len(taken)
+            self._trial.judged += len(taken)
         return taken
 
     def cover(self, taken: Iterable[AbstractSet[Edge]]) -> None:
         """Store which decisions of the plan some packets take."""
         possible = edges(self.plan)
         missing = sorted(possible.difference(*taken))
-        self._result.coverage = PlanCoverage(
+        self._trial.record.coverage = PlanCoverage(
             taken=len(possible) - len(missing),
             possible=len(possible),
             missing=tuple(f"step {edge.step}: {edge.way}" for edge in missing),
@@ -270,7 +268,7 @@ class Acceptance:
         if seen is None:
             return
         if stalls is None:
-            self._result.beats, self._result.cycles = seen.beats_in, seen.cycles
+            self._trial.record.beats = seen.beats_in
         judged = [*cases, *(case for case, _ in bare)]
         wanted = Expected(
             packets=[case.packet for case in judged],
@@ -279,8 +277,8 @@ class Acceptance:
             sent_statuses=["OK"] * len(judged),
         )
         names = [case.what for case in judged]
-        self._result.failures += run_differences(where, self.plan, seen, wanted, names)
-        self._result.judged += len(seen.packets)
+        self._trial.failures += run_differences(where, self.plan, seen, wanted, names)
+        self._trial.judged += len(seen.packets)
 
     def check_damaged(self, cases: Sequence[Case]) -> None:
         """Check the hardware against the golden model with damaged packets."""
@@ -304,4 +302,4 @@ class Acceptance:
             sent_statuses=[status for _, status in sent],
         )
         names = [packet.hex() for packet in packets]
-        self._result.failures += run_differences(where, self.plan, seen, wanted, names)
+        self._trial.failures += run_differences(where, self.plan, seen, wanted, names)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 from firm_hdl.gateware import Deserializer, Serializer
@@ -15,11 +15,11 @@ from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.job import RunOptions
 from firm_hdl.sim.record import RunResult
 from firm_hdl.sim.stalls import Stalls
-from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.simulators import simulator
-from firm_hdl.verify.simulators.crosscheck import Crosscheck, check_exportable
+from firm_hdl.verify.simulators.crosscheck import check_exportable, replay_failures
+from firm_hdl.verify.simulators.programs import simulator
+from firm_hdl.verify.simulators.trace import Trace
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.ts3.result import Result
+from firm_hdl.verify.systems.system import Trial
 
 __all__ = ["Circuit"]
 
@@ -36,7 +36,7 @@ class Circuit:
     plan : Plan
         The type's plan. The converters are made for its wire, bus and limit.
     options : Options
-    result : Result
+    trial : Trial
         Receives failures, numbers of packets and cycles, and times.
 
     Raises
@@ -45,28 +45,25 @@ class Circuit:
         If a simulator of exported text is asked for, and the converters are too large to export.
     """
 
-    def __init__(self, message: Message, plan: Plan, options: Options, result: Result):
-        self._message, self._plan, self._options, self._result = message, plan, options, result
+    def __init__(self, message: Message, plan: Plan, options: Options, trial: Trial):
+        self._message, self._plan, self._options, self._trial = message, plan, options, trial
         self._runs = 0
-        other = simulator(options.simulator)
-        if other is not None:
+        self._other = simulator(options.simulator)
+        if self._other is not None:
             check_exportable(plan)
         rx, tx = self._converters()
-        self._cross = (
-            None if other is None else Crosscheck(other, (rx, tx), self._converters, message.name)
-        )
-        probes = () if self._cross is None else self._cross.trace.probes
+        self._trace = None if self._other is None else Trace((rx, tx), message.name)
         # Exported text keeps its state between runs, so the Python simulation keeps it as well.
         self._harness = Harness(
             rx,
             tx,
             message=message,
             gated=options.stalled,
-            probes=probes,
-            keeps_state=self._cross is not None,
+            probes=() if self._trace is None else self._trace.probes,
+            keeps_state=self._trace is not None,
         )
         self._waves = self._harness
-        if self._cross is not None and options.vcd is not None:
+        if self._trace is not None and options.vcd is not None:
             # Waveforms come from another harness, in which each run starts from initial values.
             self._waves = Harness(*self._converters(), message=message, gated=options.stalled)
 
@@ -85,8 +82,8 @@ class Circuit:
         where : str
             The name of the run in failures.
         """
-        observe = None if self._cross is None else self._cross.start(where)
-        self._result.watch.enter("simulation")
+        observe = self._observed(where)
+        self._trial.watch.enter("simulation")
         try:
             vcd = self._waveform()
             if vcd is not None and self._waves is not self._harness:
@@ -95,24 +92,22 @@ class Circuit:
             options = RunOptions(stalls=stalls, observe=observe, vcd=vcd)
             seen = self._harness.run_packets(packets, options)
         except AssertionError as error:
-            self._result.failures.append(f"{where}: {type(error).__name__}: {error}")
+            self._trial.failures.append(f"{where}: {type(error).__name__}: {error}")
             return None
         finally:
-            self._result.watch.enter("testing")
-        self._result.packets += len(packets)
-        self._result.simulated_cycles += self._harness.bench.cycles
-        if self._cross is not None:
-            self._cross.done(seen)
+            self._trial.watch.enter("testing")
+        self._trial.record.packets += len(packets)
+        self._trial.record.cycles += self._harness.bench.cycles
         return seen
 
     def interrupt(self, packets: Sequence[bytes]) -> None:
         """Fill the circuits and stop, so that the next run resets full ones in the replay."""
-        if self._cross is None:
+        if self._trace is None:
             return
         blocked = Stalls.bits("0" * (2 * FULL_CYCLES) + "1")
         stalls = dict.fromkeys(("packets_out", "status", "sent_status"), blocked)
         where = "hardware, nothing taken"
-        observe = self._cross.start(where)
+        observe = self._observed(where)
         try:
             options = RunOptions(stalls=stalls, limit=FULL_CYCLES, observe=observe)
             self._harness.run_packets(packets, options)
@@ -120,22 +115,23 @@ class Circuit:
             # The run is meant to end like this.
             pass
         except AssertionError as error:
-            self._result.failures.append(f"{where}: {type(error).__name__}: {error}")
-        self._result.simulated_cycles += self._harness.bench.cycles
+            self._trial.failures.append(f"{where}: {type(error).__name__}: {error}")
+        self._trial.record.cycles += self._harness.bench.cycles
 
     def crosscheck(self) -> None:
         """Replay all runs in another simulator, if there is one, and compare."""
-        if self._cross is None:
+        if self._other is None or self._trace is None:
             return
-        self._result.watch.enter("simulation")
-        self._result.comparison = found = self._cross.compare()
-        self._result.watch.enter("testing")
-        title = self._cross.simulator.title
-        # The simulator was asked for, so a missing judgement is a failure.
-        silent = isinstance(found.verdict, NotJudged)
-        self._result.failures += [
-            f"{title}: {detail}" if silent else detail for detail in found.verdict.details
-        ]
+        self._trial.watch.enter("simulation")
+        self._trial.failures += replay_failures(self._other, self._trace, self._converters)
+        self._trial.watch.enter("testing")
+
+    def _observed(self, where: str) -> Callable[[list[int]], None] | None:
+        """Begin a run in the trace; return what observes its cycles."""
+        if self._trace is None:
+            return None
+        self._trace.start(where)
+        return self._trace.observe
 
     def _waveform(self) -> str | None:
         """Return the file for the waveform of the next run, if it is to have one."""

@@ -14,14 +14,13 @@ from firm_hdl.cases.make import Case
 from firm_hdl.cases.values import Plain, from_objects
 from firm_hdl.model import Message
 from firm_hdl.verify.clients.known import known_writing
-from firm_hdl.verify.references.choice import WRITERS, usable_references
 from firm_hdl.verify.references.client import (
     ClientDiedError,
     Refusal,
     UnsupportedError,
     each_answered,
 )
-from firm_hdl.verify.references.clients import client
+from firm_hdl.verify.references.clients import WRITERS, client, usable_references
 from firm_hdl.wire import Wire
 
 __all__ = ["confirm"]

@@ -35,11 +35,12 @@ from firm_hdl.model import Message
 from firm_hdl.plan import Leaf, Payload, Plan, build_plan
 from firm_hdl.plan.interpret import Decoded, decode, encode
 from firm_hdl.verify.choices import MOST_MESSAGES
+from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.acceptance import Acceptance, measured
 from firm_hdl.verify.ts3.recording import RecordedMessage, Selection, Topic, select, topics_of
-from firm_hdl.verify.ts3.result import Result
 from firm_hdl.wire import lay_out
 
 __all__ = ["replay"]
@@ -58,35 +59,34 @@ REPRESENTATIONS = {
 """Meanings of the second byte of a CDR packet; OMG DDS-XTypes 1.3, clause 7.6.2.1.2."""
 
 
-def replay(distro: str, name: str, options: Options) -> Result:
-    """Replay the messages of a type. Errors are not raised, but are in the result.
+def replay(options: Options, test: Test) -> Record:
+    """Replay the messages of the type of a test. Errors are not raised, but are in the record.
 
     Parameters
     ----------
-    distro : str
-        The distribution by whose rules the definitions in the recordings are read.
-    name : str
-        ``package/Type`` or ``package/msg/Type``.
     options : Options
         Options with recordings.
+    test : Test
+        Its distribution is the one by whose rules the definitions in the recordings are read.
     """
-    return measured(distro, name, options, _replay)
+    return measured(options, test, _replay)
 
 
-def _replay(message: Message, judge: Judge, options: Options, result: Result) -> None:
-    topics, others = _topics(message, library_of(result.distro, options), options.bags)
+def _replay(message: Message, judge: Judge, options: Options, trial: Trial) -> None:
+    record = trial.record
+    topics, others = _topics(message, library_of(record.test.distro, options), options.bags)
     selection = _select(message, topics, options)
     longest = max(len(each.data) for each in selection.messages)
-    run = Acceptance(message, message.wire, options, result, _room(longest))
+    run = Acceptance(message, message.wire, options, trial, _room(longest))
     with_bag = len(options.bags) > 1
     judged = [_judge(run.plan, judge, each, with_bag) for each in selection.messages]
     cases = [each.case for each in judged]
-    result.cases = len(cases)
-    result.metrics = figures(message, run.plan, [case.packet for case in cases])
-    result.failures += [each.finding for each in judged if each.finding]
+    record.cases, record.written_by = len(cases), ("rosbags",)
+    record.metrics = figures(message, run.plan, [case.packet for case in cases])
+    trial.failures += [each.finding for each in judged if each.finding]
     parts = [*_counts(selection, options), *others, *_kinds(judged)]
-    result.note = "; ".join([*parts, *([judge.note] if judge.note else [])])
-    result.watch.enter("testing")
+    record.note = "; ".join([*parts, *([judge.note] if judge.note else [])])
+    trial.watch.enter("testing")
     run.check_golden_model(cases, ())
     if not options.simulated:
         return

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Container, Generator, Iterator, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from firm_hdl.errors import described
 from firm_hdl.frontend import DISTROS
-from firm_hdl.jobs.executors import PROCESSES, run_each
-from firm_hdl.verify.references.choice import find_references
+from firm_hdl.verify.references.clients import find_references
 from firm_hdl.verify.results.records import Record, Test, settled
 from firm_hdl.verify.results.texts import clipped
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
-from firm_hdl.verify.simulators import simulator
+from firm_hdl.verify.simulators.programs import simulator
 from firm_hdl.verify.systems.options import Options, Request
 from firm_hdl.verify.systems.system import (
     Judged,
@@ -25,14 +22,15 @@ from firm_hdl.verify.systems.system import (
     System,
     judged,
     kept,
+    run_tests,
     wire_of,
 )
 from firm_hdl.verify.systems.tasks import TypeUnderTest
-from firm_hdl.verify.ts3.acceptance import accept
+from firm_hdl.verify.ts3.acceptance import accepted
 from firm_hdl.verify.ts3.replay import replay
-from firm_hdl.verify.ts3.result import Result, command_of, record_of, same_circuits, test_of
+from firm_hdl.verify.ts3.task import command_of, same_circuits, test_of
 
-__all__ = ["Ts3", "run_tasks"]
+__all__ = ["Ts3"]
 
 MOST_CHARACTERS = 600
 """The most characters of a failure that are printed."""
@@ -105,71 +103,55 @@ class Ts3(System):
 
     def _run(self, options: Options, recorder: Recorder) -> list[Judged]:
         """Run all tasks with one set of options."""
-        tasks = {task: test_of(task, options) for task in self._tasks}
-        same = same_circuits(self._tasks, options) if self._request.shares_circuits else {}
-        results: list[Result] = []
+        tests = {task: test_of(task, options) for task in self._tasks}
+        same: dict[Test, Test] = {}
+        if self._request.shares_circuits:
+            pairs = same_circuits(self._tasks, options).items()
+            same = {tests[task]: tests[other] for task, other in pairs}
         notes: Counter[str] = Counter()
 
-        def run(left: Sequence[TypeUnderTest]) -> Made[TypeUnderTest]:
-            jobs, executor = self._request.jobs, self._request.executor
-            found = run_tasks(left, options, jobs, executor=executor, golden_only=same)
-            with closing(found):
-                for task, result in found:
-                    results.append(result)
-                    same_as = tasks[same[task]].key if task in same else ""
-                    notes[result.note] += 1
-                    # The note of a replay has the number of messages, so it is always printed.
-                    is_new = notes[result.note] == 1 or bool(options.bags)
-                    record = record_of(task, result, options, same_as)
-                    yield [(task, record, _lines_of(task, result, is_new=is_new))]
+        def lines_of(record: Record) -> Iterator[str]:
+            notes[record.note] += 1
+            yield from _failure_of(record)
+            # The note of a replay has the number of messages, so it is always printed.
+            if record.note and (notes[record.note] == 1 or options.bags):
+                yield f"note: {record.test.type} ({record.test.distro}): {record.note}"
 
-        records = kept(tasks, recorder, run, label=f"{options.bus_bytes}-byte bus")
+        def run(left: Sequence[Test]) -> Made[Test]:
+            for is_shared in (False, True):
+                made = run_tests(
+                    replay if options.bags else accepted,
+                    replace(options, simulated=not is_shared),
+                    [test for test in left if (test in same) == is_shared],
+                    lambda test: command_of(options, test.type, distro=test.distro),
+                    lines_of,
+                    executor=self._request.executor,
+                    jobs=self._request.jobs,
+                )
+                for share in made:
+                    for test, record, _ in share:
+                        record.same_as = same[test].key if is_shared else ""
+                    yield share
+
+        label = f"{options.bus_bytes}-byte bus"
+        each = {test: test for test in tests.values()}
+        records = kept(each, recorder, run, label=label).values()
         if not options.bags:
             _repeat(notes)
-        _count(records, options)
-        _summarize([result for result in results if result.simulated_cycles], options)
-        return judged(records.values())
+        _count(list(records), options)
+        _summarize([record for record in records if record.cycles], options)
+        return judged(records)
 
 
-def run_tasks(
-    tasks: Sequence[TypeUnderTest],
-    options: Options,
-    jobs: int | None = None,
-    *,
-    executor: str = PROCESSES,
-    golden_only: Container[TypeUnderTest] = (),
-) -> Generator[tuple[TypeUnderTest, Result], None, None]:
-    """Run tasks in `jobs` processes (`None`: one per processor); yield results as they are ready.
-
-    Parameters
-    ----------
-    executor : str
-        See :func:`firm_hdl.jobs.executors.run_each`.
-    golden_only : container of TypeUnderTest
-        Tasks whose circuit is not to be simulated.
-    """
-    without = replace(options, simulated=False)
-    work = [
-        (task, (task.distro, task.name, without if task in golden_only else options))
-        for task in tasks
-    ]
-    run = replay if options.bags else accept
-    for task, result in run_each(run, work, executor=executor, jobs=jobs):
-        if isinstance(result, Exception):
-            failed = Result(distro=task.distro, name=task.name)
-            failed.failures.append(described(result))
-            failed.command = command_of(options, task.distro, task.name)
-            yield task, failed
-        else:
-            yield task, result
-
-
-def _lines_of(task: TypeUnderTest, result: Result, *, is_new: bool) -> Iterator[str]:
-    """Yield the failure and the note of a type; a note only if it is new."""
-    if isinstance(result.verdict, Failed):
-        yield _describe(task, result, result.verdict)
-    if result.note and is_new:
-        yield f"note: {task.name} ({task.distro}): {result.note}"
+def _failure_of(record: Record) -> Iterator[str]:
+    """Yield the text to print about a type that failed."""
+    if not record.failures:
+        return
+    lines = [f"FAIL {record.test.type} ({', '.join(record.test.distros)})"]
+    lines += [f"    {clipped(failure, MOST_CHARACTERS)}" for failure in record.failures[:8]]
+    if len(record.failures) > 8:
+        lines.append(f"    and {len(record.failures) - 8} more")
+    yield "\n".join([*lines, f"    again: {record.command}"])
 
 
 def _repeat(notes: Mapping[str, int]) -> None:
@@ -179,64 +161,47 @@ def _repeat(notes: Mapping[str, int]) -> None:
             print(f"note: {count - 1} more types: {note}")
 
 
-def _count(records: Mapping[TypeUnderTest, Record], options: Options) -> None:
+def _count(records: Sequence[Record], options: Options) -> None:
     """Print how many types of each distribution pass."""
-    by_key = {record.test.key: record for record in records.values()}
-    verdicts = {task: settled(record, by_key) for task, record in records.items()}
+    by_key = {record.test.key: record for record in records}
+    verdicts = [(record, settled(record, by_key)) for record in records]
     passed: Counter[str] = Counter()
     total: Counter[str] = Counter()
-    for task, verdict in verdicts.items():
+    for record, verdict in verdicts:
         if not isinstance(verdict, NotJudged):
-            total.update(task.same)
+            total.update(record.test.distros)
         if isinstance(verdict, Passed | KnownDifference):
-            passed.update(task.same)
+            passed.update(record.test.distros)
     for distro in DISTROS:
         if distro in total:
             print(f"{distro:8} {passed[distro]:4} of {total[distro]:4} types pass", end="")
             print(f" ({options.bus_bytes}-byte bus)")
-    known = [verdict for verdict in verdicts.values() if isinstance(verdict, KnownDifference)]
+    known = [verdict for _, verdict in verdicts if isinstance(verdict, KnownDifference)]
     if known:
         keys = ", ".join(sorted({key for verdict in known for key in verdict.keys}))
         print(f"{len(known)} of them with a known difference between libraries: {keys}")
-    if not_judged := sum(isinstance(verdict, NotJudged) for verdict in verdicts.values()):
+    if not_judged := sum(isinstance(verdict, NotJudged) for _, verdict in verdicts):
         print(f"{not_judged} of {len(records)} types not judged")
-    if shared := sum(bool(record.same_as) for record in records.values()):
+    if shared := sum(bool(record.same_as) for record in records):
         print(f"{shared} of {len(records)} types have the circuit of another, which was simulated")
 
 
-def _summarize(results: Sequence[Result], options: Options) -> None:
-    if not results:
+def _summarize(records: Sequence[Record], options: Options) -> None:
+    """Print figures of the types that were simulated."""
+    if not records:
         return
-    seconds = sorted(result.seconds.total for result in results)
-    cycles = sum(result.simulated_cycles for result in results)
+    seconds = sorted(record.seconds.total for record in records)
+    cycles = sum(record.cycles for record in records)
     print(
-        f"{len(results)} different types, {sum(r.packets for r in results)} packets, "
+        f"{len(records)} different types, {sum(r.packets for r in records)} packets, "
         f"{cycles} cycles; seconds per type: median {seconds[len(seconds) // 2]:.2f}, "
         f"most {seconds[-1]:.1f}, {sum(seconds):.0f} in total"
     )
-    slowest = sorted(results, key=lambda result: -result.seconds.total)[:5]
-    print("slowest:", ", ".join(f"{each.name} {each.seconds.total:.1f} s" for each in slowest))
-    writers = Counter(
-        name for result in results if result.cases for name in ("rosbags", *result.written_by)
-    )
+    slowest = sorted(records, key=lambda record: -record.seconds.total)[:5]
+    print("slowest:", ", ".join(f"{each.test.type} {each.seconds.total:.1f} s" for each in slowest))
+    writers = Counter(name for record in records for name in record.written_by)
     text = ", ".join(f"{name} {count} types" for name, count in writers.items())
     print("wire bytes:", text or "no library wrote any")
-    compared = [result.comparison for result in results if result.comparison is not None]
-    if compared:
-        same = sum(isinstance(each.verdict, Passed) for each in compared)
-        print(
-            f"{options.simulator}: {same} of {len(compared)} types the same in every cycle; "
-            f"{sum(each.cycles for each in compared)} cycles, "
-            f"{sum(each.packets for each in compared)} packets, "
-            f"{sum(each.transfers for each in compared)} leaf transfers and "
-            f"{sum(each.statuses for each in compared)} statuses seen there, "
-            f"in {sum(each.seconds for each in compared):.0f} s"
-        )
-
-
-def _describe(task: TypeUnderTest, result: Result, failed: Failed) -> str:
-    lines = [f"FAIL {task.name} ({', '.join(task.same)})"]
-    lines += [f"    {clipped(failure, MOST_CHARACTERS)}" for failure in failed.failures[:8]]
-    if len(failed.failures) > 8:
-        lines.append(f"    and {len(failed.failures) - 8} more")
-    return "\n".join([*lines, f"    again: {result.command}"])
+    if options.simulator != "python":
+        passed = sum(not record.failures for record in records)
+        print(f"{options.simulator}: replayed every cycle of {len(records)} types, {passed} pass")

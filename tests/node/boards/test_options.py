@@ -84,22 +84,6 @@ def test_bytes_of_before_are_not_read(line):
     board.close()
 
 
-def test_a_file_that_is_no_line_stays_closed(tmp_path, monkeypatch):
-    path, opened = tmp_path / "file", []
-    path.write_bytes(b"")
-    system_open = os.open
-
-    def noted(*arguments):
-        opened.append(system_open(*arguments))
-        return opened[-1]
-
-    monkeypatch.setattr(os, "open", noted)
-    with pytest.raises(BoardError, match=r"^'.*/file' is no serial device$"):
-        board_of(f"serial://{path}", LINE).open()
-    with pytest.raises(OSError, match="Bad file descriptor"):
-        os.fstat(opened[0])
-
-
 @pytest.mark.parametrize(
     ("link", "name", "found"),
     [

@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
-import re
-
 import pytest
 
 import firm_hdl.verify.bench.run as benches
-import firm_hdl.verify.references.choice as references
-from firm_hdl.cli import main
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
 from firm_hdl.frontend import Library
-from firm_hdl.verify.bench import system
-from firm_hdl.verify.bench.system import Benches, _lines_of, _table
 from firm_hdl.verify.references.clients import client
-from firm_hdl.verify.results.file import read_results
-from firm_hdl.verify.results.records import Record, Seconds, Test
-from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.results.records import Test
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.system import Recorder
-from firm_hdl.verify.systems.tasks import TypeUnderTest, collect_tasks
 from tests.depth import THOROUGH
 from tests.tools import need
 from tests.verify.judged import assert_passed
@@ -50,7 +40,7 @@ SAMPLE = [
     # A leaf without bytes between other leaves.
     thorough("noetic", "nav_msgs/GetMapActionGoal", 8),
     # Bounds, and strings of one character a lane.
-    ("lyrical", "shape_msgs/msg/SolidPrimitive", 2),
+    thorough("lyrical", "shape_msgs/msg/SolidPrimitive", 2),
 ]
 
 
@@ -61,12 +51,6 @@ def test_bench_passes_with_the_bytes_and_transfers_of_rosbags(ghdl, distro, name
     assert result.metrics["transfers"] >= result.packets
 
 
-@pytest.mark.parametrize("name", [thorough("own_msgs/msg/Deep"), "own_msgs/srv/Ask_Response"])
-def test_types_of_ones_own_pass_as_well(ghdl, tmp_path, name):
-    result = run_bench(ghdl, name, paths=(str(own_package(tmp_path)),))
-    assert assert_passed(result) == result.packets
-
-
 def wide(folder, ghdl):
     """Run the bench of a type with wide text."""
     own_package(folder)
@@ -74,12 +58,7 @@ def wide(folder, ghdl):
     return run_bench(ghdl, "own_msgs/msg/Wide", paths=(str(folder),))
 
 
-def test_wide_text_is_not_judged_without_a_reference(ghdl, tmp_path, monkeypatch):
-    monkeypatch.setattr(references, "usable_references", lambda wanted=None: ())
-    result = wide(tmp_path, ghdl)
-    assert result.verdict == NotJudged("rosbags has no wstring, which own_msgs/msg/Wide.text is")
-
-
+@pytest.mark.thorough
 def test_wide_text_is_confirmed(ghdl, tmp_path, monkeypatch):
     if (missing := client("fastcdr").missing()) is not None:
         need(f"fastcdr ({missing})", None)
@@ -123,7 +102,7 @@ def change(monkeypatch, file: str, before: str, after: str) -> None:
         (RUN_SCRIPT, 'exec "$ghdl"', 'echo nothing; exit 0\nexec "$ghdl"', "nothing"),
     ],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_faults_are_found(ghdl, monkeypatch, file, before, after, output):
     change(monkeypatch, file, before, after)
     result = run_bench(ghdl, HEADER)
@@ -142,124 +121,3 @@ def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
     change(monkeypatch, "8_serializer_record.vhd", "<= to_slv(msg", "<= not to_slv(msg")
     (failure,) = run_bench(ghdl, "geometry_msgs/msg/Vector3").verdict.failures
     assert "FAIL packet 0" in failure
-
-
-def test_table_and_status_have_failures_and_the_command_to_repeat(ghdl, monkeypatch, capsys):
-    tasks = collect_tasks(["lyrical"], [STRING])
-    (found,) = Benches(tasks, Request(jobs=1)).run(Recorder())
-    assert_passed(found)
-    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
-    assert rows[0][:4] == ["8-byte", "bus", "types", "pass"]
-    assert rows[1][:5] == ["lyrical", "1", "1", "0", "0"]
-    change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
-    (found,) = Benches(tasks, Request(wire="ros1", widths=(4,), jobs=1)).run(Recorder())
-    assert isinstance(found.verdict, Failed)
-    output = capsys.readouterr().out
-    assert f"FAIL {STRING} (lyrical)\n" in output
-    again = "firm-hdl verify --systems bench --distro lyrical --wire ros1 --bus-bytes 4"
-    assert f"again: {again} {STRING}\n" in output
-
-
-def test_each_distribution_has_a_row_with_its_own_sums(capsys):
-    def record(distro, verdict, packets):
-        test = Test(system="bench", distro=distro, type=f"p/T{packets}")
-        figures = {"transfers": 10.0 * packets}
-        seconds = Seconds(simulation=packets)
-        return Record(test=test, verdict=verdict, packets=packets, metrics=figures, seconds=seconds)
-
-    records = [
-        record("lyrical", Passed(1), 1),
-        record("lyrical", Passed(1), 2),
-        record("noetic", Passed(1), 3),
-        record("lyrical", Failed(("no",)), 4),
-        record("noetic", NotJudged("nobody knows"), 5),
-        record("noetic", NotJudged("nobody knows"), 6),
-    ]
-    _table(records, "4-byte bus")
-    assert [line.split()[-8:] for line in capsys.readouterr().out.splitlines()[1:]] == [
-        ["noetic", "3", "1", "0", "2", "14", "140", "14"],
-        ["lyrical", "3", "2", "1", "0", "7", "70", "7"],
-    ]
-    assert [len(_lines_of(each)) for each in records] == [0, 0, 0, 1, 0, 0]
-
-
-def test_each_distribution_and_each_bus_has_a_bench(monkeypatch):
-    monkeypatch.setattr(system, "find_ghdl", lambda: "ghdl")
-    task = TypeUnderTest(distro="jazzy", name="p/A", same=("humble", "jazzy"))
-    tests = Benches([task], Request(widths=(2, 8))).tests
-    assert [(test.distro, test.same, test.bus_bytes, test.simulator) for test in tests] == [
-        (name, (name,), width, "ghdl") for width in (2, 8) for name in ("humble", "jazzy")
-    ]
-
-
-def test_each_bus_is_run_by_itself_with_the_options_of_the_user(monkeypatch, capsys):
-    asked = []
-
-    def run_tests(work, context, tests, command, lines_of, **options):
-        asked.append((context, [test.bus_bytes for test in tests], options))
-        for test in tests:
-            verdict = Passed(3) if test.distro == "humble" else Failed(("no", "not at all"))
-            seconds = Seconds(simulation=1.6)
-            record = Record(test=test, verdict=verdict, packets=3, seconds=seconds)
-            yield [(test, record, lines_of(record))]
-
-    monkeypatch.setattr(system, "find_ghdl", lambda: "own-ghdl")
-    monkeypatch.setattr(system, "version_of", lambda path: f"the version of {path}")
-    monkeypatch.setattr(system, "run_tests", run_tests)
-    task = TypeUnderTest(distro="jazzy", name="p/A", same=("humble", "jazzy"))
-    request = Request(widths=(2, 8), jobs=5)
-    benches = Benches([task], request)
-    assert benches.options == {"ghdl": "the version of own-ghdl"}
-    found = benches.run(Recorder())
-    assert asked == [((request, "own-ghdl"), [n, n], {"jobs": 5}) for n in (2, 8)]
-    assert [(each.what, each.verdict.name) for each in found] == [
-        (f"p/A ({distro}), bench, {width}-byte bus", name)
-        for width in (2, 8)
-        for distro, name in (("humble", "passed"), ("jazzy", "failed"))
-    ]
-    lines = capsys.readouterr().out.splitlines()
-    titles = [line[:10] for line in lines if "types" in line]
-    assert titles == ["2-byte bus", "8-byte bus"]
-    rows = [line.split() for line in lines if line.startswith(("humble", "jazzy"))]
-    one = [
-        ["humble", "1", "1", "0", "0", "3", "0", "2"],
-        ["jazzy", "1", "0", "1", "0", "3", "0", "2"],
-    ]
-    assert rows == one * 2
-
-
-def test_a_long_failure_is_shortened_and_the_first_one_is_printed():
-    test = Test(system="bench", distro="jazzy", type="p/A")
-    texts = ("x" * 1999 + "yz", "another")
-    (text,) = _lines_of(Record(test=test, verdict=Failed(texts), command="the command"))
-    assert text == f"FAIL p/A (jazzy)\n    {'x' * 1999}y\n    again: the command"
-
-
-def test_results_are_kept_and_not_repeated(ghdl, tmp_path, monkeypatch, capsys):
-    file = tmp_path / "r.jsonl"
-    names = ["std_msgs/msg/Empty", STRING]
-    call = ["verify", "--systems", "bench", "--distro", "lyrical", "--jobs", "1", *names]
-    call += ["--results", str(file)]
-    assert main(call) == 0
-    first = read_results(file)
-    tests = [record.test for record in first.records.values()]
-    assert sorted(test.type for test in tests) == names
-    assert {(t.distro, t.same, t.wire, t.bus_bytes) for t in tests} == {
-        ("lyrical", ("lyrical",), "cdr", 8)
-    }
-    assert all(record.packets and record.seconds.simulation for record in first.records.values())
-    lines = file.read_text().splitlines(keepends=True)
-    (last,) = [line for line in lines if "std_msgs/msg/Empty" in line and '"record"' in line]
-    file.write_text("".join(line for line in lines if line != last))
-    change(monkeypatch, "_serializer_flat.vhd", "m_axis_tdata <= ", "m_axis_tdata <= not ")
-    assert main(call) == 1
-    verdicts = {r.test.type: r.verdict.name for r in read_results(file).records.values()}
-    assert verdicts == dict(zip(names, ("failed", "passed"), strict=True))
-    assert "1 of 2 types" in capsys.readouterr().out
-    # The verdicts of this GHDL are not those of another one.
-    other = tmp_path / "other-ghdl"
-    other.write_text(f'#!/bin/sh\n[ "$1" = --version ] && exec echo other\nexec {ghdl} "$@"\n')
-    other.chmod(0o755)
-    monkeypatch.setenv("GHDL", str(other))
-    assert main(call) == 1
-    assert re.search(r'ghdl was "GHDL \d.*", and is "other"', capsys.readouterr().err)

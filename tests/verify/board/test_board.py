@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import re
-from itertools import pairwise
-from types import SimpleNamespace
 
 import pytest
 
 from firm_hdl.errors import UserError
 from firm_hdl.node import read_description_text
 from firm_hdl.node.messages import MessageSender
-from firm_hdl.verify.board import system
-from firm_hdl.verify.board import talk as talking
 from firm_hdl.verify.board.description import chosen_loops, loop_text
 from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
@@ -32,18 +28,6 @@ def test_a_right_node_passes_and_its_packets_are_counted():
     assert [each.cases for each in found.values() if isinstance(each, Passed)] == [5, 7]
     # And as many damaged packets, each with a good one behind it.
     assert node.heard == 5 + 7 + 2 * 5 + 2 * 6
-
-
-@pytest.mark.parametrize(
-    ("board", "given"), [("sim", {"engine": "amaranth"}), ("udp://b:1", {}), ("serial:///x", {})]
-)
-def test_only_a_simulation_has_an_engine(monkeypatch, board, given):
-    asked = []
-    monkeypatch.setattr(
-        system, "board_of", lambda name, description, **more: asked.append((name, more))
-    )
-    Boards(ONE, Request(board=board, engine="amaranth"))
-    assert asked == [(board, given)]
 
 
 def test_named_types_of_a_node_are_tested_alone():
@@ -141,17 +125,6 @@ class CountsTooManyBytes(LoopNode):
         super().count(topic, name, by + (name == "bytes_low" and self.heard == 3))
 
 
-class CountsALoss(LoopNode):
-    """It counts a packet as lost on the way back, and sends it all the same."""
-
-    cause: str
-
-    def count(self, topic, name, by=1):
-        super().count(topic, name, by)
-        if topic in self.loops.values() and self.heard == 3:
-            self.counters[topic, self.cause] = 1
-
-
 class Restarts(LoopNode):
     """It starts again after some packets."""
 
@@ -234,15 +207,6 @@ def test_each_fault_of_a_board_is_found(fault, capsys):
     assert "firm-hdl verify --board fake --silent-seconds 0.2 --distro lyrical" in printed
 
 
-@pytest.mark.parametrize("cause", ["aborted", "full", "large"])
-def test_a_board_that_counts_a_loss_on_the_way_back_fails(monkeypatch, cause):
-    monkeypatch.setattr(CountsALoss, "cause", cause, raising=False)
-    verdict = verdicts(CountsALoss(ONE), ONE)[STRING]
-    assert isinstance(verdict, Failed)
-    (failure,) = verdict.failures
-    assert f"'{cause}' of /loopback/out/std_msgs/String counts 1 instead of 0" in failure
-
-
 def test_a_board_that_is_gone_fails_what_is_left_at_once():
     node = Mute(described(*BOTH))
     found = list(verdicts(node, silent_seconds=0.2).values())
@@ -301,19 +265,6 @@ def test_a_board_is_opened_once_as_long_as_it_answers(kind, opened, silent):
     assert board.opened == opened
 
 
-def test_each_repeat_of_a_request_waits_twice_as_long(monkeypatch):
-    clock = [100.0]
-    monkeypatch.setattr(talking, "time", SimpleNamespace(monotonic=lambda: clock[0]))
-    talk = talking.Talk(FakeBoard(Mute(ONE)), ONE, 60.0)
-    monkeypatch.setattr(talk, "_wait", lambda until: clock.__setitem__(0, until))
-    asked = []
-    monkeypatch.setattr(talk, "_ask", lambda number, begins: asked.append(clock[0]) or len(asked))
-    with pytest.raises(talking.TalkError, match="does not answer for 60 s"):
-        talk.read([16])
-    pauses = [after - before for before, after in pairwise(asked)]
-    assert pauses == [0.25 * 2**number for number in range(len(pauses))] and len(pauses) == 8
-
-
 def test_requests_that_are_lost_are_repeated_and_noted(capsys):
     """A way that loses requests for counters loses no message; the verdict stays."""
     count = iter(range(10**6))
@@ -325,20 +276,6 @@ def test_requests_that_are_lost_are_repeated_and_noted(capsys):
     assert (
         f"note: {STRING} (lyrical): the link lost requests of control: " in capsys.readouterr().out
     )
-
-
-class CountsItsLink(LoopNode):
-    """Its link counts messages, and those for which there was no host yet."""
-
-    def take(self, frame):
-        self.count(0, "passed")
-        self.count(0, "unsent")
-        return super().take(frame)
-
-
-def test_messages_that_passed_or_had_no_host_are_not_lost(capsys):
-    assert isinstance(verdicts(CountsItsLink(ONE))[STRING], Passed)
-    assert "the link lost" not in capsys.readouterr().out
 
 
 def test_a_way_that_loses_a_message_fails_and_says_where():

@@ -20,13 +20,13 @@ from firm_hdl.verify.results.verdict import Failed, Passed
 from tests.node.bridge.test_boards import ByteNode, UdpNode
 from tests.node.samples import read
 from tests.verify.board.fakes import BOTH, STRING, LoopNode, described
-from tests.verify.samples import own_package
 
 BOOL = BOTH[0]
 FEW = ["--cases", "4", "--reference", "none"]
 SIM = ["verify", "--board", "sim", "--engine", "amaranth", *FEW]
 
 
+@pytest.mark.thorough
 def test_a_node_in_simulation_passes(tmp_path, capsys):
     path = tmp_path / "r.jsonl"
     assert main([*SIM, "--results", str(path), BOOL]) == 0
@@ -116,49 +116,6 @@ def test_a_board_that_is_not_there_fails(tmp_path, capsys):
     assert isinstance(record.verdict, Failed)
     assert main(["verify", "--board", "serial:///dev/no-such-tty", *FEW, BOOL]) == 1
     assert "cannot open '/dev/no-such-tty': No such file or directory" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    ("board", "link"),
-    [
-        ([], "udp, port 7411"),
-        (["--board", "sim"], "stream"),
-        (["--board", "udp://a:99"], "udp, port 99"),
-        (["--board", "tcp://a:99"], "uart, baud 1000000"),
-        (["--board", "serial:///dev/a?baud=115200"], "uart, baud 115200"),
-    ],
-)
-def test_the_link_of_a_description_is_that_of_the_board(board, link, tmp_path, capsys):
-    path = tmp_path / "node.yaml"
-    assert main(["verify", "--write-node", str(path), *board, STRING]) == 0
-    assert capsys.readouterr().out == f"wrote   {path}\n"
-    found = read_description(path).link
-    option = {"udp": f", port {found.port}", "uart": f", baud {found.baud}", "stream": ""}
-    assert found.kind + option[found.kind] == link
-
-
-def test_a_description_names_packages_relative_to_its_own_folder(tmp_path, monkeypatch, capsys):
-    own_package(tmp_path / "src")
-    (tmp_path / "nodes").mkdir()
-    monkeypatch.chdir(tmp_path)
-    arguments = ["verify", "--path", "src", "--write-node"]
-    assert main([*arguments, "nodes/own.yaml", "own_msgs/msg/Runs"]) == 0
-    monkeypatch.chdir("/")
-    (topic, _) = read_description(tmp_path / "nodes" / "own.yaml").topics
-    assert topic.type == "own_msgs/msg/Runs"
-    monkeypatch.chdir(tmp_path)
-    capsys.readouterr()
-    assert main([*arguments, "nodes/own.yaml", "own_msgs/msg/Runs"]) == 1
-    message = "error: 'nodes/own.yaml' exists already, and may have changes of yours\n"
-    assert capsys.readouterr().err == message
-    assert main(["verify", "--write-node", "no/own.yaml", STRING]) == 1
-    message = "error: cannot write 'no/own.yaml': No such file or directory\n"
-    assert capsys.readouterr().err == message
-    # The messages of a service are types like others.
-    assert main([*arguments, "more.yaml", "own_msgs/srv/Ask"]) == 0
-    assert [came.type for came, _ in read_description("more.yaml").loops()] == [
-        f"own_msgs/srv/Ask_{part}" for part in ("Event", "Request", "Response")
-    ]
 
 
 NO_LOOP = "node: n\nsubscribe:\n  /a: {type: std_msgs/msg/Bool}\n"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.systems.options import Request
 from tests.node.bridge.fakes import FakeBoard
@@ -51,15 +50,3 @@ def test_results_are_continued_with_the_same_cases_only(given, key):
     usual, other = options_of(description), options_of(description, **given)
     assert [each for each in usual if usual[each] != other[each]] == ([key] if key else [])
     assert usual.keys() == other.keys()
-
-
-def test_results_of_a_simulation_are_continued_with_the_same_engine_only(monkeypatch):
-    description, engines = described(STRING), ["auto", "verilator", "amaranth"]
-    with_compiler = [options_of(description, board="sim", engine=each) for each in engines]
-    assert [each["engine"] for each in with_compiler] == ["verilator", "verilator", "amaranth"]
-
-    def find_compiler(*_, **more):
-        raise ProgramMissingError("there is none")
-
-    monkeypatch.setattr("firm_hdl.sim.fast.engines.find_compiler", find_compiler)
-    assert options_of(description, board="sim", engine="auto")["engine"] == "amaranth"

@@ -7,12 +7,10 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.errors import DefinitionError, UserError
-from firm_hdl.verify.board import description
 from firm_hdl.verify.board.description import (
     chosen_loops,
     described_board,
     loop_text,
-    write_description,
 )
 from firm_hdl.verify.systems.options import Request
 from tests.frontend.workspace import make_files
@@ -86,24 +84,3 @@ def test_a_type_that_is_named_needs_a_loop():
     assert chosen_loops(node, ["std_msgs/String"]) == chosen_loops(node, [STRING])
     with pytest.raises(UserError, match=r"has no loop of std_msgs/Char$"):
         chosen_loops(node, [STRING, "std_msgs/msg/Char"])
-
-
-def test_a_description_that_cannot_be_built_is_not_written(tmp_path, monkeypatch):
-    path = tmp_path / "node.yaml"
-    with pytest.raises(UserError, match="the bus of a node has"):
-        write_description(Request(distros=("lyrical",), widths=(64,)), [STRING], str(path))
-
-    def refuse(text, **options):
-        raise UserError("it cannot be built")
-
-    monkeypatch.setattr(description, "read_description_text", refuse)
-    with pytest.raises(UserError, match="it cannot be built"):
-        write_description(REQUEST, [STRING], str(path))
-    assert not path.exists()
-    monkeypatch.undo()
-    write_description(REQUEST, [STRING], str(path))
-    written = path.read_text()
-    assert "bus_bytes: 4\n" in written and "type: std_msgs/msg/String" in written
-    with pytest.raises(UserError, match="exists already"):
-        write_description(REQUEST, BOTH, str(path))
-    assert path.read_text() == written

@@ -7,8 +7,7 @@ import pytest
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.errors import DefinitionError, Diagnostic, UserError
 from firm_hdl.verify.board import system
-from firm_hdl.verify.board.system import SILENT_SECONDS_OF_SIMULATION, Boards
-from firm_hdl.verify.board.talk import SILENT_SECONDS, Talk
+from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Recorder
@@ -39,11 +38,12 @@ def records_of(monkeypatch, judge_loop, description=ONE, **given):
     return recorder.records
 
 
-def judges_well(talk, description, loop, options, result):
-    result.cases, result.packets, result.judged = 3, 9, 4
-    result.metrics, result.shape = {"leaves": 2.0}, "a shape"
-    result.note, result.written_by = "a remark", ("genpy",)
-    result.watch.enter("simulation")
+def judges_well(talk, description, loop, options, trial):
+    record, trial.judged = trial.record, 4
+    record.cases, record.packets = 3, 9
+    record.metrics, record.shape = {"leaves": 2.0}, "a shape"
+    record.note, record.written_by = "a remark", ("rosbags", "genpy")
+    trial.watch.enter("simulation")
 
 
 def test_a_record_has_all_that_was_found(monkeypatch, capsys):
@@ -68,9 +68,9 @@ def test_a_record_has_all_that_was_found(monkeypatch, capsys):
     ],
 )
 def test_what_goes_wrong_with_one_type_does_not_end_the_run(monkeypatch, capsys, error, verdict):
-    def judge_loop(talk, description, loop, options, result):
+    def judge_loop(talk, description, loop, options, trial):
         if loop[0].type == STRING:
-            judges_well(talk, description, loop, options, result)
+            judges_well(talk, description, loop, options, trial)
             return
         raise error
 
@@ -93,65 +93,3 @@ def test_what_is_wrong_with_the_node_ends_the_run(monkeypatch, error):
 
     with pytest.raises(type(error), match="the node"):
         records_of(monkeypatch, judge_loop)
-
-
-SEED = "--seed 0 --reference none"
-
-
-@pytest.mark.parametrize(
-    ("given", "command"),
-    [
-        ({}, f"--distro lyrical --bus-bytes 8 {SEED}"),
-        ({"types": BOTH}, f"--distro lyrical --bus-bytes 8 {SEED} {' '.join(BOTH)}"),
-        ({"paths": ("x", "y")}, f"--distro lyrical --path x --path y --bus-bytes 8 {SEED}"),
-        # The file has the distribution and the bus.
-        ({"node": "n.yaml"}, f"--node n.yaml {SEED}"),
-        (
-            {"engine": "verilator", "silent_seconds": 1.5},
-            f"--engine verilator --silent-seconds 1.5 --distro lyrical --bus-bytes 8 {SEED}",
-        ),
-        (
-            {"seed": 7, "broken": False, "most_cases": 2, "references": ("rosbags",)},
-            "--distro lyrical --bus-bytes 8 --seed 7 --no-broken --cases 2 --reference rosbags",
-        ),
-    ],
-)
-def test_the_command_repeats_the_tests(monkeypatch, given, command):
-    monkeypatch.setattr(system, "find_references", lambda wanted, wires: [])
-    (record,) = records_of(monkeypatch, judges_well, **given)
-    assert record.command == f"firm-hdl verify --board fake {command}"
-
-
-@pytest.mark.parametrize(
-    ("board", "given", "seconds"),
-    [
-        ("sim", None, SILENT_SECONDS_OF_SIMULATION),
-        ("udp://a", None, SILENT_SECONDS),
-        ("sim", 0.5, 0.5),
-        ("udp://a", 0.5, 0.5),
-    ],
-)
-def test_a_simulation_may_be_silent_for_longer(monkeypatch, capsys, board, given, seconds):
-    asked = []
-
-    def talk(board, description, silent):
-        asked.append(silent)
-        return Talk(board, description, silent)
-
-    monkeypatch.setattr(system, "Talk", talk)
-    assert records_of(monkeypatch, judges_well, board=board, silent_seconds=given)
-    assert asked == [seconds] and SILENT_SECONDS < SILENT_SECONDS_OF_SIMULATION
-    assert ("to compile a new node" in capsys.readouterr().out) is (board == "sim")
-
-
-def test_references_are_those_that_the_user_named_for_the_wire_format(monkeypatch, capsys):
-    asked = []
-
-    def find_references(wanted, wires):
-        asked.append((wanted, list(wires)))
-        return ["references: all of them"]
-
-    monkeypatch.setattr(system, "find_references", find_references)
-    records_of(monkeypatch, judges_well, references=("genpy",))
-    assert asked == [(("genpy",), ["cdr"])]
-    assert capsys.readouterr().out.startswith("references: all of them\n")

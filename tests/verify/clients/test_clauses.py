@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import replace
 
 import pytest
 
-from firm_hdl.cases.values import as_float, bits_of, changed, is_nan
-from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
+from firm_hdl.cases.values import as_float, bits_of, is_nan
+from firm_hdl.model import PRIMITIVES, Field, Message, String
 from firm_hdl.verify.clients.divergences import KNOWN
 from firm_hdl.verify.clients.finding import Finding, KnownDivergence
 from firm_hdl.verify.clients.known import known_keys
-from firm_hdl.verify.clients.unusual import (
-    plain_packet,
-    unusual_packet,
-    unusual_value,
-    unusual_values,
-)
 from firm_hdl.verify.references.client import Codec, Refusal
 
 UINT8 = PRIMITIVES["ros2"]["uint8"]
@@ -151,43 +144,6 @@ def test_an_encode_difference_is_known_if_nothing_else_differs(value, theirs, ke
     assert list(known_keys(finding, RuleCodec(theirs), RuleCodec(byte))) == keys
 
 
-@pytest.mark.usefixtures("one_entry")
-def test_both_refusing_the_plain_value_explains_nothing():
-    finding = a_finding("encode", expected=b"x", got=b"y", value={"f0": 0x81})
-    refuses = RuleCodec(lambda value: REFUSED)
-    assert list(known_keys(finding, refuses, refuses)) == []
-
-
-def test_changes_reach_every_number_and_text():
-    inner = a_message(UINT8, String(), name="p/msg/B")
-    time = Message(name="time", dialect="ros1", fields=a_message(UINT8).fields)
-    message = a_message(
-        UINT8, inner, Array(element=inner, count=2), Sequence(element=UINT8),
-        Sequence(element=String()), UINT8, time,
-    )  # fmt: skip
-    b = {"f0": 1, "f1": b"x"}
-    value = {
-        "f0": 1, "f1": b, "f2": [b, b], "f3": [1, 1], "f4": [b"x"], "f5": 1, "f6": {"f0": 1}
-    }  # fmt: skip
-    seen = []
-
-    def record(kind, item):
-        seen.append(str(kind))
-        if isinstance(item, int | bytes):
-            return item * 2
-        return {"f0": 9} if kind is time else item
-
-    twice = {"f0": 2, "f1": b"xx"}
-    assert changed(message, value, record) == {
-        "f0": 2, "f1": twice, "f2": [twice] * 2, "f3": [2, 2], "f4": [b"xx"], "f5": 2,
-        # A message is changed before its fields.
-        "f6": {"f0": 18},
-    }  # fmt: skip
-    wholes = {"p/msg/A": 1, "p/msg/B": 3, "p/msg/B[2]": 1, "uint8[]": 1, "string[]": 1, "time": 1}
-    assert Counter(seen) == {"uint8": 8, "string": 4, **wholes}
-    assert value["f1"] == b
-
-
 def entry_of(key):
     return next(entry for entry in KNOWN if entry.key == key)
 
@@ -261,72 +217,3 @@ def test_nan_is_that_of_ieee_754(bits, size, nan):
 
 
 # Irregular packets.
-
-ODD_TEXT = (
-    "uint8 a\nuint32 n\nstring<=3 s\nstring e\nbool t\nbool u\nuint8[<=2] l\nuint16[<=2] m\n"
-    "string z"
-)
-ODD_VALUE = {
-    "a": 1, "n": 2, "s": b"xy", "e": b"", "t": True, "u": True, "l": [5], "m": [6], "z": b"q"
-}  # fmt: skip
-PLAIN = (
-    "00010000 01000000 02000000 03000000 787900 00 01000000 00 01 01 00 01000000 05 000000 "
-    "01000000 0600 0000 02000000 7100"
-)
-ODD = {
-    "bare-string": PLAIN.replace("787900 00 01000000 00 01 01 00", "787900 00 00000000 01 01 0000"),
-    "no-nul": PLAIN.replace("03000000 787900 00", "02000000 6162 0000"),
-    "bool-2": PLAIN.replace("01000000 00 01 01", "01000000 00 02 01"),
-    "options": PLAIN.replace("00010000", "00010003"),
-    "dirty-padding": PLAIN.replace("00010000 01000000", "00010000 01ffffff"),
-    "pad-1": PLAIN + "00",
-    "pad-2": PLAIN + "0000",
-    "pad-3": PLAIN + "000000",
-    "trailing-4": PLAIN + "00000000",
-    "cut-1": PLAIN[:-2],
-    "cut-all": "",
-    "cut-header": "0001",
-    "bound-items": PLAIN.replace("01000000 05 000000 0100", "03000000 050000 00 0100"),
-    "long-text": PLAIN.replace("03000000 7879", "70110100 7879"),
-    "long-items": PLAIN.replace("01000000 05 00", "70110100 05 00"),
-    "not-utf8": PLAIN.replace("03000000 787900 00", "03000000 c32800 00"),
-}
-
-
-@pytest.mark.parametrize("name", ODD)
-def test_an_irregular_packet_is_changed_at_its_first_place_only(make_message, name):
-    message = make_message(ODD_TEXT)
-    assert plain_packet(message, "cdr", ODD_VALUE) == bytes.fromhex(PLAIN)
-    packet = unusual_packet(message, "cdr", ODD_VALUE, name)
-    assert packet == bytes.fromhex(ODD[name]), packet.hex()
-
-
-def test_alignment_counts_from_the_end_of_the_header(make_message):
-    message = make_message("uint8 a\nuint64 b\nuint8 c\nuint16 d")
-    value = {"a": 1, "b": 2, "c": 3, "d": 4}
-    want = "00010000 01 00000000000000 0200000000000000 03 00 0400"
-    assert plain_packet(message, "cdr", value) == bytes.fromhex(want)
-    assert plain_packet(message, "ros1", value) == bytes.fromhex("01 0200000000000000 03 0400")
-
-
-def test_half_a_packet_is_its_first_half(make_message):
-    message = make_message("uint8[6] a")
-    value = {"a": [1, 2, 3, 4, 5, 6]}
-    packet = plain_packet(message, "cdr", value)
-    assert unusual_packet(message, "cdr", value, "cut-half") == packet[:5]
-    assert plain_packet(message, "ros1", value) == packet[4:]
-
-
-def test_bounds_are_exceeded_by_one_and_one_thing_at_a_time(make_message):
-    message = make_message("string<=3 s\nuint8[<=2] l\nwstring<=2 w\nB[<=1] b", B="string<=3 s")
-    value = {"s": b"xy", "l": [5], "w": [1], "b": []}
-    found = dict(unusual_values(message, [value]))
-    assert len(found["bound-text"]["s"]) == 4 and found["bound-text"]["s"].startswith(b"xy")
-    assert {k: v for k, v in found["bound-text"].items() if k != "s"} == {
-        k: v for k, v in value.items() if k != "s"
-    }
-    assert found["bound-items"]["l"] == [5, 0, 0] and found["bound-items"]["b"] == []
-    assert found["nul-inside"]["s"].count(0) == 1
-    with pytest.raises(UnicodeDecodeError):
-        found["not-utf8"]["s"].decode()
-    assert unusual_value(make_message("uint8 a"), {"a": 1}, "bound-items") is None

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.verify.references.choice import find_clients
-from firm_hdl.verify.references.clients import CLIENTS, client
+from firm_hdl.verify.references.clients import CLIENTS, client, find_clients
 from tests.frontend.workspace import make_files
 
 

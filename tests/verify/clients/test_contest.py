@@ -6,11 +6,8 @@ from collections import Counter
 
 import pytest
 
-from firm_hdl.cases.values import changed
-from firm_hdl.model import Message, Primitive, Sequence, String
 from firm_hdl.verify.clients.finding import Finding, KnownDivergence
 from firm_hdl.verify.clients.judge import LibraryComparison, LibraryResult
-from firm_hdl.verify.clients.shrink import shrunk
 from firm_hdl.verify.clients.unusual import unusual_packets
 from firm_hdl.verify.references.client import (
     Client,
@@ -18,7 +15,6 @@ from firm_hdl.verify.references.client import (
     Codec,
     Refusal,
     UnsupportedError,
-    each_answered,
 )
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 
@@ -113,20 +109,6 @@ def test_every_difference_is_counted_and_the_first_of_each_kind_kept(message):
     assert "decode differs from right" in trial.verdict.failures
 
 
-def test_one_thing_can_be_asked_again(message):
-    made = contest(Wrong())
-    found = made.again(message, "decode", {"a": 9})
-    assert (found.what, found.got) == ("decode", {"a": 10})
-    assert made.again(message, "decode", {"a": 2}) is None
-    assert made.again(message, "encode", {"a": 9}) is None
-    # Packets that the reference cannot encode are not decoded.
-    refusing = contest(Wrong(), Bytes(most=5))
-    assert refusing.again(message, "decode", {"a": 9}) is None
-    assert refusing.again(message, "encode", {"a": 9}).expected == Refusal("too large")
-    # An irregular packet is made from the plain packet only.
-    assert made.again(message, "bare-string", {"a": 9}) is None
-
-
 class Otherwise(Bytes):
     """Writes one value otherwise than our own writer."""
 
@@ -200,33 +182,6 @@ def test_verdicts_of_trials():
     )
 
 
-class Batch(Codec):
-    def encode_all(self, values):
-        return [b"x" if value else Refusal("no") for value in values]
-
-    def decode_all(self, packets):
-        return [len(packet) or Refusal("empty") for packet in packets]
-
-
-def test_codecs_answer_one_by_one_and_all_at_once():
-    batch = Batch()
-    assert batch.encode(1) == b"x" and batch.decode(b"abc") == 3
-    with pytest.raises(Refusal, match="no"):
-        batch.encode(0)
-    with pytest.raises(Refusal, match="empty"):
-        batch.decode(b"")
-    plain = Bytes(most=3)
-    assert plain.encode_all([{"a": 4}, {"a": 3}]) == [Refusal("too large"), b"\0\1\0\0\3"]
-    assert plain.decode_all([b"", b"\0\1\0\0\2"]) == [Refusal("no packet"), {"a": 2}]
-
-
-@pytest.mark.parametrize("count", [0, 1, 3])
-def test_as_many_answers_as_questions(count):
-    with pytest.raises(ClientDiedError, match=f"^it gave {count} answers to 2 questions$"):
-        each_answered("it", [1, 2], [0] * count)
-    assert each_answered("it", [1, 2], ["a", "b"]) == ["a", "b"]
-
-
 def finding_of(message, **more):
     known = {
         "library": "mine",
@@ -284,87 +239,3 @@ def test_a_known_difference_is_about_its_libraries_wires_and_oddities(message):
     assert entry.explains_answer(finding_of(message))
     assert not entry.explains_answer(finding_of(message, what="other"))
     assert not entry.explains_answer(finding_of(message, library="x"))
-
-
-def test_changes_reach_every_text_and_number(make_message):
-    message = make_message("uint8 a\nstring s\nB[2] b\nB[] l\nint8[] i\n", B="int8 x\nstring t\n")
-    inner = {"x": 1, "t": b"u"}
-    value = {"a": 1, "s": b"s", "b": [inner, inner], "l": [inner], "i": [3, 4]}
-    inner = {"x": [1], "t": [b"u"]}
-
-    def change(kind, each):
-        return [each] if isinstance(kind, Primitive | String) else each
-
-    assert changed(message, value, change) == {
-        "a": [1],
-        "s": [b"s"],
-        "b": [inner, inner],
-        "l": [inner],
-        "i": [[3], [4]],
-    }
-
-
-def test_changes_of_a_whole_come_before_those_of_its_parts(make_message):
-    message = make_message("uint8 a\nB[] l\n", B="int8 x\n")
-
-    def change(kind, each):
-        match kind:
-            case Message():
-                return {name: part for name, part in each.items() if name != "a"}
-            case Sequence():
-                return [*each, {"x": 5}]
-            case _:
-                return each + 1
-
-    assert changed(message, {"a": 1, "l": [{"x": 2}]}, change) == {"l": [{"x": 3}, {"x": 6}]}
-
-
-def smallest(message, value, shows):
-    """Shrink a value that shows a difference, given a function that detects the difference."""
-
-    def again(type_, what, given):
-        assert what == "decode"
-        try:
-            is_shown = shows(given)
-        except (KeyError, IndexError, TypeError):
-            return None
-        return finding_of(type_, what=what, value=given) if is_shown else None
-
-    found = shrunk(finding_of(message, what="decode", value=value), again)
-    return found.message, found.value
-
-
-def test_irrelevant_parts_are_removed(make_message):
-    names = [f"f{n}" for n in range(9)]
-    message = make_message("".join(f"uint8 {name}\n" for name in names))
-    kind, value = smallest(message, dict.fromkeys(names, 9), lambda v: v["f2"] and v["f7"])
-    assert value == {"f2": 9, "f7": 9} and [f.name for f in kind.fields] == ["f2", "f7"]
-
-
-def test_lists_and_texts_get_as_short_as_they_can(make_message):
-    message = make_message("uint8[] l\nstring s\nuint16[6] a\nuint8 z\n")
-    value = {"l": [1, 2, 7, 4], "s": b"abcd", "a": [1, 2, 3, 4, 5, 6], "z": 5}
-    assert smallest(message, value, lambda v: 7 in v["l"])[1] == {"l": [7]}
-    assert smallest(message, value, lambda v: len(v["s"]) >= 2)[1] == {"s": b"xx"}
-    assert smallest(message, value, lambda v: b"d" in v["s"])[1] == {"s": b"d"}
-    kind, found = smallest(message, value, lambda v: 5 in v["a"])
-    assert found == {"a": [5]} and str(kind.fields[0].type) == "uint16[1]"
-    assert smallest(message, value, lambda v: v["z"] >= 0)[1] == {"z": 0}
-
-
-def test_nested_messages_get_smaller_too(make_message):
-    message = make_message("B b\nB[] l\nuint8 z\n", B="uint8 x\nuint8 y\nstring t\n")
-    inner = {"x": 1, "y": 2, "t": b"abc"}
-    value = {"b": inner, "l": [inner, {**inner, "y": 9}], "z": 1}
-    # If a nested message alone shows the difference, only that is left.
-    kind, found = smallest(message, value, lambda v: v["y"] == 9)
-    assert found == {"y": 9} and [f.name for f in kind.fields] == ["y"]
-    kind, found = smallest(message, value, lambda v: v["b"]["x"] and v["z"])
-    assert found == {"b": {"x": 1}, "z": 1}
-    kind, found = smallest(message, value, lambda v: v["l"][-1]["y"] == 9)
-    assert found == {"l": [{"y": 9}]}
-
-
-def test_without_time_nothing_is_removed(message):
-    finding = finding_of(message, value={"a": 9})
-    assert shrunk(finding, lambda *given: finding_of(message), seconds=-1) is finding

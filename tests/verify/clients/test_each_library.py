@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.clients.divergences import KNOWN
 from firm_hdl.verify.clients.judge import LibraryComparison
 from firm_hdl.verify.references.client import Codec
-from firm_hdl.verify.references.clients import CLIENTS
-from tests.verify.clients.examples import EXAMPLES
 from tests.verify.clients.test_contest import CodecClient
 
 NAN = ("float32 a\n", {"a": 0x7F800001})
@@ -117,20 +114,3 @@ def test_each_library_differs_in_each_case(
             library = library_here(name)
             finding, keys = LibraryComparison(library, right, wire).ask(message, what, value)
             assert (finding.what, list(keys)) == (what, [key]), (name, what)
-
-
-def test_all_libraries_wires_and_cases_of_all_divergences_have_a_row():
-    found = {(key, name, wire) for key, names, _, wire, _ in ROWS for name in names.split()}
-    for key, example in EXAMPLES.items():
-        wire = "ros1" if example.distro == "noetic" else "cdr"
-        names = (example.library, example.reference)
-        own = {name for entry in KNOWN if entry.key == key for name in entry.libraries}
-        found |= {(key, name, wire) for name in names if name in own}
-    listed = {
-        (entry.key, name, wire)
-        for entry in KNOWN
-        for name in entry.libraries
-        for wire in entry.wires.split()
-        if wire in CLIENTS[name].wires
-    }
-    assert listed == found

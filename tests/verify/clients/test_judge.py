@@ -6,7 +6,7 @@ import pytest
 
 from firm_hdl.verify.clients.judge import LibraryComparison
 from firm_hdl.verify.clients.shrink import shrunk
-from firm_hdl.verify.clients.unusual import UNUSUAL_CASES, unusual_packet, unusual_packets
+from firm_hdl.verify.clients.unusual import UNUSUAL_CASES, unusual_packets
 from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.results.verdict import Failed, NotJudged
@@ -123,9 +123,3 @@ def test_irregular_packets_have_their_irregularity(make_message):
     assert packets["options"].startswith("00010003")
     assert packets["bound-items"].endswith("020000000500")
     assert "04000000787978" in packets["bound-text"]
-
-
-def test_irregular_packets_need_a_place(make_message):
-    message = make_message("uint8 a\n")
-    for name in ("bare-string", "no-nul", "bool-2", "bound-items", "dirty-padding", "long-text"):
-        assert unusual_packet(message, "cdr", {"a": 1}, name) is None

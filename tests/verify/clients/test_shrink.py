@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 
-from firm_hdl.model import closure
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.clients.shrink import shrunk
 from firm_hdl.verify.references.objects import full_text
@@ -109,82 +108,6 @@ def test_everything_irrelevant_is_removed(make_message, shows, lines, value):
     assert shrink(make_message, shows) == (lines, value)
 
 
-# A difference that only some lengths show is reached in steps of a half, or at once, alone.
-HALVES = {
-    "string s": [
-        (b"abcdefgh", {4, 8}, b"a", {"s": b"abcd"}),
-        (b"abcdefgh", {4, 8}, b"h", {"s": b"efgh"}),
-        (b"abcdefgh", {2, 4, 8}, b"d", {"s": b"cd"}),
-        (b"abcdefgh", {0, 8}, b"", {"s": b""}),
-        # The longer half of an odd length is the second one.
-        (b"abcde", {3, 5}, b"", {"s": b"xxx"}),
-        (b"abcde", {2, 5}, b"", {"s": b"xx"}),
-    ],
-    "uint8[] s": [
-        ([1, 2, 3, 4, 5, 6, 7, 8], {4, 8}, [1], {"s": [1, 0, 0, 0]}),
-        ([1, 2, 3, 4, 5, 6, 7, 8], {4, 8}, [8], {"s": [0, 0, 0, 8]}),
-        ([1, 2, 3, 4, 5, 6, 7, 8], {2, 4, 8}, [4], {"s": [0, 4]}),
-        ([1, 2, 3, 4, 5, 6, 7, 8], {0, 8}, [], {"s": []}),
-    ],
-    "uint8[8] s": [
-        ([1, 2, 3, 4, 5, 6, 7, 8], {4, 8}, [1], {"s": [1, 0, 0, 0]}),
-        ([1, 2, 3, 4, 5, 6, 7, 8], {4, 8}, [8], {"s": [0, 0, 0, 8]}),
-        ([1, 2, 3, 4, 5, 6, 7, 8], {2, 4, 8}, [4], {"s": [0, 4]}),
-        ([1, 2, 3, 4, 5, 6, 7, 8], {1, 8}, [], {"s": [0]}),
-    ],
-    "uint8[5] s": [
-        ([1, 2, 3, 4, 5], {3, 5}, [], {"s": [0, 0, 0]}),
-        ([1, 2, 3, 4, 5], {2, 5}, [], {"s": [0, 0]}),
-    ],
-}
-
-
-@pytest.mark.parametrize(
-    ("text", "value", "sizes", "needed", "least"),
-    [(text, *case) for text, cases in HALVES.items() for case in cases],
-)
-def test_each_half_of_a_value_is_tried_alone(make_message, text, value, sizes, needed, least):
-    def shows(_, value):
-        return len(value["s"]) in sizes and all(each in value["s"] for each in needed)
-
-    _, found = shrink(make_message, shows, text, {"s": value})
-    assert found == least
-
-
-@pytest.mark.parametrize(
-    ("sizes", "needed", "kept"),
-    [
-        ({4, 8}, "a", "abcd"),
-        ({4, 8}, "h", "efgh"),
-        ({2, 4, 8}, "c", "cd"),
-        # A quarter is taken out, and one field alone.
-        ({6, 8}, "", "cdefgh"),
-        ({6, 8}, "ac", "abcdgh"),
-        ({7, 8}, "", "bcdefgh"),
-        ({7, 8}, "abcdefg", "abcdefg"),
-    ],
-)
-def test_each_half_and_quarter_of_the_fields_is_taken_out(make_message, sizes, needed, kept):
-    def shows(all_, _):
-        return len(all_) in sizes and {*needed} <= all_.keys()
-
-    text = "\n".join(f"uint8 {name}" for name in "abcdefgh")
-    lines, _ = shrink(make_message, shows, text, dict.fromkeys("abcdefgh", 1))
-    assert lines == [f"uint8 {name}" for name in kept]
-
-
-def test_an_element_keeps_the_type_that_it_needs(make_message):
-    def shows(_, value):
-        return any(isinstance(each, list) and len(each) > 1 for each in value.values())
-
-    lines, value = shrink(make_message, shows, "uint8 a\nB[] many", {"a": 1, "many": [POINT] * 3})
-    (items,) = value.values()
-    assert len(items) == 2
-    # One field of the element is left, because the type of an element needs a field.
-    assert lines[0] == "B[] many" or lines[0].endswith("B[] many")
-    assert all(len(each) <= 1 for each in items)
-
-
 def test_fields_of_one_name_in_two_types_are_two_fields(make_message):
     message = make_message("Left l\nRight[] r", Left="uint8 x\nuint8 k", Right="uint8 x\nuint8 y")
     right = {"x": 3, "y": 4}
@@ -216,29 +139,3 @@ def test_shrinking_ends_at_the_time_limit(make_message):
     assert shrunk(finding, lambda *_: None) is finding
     # Candidates of the same size are refused; otherwise, shrinking would not end.
     assert shrunk(finding, lambda *_: replace(finding)) is finding
-
-
-def test_times_stay_whole_and_values_keep_their_kinds(make_message):
-    """A time has no definition of its own, so no part of one can be taken out."""
-    message = make_message("uint8 a\ntime t\ntime[2] many\nB b", "noetic", B="duration d\nbool f")
-    times = {"secs": 5, "nsecs": 6}
-    value = {"a": 1, "t": times, "many": [times, times], "b": {"d": times, "f": True}}
-    asked = []
-
-    def again(message, what, value):
-        asked.append(message)
-        kept = [each for name, each in all_items(value) if name in ("t", "d")]
-        is_shown = len(kept) > 0 and "f" in dict(all_items(value))
-        return replace(finding, message=message, value=value) if is_shown else None
-
-    finding = Finding(
-        library="", reference="", wire="ros1", what="decode", message=message, value=value,
-        packet=b"", expected=None, got=None,
-    )  # fmt: skip
-    found = shrunk(finding, again)
-    assert repr(found.value) == repr({"d": times, "f": False})
-    whole = message.fields[1].type
-    for each in asked:
-        assert each.package
-        inner = [kind for kind in closure([each]) if kind.name in ("time", "duration")]
-        assert all(len(kind.fields) == len(whole.fields) == 2 for kind in inner)

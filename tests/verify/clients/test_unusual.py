@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.clients import unusual
 from firm_hdl.verify.clients.unusual import (
     UNUSUAL_CASES,
     plain_packet,
     unusual_packet,
     unusual_packets,
     unusual_value,
-    unusual_values,
-    zero,
 )
 
 LEGAL = "bare-string big-endian options dirty-padding pad-1 pad-2 pad-3".split()
@@ -53,31 +50,6 @@ def test_packets_of_ros1_are_irregular_at_their_first_place(make_message):
     assert found == {name: bytes.fromhex(text) for name, text in ROS1_ODD.items()}
 
 
-def test_two_packets_and_two_values_of_a_kind_are_made_irregular(make_message):
-    message = make_message("string<=2 s\nuint8 a")
-    values = [{"s": bytes([each]), "a": each} for each in (65, 66, 67)]
-    packets = [(each, value["a"]) for each, value, _ in unusual_packets(message, "ros1", values)]
-    names = [name for name in ROS1_ODD if name not in ("bool-2", "bound-items", "long-items")]
-    assert sorted(packets) == sorted((name, number) for name in names for number in (65, 66))
-    assert [(name, value["a"]) for name, value in unusual_values(message, values)] == [
-        (name, number) for name in ("nul-inside", "not-utf8", "bound-text") for number in (65, 66)
-    ]
-
-
-def test_packets_without_a_place_are_skipped(make_message):
-    message = make_message("string s")
-    values = [{"s": b"a"}, {"s": b""}, {"s": b"b"}, {"s": b""}]
-    bare = [v for each, v, _ in unusual_packets(message, "cdr", values) if each == "bare-string"]
-    assert bare == [{"s": b""}] * 2
-
-
-@pytest.mark.parametrize(("size", "is_made"), [(4096, True), (4097, False)])
-def test_packets_are_made_irregular_up_to_a_size(make_message, size, is_made):
-    message = make_message(f"uint8[{size}] a")
-    packet = unusual_packet(message, "ros1", {"a": [0] * size}, "cut-1")
-    assert (packet is not None) == is_made
-
-
 @pytest.mark.parametrize(("bound", "is_made"), [(64, True), (65, False)])
 def test_bounds_are_exceeded_up_to_one(make_message, bound, is_made):
     message = make_message(f"string<={bound} s\nuint8[<={bound}] l\nwstring<={bound} w")
@@ -100,28 +72,6 @@ def test_everything_of_a_packet_may_be_big_endian(make_message):
     packet = unusual_packet(message, "cdr", value, "big-endian")
     want = "00000000 01 00 0002 00000003 0000000000000004 00000002 7800"
     assert packet == bytes.fromhex(want)
-
-
-@pytest.mark.parametrize(
-    ("fields", "value"),
-    [
-        ("bool a", {"a": False}),
-        ("float64 a", {"a": 0}),
-        ("string a", {"a": b""}),
-        ("wstring a", {"a": []}),
-        ("uint8[3] a", {"a": [0, 0, 0]}),
-        ("uint8[] a", {"a": []}),
-        ("string[<=2] a", {"a": []}),
-        ("B a", {"a": {"b": 0}}),
-        ("B[2] a", {"a": [{"b": 0}, {"b": 0}]}),
-    ],
-)
-def test_zero_has_the_fields_of_the_type(make_message, fields, value):
-    assert zero(make_message(fields, B="uint8 b")) == value
-
-
-def test_wrong_lengths_are_within_the_allocation_limit():
-    assert unusual.TOO_LONG > unusual.MOST_PACKET_BYTES and unusual.TOO_LONG < 1 << 20
 
 
 def test_a_text_without_a_nul_is_the_first_one_that_has_bytes(make_message):

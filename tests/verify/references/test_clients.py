@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -17,7 +16,6 @@ from firm_hdl.model import PRIMITIVES, Field, Message
 from firm_hdl.verify.references.client import Refusal, UnsupportedError
 from firm_hdl.verify.references.clients import CLIENTS, client
 from firm_hdl.verify.references.fastcdr import FastCdr
-from firm_hdl.verify.references.genpy import Genpy
 from tests.frontend.workspace import make_files
 from tests.verify.references.plain import plain
 
@@ -164,53 +162,11 @@ def test_bounds_and_bytes_of_ros2(library_here, make_message, name):
     assert codec.decode(packet) == value
 
 
-@pytest.mark.parametrize(("name", "wire"), OTHERS)
-def test_two_types_of_a_library_do_not_disturb_each_other(library_here, make_message, name, wire):
-    distro = "noetic" if wire == "ros1" else "lyrical"
-    library = library_here(name)
-    one, other = (
-        library.open(make_message(text, distro), wire) for text in ("uint8 a\n", "uint16 b\n")
-    )
-    head = b"" if wire == "ros1" else b"\0\1\0\0"
-    for _ in range(2):
-        assert one.encode({"a": 7}) == head + b"\7"
-        assert other.encode({"b": 8}) == head + b"\x08\0"
-        assert one.decode(head + b"\7") == {"a": 7}
-        assert other.decode(head + b"\x08\0") == {"b": 8}
-
-
-def test_these_are_all_libraries_and_what_they_can_do():
-    kinds = {
-        name: ("".join(sorted(kind.wires)), "/".join(kind.byte_orders), kind.may_confirm)
-        for name, kind in CLIENTS.items()
-    }
-    both = "little/big"
-    assert kinds == {
-        "firm-hdl": ("cdrros1", "little", False),
-        "rosbags": ("cdrros1", both, False),
-        "genpy": ("ros1", "little", True),
-        "fastcdr": ("cdr", both, True),
-        "fastcdr-2.2": ("cdr", both, True),
-        "fastcdr-2.3": ("cdr", both, True),
-        "cyclonedds": ("cdr", both, True),
-        "mcap-ros1": ("ros1", "little", False),
-        "mcap-ros2": ("cdr", both, False),
-    }
-
-
 @pytest.mark.parametrize("name", ["rosbags", "fastcdr", "cyclonedds", "mcap-ros2"])
 def test_big_endian_packets_are_read_by_those_that_say_so(library_here, make_message, name):
     codec = library_here(name).open(make_message("uint8 a\nuint32 b\nuint16[] c\n"), "cdr")
     packet = bytes.fromhex("00000000 01 000000 00000002 00000001 0003")
     assert codec.decode(packet) == {"a": 1, "b": 2, "c": [3]}
-
-
-@pytest.mark.parametrize("name", ["genpy", "mcap-ros1"])
-def test_generated_modules_leave_the_search_path_alone(library_here, make_message, name):
-    before = sys.path, list(sys.path)
-    codec = library_here(name).open(make_message("string s\n", "noetic"), "ros1")
-    assert codec.encode({"s": b"a"}) == b"\1\0\0\0a"
-    assert sys.path is before[0] and sys.path == before[1]
 
 
 @pytest.mark.parametrize(("name", "wire"), SPOKEN)
@@ -250,33 +206,6 @@ def test_who_has_no_wide_text_says_so(library_here, make_message, name):
         library_here(name).open(make_message("wstring w\n"), "cdr")
 
 
-def test_a_name_that_only_ros1_allows_is_refused_by_the_parser_of_mcap(library_here, make_message):
-    with pytest.raises(UnsupportedError, match=r"^mcap-ros2 refuses the definition: .*'A' is an"):
-        library_here("mcap-ros2").open(make_message("uint8 A\n", "noetic"), "cdr")
-
-
-class OddError(Exception):
-    """Like those of the parsers: derived from nothing else."""
-
-
-@pytest.mark.parametrize("error", [OddError, KeyError, NameError, SyntaxError, ValueError])
-@pytest.mark.parametrize(("name", "wire"), [("mcap-ros1", "ros1"), ("mcap-ros2", "cdr")])
-def test_whatever_a_parser_raises_is_a_refusal_of_the_definition(
-    monkeypatch, capsys, message_of, name, wire, error
-):
-    def fails(message):
-        print("the parser prints")
-        print("the parser prints", file=sys.stderr)
-        raise error(7)
-
-    codec = {"mcap-ros1": "_McapRos1Codec", "mcap-ros2": "_McapRos2Codec"}[name]
-    monkeypatch.setattr(f"firm_hdl.verify.references.libraries.{codec}", fails)
-    with pytest.raises(UnsupportedError) as raised:
-        client(name).open(message_of(wire), wire)
-    assert str(raised.value) == f"{name} refuses the definition: {error.__name__}: 7"
-    assert capsys.readouterr() == ("", "")
-
-
 @pytest.mark.parametrize("release", ["fastcdr", "fastcdr-2.2", "fastcdr-2.3"])
 def test_fast_cdr_writes_and_reads_packets_of_ros_2(library_here, release):
     corpus = os.environ.get("FIRM_HDL_CORPUS")
@@ -304,15 +233,6 @@ def test_fast_cdr_writes_and_reads_packets_of_ros_2(library_here, release):
             assert codec.decode(packets[name, order]) == value, (name, order)
 
 
-def test_packages_that_are_not_installed_are_missing(monkeypatch):
-    def not_found(name):
-        raise ImportError(name)
-
-    monkeypatch.setattr("importlib.import_module", not_found)
-    output = "cyclonedds is not installed (python3 -m pip install 'firm-hdl[clients]')"
-    assert client("cyclonedds").missing() == output
-
-
 @pytest.mark.parametrize(
     ("compiler", "output"),
     [("/nowhere/c++", "there is no such command"), ("true", "apt install g++ libfastcdr-dev")],
@@ -321,12 +241,6 @@ def test_without_compiler_or_library_fast_cdr_is_missing(monkeypatch, compiler, 
     monkeypatch.setenv("CXX", compiler)
     why = FastCdr().missing()
     assert output in why
-
-
-def test_without_its_python_genpy_is_missing(monkeypatch):
-    monkeypatch.setattr("firm_hdl.verify.ros_python.worker.ROS_PYTHON", "/nowhere/python3")
-    why = Genpy().missing()
-    assert "/nowhere/python3 cannot be run" in why and "python3-genpy" in why
 
 
 def test_a_forked_process_has_libraries_of_its_own(library_here):

@@ -6,19 +6,12 @@ Fast CDR is installed.
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
-
 import pytest
 
-import firm_hdl
 from firm_hdl.model import IDL_PRIMITIVES, Field, Message, Sequence, String, idl_primitives
 from firm_hdl.verify.clients.run import judge_type
-from firm_hdl.verify.references.client import ClientDiedError, Refusal, UnsupportedError
-from firm_hdl.verify.references.clients import CLIENTS
-from firm_hdl.verify.references.fastcdr import FastCdr
-from firm_hdl.verify.results.verdict import Failed, KnownDifference, Passed
-from firm_hdl.verify.ros2_wheels import RELEASES as ROS2_RELEASES
+from firm_hdl.verify.references.client import Refusal, UnsupportedError
+from firm_hdl.verify.results.verdict import KnownDifference, Passed
 from firm_hdl.verify.systems.options import Request
 from tests.frontend.workspace import make_files
 from tests.plan.test_wire_facts import FACTS, WIDE, data
@@ -27,24 +20,6 @@ from tests.verify.references.plain import plain
 
 RELEASES = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
 CDR_FACTS = {name: fact for name, fact in FACTS.items() if fact[0] == "ros2"}
-
-
-def test_these_are_all_releases():
-    assert [name for name, kind in CLIENTS.items() if issubclass(kind, FastCdr)] == [*RELEASES]
-
-
-def test_errata_are_of_the_releases_that_are_installed():
-    root = Path(firm_hdl.__file__).parent
-    page = (root.parent / "docs" / "reference" / "errata.md").read_text()
-    wire = page.partition("## Definitions")[0]
-    for release in ROS2_RELEASES:
-        pinned = (root / "verify" / "ros2_wheels" / f"{release.name}.txt").read_text()
-        (version,) = re.findall(r"^ros-fastcdr==(.*)$", pinned, re.M)
-        assert version.startswith(f"{release.fastcdr}.")
-        assert f"{version} ({release.name})" in wire
-        (wchar,) = re.findall(r"^\| `wchar` of IDL \|(.*?)\|", wire, re.M)
-        (nul,) = re.findall(r"^\| `string` with a NUL inside, writing \|(.*?)\|", wire, re.M)
-        assert "Jazzy and later" in wchar and release.name in nul
 
 
 @pytest.mark.parametrize("release", RELEASES)
@@ -116,25 +91,6 @@ def test_a_release_with_the_type_judges_it(library_here, tmp_path, distro, judge
     options = Request(libraries=("firm-hdl",), most_cases=2, paths=(str(root),))
     (trial,) = judge_type(distro, "p/msg/W", options, (*RELEASES, "rosbags"))
     assert trial.reference == judge and isinstance(trial.verdict, Passed | KnownDifference)
-
-
-def test_a_judge_that_dies_is_not_replaced(library_here, make_message, monkeypatch):
-    def dies(self, message, wire):
-        raise ClientDiedError("it died")
-
-    library_here("fastcdr")
-    monkeypatch.setattr(CLIENTS["fastcdr"], "open", dies)
-    options = Request(libraries=("firm-hdl",), most_cases=1)
-    (trial,) = judge_type("lyrical", "std_msgs/msg/Bool", options, ("fastcdr", "rosbags"))
-    assert trial.reference == "fastcdr" and trial.verdict == Failed(("it died",))
-
-
-def test_a_release_that_is_not_installed_is_missing(monkeypatch, tmp_path):
-    monkeypatch.setenv("FIRM_HDL_ROS2_WHEELS", str(tmp_path))
-    for name in RELEASES[1:]:
-        why = CLIENTS[name]().missing()
-        number = name.partition("-")[2]
-        assert f"Fast CDR {number} is not installed (make oracles-ros2" in why
 
 
 def test_wide_characters_of_the_facts_are_those_of_the_model():

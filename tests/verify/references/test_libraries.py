@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import logging
-
 import pytest
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from firm_hdl.cases import user_oracle as module
-from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.cases.user_oracle import judge_of
 from firm_hdl.cases.values import bits_of
-from firm_hdl.verify.references.client import Refusal, UnsupportedError
+from firm_hdl.verify.references.client import Refusal
 
 
 def data(text):
@@ -76,25 +71,6 @@ def test_cyclone_dds_writes_nothing_that_exceeds_a_bound(
         codec.encode({"a": long})
 
 
-@pytest.mark.parametrize("kind", ["uint8[<={}] a\n", "string[<={}] a\n", "B[<={}] a\n"])
-def test_the_highest_bound_of_cyclone_dds_has_16_bits(library_here, make_message, kind):
-    library = library_here("cyclonedds")
-    assert library.open(make_message(kind.format(65535), B="int8 x\n"), "cdr")
-    with pytest.raises(UnsupportedError, match=r"^cyclonedds has no bound of 65536 elements$"):
-        library.open(make_message(kind.format(65536), B="int8 x\n"), "cdr")
-    # Texts and arrays may be longer.
-    assert library.open(make_message("string<=65536 a\nuint8[65536] b\n"), "cdr")
-
-
-def test_a_text_that_is_not_utf_8_is_read_without_a_word(library_here, make_message, monkeypatch):
-    logger = logging.getLogger("rosout")
-    monkeypatch.setattr(logger, "handlers", [])
-    codec = library_here("mcap-ros1").open(make_message("string s\n", "noetic"), "ros1")
-    assert codec.decode(data("02000000 c328")) == {"s": "\N{REPLACEMENT CHARACTER}(".encode()}
-    # Without a handler, Python prints warnings itself.
-    assert any(isinstance(each, logging.NullHandler) for each in logger.handlers)
-
-
 @pytest.mark.parametrize(
     ("name", "wire", "packet"),
     [
@@ -147,20 +123,6 @@ def test_a_needed_definition_that_rosbags_cannot_read_is_noted(make_message, fil
     judge = judge_of(make_message(files["A"], "noetic", **others))
     given = "rosbags cannot read the definition, and was given the fields as they were resolved"
     assert judge.note == ("" if is_read else given)
-
-
-@pytest.mark.parametrize(("inner", "note"), [("int8 x\n", ""), ("uint8 x\n", "another way")])
-def test_a_needed_definition_that_rosbags_reads_otherwise_is_noted(
-    make_message, monkeypatch, inner, note
-):
-    message = make_message("B[2] b\n", "noetic", B="int8 x\n")
-    ours = module.resolved_oracle(message)
-    store = get_typestore(Stores.EMPTY)
-    for name, text in (("B", inner), ("A", "B[2] b\n")):
-        store.register(get_types_from_msg(text, f"p/msg/{name}"))
-    monkeypatch.setattr(module, "_oracle", lambda *given: RosbagsOracle(store, "ros1"))
-    assert note in module._note(message, ours, "p/msg/A")
-    assert bool(module._note(message, ours, "p/msg/A")) == bool(note)
 
 
 @pytest.mark.parametrize(

@@ -9,12 +9,10 @@ import pytest
 
 from firm_hdl.cases.values import bits_of
 from firm_hdl.model import Field, Message
-from firm_hdl.verify.references.client import Refusal, UnsupportedError
-from firm_hdl.verify.references.genpy import field_table
+from firm_hdl.verify.references.client import UnsupportedError
 from firm_hdl.verify.references.objects import (
     ObjectCodec,
     definition_text,
-    first_line,
     full_text,
     plainly_named,
     refuse_wide,
@@ -37,27 +35,6 @@ def test_the_text_of_a_definition_has_those_that_it_needs(make_message):
         "MSG: p/E\n\n",
     ]
     assert full_text(make_message("")) == "\n"
-
-
-def test_times_of_ros1_have_no_definition(make_message):
-    message = make_message("time t\nduration[] d\nB b\n", "noetic", B="time u\n")
-    text = f"time t\nduration[] d\np/B b\n{LINE}\nMSG: p/B\ntime u\n"
-    assert full_text(message) == text
-    assert field_table(message) == {
-        "p/A": [("t", False, "time"), ("d", True, "duration"), ("b", False, "p/B")],
-        "p/B": [("u", False, "time")],
-    }
-
-
-def test_a_table_tells_lists_from_single_fields(make_message):
-    message = make_message("uint8 a\nuint8[2] b\nstring[] c\nB d\nB[3] e\n", "noetic", B="bool x\n")
-    assert field_table(message)["p/A"] == [
-        ("a", False, "uint8"),
-        ("b", True, "uint8"),
-        ("c", True, "string"),
-        ("d", False, "p/B"),
-        ("e", True, "p/B"),
-    ]
 
 
 def test_messages_of_services_get_different_names_without_underscores(make_message, tmp_path):
@@ -99,12 +76,6 @@ def test_wide_text_is_refused_wherever_it_is(make_message, text, why):
     with pytest.raises(UnsupportedError, match=f"^{why}$"):
         refuse_wide(make_message(text, **others), "it")
     refuse_wide(make_message("string s\nuint8[] a\n"), "it")
-
-
-def test_the_first_line_of_an_error_is_enough():
-    assert first_line(ValueError("\n one\ntwo")) == "ValueError: one"
-    assert first_line(KeyError()) == "KeyError"
-    assert first_line(ValueError("x" * 400)) == "ValueError: " + "x" * 300
 
 
 class Plain(ObjectCodec):
@@ -154,24 +125,3 @@ def test_values_become_objects_and_come_back(make_message):
     made.t, made.f = 0, 2
     found = codec.decode(b"")
     assert found["t"] is False and found["f"] == bits_of(2.0, 4)
-
-
-@pytest.mark.parametrize("error", [ValueError("no\nmore"), AssertionError("no"), KeyError("no")])
-def test_whatever_a_library_raises_is_a_refusal(make_message, monkeypatch, error):
-    def refuse(*_):
-        raise error
-
-    codec = Plain(make_message("uint8 a\n"))
-    monkeypatch.setattr(codec, "write", refuse)
-    monkeypatch.setattr(codec, "read", refuse)
-    for ask in (lambda: codec.encode({"a": 1}), lambda: codec.decode(b"")):
-        with pytest.raises(Refusal) as raised:
-            ask()
-        assert str(raised.value) == first_line(error)
-    monkeypatch.undo()
-    # An object that does not fit the type is refused, too.
-    codec.kept = SimpleNamespace(b=1)
-    with pytest.raises(Refusal, match="AttributeError"):
-        codec.decode(b"")
-    with pytest.raises(Refusal, match="KeyError"):
-        codec.encode({"b": 1})

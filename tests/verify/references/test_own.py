@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.export.build import BuildError
-from firm_hdl.verify.references import own
-from firm_hdl.verify.references.client import Refusal, UnsupportedError
+from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.own import FirmHdl
 
 
@@ -47,26 +44,3 @@ def test_values_that_break_a_bound_are_refused_by_the_circuit(codec_of):
     # The next value is not affected.
     assert codec.encode({"a": [3]}) == packet("cdr", 1, b"\3")
     assert codec.decode(packet("cdr", 1, b"\4")) == {"a": [4]}
-
-
-@pytest.mark.parametrize(
-    "error", [ValueError("7"), BuildError("7"), DefinitionError([Diagnostic(message="7")])]
-)
-def test_a_type_that_no_circuit_can_be_made_of_is_unsupported(codec_of, monkeypatch, error):
-    given = []
-
-    def fails(message, **settings):
-        given.append((message.name, settings))
-        raise error
-
-    monkeypatch.setattr(own, "Deserializer", fails)
-    monkeypatch.setattr(own, "Serializer", fails)
-    codec = codec_of("uint8 a\n", "ros1")
-    assert given == []  # The type is known to be unsupported only when it is needed.
-    why = str(error)
-    for ask in (lambda: codec.decode(b"\1"), lambda: codec.encode({"a": 1})):
-        with pytest.raises(UnsupportedError) as caught:
-            ask()
-        assert str(caught.value) == f"firm-hdl cannot build it: {why}"
-    settings = {"wire": "ros1", "bus_bytes": 8, "max_message_bytes": 65536}
-    assert given == [("p/A", settings)] * 2

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from dataclasses import replace
 
 import pytest
 
-from firm_hdl.drawing.svg import Figure, Scale, seconds
-from firm_hdl.verify.report import charts
+from firm_hdl.drawing.svg import Scale, seconds
 from firm_hdl.verify.report.charts import counts_bar, cumulative, scatter, stages
 from firm_hdl.verify.report.outcomes import Counts
 from firm_hdl.verify.report.stats import Correlation, Fit, box_of, curve_of
@@ -44,14 +42,6 @@ def at(element):
     return float(element[1]["cx"]), float(element[1]["cy"])
 
 
-def test_a_suite_without_times_has_no_curve_and_the_next_one_has_its_own():
-    text = cumulative([a_curve("none", [], points=(), seconds=None), a_curve("b"), a_curve("c")])
-    titles = [each[2] for each in drawn(text) if each[0] == "path"]
-    assert titles == ["b", "c"]
-    kinds = [each[1]["class"] for each in drawn(text) if each[0] == "path"]
-    assert kinds == ["curve c2", "curve c3"]
-
-
 def test_the_curve_of_a_suite_climbs_from_its_fastest_test_to_all():
     text = cumulative([a_curve(), a_curve("slow", [100.0, 1000.0])])
     x = Scale.logarithmic([*TIMES, 100.0, 1000.0], 62, 740)
@@ -66,20 +56,6 @@ def test_the_curve_of_a_suite_climbs_from_its_fastest_test_to_all():
     assert at(median) == (x(box.median), y(0.5)) and at(most) == (x(box.p95), y(0.95))
     assert median[2] == f"ts3: 50% of tests within {seconds(box.median)}"
     assert most[2] == f"ts3: 95% of tests within {seconds(box.p95)}"
-
-
-def test_the_axis_of_stages_has_the_least_and_the_most_of_all():
-    # Only some values are drawn, but the box is computed from all.
-    curve = a_curve(stage_values={"generation": (0.3,), "testing": (0.02,)})
-    x = Scale.logarithmic([0.01, 10.0], 96, 740)
-    text = stages(curve)
-    whiskers = of_kind(text, "line", "whisker c1")
-    assert (float(whiskers[0][1]["x1"]), float(whiskers[0][1]["x2"])) == (x(0.1), x(10.0))
-    (other, _) = of_kind(text, "line", "whisker c2")
-    assert (float(other[1]["x1"]), float(other[1]["x2"])) == (x(0.01), x(0.02))
-    assert x(0.01) == 96 and x(10.0) == 740
-    (dot,) = of_kind(text, "circle", "strip c1")
-    assert at(dot) == (x(0.3), 12 + 32 + 8) and dot[2] == seconds(0.3)
 
 
 def test_a_box_has_its_quartiles_at_their_places_on_the_axis():
@@ -105,34 +81,6 @@ def test_a_box_has_its_quartiles_at_their_places_on_the_axis():
     same = a_curve(stages={"testing": box_of([1.0, 1.0])}, stage_values={"testing": (1.0,)})
     (rect,) = of_kind(stages(same), "rect", "box c1")
     assert float(rect[1]["width"]) == 2
-
-
-def test_each_stage_has_its_row_and_its_name():
-    text = stages(a_curve())
-    rows = of_kind(text, "text", "row")
-    assert [(each[2], float(each[1]["y"])) for each in rows] == [
-        ("generation", 12 + 32 + 4),
-        ("testing", 12 + 64 + 32 + 4),
-    ]
-    assert {each[1]["text-anchor"] for each in rows} == {"end"}
-    root = ET.fromstring(text)
-    assert root.get("viewBox") == f"0 0 760 {12 + 2 * 64 + 44}"
-
-
-def test_a_stage_that_only_one_test_had_is_drawn_too():
-    text = stages(a_curve(stages={"testing": box_of([0.5])}, stage_values={"testing": (0.5,)}))
-    assert [each[2] for each in of_kind(text, "text", "row")] == ["testing"]
-    assert [each[2] for each in of_kind(text, "circle", "strip c1")] == [seconds(0.5)]
-
-
-def test_of_many_values_some_are_drawn(monkeypatch):
-    monkeypatch.setattr(charts, "MOST_DOTS", 2)
-    values = (0.1, 0.2, 0.3, 0.4, 0.5)
-    curve = a_curve(stages={"testing": box_of(values)}, stage_values={"testing": values})
-    titles = [each[2] for each in of_kind(stages(curve), "circle", "strip c1")]
-    assert titles == [seconds(0.1), seconds(0.4)]
-    trend = a_trend(points=tuple((value, value) for value in values))
-    assert len(of_kind(scatter(trend), "circle", "point c1")) == 2
 
 
 def a_trend(points=((1, 0.1), (10, 1.0), (100, 10.0)), power=None, linear=None):
@@ -187,86 +135,3 @@ def test_a_bar_has_a_part_of_each_count():
     kinds = [a["class"] for _, a, _ in drawn(bar)]
     assert kinds == ["bar-pass", "bar-known", "bar-fail", "bar-skip", "bar-none"]
     assert 'aria-hidden="true"' in bar and "role" not in bar
-
-
-def test_a_bar_leaves_out_counts_of_zero():
-    parts = drawn(
-        counts_bar(replace(COUNTS, passed=30, known=0, not_judged=0, not_run=0, failed=10))
-    )
-    assert [(a["class"], float(a["x"]), float(a["width"])) for _, a, _ in parts] == [
-        ("bar-pass", 0, 82.5),
-        ("bar-fail", 82.5, 27.5),
-    ]
-
-
-def test_marks_of_a_figure_are_written_down():
-    figure = Figure(30, 20, "a < b")
-    figure.text(1, 2, "x < y")
-    figure.text(3, 4, "z", "row", "end")
-    figure.dot(5, 6, "p")
-    figure.dot(7, 8, "q", "r & s", 4)
-    figure.line(1, 2, 3, 4, "l")
-    figure.box(1, 2, 3.14, 4, "b", "t")
-    figure.path([(1, 2), (3, 4), (5, 6)], "c", "u")
-    figure.path([(1, 2), (3, 4)], "d", steps=True)
-    root = ET.fromstring(str(figure))
-    assert root.attrib == {
-        "viewBox": "0 0 30 20",
-        "role": "img",
-        "aria-label": "a < b",
-        "style": "max-width:30px",
-    }
-    assert drawn(str(figure)) == [
-        ("text", {"x": "1", "y": "2", "class": "tick", "text-anchor": "middle"}, "x < y"),
-        ("text", {"x": "3", "y": "4", "class": "row", "text-anchor": "end"}, "z"),
-        ("circle", {"cx": "5", "cy": "6", "r": "2.5", "class": "p"}, ""),
-        ("circle", {"cx": "7", "cy": "8", "r": "4", "class": "q"}, "r & s"),
-        ("line", {"x1": "1", "y1": "2", "x2": "3", "y2": "4", "class": "l"}, ""),
-        ("rect", {"x": "1.0", "y": "2.0", "width": "3.1", "height": "4.0", "class": "b"}, "t"),
-        ("path", {"d": "M1 2L3 4L5 6", "class": "c"}, "u"),
-        ("path", {"d": "M1 2H3V4", "class": "d"}, ""),
-    ]
-
-
-def test_axes_have_a_grid_line_and_a_figure_at_each_tick():
-    figure = Figure(300, 200, "")
-    x, y = Scale(0, 10, 50, 250), Scale(0, 1, 150, 50)
-    figure.x_axis(x, 150, "across", 40)
-    figure.y_axis(y, 50, "up", 260, percent=True)
-    figure.y_axis(y, 50, "up", 260)
-    text = str(figure)
-    grid = [each[1] for each in drawn(text) if each[1].get("class") == "grid"]
-    ticks = x.ticks()
-    assert [float(a["x1"]) for a in grid[: len(ticks)]] == [x(value) for value in ticks]
-    assert {(a["y1"], a["y2"]) for a in grid[: len(ticks)]} == {("150", "40")}
-    assert {(a["x1"], a["x2"]) for a in grid[len(ticks) :]} == {("50", "260")}
-    labels = of_kind(text, "text", "tick")
-    across = labels[: len(ticks)]
-    assert [(float(a["x"]), float(a["y"]), output) for _, a, output in across] == [
-        (x(value), 165, f"{value:g}") for value in ticks
-    ]
-    up = labels[len(ticks) :]
-    assert [output for *_, output in up] == [
-        "0%",
-        "20%",
-        "40%",
-        "60%",
-        "80%",
-        "100%",
-        "0",
-        "0.2",
-        "0.4",
-        "0.6",
-        "0.8",
-        "1",
-    ]
-    assert {(a["x"], a["text-anchor"]) for _, a, _ in up} == {("44", "end")}
-    assert [float(a["y"]) for _, a, _ in up[:6]] == [y(value) + 4 for value in y.ticks()]
-    names = of_kind(text, "text", "label")
-    assert [(output, a["x"], a["y"]) for _, a, output in names] == [
-        ("across", "150.0", "183"),
-        ("up", "14", "100.0"),
-        ("up", "14", "100.0"),
-    ]
-    (axis,) = of_kind(text, "line", "axis")
-    assert [axis[1][name] for name in ("x1", "y1", "x2", "y2")] == ["50", "150", "250", "150"]

@@ -11,13 +11,10 @@ from html.parser import HTMLParser
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.verify.report import html as page_writer
-from firm_hdl.verify.report import summary as summary_of
-from firm_hdl.verify.report import tables
-from firm_hdl.verify.report.command import FORMATS
+from firm_hdl.verify.report import formats, tables
+from firm_hdl.verify.report.formats import FORMATS
 from firm_hdl.verify.report.outcomes import count, failures_of, outcomes_of
 from firm_hdl.verify.report.summary import summarise
-from firm_hdl.verify.report.verdicts import reason_groups
 from firm_hdl.verify.results.file import Results, ResultsWriter
 from firm_hdl.verify.results.records import OracleVerdict, PlanCoverage, Seconds
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
@@ -218,17 +215,6 @@ def test_page_is_self_contained_and_well_formed():
     assert searched and searched <= targets
 
 
-def test_charts_have_axes_with_units_and_titles():
-    text = rendered("html", a_run())
-    for label in (
-        "time per test in s, logarithmic",
-        "share of tests completed",
-        "leaves, logarithmic",
-    ):
-        assert label in text
-    assert "<title>power law " in text and "<title>leaves " in text
-
-
 def test_reports_are_the_same_each_time():
     for form in FORMATS:
         assert rendered(form, a_run()) == rendered(form, a_run())
@@ -286,56 +272,9 @@ def test_verdicts_of_oracles_are_counted_and_known_differences_named():
     assert 'id="oracles"' not in rendered("html", run_of(a_record()))
 
 
-def test_tests_that_were_not_judged_and_notes_are_grouped_by_reason():
-    text = "rosbags has no wstring, which {}.text is"
-    names = [f"a/msg/W{number}" for number in range(60)]
-    skipped = [a_record(a_test(n), verdict=NotJudged(text.format(n))) for n in names]
-    other = a_record(a_test("b/msg/B"), verdict=NotJudged("it is too large: 8 bytes"))
-    noted = a_record(a_test("c/msg/C"), note="simulated in part: 7 of 28 packets")
-    run = run_of(*skipped, other, noted)
-    groups = reason_groups(outcomes_of([run_of(*skipped, other)]))
-    assert [len(group.outcomes) for group in groups] == [60, 1]
-    for form in ("html", "md"):
-        said = rendered(form, run)
-        assert text.format("a/msg/W0") in said and "and 10 more" in said
-        assert "it is too large: 8 bytes" in said and noted.note in said
-
-
-def test_most_complex_types_are_named_once():
-    big = {"leaves": 99, "steps": 9}
-    systems = [a_test("a/msg/Big", system=name) for name in ("ts2", "ts3")]
-    run = run_of(*(a_record(test, metrics=big) for test in systems), a_record())
-    names = [outcome.test.type for outcome in summarise({"r": run}).most_complex]
-    assert names == ["a/msg/Big", "std_msgs/msg/Header"]
-
-
-def test_circuits_are_counted_for_each_test_system():
-    runs = [a_test(f"a/msg/T{n}", system=name) for name in ("ts2", "ts3") for n in range(3)]
-    run = run_of(
-        *(a_record(test, shape=test.type[-1] if n else "0") for n, test in enumerate(runs))
-    )
-    assert {suite[:3]: shapes for suite, (shapes, _) in summarise({"r": run}).circuits.items()} == {
-        "ts2": 3,
-        "ts3": 3,
-    }
-    assert '<div class="tile"><b>3</b><span>different circuits</span>' in rendered("html", run)
-
-
-def test_who_wrote_the_packets_is_counted():
-    run = run_of(
-        a_record(written_by=("rosbags", "fastcdr")),
-        a_record(a_test("a/msg/A"), written_by=("rosbags",)),
-    )
-    counted = {"ts3, python, 8-byte bus": {"rosbags": 2, "fastcdr": 1}}
-    assert json.loads(rendered("json", run))["writers"] == counted
-    assert "| ts3, python, 8-byte bus | fastcdr | 1 |" in rendered("md", run)
-    assert 'id="writers"' in rendered("html", run)
-    assert 'id="writers"' not in rendered("html", run_of(a_record()))
-
-
 def test_long_reports_are_cut_and_say_so(monkeypatch):
     assert tables.MOST_ROWS == 1000, "docs/howto/verify.md"
-    for module, name, most in ((tables, "MOST_ROWS", 20), (page_writer, "MOST_ARTICLES", 2)):
+    for module, name, most in ((tables, "MOST_ROWS", 20), (formats, "_MOST_ARTICLES", 2)):
         monkeypatch.setattr(module, name, most)
     failed = [
         replace(FAILED, test=a_test(f"z{n}_msgs/msg/F{n}"), verdict=Failed((f"it is {n}",)))
@@ -379,15 +318,6 @@ def test_command_refuses_other_files(tmp_path, capsys):
     path = written(tmp_path / "r.jsonl", a_run(2))
     assert main(["report", path, "--out", str(tmp_path / "r.pdf")]) == 1
     assert "must end in .html, .md, .json" in capsys.readouterr().err
-
-
-def test_whiskers_end_inside_the_axis_though_few_points_are_drawn(monkeypatch):
-    monkeypatch.setattr(summary_of, "MOST_POINTS", 3)
-    run = a_run(60)
-    longest = a_record(a_test("z/msg/Z"), seconds=Seconds(simulation=5000.0))
-    text = rendered("html", run_of(*run.records.values(), longest))
-    places = [float(x) for x in re.findall(r'x2="([\d.]+)"[^>]*class="whisker', text)]
-    assert places and max(places) <= 740
 
 
 @pytest.mark.parametrize("form", list(FORMATS))

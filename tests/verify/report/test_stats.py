@@ -6,9 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from firm_hdl.drawing.svg import number
-from firm_hdl.verify.report.charts import law_text, line_text, scatter
-from firm_hdl.verify.report.prose import shown_trends
+from firm_hdl.verify.report.charts import scatter
 from firm_hdl.verify.report.stats import (
     Correlation,
     Fit,
@@ -37,12 +35,6 @@ def test_curve_ends_with_all_values(count):
         assert share == pytest.approx(share_within(values, value))
 
 
-def test_a_curve_is_of_values_in_any_order():
-    values = [3.0, 1.0, 2.0, 2.0]
-    assert curve_of(values) == curve_of(sorted(values))
-    assert curve_of(values)[-1] == (3.0, 1.0)
-
-
 LAW = Fit(a=2.0, b=1.5, r2=1.0)
 
 
@@ -57,29 +49,6 @@ def test_points_without_a_logarithm_are_not_drawn():
     drawn = scatter(replace(trend("leaves", 0.5), points=points))
     assert drawn.count('class="point c1"') == 2
     assert "leaves 2: 3 s" in drawn and "leaves 50: 90 s" in drawn
-
-
-def test_the_trends_that_explain_most_are_drawn():
-    trends = [
-        trend("weak", 0.1),
-        trend("falling", -0.8),
-        trend("rising", 0.9),
-        trend("of a stage", 1.0, time="testing"),
-        trend("without a law", 1.0, power=None),
-        trend("middle", 0.5),
-    ]
-    assert [each.metric for each in shown_trends(trends, 3)] == ["rising", "falling", "middle"]
-    assert len(shown_trends(trends, 9)) == 4
-
-
-def test_trends_without_a_fit_have_no_formula():
-    assert (line_text(None), law_text(None)) == ("-", "-")
-    assert line_text(Fit(a=-1.5, b=2.0, r2=1.0)) == f"-{number(1.5)} + {number(2.0)}·x"
-    assert line_text(Fit(a=1.5, b=-2.0, r2=1.0)) == f"{number(1.5)} - {number(2.0)}·x"
-
-
-def test_no_values_have_no_curve():
-    assert curve_of([]) == [] and share_within([], 1) == 0
 
 
 def test_line_is_found():

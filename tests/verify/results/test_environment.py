@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import os
-from datetime import datetime, timedelta, timezone
-from importlib.metadata import PackageNotFoundError
 
 import pytest
 
 import firm_hdl
-from firm_hdl.verify.results import environment as module
-from firm_hdl.verify.results.environment import code_digest, environment, inputs_digest
+from firm_hdl.verify.results.environment import code_digest, inputs_digest
 from tests.frontend.workspace import make_files
 
 TEXTS = {"p/msg/A.msg": "int8 a\n", "p/msg/B.msg": "int8 b\n", "p/package.xml": "<package/>"}
@@ -125,85 +122,3 @@ def test_every_change_of_the_code_changes_its_digest(tmp_path, monkeypatch, file
     first = digest(tmp_path / "a", CODE)
     assert digest(tmp_path / "b", CODE | {"notes.md": "no code"}) == first
     assert digest(tmp_path / "c", files) != first
-
-
-def test_an_environment_has_versions_and_what_is_added():
-    found = environment(executor="processes")
-    assert found["executor"] == "processes" and found["amaranth"][0].isdigit()
-    assert environment(Python="another")["Python"] == "another"
-    assert {"started", "firm-hdl", "Python", "system", "processors"} <= found.keys()
-
-
-def test_a_package_that_is_not_installed_is_left_out_alone(monkeypatch):
-    def version(name):
-        if name == "cyclonedds":
-            raise PackageNotFoundError(name)
-        return f"{name} 1"
-
-    monkeypatch.setattr(module, "version", version)
-    found = environment()
-    assert "cyclonedds" not in found
-    others = [name for name in module.PACKAGES if name != "cyclonedds"]
-    assert others and {name: found[name] for name in others} == {
-        name: f"{name} 1" for name in others
-    }
-
-
-def test_a_run_starts_at_a_time_of_utc(monkeypatch):
-    class Clock(datetime):
-        @classmethod
-        def now(cls, tz=None):
-            here = timezone(timedelta(hours=-7))
-            return datetime(2026, 3, 4, 18, 5, tzinfo=here).astimezone(tz or here)
-
-    monkeypatch.setattr(module, "datetime", Clock)
-    assert environment()["started"] == "2026-03-05 01:05 UTC"
-
-
-def test_each_file_of_folders_that_are_linked_in_circles_is_read_once(tmp_path, monkeypatch):
-    folder = make_files(tmp_path, TEXTS)
-    for name in ("one", "two"):
-        (folder / "p" / name).symlink_to(folder)
-    read = []
-    monkeypatch.setattr(module, "_content", lambda path: read.append(path) or b"")
-    walk, visited = os.walk, []
-
-    def counted(*given, **more):
-        for each in walk(*given, **more):
-            visited.append(each[0])
-            assert len(visited) < 50
-            yield each
-
-    monkeypatch.setattr(os, "walk", counted)
-    inputs_digest([str(folder)])
-    assert sorted(os.path.relpath(path, folder) for path in read) == sorted(TEXTS)
-
-
-def test_the_order_in_which_the_system_lists_files_does_not_count(tmp_path, monkeypatch):
-    files = {f"{package}/msg/{name}.msg": package for package in "pqr" for name in "AB"}
-    first = digest_of(tmp_path, files)
-    walk = os.walk
-
-    def backwards(*given, **more):
-        for folder, folders, names in walk(*given, **more):
-            folders.sort(reverse=True)
-            names.sort(reverse=True)
-            yield folder, folders, names
-
-    monkeypatch.setattr(os, "walk", backwards)
-    assert inputs_digest([str(tmp_path)]) == first
-
-
-def test_of_a_definition_that_is_too_large_to_read_the_size_counts(tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "_MOST_BYTES", 7)
-    whole, same, longer = (
-        digest_of(tmp_path / name, {"p/msg/A.msg": text})
-        for name, text in (("a", "int8 abc"), ("b", "int8 xyz"), ("c", "int8 abcd"))
-    )
-    assert whole == same != longer
-    # What is just small enough is read.
-    small, other = (
-        digest_of(tmp_path / name, {"p/msg/A.msg": text})
-        for name, text in (("d", "int8 ab"), ("e", "int8 xy"))
-    )
-    assert small != other

@@ -9,7 +9,6 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -85,10 +84,6 @@ def test_records_without_a_verdict_are_refused(more, output):
         a_record(**more)
 
 
-def test_missing_records_are_named(tmp_path):
-    assert read_results(written(tmp_path / "r", a_record())).missing == (BOOL,)
-
-
 @pytest.mark.parametrize("cut", [1, 2, 20, -1])
 def test_torn_last_line_is_dropped_and_replaced(tmp_path, cut):
     path = written(tmp_path / "r", a_record())
@@ -155,14 +150,6 @@ def test_other_runs_are_refused(tmp_path, change, output):
     assert path.read_bytes() == before
 
 
-def test_options_are_compared_as_they_are_written(tmp_path):
-    """JSON has no tuples."""
-    path = written(tmp_path / "r", options={"widths": (8, 16)})
-    assert read_results(path).options == {"widths": [8, 16]}
-    written(path, options={"widths": (8, 16)})
-    assert len(read_results(path).sessions) == 2
-
-
 def test_file_has_one_writer_at_a_time(tmp_path):
     path = tmp_path / "r"
     with (
@@ -170,12 +157,6 @@ def test_file_has_one_writer_at_a_time(tmp_path):
         pytest.raises(ResultsError, match=r"^'.*' is being written by another run$"),
     ):
         ResultsWriter(path, options=OPTIONS, planned=[HEADER])
-
-
-def test_times_are_not_compared():
-    one = a_record()
-    assert without_times(one) == without_times(replace(one, cpu_seconds=9.0))
-    assert without_times(one) != without_times(replace(one, cycles=9))
 
 
 FAKE = """
@@ -345,21 +326,3 @@ def test_a_line_that_would_fill_the_memory_is_not_read(tmp_path):
         file.write(f'{{"record": [{"[]," * (12 << 20)}[]]}}\n')
     with pytest.raises(ResultsError, match="line 4: A line must have at most 33554432 bytes, not"):
         read_results(path)
-
-
-def test_what_is_written_is_on_the_disk_when_the_call_returns(tmp_path, monkeypatch):
-    """The name of a new file as well; that of an old one is there already."""
-    path, synced = tmp_path / "r", []
-    sync = os.fsync
-
-    def noted(number):
-        synced.append(Path(os.readlink(f"/proc/self/fd/{number}")).name)
-        sync(number)
-
-    monkeypatch.setattr(os, "fsync", noted)
-    with ResultsWriter(path, options=OPTIONS, planned=(HEADER, BOOL)) as writer:
-        assert synced == ["r", tmp_path.name]
-        writer.add(a_record(), a_record(BOOL))
-        assert synced[2:] == ["r"] and len(path.read_text().splitlines()) == 3
-    with ResultsWriter(path, options=OPTIONS, planned=(HEADER, BOOL)):
-        assert len(synced) == 3

@@ -6,7 +6,6 @@ import pytest
 
 from firm_hdl.verify.results.records import (
     MOST_CHARACTERS,
-    MOST_FAILURES,
     OracleVerdict,
     PlanCoverage,
     Record,
@@ -35,18 +34,6 @@ WHOLE = Tested(
 )
 
 
-@pytest.mark.parametrize("count", [1, 2, MOST_FAILURES - 1, MOST_FAILURES])
-def test_as_many_failures_as_a_record_keeps_are_kept(count):
-    failures = [f"failure {number}" for number in range(count)]
-    assert clipped(failures) == tuple(failures)
-
-
-@pytest.mark.parametrize("more", [1, 2, 30])
-def test_of_more_failures_the_first_are_kept_and_the_others_counted(more):
-    failures = [f"failure {number}" for number in range(MOST_FAILURES + more)]
-    assert clipped(failures) == (*failures[:MOST_FAILURES], f"and {more} more")
-
-
 def test_long_failures_are_cut_and_say_how_long_they_were():
     fits, long = "x" * MOST_CHARACTERS, "y" * (MOST_CHARACTERS + 1)
     start = "y" * MOST_CHARACTERS
@@ -54,28 +41,6 @@ def test_long_failures_are_cut_and_say_how_long_they_were():
     assert clipped([fits, long, "z"]) == (fits, output, "z")
     assert clipped_verdict(Failed((long, "z"))) == Failed((output, "z"))
     assert clipped_verdict(NotJudged(long)) == NotJudged(output)
-
-
-@pytest.mark.parametrize(
-    "verdict", [Passed(3), KnownDifference(("k", "l"), 2), NotJudged("x"), Failed(("a", "b"))]
-)
-def test_short_verdicts_are_kept_as_they_are(verdict):
-    assert clipped_verdict(verdict) == verdict
-
-
-def test_the_time_of_a_test_is_that_of_its_stages():
-    assert Seconds(generation=1, simulation=2.5, testing=4).total == 7.5
-    assert Seconds().total == 0
-
-
-def test_titles_of_tests():
-    assert WHOLE.title == "p/msg/A (iron, jazzy), ts3, 8-byte bus"
-    assert WHOLE.key == "ts3 python iron p/msg/A cdr/8 seed=1"
-    assert (WHOLE.package, WHOLE.distros) == ("p", ("iron", "jazzy"))
-    bare = Tested(system="ts1", distro="iron", type="p/srv/S")
-    assert bare.title == "p/srv/S (iron), ts1"
-    assert (bare.key, bare.distros) == ("ts1 iron p/srv/S", ("iron",))
-    assert Tested(system="ts2", distro="iron", type="p/A", wire="cdr").key == "ts2 iron p/A cdr"
 
 
 RECORD = Record(
@@ -135,16 +100,6 @@ def test_the_json_of_a_record_is_complete():
         "command": "command",
         "waveform_command": "waveform",
     }
-
-
-def test_the_json_of_a_minimal_record_has_the_test_and_the_verdict():
-    bare = Record(test=Tested(system="ts2", distro="iron", type="p/A"), verdict=Passed(1))
-    given = {
-        "test": {"system": "ts2", "distro": "iron", "type": "p/A"},
-        "verdict": {"verdict": "passed", "cases": 1},
-    }
-    assert to_json(bare) == given
-    assert from_json(Record, given) == bare
 
 
 @pytest.mark.parametrize(

@@ -57,32 +57,3 @@ def test_a_known_difference_has_a_key(keys):
 @pytest.mark.parametrize("verdict", EACH, ids=lambda each: each.name)
 def test_json_reads_back(verdict):
     assert read_back(json.loads(json.dumps(to_json(verdict)))) == verdict
-
-
-@pytest.mark.parametrize(
-    "given",
-    [
-        None,
-        [],
-        {},
-        {"verdict": "pass"},
-        {"verdict": "passed"},
-        {"verdict": "passed", "cases": 0},
-        {"verdict": "passed", "cases": 1, "more": 1},
-        {"verdict": "failed", "failures": []},
-        {"verdict": "failed", "failures": [1]},
-        {"verdict": "not judged"},
-        {"verdict": "not judged", "reason": 1},
-        {"verdict": "known difference", "keys": ["key"]},
-    ],
-)
-def test_other_json_is_refused(given):
-    with pytest.raises(ValueError, match=r"verdict|at least|Passed|Failed|NotJudged|KnownDiff"):
-        read_back(given)
-
-
-@pytest.mark.parametrize("verdict", ["passed", "", None, True, Passed])
-def test_what_is_no_verdict_is_refused(verdict):
-    test = Tested(system="ts2", distro="iron", type="p/A")
-    with pytest.raises(ValueError, match=r"^What became of a test must be a verdict, not "):
-        Record(test=test, verdict=verdict)

@@ -6,11 +6,8 @@ A module of this test takes the place of ROS's, and this Python that of ROS's Py
 from __future__ import annotations
 
 import math
-import os
-import signal
 import sys
 from contextlib import closing
-from importlib import metadata
 
 import pytest
 
@@ -84,13 +81,6 @@ def test_the_process_of_a_worker_that_nobody_closes_ends_with_it(folder):
     assert process.poll() is not None
 
 
-def test_versions_of_the_modules_are_known(mine):
-    assert mine.versions == {
-        "pytest": metadata.version("pytest"),
-        "no-package-of-this-name": "?",
-    }
-
-
 def test_requests_arrive_whole_and_what_is_printed_does_no_harm(mine, folder):
     for number in range(3):
         request = {"oracle": "repeat", "text": "é\n\ud800", "number": number}
@@ -138,22 +128,6 @@ def test_a_worker_that_died_is_replaced_by_the_next_request(mine):
     assert mine.ask({"oracle": "no such judge"}) == {"failed": DIED}
 
 
-def test_only_the_parent_process_is_interrupted(mine):
-    os.kill(mine._process.pid, signal.SIGINT)
-    assert "facts" in mine.ask({"oracle": "repeat"})
-
-
-def test_processor_time_is_that_of_the_process(mine):
-    before = mine.cpu_seconds
-    mine.ask({"oracle": "slow"})
-    assert 0 < before < before + 0.05 < mine.cpu_seconds < before + 20
-    process = mine._process
-    mine.close()
-    # It ended by itself, and may have tidied up.
-    assert process.returncode == 0 and mine.cpu_seconds == 0
-    mine.close()
-
-
 def test_modules_that_cannot_be_loaded_are_missing(folder):
     for family, given, name in (
         ("fake", "none", "a_module_that_is_not_there"),
@@ -166,19 +140,6 @@ def test_modules_that_cannot_be_loaded_are_missing(folder):
     assert silent.missing == "its Python does not start" and silent._process is None
     nowhere = Worker("fake", "here", modules=folder, python="/nowhere/python")
     assert nowhere.missing == "/nowhere/python cannot be run: No such file or directory"
-
-
-@pytest.mark.parametrize("is_own", [True, False])
-def test_the_search_path_of_a_sourced_release_is_for_the_python_of_ros(folder, monkeypatch, is_own):
-    monkeypatch.setenv("PYTHONPATH", "/opt/ros")
-    monkeypatch.setenv("LC_ALL", "C")
-    monkeypatch.setattr(module, "ROS_PYTHON", sys.executable if is_own else "/usr/bin/ros")
-    with closing(Worker("fake", "here", modules=folder, python=sys.executable)) as found:
-        given = found.ask({"oracle": "environment"})["facts"]
-    # An empty one is as good as none.
-    assert given["PYTHONPATH"] == ("/opt/ros" if is_own else "")
-    assert (given["LC_ALL"], given["PYTHONUTF8"]) == ("C.UTF-8", "1")
-    assert given["PYTHONHASHSEED"] == "0" and given["PATH"] == os.environ["PATH"]
 
 
 ODD_LINES = ["", "hello", "{", "3", "null", "true", '"ab"', "[]", "[1]", "[[1, 2]]", "{}"]
@@ -201,20 +162,6 @@ def test_a_program_that_is_no_python_of_ros_is_missing(tmp_path, line):
         assert found.missing == "its Python does not start" and found._process is None
         # It may be asked nevertheless.
         assert found.ask({"oracle": "repeat"}) == {"failed": found.missing}
-
-
-@pytest.mark.parametrize("line", ODD_LINES[:-1])
-def test_an_answer_that_is_none_is_that_of_a_dead_process(tmp_path, line):
-    hello = '{"ready": [], "versions": {"a": "1"}}'
-    python = other_program(tmp_path, hello, '{"facts": 1}', line)
-    with closing(Worker("fake", "here", modules=tmp_path, python=python)) as found:
-        assert (found.missing, found.versions) == (None, {"a": "1"})
-        first = found._process
-        assert found.ask({}) == {"facts": 1}
-        assert found.ask({}) == {"failed": DIED}
-        assert first.returncode is not None and found._process is None
-        # The next one is asked of a new process.
-        assert found.ask({}) == {"facts": 1}
 
 
 def test_a_process_that_does_not_start_again_has_failed(folder, tmp_path):

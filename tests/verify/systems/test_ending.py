@@ -10,7 +10,6 @@ import firm_hdl.verify.ts3.acceptance as acceptance
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases.user_oracle import judge_of
 from firm_hdl.cli import main
-from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.records import settled
 from firm_hdl.verify.results.verdict import (
@@ -19,9 +18,8 @@ from firm_hdl.verify.results.verdict import (
     NotJudged,
     Passed,
 )
-from firm_hdl.verify.run import concluded, failure
-from firm_hdl.verify.systems import system
-from firm_hdl.verify.systems.system import Judged, run_shares
+from firm_hdl.verify.run import failure
+from firm_hdl.verify.systems.system import Judged
 from tests.frontend.workspace import make_files
 from tests.verify.report.samples import a_record, a_test
 
@@ -52,51 +50,12 @@ def test_success_needs_a_judgement_of_each_named_type(verdicts, of_all, named):
     assert (not failure(found(*verdicts), is_named=True)) is named
 
 
-def test_a_failure_has_its_reasons():
-    of = {"is_named": True}
-    both = found(PASSED, FAILED, FAILED)
-    assert failure(both, **of) == "2 of 3 tests failed, such as p/msg/T1 (lyrical), ts3"
-    assert failure(found(PASSED), **of, refused=1) == "1 definition is refused"
-    assert failure(found(SILENT), **of, refused=2) == (
-        "no test was judged; 2 definitions are refused"
-    )
-
-
 def test_mutations_of_a_named_type_need_no_judgement():
     mutation = Judged(what="p/msg/T (lyrical), ts1", verdict=SILENT, has_name=False)
     assert not failure([*found(PASSED), mutation], is_named=True)
     # In contrast to other tests of the same run.
     assert failure([*found(PASSED, SILENT), mutation], is_named=True)
     assert failure([mutation], is_named=True)
-
-
-def test_end_lists_unjudged_types_by_name_and_reason():
-    lines = ["not judged: p/msg/T1 (lyrical), ts3: nobody knows"]
-    some = found(PASSED, SILENT)
-    assert concluded(some, is_named=False) == [*lines, "1 of 2 tests was not judged"]
-    assert concluded(some, is_named=True) == [
-        *lines,
-        "1 of 2 tests was not judged, although named, so the run fails",
-    ]
-    assert concluded(found(SILENT, SILENT), is_named=False)[2:] == [
-        "no test was judged, so the run fails"
-    ]
-    assert concluded([], is_named=False) == ["no test was judged, so the run fails"]
-    assert concluded(found(PASSED, KNOWN, FAILED), is_named=True) == []
-
-
-def test_only_a_share_of_several_is_run_again(monkeypatch):
-    asked = []
-
-    def die(work, tasks, **options):
-        asked.append([share for share, _ in tasks])
-        yield from ((share, ExecutorError("it died")) for share, _ in tasks)
-
-    monkeypatch.setattr(system, "run_each", die)
-    results = list(run_shares(len, None, [(1, 2), (3,)], jobs=1))
-    assert asked == [[(1, 2), (3,)], [(1,), (2,)]]
-    assert [share for share, _ in results] == [(3,), (1,), (2,)]
-    assert all(isinstance(result, ExecutorError) for _, result in results)
 
 
 @pytest.fixture
@@ -144,18 +103,6 @@ def test_of_all_types_those_that_are_not_judged_are_listed(
     for _ in range(2):
         assert main(call) == 0
         assert capsys.readouterr().out.endswith(LINE + "1 of 2 tests was not judged\n")
-
-
-def test_all_types_of_which_none_is_judged_are_no_success(monkeypatch, source, capsys):
-    def no_judge(*arguments, **options):
-        raise NotJudgedError("nobody is here")
-
-    monkeypatch.setattr(acceptance, "judge_of", no_judge)
-    assert main(["verify", *FEW, "--path", source, "--all"]) == 1
-    assert capsys.readouterr().out.endswith("no test was judged, so the run fails\n")
-    # As in the reported issue.
-    assert main(["verify", "--jobs", "1", "geometry_msgs/msg/Twist"]) == 1
-    assert "2 of 2 types not judged" in capsys.readouterr().out
 
 
 def test_type_with_the_circuit_of_one_that_is_not_judged_is_not_judged(

@@ -39,17 +39,6 @@ def test_what_is_named_has_to_be_judged_and_simulated(given, named, shares):
     assert (request.is_named, request.shares_circuits) == (named, shares)
 
 
-def test_wires_are_named_by_distributions_or_by_themselves():
-    assert not Request(types=("p/A",)).names_wires
-    assert Request(wire="ros1").names_wires and Request(distros=("noetic",)).names_wires
-
-
-def test_each_bus_has_options_of_its_own():
-    request = Request(widths=(1, 64), seed=7, stalled=False)
-    assert [each.bus_bytes for each in request.each_width] == [1, 64]
-    assert {(each.seed, each.stalled) for each in request.each_width} == {(7, False)}
-
-
 def test_the_command_is_one_that_a_shell_reads_back():
     options = {"path": ("a b", "c"), "seed": 0, "wire": None, "no_stalls": True, "broken": False}
     text = command_again("p/A", "p/It's", **options)

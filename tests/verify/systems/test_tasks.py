@@ -106,24 +106,6 @@ def test_each_wrong_definition_is_told_and_the_others_are_tested(own, tmp_path):
         collect_own(["lyrical"], names[:1], own, problems={})
 
 
-def test_own_types_with_most_fields_come_first_and_nested_fields_count(tmp_path):
-    texts = {
-        "p/msg/A.msg": "int8 x\n",
-        "p/msg/B.msg": "int8 x\nint8 y\nint8 z\n",
-        "p/msg/C.msg": "B b\n",
-        "p/msg/D.msg": "int8 x\n",
-    }
-    found = collect_own(["lyrical"], (), [str(make_files(tmp_path, texts))])
-    assert [task.name[-1] for task in found] == ["C", "B", "A", "D"]
-
-
-def test_a_folder_of_which_nothing_can_be_used_is_told_and_leaves_nothing_to_test(tmp_path):
-    problems = {}
-    path = [str(make_files(tmp_path, {"p/msg/Bad.msg": "Such a\n"}))]
-    assert collect_own(["lyrical"], (), path, problems=problems) == []
-    assert len(problems) == 1 and "'Such'" in next(iter(problems))
-
-
 def test_a_type_that_is_too_large_is_an_error_only_if_it_is_named(tmp_path):
     """A hundred million fields cannot be laid out, but the definition is valid."""
     texts = {

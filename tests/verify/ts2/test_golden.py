@@ -6,13 +6,10 @@ To accept a change of plans: ``firm-hdl golden accept tests/verify/golden``.
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from firm_hdl.covering.choose import features
-from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.results.verdict import Failed, Passed
@@ -35,20 +32,6 @@ def test_todays_plans_are_the_golden_ones():
 
     assert wrong == [], "accept with: firm-hdl golden accept tests/verify/golden"
     assert {result.verdict for result in results} == {Passed(1)}
-
-
-@pytest.mark.snapshot
-def test_the_golden_plans_cover_both_wires():
-    have, want = set(), set()
-    for golden in read_golden(FOLDER):
-        message = Library(golden.distro).message(golden.plan.message)
-        have |= features(message, golden.plan)
-    for distro in ("noetic", "lyrical"):
-        library = Library(distro)
-        for name in library.names():
-            message = library.message(name)
-            want |= features(message, build_plan(lay_out(message)))
-    assert want - have == set()
 
 
 @pytest.fixture
@@ -97,23 +80,6 @@ def test_a_file_that_is_no_plan_is_refused(folder):
         read_golden(folder)
 
 
-def test_a_plan_that_is_not_that_of_the_layout_has_problems(folder, monkeypatch):
-    """A planner that forgets the last field makes a plan that is right by itself."""
-
-    def forgetful(message, wire, bus_bytes, most):
-        return build_plan(
-            lay_out(replace(message, fields=message.fields[:-1]), wire),
-            bus_bytes=bus_bytes,
-            max_message_bytes=most,
-        )
-
-    monkeypatch.setattr("firm_hdl.verify.ts2.golden.plan_of", forgetful)
-    (twist,) = (
-        each for each in check_golden(read_golden(folder)) if "Twist" in each.golden.plan.message
-    )
-    assert twist.problems and isinstance(twist.verdict, Failed)
-
-
 def test_each_plan_is_made_by_its_own_distribution_bus_and_limit(tmp_path):
     for distro, name in (("noetic", "std_msgs/String"), ("lyrical", "std_msgs/msg/String")):
         message = Library(distro).message(name)
@@ -128,36 +94,3 @@ def test_each_plan_is_made_by_its_own_distribution_bus_and_limit(tmp_path):
         ("noetic", 2),
         ("noetic", 8),
     ]
-
-
-def test_kinds_of_changes_are_listed_by_the_number_of_their_types(folder):
-    for path in (folder / "lyrical").iterdir():
-        text = re.sub(r"limit: 1677\d+", "limit: 9", path.read_text())
-        path.write_text(text.replace("align: 8", "align: 4"))
-    kinds = summarise(check_golden(read_golden(folder)))
-    assert next(iter(kinds.items())) == (
-        "steps[*].starts.limit",
-        ["sensor_msgs/msg/Imu", "std_msgs/msg/String"],
-    )
-    assert {len(types) for types in list(kinds.values())[1:]} == {1}
-
-
-def test_kinds_of_as_many_types_are_in_the_order_of_their_names(folder):
-    (path,) = (folder / "lyrical").glob("*Imu*")
-    text = re.sub(r"limit: 1677\d+", "limit: 9", path.read_text())
-    path.write_text(text.replace("align: 8", "align: 4"))
-    kinds = list(summarise(check_golden(read_golden(folder))))
-    assert len(kinds) > 1 and kinds == sorted(kinds)
-
-
-def test_a_type_that_cannot_be_built_today_is_a_problem_of_its_plan_alone(folder, monkeypatch):
-    def narrow(message, *more):
-        if message.name == "std_msgs/msg/String":
-            raise BuildError("no such bus")
-        return plan_of(message, *more)
-
-    monkeypatch.setattr("firm_hdl.verify.ts2.golden.plan_of", narrow)
-    *others, string = check_golden(read_golden(folder))
-    assert [assert_passed(each) for each in others] == [1, 1]
-    assert (string.text, string.changes, string.problems) == ("", (), ("no such bus",))
-    assert string.verdict == Failed(("no such bus",))

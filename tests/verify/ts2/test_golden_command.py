@@ -6,11 +6,7 @@ import re
 
 import pytest
 
-from firm_hdl import load_message
 from firm_hdl.cli import main
-from firm_hdl.plan import build_plan
-from firm_hdl.verify.ts2.golden import read_golden
-from firm_hdl.wire import lay_out
 from tests.frontend.recordings import make_recording
 from tests.frontend.workspace import make_files
 
@@ -122,47 +118,3 @@ def test_types_need_the_same_folders_and_keep_their_limit(tmp_path, capsys):
     assert main(["golden", "check", folder, *both]) == 0
     assert main(["golden", "check", folder, *own]) == 1
     assert "package 'q'" in capsys.readouterr().out
-
-
-def test_one_plan_that_cannot_be_accepted_does_not_keep_the_others(folder, capsys):
-    """The status tells of it, although the plan after it is accepted."""
-    first, second = sorted((folder / "lyrical").iterdir())
-    first.write_text(first.read_text().replace("sensor_msgs/msg/Imu", "sensor_msgs/msg/Imo"))
-    second.write_text(re.sub(r"limit: 1677\d+", "limit: 9", second.read_text()))
-    assert main(["golden", "accept", str(folder)]) == 1
-    output = capsys.readouterr()
-    assert output.err == f"not accepted: {first}\n" and f"accepted {second}\n" in output.out
-    assert main(["golden", "check", str(folder), TYPES[1]]) == 0
-
-
-def test_a_kind_of_one_type_is_counted_as_one(folder, capsys):
-    imu, string = sorted((folder / "lyrical").iterdir())
-    imu.write_text(imu.read_text().replace("align: 8", "align: 4", 1))
-    string.write_text(re.sub(r"limit: 1677\d+", "limit: 9", string.read_text()))
-    assert main(["golden", "check", str(folder)]) == 1
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[-1] == "2 golden plans, 2 differ"
-    assert "   1 type: steps[*].starts.limit" in lines[:-1]
-
-
-@pytest.mark.parametrize(
-    ("distro", "name", "wire", "bus_bytes"),
-    [
-        ("lyrical", "sensor_msgs/msg/Imu", "ros1", 2),
-        ("noetic", "sensor_msgs/Imu", "cdr", 16),
-    ],
-)
-def test_a_plan_has_the_wire_and_the_bus_that_were_asked_for(
-    tmp_path, capsys, distro, name, wire, bus_bytes
-):
-    """The wire need not be that of the distribution, and is kept with the plan."""
-    call = ["golden", "add", "--distro", distro, "--wire", wire, "--bus-bytes", str(bus_bytes)]
-    assert main([*call, str(tmp_path), name]) == 0
-    (path,) = tmp_path.glob("*/*.yaml")
-    base = name.replace("/", "_")
-    assert path == tmp_path / distro / f"{base}_{wire}_{bus_bytes}.yaml"
-    (golden,) = read_golden(tmp_path)
-    message = load_message(name, distro=distro)
-    assert golden.plan == build_plan(lay_out(message, wire), bus_bytes=bus_bytes)
-    assert main(["golden", "check", str(tmp_path)]) == 0
-    assert capsys.readouterr().out.endswith("1 golden plans, 0 differ\n")

@@ -2,58 +2,23 @@
 
 from __future__ import annotations
 
-import random
 from dataclasses import replace
 
 import pytest
 from amaranth.hdl import Module, Signal
 from amaranth.lib import wiring
 
-import firm_hdl.cases.damage as damage
 import firm_hdl.verify.ts3.acceptance as acceptance
 import firm_hdl.verify.ts3.circuit as circuit
-from firm_hdl.cases.damage import DAMAGES, broken_packets
-from firm_hdl.cases.make import Case
-from firm_hdl.frontend import load_message
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import Status
-from firm_hdl.plan import build_plan, decode
-from firm_hdl.verify import Options, accept, collect_tasks, run_tasks
 from firm_hdl.verify.__main__ import main
 from firm_hdl.verify.results.verdict import Passed
-from firm_hdl.wire import lay_out
+from firm_hdl.verify.systems.options import Options
 from tests.depth import by_depth
-from tests.verify.judged import NAN_KEY, TIME_KEY, assert_passed
+from tests.verify.judged import accept
 
 HEADER = "std_msgs/msg/Header"
-
-
-# Wider buses have more cases, and thus values that libraries encode differently.
-KNOWN = {("sensor_msgs/Joy", 16): (NAN_KEY, TIME_KEY)}
-
-
-TYPES = [
-    ("humble", HEADER),
-    ("humble", "std_msgs/msg/Empty"),
-    ("humble", "geometry_msgs/msg/Twist"),
-    ("lyrical", "diagnostic_msgs/msg/DiagnosticArray"),
-    ("noetic", "std_msgs/Header"),
-    ("noetic", "std_msgs/Empty"),
-    ("noetic", "sensor_msgs/Joy"),
-]
-# No bytes, numbers alone, and strings on each wire.
-QUICK = [(*TYPES[0], 8), (*TYPES[2], 16), (*TYPES[4], 16), (*TYPES[5], 8)]
-
-
-@pytest.mark.parametrize(
-    ("distro", "name", "bus_bytes"),
-    by_depth(QUICK, [(*each, bus_bytes) for each in TYPES for bus_bytes in (8, 16)]),
-)
-def test_types_pass(distro, name, bus_bytes):
-    result = accept(distro, name, Options(bus_bytes=bus_bytes))
-    known = KNOWN.get((name, bus_bytes), ())
-    assert assert_passed(result, known) >= 2 * result.cases > 0
-    assert result.packets > 2 * result.cases and result.cycles >= result.beats
 
 
 @pytest.mark.parametrize(
@@ -195,44 +160,6 @@ def test_all_outputs_of_a_run_are_judged(monkeypatch, number):
     assert len(result.failures) == 5
 
 
-def test_broken_packets_are_of_every_kind():
-    # With a small limit, few packets with a large length are decoded item by item.
-    plan = build_plan(lay_out(load_message("std_msgs/msg/Header")), max_message_bytes=1 << 12)
-    packet = bytes.fromhex("00010000 01000000 02000000 05000000 61626364 00")
-    cases = [Case(what="", value=None, packet=packet, transfers={})] * len(DAMAGES)
-    found = {}
-    for seed in range(40):
-        for each in broken_packets(plan, cases, random.Random(seed)):
-            found[each] = decode(plan, each).status
-    assert set(found.values()) == {
-        "OK",
-        "TRUNCATED",
-        "TRAILING",
-        "LENGTH",
-        "ENCAPSULATION",
-        "STRING",
-    }
-    sizes = {len(each) - len(packet) for each in found}
-    # One byte, a whole beat or more, added or removed; and changes that keep the size.
-    assert {-1, 0, 3, 4} <= sizes and min(sizes) < -8 and max(sizes) > 11
-    changed = [each for each in found if len(each) == len(packet)]
-    assert {sum(a != b for a, b in zip(each, packet, strict=True)) for each in changed} > {
-        0,
-        1,
-        2,
-        6,
-    }
-
-
-def test_all_kinds_of_damage_take_turns(monkeypatch):
-    plan = build_plan(lay_out(load_message("std_msgs/msg/Bool")))
-    kinds = [lambda *_, kind=kind: bytes([kind]) for kind in range(5)]
-    monkeypatch.setattr(damage, "DAMAGES", tuple(kinds))
-    cases = [Case(what="", value=None, packet=bytes(5), transfers={})] * 15
-    found = b"".join(broken_packets(plan, cases, random.Random(1)))
-    assert sorted(found[:5]) == [*range(5)] and found == found[:5] * 3
-
-
 def test_fault_in_the_golden_model_is_found(monkeypatch):
     original = acceptance.decode
 
@@ -276,28 +203,6 @@ def test_unknown_types_fail_and_say_how_to_repeat():
     assert result.command == (
         "firm-hdl verify --distro humble --bus-bytes 4 --seed 3 --no-stalls no_msgs/msg/Such"
     )
-
-
-def test_same_types_are_run_once():
-    tasks = collect_tasks(["humble", "jazzy"], ["sensor_msgs/Imu", "sensor_msgs/msg/Range"])
-    assert sorted((task.name, task.distro, task.same) for task in tasks) == [
-        ("sensor_msgs/msg/Imu", "jazzy", ("humble", "jazzy")),
-        ("sensor_msgs/msg/Range", "humble", ("humble",)),
-        ("sensor_msgs/msg/Range", "jazzy", ("jazzy",)),
-    ]
-
-
-def test_unknown_names_are_refused():
-    with pytest.raises(ValueError, match=r"^No distribution has no_msgs/msg/Such$"):
-        collect_tasks(["humble"], ["no_msgs/Such"])
-
-
-def test_processes_give_the_results_of_one():
-    tasks = collect_tasks(["humble"], [HEADER, "std_msgs/Bool"])
-    options = Options(most_cases=2)
-    one = {task.name: result.simulated_cycles for task, result in run_tasks(tasks, options, 1)}
-    two = {task.name: result.simulated_cycles for task, result in run_tasks(tasks, options, 2)}
-    assert one == two and len(one) == 2
 
 
 def test_command_reports_and_exits(capsys, monkeypatch):

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import pytest
 
-import firm_hdl.verify.ts3.confirm as references
+from firm_hdl.cases.make import make_cases
+from firm_hdl.cases.oracle import distro_oracle
 from firm_hdl.cli import main
 from firm_hdl.frontend import Library
-from firm_hdl.verify import Options, accept, distro_oracle, make_cases
-from firm_hdl.verify.references.choice import WRITERS, find_references, usable_references
-from firm_hdl.verify.references.client import ClientDiedError, Refusal, UnsupportedError
-from firm_hdl.verify.references.clients import CLIENTS, client
+from firm_hdl.verify.references.client import Refusal, UnsupportedError
+from firm_hdl.verify.references.clients import (
+    CLIENTS,
+    WRITERS,
+    client,
+    find_references,
+    usable_references,
+)
 from firm_hdl.verify.results.verdict import NotJudged
+from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.ts3.confirm import confirm
 from tests.tools import need
-from tests.verify.judged import NAN_KEY, assert_passed
+from tests.verify.judged import NAN_KEY, accept, assert_passed
 
 FAST_CDR = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
 CDR = (*FAST_CDR, "cyclonedds")
@@ -63,9 +67,9 @@ def test_a_library_that_disagrees_is_a_failure_with_both_names(monkeypatch, answ
 def test_result_names_the_references():
     result = accept("lyrical", "std_msgs/msg/Bool", SMALL)
     assert_passed(result)
-    assert result.written_by == CDR
+    assert result.written_by == ("rosbags", *CDR)
     none = accept("lyrical", "std_msgs/msg/Bool", Options(most_cases=2, references=()))
-    assert none.written_by == ()
+    assert none.written_by == ("rosbags",)
     assert none.command.endswith(" --reference none std_msgs/msg/Bool")
 
 
@@ -74,7 +78,7 @@ def test_known_divergence_of_a_reference_is_reported_by_its_key():
     options = Options(simulated=False, references=("cyclonedds",))
     result = accept("lyrical", "sensor_msgs/msg/Joy", options)
     assert assert_passed(result, (NAN_KEY,)) > 6
-    assert result.written_by == ("cyclonedds",)
+    assert result.written_by == ("rosbags", "cyclonedds")
 
 
 def test_known_divergence_hides_no_other(monkeypatch):
@@ -107,31 +111,17 @@ def test_named_reference_without_the_type_is_no_pass(monkeypatch):
     options = Options(most_cases=1, references=("fastcdr", "cyclonedds"))
     result = accept("lyrical", "std_msgs/msg/Bool", options)
     assert result.verdict == NotJudged("fastcdr has no such type")
-    assert result.written_by == ("cyclonedds",)
+    assert result.written_by == ("rosbags", "cyclonedds")
     assert_passed(accept("lyrical", "std_msgs/msg/Bool", Options(most_cases=1)))
-
-
-def test_unjudged_types_have_no_writer(capsys, make_wide):
-    arguments = ["verify", "--distro", "lyrical", "--jobs", "1", "--path", str(make_wide)]
-    assert main([*arguments, "--reference", "none", "p/msg/Wide"]) == 1
-    shown = capsys.readouterr().out
-    assert "not judged" in shown and "rosbags 1 types" not in shown
 
 
 def test_wide_text_is_judged_with_a_reference(tmp_path, make_wide):
     options = Options(most_cases=6, paths=(str(make_wide),))
     result = accept("lyrical", "p/msg/Wide", options)
     assert_passed(result)
-    assert result.written_by == FAST_CDR and result.cases == 6
+    assert result.written_by == ("rosbags", *FAST_CDR) and result.cases == 6
     alone = accept("lyrical", "p/msg/Wide", Options(paths=(str(make_wide),), references=()))
     assert alone.verdict == NotJudged("rosbags has no wstring, which p/msg/Wide.a is")
-
-
-def test_wide_text_needs_that_word(monkeypatch, make_wide):
-    monkeypatch.setattr(references, "usable_references", lambda wanted=None: ("fastcdr",))
-    monkeypatch.setattr(references, "WRITERS", {"fastcdr": ("ros1",)})
-    result = accept("lyrical", "p/msg/Wide", Options(most_cases=1, paths=(str(make_wide),)))
-    assert "fastcdr could not write wide text, which rosbags has not" in result.failures
 
 
 @pytest.fixture
@@ -143,12 +133,6 @@ def make_wide(tmp_path):
     return tmp_path
 
 
-def test_command_names_the_references(capsys):
-    arguments = ["verify", "--distro", "lyrical", "--jobs", "1", "--cases", "2"]
-    assert main([*arguments, "--reference", "fastcdr", "std_msgs/msg/Bool"]) == 0
-    assert "\nwire bytes: rosbags 1 types, fastcdr 1 types\n" in capsys.readouterr().out
-
-
 def test_missing_references_are_reported_or_an_error(capsys, monkeypatch):
     monkeypatch.setattr(CLIENTS["cyclonedds"], "missing", lambda self: "cyclonedds is not there")
     assert usable_references() == ("genpy", *FAST_CDR)
@@ -158,66 +142,3 @@ def test_missing_references_are_reported_or_an_error(capsys, monkeypatch):
     assert find_references(None, ["ros1"]) == []
     assert main(["verify", "--all", "--distro", "lyrical", "--reference", "cyclonedds"]) == 1
     assert capsys.readouterr().err == "error: cyclonedds is not there\n"
-
-
-def test_the_first_case_is_written_however_large_it_is(monkeypatch):
-    cases = cases_of("lyrical", "std_msgs/msg/String")
-    sizes = [len(case.packet) for case in cases]
-    for most, count in ((0, 1), (sizes[0], 1), (1 << 30, len(cases))):
-        monkeypatch.setattr(references, "MOST_BYTES", most)
-        assert references._sample(cases) == cases[:count]
-    # A packet that is too large leaves room for later ones.
-    small, large = SimpleNamespace(packet=b"1234"), SimpleNamespace(packet=bytes(9))
-    monkeypatch.setattr(references, "MOST_BYTES", 8)
-    assert references._sample([small, large, small, small]) == [small, small]
-    assert references._sample([large, small]) == [large]
-
-
-def test_a_known_difference_hides_no_other_packet(monkeypatch):
-    packets = [b"known", b"right", b"wrong", b"other", b"refused"]
-    written = [b"?", b"right", b"no", b"??", Refusal("it is odd")]
-    keys = {"known": ["one"], "other": ["two", "one"]}
-    codec = SimpleNamespace(encode_all=lambda values: written)
-    opened = SimpleNamespace(open=lambda message, wire: codec)
-    monkeypatch.setattr(references, "client", {"lib": opened}.__getitem__)
-    monkeypatch.setattr(
-        references, "known_writing", lambda message, wire, value, *_: keys.get(value)
-    )
-    values = [packet.decode() for packet in packets]
-    cases = [SimpleNamespace(what=f"case {n}", packet=each) for n, each in enumerate(packets)]
-    found, known = references._differences(None, "cdr", cases, values, "lib")
-    assert known == ["one", "two", "one"]
-    assert found == [
-        f"case 2: lib writes {b'no'.hex()}, rosbags writes {b'wrong'.hex()}",
-        f"case 4: lib refuses: it is odd, rosbags writes {b'refused'.hex()}",
-    ]
-
-
-def test_each_library_is_asked_whatever_became_of_another(monkeypatch):
-    answers = {
-        "dies": ClientDiedError("killed"),
-        "cannot": UnsupportedError(""),
-        "will not": UnsupportedError("it has no wstring"),
-        "differs": (["a difference"], ["key"]),
-        "agrees": ([], ["other"]),
-    }
-
-    def differences(message, wire, cases, values, name):
-        if isinstance(answers[name], Exception):
-            raise answers[name]
-        return answers[name]
-
-    monkeypatch.setattr(references, "_differences", differences)
-    monkeypatch.setattr(references, "usable_references", lambda wanted: ("of ROS 1", *answers))
-    monkeypatch.setattr(
-        references, "WRITERS", {**dict.fromkeys(answers, ("cdr",)), "of ROS 1": ("ros1",)}
-    )
-    found = confirm(Library("lyrical").message("std_msgs/msg/Bool"), "cdr", [])
-    assert found.by == ("differs", "agrees")
-    assert found.failures == ("dies broke down: killed", "a difference")
-    assert found.known == ("key", "other")
-    assert found.unable == {
-        "of ROS 1": "of ROS 1 has no wire 'cdr'",
-        "cannot": "cannot has no such type",
-        "will not": "it has no wstring",
-    }

@@ -1,7 +1,7 @@
 """TS3 on a few types that have every feature; `make verify` runs all types, with all cases.
 
-In `make test`, each type is either stalled or damaged, and of large ones only the plan is judged.
-Tests of the parser, and `test_random_definitions`, do both with other types.
+In `make test`, half of the types are judged, each is either stalled or damaged, and of large ones
+only the plan is judged. `test_random_definitions` does both with other types.
 
 The types are in ``covering/``. ``make cover`` selects them again after a change.
 """
@@ -19,9 +19,9 @@ from firm_hdl.covering.command import read_chosen
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
-from firm_hdl.verify import Options, accept
+from firm_hdl.verify.systems.options import Options
 from tests.depth import THOROUGH, by_depth
-from tests.verify.judged import NAN_KEY, assert_passed
+from tests.verify.judged import NAN_KEY, accept, assert_passed
 from tests.verify.ts3.stand_ins import STAND_INS, stand_in_package
 
 FOLDER = Path(__file__).parents[1] / "covering"
@@ -85,6 +85,7 @@ def options_of(distro: str, name: str) -> Options:
 @pytest.mark.parametrize(
     ("distro", "name"), [(distro, name) for distro in DISTROS for name in KEPT[distro]]
 )
+@pytest.mark.sampled(2)
 def test_a_covering_type_passes(distro, name):
     result = accept(distro, name, options_of(distro, name))
     known = KNOWN.get((distro, name), ())
@@ -99,6 +100,7 @@ def stand_ins(tmp_path_factory):
 @pytest.mark.parametrize(
     ("distro", "name"), [(distro, name) for distro in DISTROS for name in STAND_INS[distro]]
 )
+@pytest.mark.sampled(2)
 def test_a_small_type_with_features_of_large_ones_passes(stand_ins, distro, name):
     options = Options(bus_bytes=8, most_cases=by_depth(MOST_CASES, None), paths=(stand_ins,))
     result = accept(distro, f"stand_ins/msg/{name}", options)

@@ -7,8 +7,12 @@ from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.cases.effort import work_of
+from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.plan import build_plan
-from firm_hdl.verify import Options, Result, RosbagsOracle, accept_message
+from firm_hdl.verify.results.records import Test
+from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.system import Trial
+from firm_hdl.verify.ts3.acceptance import accept_message
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.strategies import BUS_WIDTHS, definitions
@@ -42,8 +46,8 @@ def test_random_types_pass(wire, definition, bus_bytes, seed):
     work = work_of(build_plan(layout, bus_bytes=bus_bytes), layout.min_bytes)
     assume(work <= MOST_WORK and work * bus_bytes <= MOST_WIDE_WORK)
     options = Options(bus_bytes=bus_bytes, wire=wire, seed=seed, most_cases=MOST_CASES)
-    result = Result(distro="", name=message.name)
+    trial = Trial.of(Test(system="ts3", distro="", type=message.name))
     oracle = RosbagsOracle(definition.store(), message.dialect)
-    accept_message(message, oracle, definition.rosbags_name, options, result)
-    assert set(result.known) <= {NAN_KEY, TIME_KEY}
-    assert_passed(result, result.known)
+    accept_message(message, oracle, definition.rosbags_name, options, trial)
+    assert set(trial.known) <= {NAN_KEY, TIME_KEY}
+    assert_passed(trial, trial.known)

@@ -2,33 +2,22 @@
 
 from __future__ import annotations
 
-import json
-import multiprocessing
-import re
-import signal
-import time
-
 import pytest
 
 import firm_hdl.verify.ts3.acceptance as acceptance
 from firm_hdl.cli import main
-from firm_hdl.verify import Options, accept, collect_tasks
 from firm_hdl.verify.results.file import read_results
-from firm_hdl.verify.ts3.result import record_of, same_circuits, test_of
-from tests.verify.judged import assert_passed, without_times
+from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.tasks import collect_tasks
+from tests.verify.judged import accept, assert_passed
 
 pytestmark = pytest.mark.usefixtures("same_circuit")
 
-TYPES = [f"std_msgs/msg/{name}" for name in ("Bool", "Empty", "Int16", "Char")]
 FAST = ["--jobs", "1", "--cases", "3", "--distro", "humble"]
 
 
 def verify(*arguments):
     return main(["verify", *FAST, *arguments])
-
-
-def outcomes(path):
-    return {key: without_times(record) for key, record in read_results(path).records.items()}
 
 
 def task_of(name):
@@ -37,8 +26,8 @@ def task_of(name):
 
 
 def test_records_have_all_results():
-    task, options = task_of("std_msgs/msg/Header"), Options()
-    record = record_of(task, accept("humble", task.name, options), options)
+    name = "std_msgs/msg/Header"
+    record = accept("humble", name)
     assert assert_passed(record) >= 2 * record.cases
     assert record.test.key == "ts3 python humble std_msgs/msg/Header cdr/8 seed=0"
     assert record.cases and record.packets > record.cases and record.cycles > record.beats > 0
@@ -47,19 +36,17 @@ def test_records_have_all_results():
     assert min(record.seconds.generation, record.seconds.simulation, record.seconds.testing) > 0
     assert record.cpu_seconds > 0 and len(record.shape) == 16
     assert record.metrics["leaves"] == 3 and record.metrics["steps"] > 0
-    assert record.command == "firm-hdl verify --distro humble --bus-bytes 8 --seed 0 " + task.name
-    assert record.waveform_command == record.command.replace(
-        task.name, f"--vcd waveforms {task.name}"
-    )
+    assert record.command == "firm-hdl verify --distro humble --bus-bytes 8 --seed 0 " + name
+    assert record.waveform_command == record.command.replace(name, f"--vcd waveforms {name}")
 
 
 def test_decisions_that_few_cases_do_not_take_are_named():
-    task, options = task_of("sensor_msgs/msg/JointState"), Options(most_cases=1, stalled=False)
-    record = record_of(task, accept("humble", task.name, options), options)
+    options = Options(most_cases=1, stalled=False)
+    record = accept("humble", "sensor_msgs/msg/JointState", options)
     assert record.coverage.taken < record.coverage.possible
     assert len(record.coverage.missing) == record.coverage.possible - record.coverage.taken
     assert any("padding" in each for each in record.coverage.missing)
-    assert test_of(task, options).options == "seed=0,cases=1,no-stalls"
+    assert record.test.options == "seed=0,cases=1,no-stalls"
 
 
 def test_wrong_answer_to_a_bare_string_is_found(monkeypatch):
@@ -98,35 +85,9 @@ def test_results_of_another_run_are_refused(tmp_path, capsys):
     assert "Traceback" not in output
 
 
-def test_results_of_other_code_are_refused(tmp_path, capsys, monkeypatch):
-    path = tmp_path / "r.jsonl"
-    assert verify("--results", str(path), "std_msgs/Bool") == 0
-    monkeypatch.setattr("firm_hdl.verify.run.code_digest", lambda: "other")
-    assert verify("--results", str(path), "std_msgs/Bool") == 1
-    assert re.search(r'code was "[0-9a-f]{12}", and is "other"', capsys.readouterr().err)
-
-
-def test_report_is_written_with_the_results(tmp_path, capsys):
-    path, report = tmp_path / "r.jsonl", tmp_path / "r.json"
-    assert verify("--results", str(path), "--report", str(report), "std_msgs/Bool") == 0
-    assert json.loads(report.read_text())["counts"]["passed"] == 1
-    assert f"wrote   {report}" in capsys.readouterr().out
-
-
 @pytest.mark.parametrize(
-    ("arguments", "output"),
-    [
-        (["--report", "r.html"], "--report needs --results"),
-        (["--executor", "x"], "executor must be 'processes' or 'dask://HOST:PORT', not 'x'"),
-    ],
+    "more", [[], pytest.param(["--simulator", "iverilog"], marks=pytest.mark.thorough)]
 )
-def test_wrong_calls_are_refused(arguments, output, capsys):
-    with pytest.raises(SystemExit) as caught:
-        verify(*arguments, "std_msgs/Bool")
-    assert caught.value.code == 2 and output in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("more", [[], ["--simulator", "iverilog"]])
 def test_waveforms_are_written(tmp_path, request, more):
     if more:
         request.getfixturevalue("iverilog")
@@ -139,13 +100,6 @@ def test_waveforms_are_written(tmp_path, request, more):
 
 # Both are a sequence of elements with the same layout.
 TWINS = ["geometry_msgs/msg/Point", "geometry_msgs/msg/Vector3"]
-
-
-def test_same_circuits_are_found():
-    tasks = collect_tasks(["humble"], [*TWINS, "std_msgs/msg/Bool"])
-    assert [(a.name, b.name) for a, b in same_circuits(tasks, Options()).items()] == [
-        (TWINS[1], TWINS[0])
-    ]
 
 
 def test_same_circuits_are_simulated_once(tmp_path, capsys):
@@ -182,18 +136,3 @@ def test_circuit_that_fails_fails_all_that_have_it(tmp_path, monkeypatch, capsys
     monkeypatch.setattr(acceptance, "run_differences", lambda *given: ["hardware: no"])
     assert verify("--results", str(path), "--share-circuits", *TWINS) == 1
     assert "humble      0 of    2 types pass" in capsys.readouterr().out
-
-
-def test_command_that_was_killed_goes_on_and_ends_the_same(tmp_path):
-    whole, killed = tmp_path / "whole", tmp_path / "killed"
-    assert verify("--results", str(whole), *TYPES) == 0
-    process = multiprocessing.Process(target=verify, args=("--results", str(killed), *TYPES))
-    process.start()
-    while process.is_alive():
-        if killed.exists() and killed.read_bytes().count(b'{"record"') >= 2:
-            process.kill()
-        time.sleep(0.01)
-    before = outcomes(killed)
-    assert process.exitcode == -signal.SIGKILL and 2 <= len(before) < len(TYPES)
-    assert verify("--results", str(killed), *TYPES) == 0
-    assert outcomes(killed) == outcomes(whole) and len(outcomes(whole)) == len(TYPES)

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
-from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.verify import Options
-from firm_hdl.verify.systems.tasks import UnknownTypeError
-from firm_hdl.verify.ts3 import recording
-from firm_hdl.verify.ts3.recording import Selection, Topic, collect_recorded, select, topics_of
+from firm_hdl.errors import DefinitionError
+from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.tasks import TypeUnderTest, UnknownTypeError
+from firm_hdl.verify.ts3.recording import Selection, collect_recorded, select, topics_of
 from firm_hdl.verify.ts3.replay import replay
+from firm_hdl.verify.ts3.task import test_of
 from tests.recordings.files import Channel, write_mcap
 from tests.tools import need
 from tests.verify.judged import assert_passed
@@ -132,13 +131,6 @@ def test_messages_are_numbered_by_their_times(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
-def test_a_topic_without_messages_is_not_counted(tmp_path: Path) -> None:
-    messages = [("/a", STRING, number, bytes(5)) for number in range(2)]
-    topics = topics_of(str(write(tmp_path / "run", "mcap", messages, [("/never", STRING)])))
-    found = select(topics, most=9, longest=9)
-    assert (len(topics), found.topics, found.total) == (2, 1, 2)
-
-
 def test_types_of_all_recordings_are_found_once(tmp_path: Path) -> None:
     one = str(counted(tmp_path / "one", {"/a": [5], "/b": [5]}))
     two = str(write(tmp_path / "two", "mcap", [], [("/c", "std_msgs/msg/Bool")]))
@@ -155,48 +147,6 @@ def test_types_of_all_recordings_are_found_once(tmp_path: Path) -> None:
     wheels = ("my_msgs/msg/Wheels", "my_msgs/msg/Wheel")
     with pytest.raises(UnknownTypeError, match=r"^There is no topic of my_msgs/msg/Wheel, only"):
         collect_recorded(None, wheels, [three], wire=None, problems={})
-
-
-@pytest.mark.parametrize("names", [(), ("p/msg/Good",)])
-def test_what_is_wrong_with_other_types_is_kept(
-    monkeypatch: pytest.MonkeyPatch, names: tuple[str, ...]
-) -> None:
-    wrong = {
-        "p/msg/Bad": [Diagnostic(message="it is bad"), Diagnostic(message="it is odd")],
-        "p/msg/Worse": [Diagnostic(message="it is worse")],
-    }
-
-    def message(kind: str) -> object:
-        if kind in wrong:
-            raise DefinitionError(wrong[kind])
-        return SimpleNamespace(name=kind)
-
-    library = SimpleNamespace(distro="lyrical", dialect="ros2", message=message, unusable={})
-    topics = [
-        Topic(bag="b", name=f"/{n}", type=n, encoding="cdr", digest="")
-        for n in (*wrong, "p/msg/Good")
-    ]
-    monkeypatch.setattr(recording, "open_library", lambda distro, *, bags, depends: library)
-    monkeypatch.setattr(recording, "topics_of", lambda bag: topics)
-    monkeypatch.setattr(recording, "too_large", lambda message: [])
-    before = Diagnostic(message="it was before")
-    problems = {str(before): before}
-    (task,) = collect_recorded(None, names, ["b"], wire=None, problems=problems)
-    assert task.name == "p/msg/Good"
-    # A type that nobody asked for is no error of those that were asked for.
-    expected = [] if names else [each for found in wrong.values() for each in found]
-    assert list(problems.values()) == [before, *expected]
-    assert list(problems) == [str(each) for each in problems.values()]
-    with pytest.raises(DefinitionError, match="it is bad"):
-        collect_recorded(None, ["p/msg/Bad"], ["b"], wire=None, problems={})
-    # A type that is too large is an error if it is named. Otherwise it is not judged.
-    large = Diagnostic(message="it is large")
-    monkeypatch.setattr(recording, "too_large", lambda message: [large])
-    if names:
-        with pytest.raises(DefinitionError, match="it is large"):
-            collect_recorded(None, names, ["b"], wire=None, problems={})
-    else:
-        assert collect_recorded(None, names, ["b"], wire=None, problems={}) == [task]
 
 
 def test_recordings_without_messages_have_none(tmp_path: Path) -> None:
@@ -235,8 +185,8 @@ def test_file_of_another_library_is_replayed(tmp_path: Path) -> None:
             values = {"header": header, "values": [0.5] * number, "name": "abc"[: number % 4]}
             writer.write_message("/values", schema, values, log_time=number)
         writer.finish()
-    result = replay(
-        "lyrical", "own_msgs/msg/Values", Options(bags=(str(tmp_path / "own.mcap"),), stalled=False)
-    )
+    options = Options(bags=(str(tmp_path / "own.mcap"),), stalled=False)
+    task = TypeUnderTest(distro="lyrical", name="own_msgs/msg/Values", same=("lyrical",))
+    result = replay(options, test_of(task, options))
     assert_passed(result)
     assert result.note.startswith("7 of 7 messages of 1 topic replayed")

@@ -13,12 +13,12 @@ import firm_hdl.verify.ts3.circuit as circuit
 import firm_hdl.verify.ts3.replay as replay_module
 from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.cli import main
-from firm_hdl.frontend import Library
 from firm_hdl.gateware import Deserializer, Serializer
-from firm_hdl.verify import Options
 from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.ts3.recording import Topic
+from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3.replay import replay
+from firm_hdl.verify.ts3.task import test_of
 from tests.frontend.recordings import make_old_db3
 from tests.frontend.workspace import make_files
 from tests.recordings.files import Channel, write_db3, write_mcap
@@ -45,7 +45,9 @@ def strings(tmp_path, *packets, name=STRING, topic="/text", form="mcap"):
 
 
 def replayed(bag, name=STRING, distro="lyrical", **options):
-    return replay(distro, name, Options(bags=(str(bag),), **options))
+    given = Options(bags=(str(bag),), **options)
+    task = TypeUnderTest(distro=distro, name=name, same=(distro,))
+    return replay(given, test_of(task, given))
 
 
 def test_events_are_replayed_and_topics_that_cannot_be_are_named(capsys, tmp_path):
@@ -94,8 +96,7 @@ def test_types_that_a_recording_lacks_come_from_a_distribution_and_a_folder(caps
     assert "type 'p/msg/B', but not its definition: none was recorded; " in output.out
     assert "humble      2 of    2 types pass" in output.out
     # What repeats a test names the folder, too.
-    options = Options(bags=(str(bag),), depends=(str(folder),))
-    command = replay("humble", "p/msg/B", options).command
+    command = replayed(bag, "p/msg/B", "humble", depends=(str(folder),)).command
     assert command.startswith(f"firm-hdl verify --distro humble --depends {folder} --bag {bag} ")
     status, output = run(capsys, "--bag", bag, *given, "p/msg/B")
     assert status == 1 and "name a folder that has it with --depends" in output.err
@@ -130,13 +131,6 @@ def test_every_packet_is_sent_twice_and_its_decisions_are_counted(tmp_path):
     assert (result.cases, result.packets) == (6, 12)
     assert result.coverage is not None and result.coverage.taken > 0
     assert result.beats == sum(-(-len(each[3]) // 8) for each in robot("mcap") if "/wheels" in each)
-
-
-def test_exported_vhdl_replays_recordings(ghdl, capsys, tmp_path):
-    bag = write(tmp_path / "run", "mcap", robot("mcap", 3))
-    status, output = run(capsys, "--bag", bag, "--simulator", "ghdl", STRING)
-    assert status == 0
-    assert "ghdl: 1 of 1 types the same in every cycle; " in output.out
 
 
 class InvertedBit(BadLeaf):
@@ -189,7 +183,7 @@ def test_oracle_that_reads_another_byte_disagrees(monkeypatch, tmp_path):
 def test_a_partly_unreadable_message_is_judged_by_its_readable_parts(monkeypatch, tmp_path):
     latin = TEXT[:9] + b"\xff" + TEXT[10:]
     bag = strings(tmp_path, latin)
-    assert replayed(bag).failures == []
+    assert not replayed(bag).failures
     original = RosbagsOracle.read
 
     def read(self, packet, name, wire):
@@ -334,18 +328,6 @@ def test_topics_with_another_definition_are_left_out(tmp_path):
     )
 
 
-def test_a_topic_without_a_digest_has_the_definition_of_the_others(monkeypatch):
-    def topic(name, digest):
-        return Topic(bag="b", name=name, type=STRING, encoding="cdr", digest=digest)
-
-    topics = [topic("/a", ""), topic("/b", "RIHS01_1"), topic("/c", ""), topic("/d", "RIHS01_2")]
-    monkeypatch.setattr(replay_module, "topics_of", lambda bag: topics)
-    library = Library("lyrical")
-    mine, lines = replay_module._topics(library.message(STRING), library, ["b"])
-    assert mine == topics[:3]
-    assert lines == ["/d left out: its definition is another one (RIHS01_2)"]
-
-
 def test_long_messages_are_left_out_and_counted(tmp_path):
     long = TEXT[:4] + struct.pack("<I", 201) + b"x" * 200 + b"\0"
     bag = strings(tmp_path, TEXT, long, TEXT)
@@ -362,54 +344,6 @@ def test_long_messages_are_left_out_and_counted(tmp_path):
 def strings_again(tmp_path, *packets):
     (tmp_path / "again").mkdir()
     return strings(tmp_path / "again", *packets)
-
-
-def test_converters_have_room_for_the_longest_message(monkeypatch, tmp_path):
-    def packet(size):
-        return TEXT[:4] + struct.pack("<I", size - 8) + b"x" * (size - 9) + b"\0"
-
-    bag = strings(tmp_path, packet(512), packet(100))
-    # The default is 64 KiB, which takes long to simulate.
-    monkeypatch.setattr(replay_module, "MAX_MESSAGE_BYTES", 64)
-    assert_passed(replayed(bag))
-    monkeypatch.setattr(replay_module, "_room", lambda longest: longest - 1)
-    assert any("status LENGTH" in failure for failure in replayed(bag).failures)
-
-
-def test_more_than_simulates_in_a_minute_is_left_out_unless_asked_for(monkeypatch, tmp_path):
-    bag = strings(tmp_path, *[TEXT] * 20)
-    # A few leaves count as 8, so the limit is 7 beats: 56 bytes.
-    monkeypatch.setattr(replay_module, "MOST_WORK", 60)
-    assert replayed(bag).note == (
-        "4 of 20 messages of 1 topic replayed; more would take long, --cases N takes N"
-    )
-    assert replayed(bag, most_cases=20).note == "20 of 20 messages of 1 topic replayed"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "output"),
-    [
-        (["--path", "."], "argument --bag: not allowed with argument --path"),
-        (["--systems", "ts2,ts3"], "--bag requires --systems ts3"),
-        (["--sut", "rosbags"], "--bag is for firm-hdl's own converters, not for --sut"),
-        (["--share-circuits"], "--bag replays the messages of each type: not with"),
-        (["--distro", "humble", "--distro", "iron"], "--bag takes one --distro"),
-        (["--all", STRING], "name types, or all of them with --all"),
-        (["--max-message-bytes", "0"], "must be from 1 to 2147483647, not 0"),
-    ],
-)
-def test_wrong_calls_are_refused(capsys, arguments, output):
-    with pytest.raises(SystemExit) as left:
-        main(["verify", "--bag", "none.bag", *arguments])
-    assert left.value.code == 2
-    assert output in capsys.readouterr().err
-
-
-def test_longest_message_is_of_recordings(capsys):
-    with pytest.raises(SystemExit) as left:
-        main(["verify", STRING, "--max-message-bytes", "5"])
-    assert left.value.code == 2
-    assert "--max-message-bytes needs --bag" in capsys.readouterr().err
 
 
 def test_unusable_recordings_are_an_error(capsys, tmp_path):
