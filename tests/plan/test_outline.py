@@ -65,6 +65,15 @@ def test_lengths_and_their_limits_stay(wire, bus_bytes):
     assert names[0] == names[1]
 
 
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+def test_padding_within_the_first_element_of_a_loop(bus_bytes):
+    element = make("ros2", {"a": "float32", "b": "string"}, "Element")
+    _, short = plans_of(
+        message_of("p/msg/T", a=UINT8, b=Array(element=element, count=1)), "cdr", bus_bytes
+    )
+    assert check(short) == []
+
+
 @pytest.mark.parametrize(
     ("name", "bus_bytes", "steps", "short"),
     [
