@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.frontend import load_message
-from firm_hdl.model import Array, Field, Message, Sequence
+from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence
 from firm_hdl.plan import build_plan, check, decode, encode
 from firm_hdl.plan.outline import outline
 from firm_hdl.sim.values import to_transfers
@@ -22,6 +22,9 @@ slow = settings(
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
+
+
+UINT8 = PRIMITIVES["ros1"]["uint8"]
 
 
 def plans_of(message, wire, bus_bytes, **options):
