@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from firm_hdl.frontend import load_message
 from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence
-from firm_hdl.plan import build_plan, check, decode, encode
+from firm_hdl.plan import RunStep, build_plan, check, decode, encode
 from firm_hdl.plan.outline import outline
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out, walk
-from firm_hdl.wire.layout import LoopNode, Trigger
+from firm_hdl.wire.layout import LoopNode, RunNode, Scalar, Trigger
 from tests.depth import by_depth
 from tests.plan.test_random_messages import damaged, typed_values
 from tests.strategies import BUS_WIDTHS, make
@@ -90,6 +90,47 @@ def test_padding_within_the_first_element_of_a_loop(bus_bytes):
 def test_bytes_between_lengths_take_few_steps(name, bus_bytes, steps, short):
     plans = plans_of(load_message(name), "cdr", bus_bytes)
     assert [len(plan.steps) for plan in plans] == [steps, short]
+
+
+def test_an_array_of_messages_is_bytes_if_its_padding_is_fixed():
+    pair = message_of("p/Pair", a=PRIMITIVES["ros1"]["uint32"], b=UINT8)
+    message = message_of("p/Many", x=UINT8, pairs=Array(element=pair, count=1000), y=UINT8)
+    layout = lay_out(message, "ros1")
+    assert [type(node) for node in outline(layout, 8).nodes] == [RunNode, RunNode]
+    assert sum(node.length.count for node in outline(layout, 8).nodes) == 1 + 1000 * 5 + 1
+    # 3 bytes of padding before the first element, and 3 between two elements.
+    layout = lay_out(message, "cdr")
+    assert sum(node.length.count for node in outline(layout, 8).nodes) == 1 + 1000 * 8 + 1
+    _, short = plans_of(message, "cdr", 8)
+    assert sum(isinstance(step, RunStep) for step in short.steps) == 1
+    assert decode(short, b"\0\1\0\0" + bytes(8002)).status == "OK"
+    assert decode(short, b"\0\1\0\0" + bytes(8001)).status == "TRUNCATED"
+
+
+AHEAD = make("ros2", {"x": "uint32", "y": "uint8"}, "Ahead")
+
+
+INSIDE = make("ros2", {"y": "uint8", "x": "uint32"}, "Inside")
+
+
+@pytest.mark.parametrize(
+    ("element", "count", "kinds"),
+    [
+        # Only the padding before the one element differs: a number that has it, and a byte.
+        (AHEAD, 1, [RunNode, Scalar, RunNode]),
+        # The padding before the second element is another one.
+        (AHEAD, 2, [RunNode, LoopNode]),
+        # The padding inside an element differs.
+        (INSIDE, 1, [RunNode, LoopNode]),
+        (INSIDE, 2, [RunNode, LoopNode]),
+    ],
+)
+def test_padding_that_differs_stays_where_it_is(element, count, kinds):
+    message = make("ros2", {"s": "string", "p": (element, f"[{count}]")})
+    nodes = outline(lay_out(message), 8).nodes
+    assert [type(node) for node in nodes] == kinds
+    _, short = plans_of(message, "cdr", 8)
+    assert check(short) == []
 
 
 def test_four_bus_words_of_bytes_share_a_step_with_the_length_after_them():
