@@ -124,8 +124,12 @@ A, B = bytes(range(16)), b"abcd"
         ([*map(frame, (1000, 990, 991, 992))], [1000], {"late": 3}),
         # All of its frames are dropped.
         (
-            [frame(9), frame(500, A, **FIRST), frame(500, B, **SECOND), frame(501, A, **FIRST)]
-            + [frame(501, B, **SECOND), frame(502)],
+            [
+                frame(9),
+                *(frame(500, A, **FIRST), frame(500, B, **SECOND)),
+                *(frame(501, A, **FIRST), frame(501, B, **SECOND)),
+                frame(502),
+            ],
             [9, 501, 502],
             {"late": 1, "stray": 1, "lost": 491},
         ),
