@@ -28,6 +28,9 @@ extensions = [
 ]
 exclude_patterns = ["packages", "nodes", "figures"]
 
+# Blocks without a language are pictures and output.
+highlight_language = "none"
+
 html_theme = "furo"
 html_title = f"firm-hdl {release}"
 html_static_path = ["_static"]

@@ -80,9 +80,9 @@ def _node(args: argparse.Namespace) -> None:
     description = read_description(args.file, paths=args.path)
     try:
         if args.action == "info" and description.accelerator:
-            from firm_hdl.node.accelerator import load_accelerator
+            from firm_hdl.node.accelerator import elaborate_accelerator, load_accelerator
 
-            load_accelerator(description)
+            elaborate_accelerator(description, load_accelerator(description), None)
             _leave_unused()
         _act(args, description)
     except DefinitionError:

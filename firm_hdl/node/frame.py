@@ -54,8 +54,8 @@ FLAG_START = 1 << 1
 """The sender has started: the sequence begins with this message, so nothing before it is lost."""
 
 LATE_MESSAGES = 64
-"""A message is late if its number is at most so many before the next one that is expected. Of a
-number that is further away, a host waits for the next one before it believes it."""
+"""A message is late if its number is at most so many before the next one that is expected. A
+number that is further away is believed when the next one follows."""
 
 FRAGMENT_UNIT = 16
 """All fragments but the last one of a message have a multiple of so many bytes, so that they fill

@@ -198,6 +198,9 @@ class MessageReceiver:
     counters : FrameCounters
     expected : int or None
         Number of the next message, once one has come.
+    jumped : int
+        What the last number that was more than 64 ahead has added to `counters.lost`. It is no
+        loss if the sender had started again. Who knows that it had not sets this to 0.
     """
 
     def __init__(
@@ -212,6 +215,7 @@ class MessageReceiver:
         self.expected: int | None = None
         # The number that would confirm a message whose number was far from the expected one.
         self._confirms: int | None = None
+        self.jumped = 0
         self.counters = FrameCounters()
 
     def take(self, frame: bytes) -> NodeMessage | None:
@@ -249,6 +253,15 @@ class MessageReceiver:
         self.counters.lost += distance(sequence, self.expected)
         self.expected = sequence
 
+    def doubt(self) -> None:
+        """Do not believe a number that is far away, although the next one may follow."""
+        self._confirms = None
+
+    def take_back(self) -> None:
+        """Count no gap for the last jump: the sender had started again."""
+        self.counters.lost -= self.jumped
+        self.jumped = 0
+
     def _ahead(self, header: Header) -> int:
         """Return how many messages are missing before one; negative if it is late."""
         if self.expected is None or header.start:
@@ -282,6 +295,8 @@ class MessageReceiver:
             self._confirms = following
             return False
         # Behind is a new sequence. Of that, only the message that was not believed is missing.
+        if ahead > LATE_MESSAGES:
+            self.jumped = ahead - 1
         self.counters.lost += ahead if ahead >= 0 else 1
         self.counters.passed += 1
         self.expected, self._confirms = following, None

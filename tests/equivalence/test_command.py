@@ -10,7 +10,7 @@ import pytest
 from firm_hdl.cli import main
 from firm_hdl.equivalence import Proof, Tools, command, converters, tools
 from firm_hdl.equivalence.converters import Attempt, ProofTask
-from firm_hdl.jobs import programs
+from firm_hdl.jobs import ToolError, programs
 
 TASK = ProofTask(distro="lyrical", name="a/msg/B", direction="serializer")
 EQUAL = Attempt(proof=Proof(result="equal", registers=1, claims=1, seconds=1.0))
@@ -109,6 +109,30 @@ def test_missing_tools_are_named_with_the_command_that_installs_them(
     stderr = capsys.readouterr().err
     assert "GHDL is not installed" in stderr and "apt install ghdl-mcode" in stderr
     assert "pip install 'firm-hdl[prove]'" in stderr
+
+
+@pytest.mark.usefixtures("tools")
+def test_yosys_is_made_ready_before_any_proof(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    runs = []
+
+    def run(command: object, timeout: float) -> str:
+        runs.append((command, timeout))
+        raise ToolError("it is broken")
+
+    monkeypatch.setattr(programs, "run_tool", run)
+    monkeypatch.setattr(programs, "find_package", lambda name: object())
+    tools.find_tools.cache_clear()
+    try:
+        assert main(["prove", "std_msgs/msg/Bool", "std_msgs/msg/Int8"]) == 1
+    finally:
+        tools.find_tools.cache_clear()
+    assert capsys.readouterr().err == "error: Yosys failed: it is broken\n"
+    # The first run compiles WebAssembly for a minute or more, if Yosys is that of YoWASP.
+    ((command_line, timeout),) = runs
+    assert "native_yosys.py" in command_line[-2]
+    assert (command_line[-1], timeout) == ("-V", 3600.0)
 
 
 def test_types_or_all(capsys: pytest.CaptureFixture[str]) -> None:

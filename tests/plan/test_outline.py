@@ -7,12 +7,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from firm_hdl.frontend import load_message
-from firm_hdl.model import Array, Field, Message, Sequence
-from firm_hdl.plan import build_plan, check, decode, encode
+from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence
+from firm_hdl.plan import RunStep, build_plan, check, decode, encode
 from firm_hdl.plan.outline import outline
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out, walk
-from firm_hdl.wire.layout import LoopNode, Trigger
+from firm_hdl.wire.layout import LoopNode, RunNode, Scalar, Trigger
 from tests.depth import by_depth
 from tests.plan.test_random_messages import damaged, typed_values
 from tests.strategies import BUS_WIDTHS, make
@@ -22,6 +22,9 @@ slow = settings(
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
+
+
+UINT8 = PRIMITIVES["ros1"]["uint8"]
 
 
 def plans_of(message, wire, bus_bytes, **options):
@@ -65,6 +68,15 @@ def test_lengths_and_their_limits_stay(wire, bus_bytes):
     assert names[0] == names[1]
 
 
+@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+def test_padding_within_the_first_element_of_a_loop(bus_bytes):
+    element = make("ros2", {"a": "float32", "b": "string"}, "Element")
+    _, short = plans_of(
+        message_of("p/msg/T", a=UINT8, b=Array(element=element, count=1)), "cdr", bus_bytes
+    )
+    assert check(short) == []
+
+
 @pytest.mark.parametrize(
     ("name", "bus_bytes", "steps", "short"),
     [
@@ -78,6 +90,47 @@ def test_lengths_and_their_limits_stay(wire, bus_bytes):
 def test_bytes_between_lengths_take_few_steps(name, bus_bytes, steps, short):
     plans = plans_of(load_message(name), "cdr", bus_bytes)
     assert [len(plan.steps) for plan in plans] == [steps, short]
+
+
+def test_an_array_of_messages_is_bytes_if_its_padding_is_fixed():
+    pair = message_of("p/Pair", a=PRIMITIVES["ros1"]["uint32"], b=UINT8)
+    message = message_of("p/Many", x=UINT8, pairs=Array(element=pair, count=1000), y=UINT8)
+    layout = lay_out(message, "ros1")
+    assert [type(node) for node in outline(layout, 8).nodes] == [RunNode, RunNode]
+    assert sum(node.length.count for node in outline(layout, 8).nodes) == 1 + 1000 * 5 + 1
+    # 3 bytes of padding before the first element, and 3 between two elements.
+    layout = lay_out(message, "cdr")
+    assert sum(node.length.count for node in outline(layout, 8).nodes) == 1 + 1000 * 8 + 1
+    _, short = plans_of(message, "cdr", 8)
+    assert sum(isinstance(step, RunStep) for step in short.steps) == 1
+    assert decode(short, b"\0\1\0\0" + bytes(8002)).status == "OK"
+    assert decode(short, b"\0\1\0\0" + bytes(8001)).status == "TRUNCATED"
+
+
+AHEAD = make("ros2", {"x": "uint32", "y": "uint8"}, "Ahead")
+
+
+INSIDE = make("ros2", {"y": "uint8", "x": "uint32"}, "Inside")
+
+
+@pytest.mark.parametrize(
+    ("element", "count", "kinds"),
+    [
+        # Only the padding before the one element differs: a number that has it, and a byte.
+        (AHEAD, 1, [RunNode, Scalar, RunNode]),
+        # The padding before the second element is another one.
+        (AHEAD, 2, [RunNode, LoopNode]),
+        # The padding inside an element differs.
+        (INSIDE, 1, [RunNode, LoopNode]),
+        (INSIDE, 2, [RunNode, LoopNode]),
+    ],
+)
+def test_padding_that_differs_stays_where_it_is(element, count, kinds):
+    message = make("ros2", {"s": "string", "p": (element, f"[{count}]")})
+    nodes = outline(lay_out(message), 8).nodes
+    assert [type(node) for node in nodes] == kinds
+    _, short = plans_of(message, "cdr", 8)
+    assert check(short) == []
 
 
 def test_four_bus_words_of_bytes_share_a_step_with_the_length_after_them():

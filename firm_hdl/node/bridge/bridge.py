@@ -56,7 +56,8 @@ class Bridge:
     board : Board
     graph : Graph
         It is joined once the board has answered for the first time, so that peers find a node that
-        works.
+        works. One that ends is also joined when the board has said nothing for its
+        `silent_seconds`, so that the bridge ends with it.
     report : callable or None
         Takes a line of text for people when something happens, such as a board that is gone.
 
@@ -97,6 +98,8 @@ class Bridge:
         self.was_stopped = self._has_graph = False
         self._graph_retry = Retry(*RETRY_SECONDS)
         self._next_check = 0.0
+        # From when on a graph that ends does not wait for a board that has never answered.
+        self._waits_until = float("inf")
         self._wake_receiver, self._wake_sender = socket.socketpair()
         for each in (self._wake_receiver, self._wake_sender):
             each.setblocking(False)
@@ -242,7 +245,7 @@ class Bridge:
     # The graph.
 
     def _care_for_graph(self, now: float) -> None:
-        if not self.was_ready:
+        if not self._may_join():
             return
         try:
             if not self._has_graph:
@@ -259,6 +262,14 @@ class Bridge:
                     self._report(f"graph {self.graph.name}: {line}")
         except GraphError as error:
             self._lose_graph(str(error))
+
+    def _may_join(self) -> bool:
+        """Return whether it is time to join the graph."""
+        # To open a simulation takes as long as to compile it.
+        now = time.monotonic()
+        if self.graph.ends and self.side.was_tried and self._waits_until == float("inf"):
+            self._waits_until = now + self.board.silent_seconds
+        return self.was_ready or now >= self._waits_until
 
     def _lose_graph(self, why: str) -> None:
         self._has_graph = False
@@ -371,7 +382,9 @@ class Bridge:
 
     def _next_due(self) -> float:
         found = self.side.next_due()
-        if self.was_ready and not self._has_graph:
+        if not self._has_graph and not self.was_ready:
+            found = min(found, self._waits_until)
+        elif not self._has_graph:
             found = min(found, self._graph_retry.at)
         oldest = self._queue.oldest()
         if oldest is not None and not self.side.has_room:

@@ -57,7 +57,7 @@ def run_bridge(
     ------
     UserError, DefinitionError
         If board or graph cannot be used, if the board has another description, or if it has not
-        answered in `seconds`.
+        answered in `seconds`, or until the graph has ended.
     """
     joined = graph_of(graph, description, domain=domain, interface=interface)
     status = Status(sys.stderr, quiet=quiet)
@@ -93,7 +93,8 @@ def run_bridge(
         for line in account(bridge):
             status.report(line)
     if not (bridge.was_ready or bridge.was_stopped):
-        raise UserError(f"the board {board} did not answer in {seconds:g} s")
+        within = "" if seconds is None else f" in {seconds:g} s"
+        raise UserError(f"the board {board} did not answer{within}")
 
 
 def _engine(name: EngineName) -> str:

@@ -390,6 +390,9 @@ class Session:
         if starts:
             self._suspect(now)
             self._new_starts = True
+        if self.may_be_new:
+            # What comes may be of the new sequence, whose numbers can also be ahead.
+            self._receiver.doubt()
         late = self._receiver.counters.late
         message = None if starts else self._receiver.take(frame)
         self._late += self._receiver.counters.late - late
@@ -423,6 +426,8 @@ class Session:
         if self._new is None or asked.at < self._suspected:
             if ahead < 0 or was_reset:
                 self._suspect(now)
+            elif self._follows(header):
+                self._receiver.jumped = 0
             return
         new, self._new, self._late = self._new, None, 0
         messages, self._new_messages = self._new_messages, []
@@ -432,12 +437,18 @@ class Session:
             return
         if ahead >= 0 and not was_reset:
             return
+        self._receiver.take_back()
         new.counters.add(self._receiver.counters)
         self._receiver = new
         self._begin_again(now)
         for message in messages:
             if message.topic != CONTROL_TOPIC:
                 self._hold(message)
+
+    def _follows(self, header: Header) -> bool:
+        """Return whether a number is of the sequence that is received now."""
+        expected = self._receiver.expected
+        return expected is not None and abs(distance(header.sequence, expected)) <= LATE_MESSAGES
 
     def _begin_again(self, now: float) -> None:
         """The board has started again, perhaps with another design."""

@@ -23,6 +23,7 @@ class Reassembler(wiring.Component):
     """Turn frames into frames of whole messages; mark those that are not whole.
 
     The rules are those of receivers in ``docs/reference/frame.md``, for fragments in their order.
+    The first frame of a message decides whether its number is believed.
     A message is sent on while its fragments come, so the last beat says whether it counts: connect
     `abort` with that of a :class:`PacketFifo`.
 
@@ -85,7 +86,9 @@ class Reassembler(wiring.Component):
         self._under_way = Signal(data.StructLayout({"sequence": 16, "topic": 16, "next": 16}))
         # The number that is expected, once a message was whole; how far ahead the frame's is.
         self._expected, self._synced, self._ahead = Signal(16), Signal(), Signal(16)
-        self._continues, self._late = Signal(), Signal()
+        # The number that would confirm the last one that was too far away to be believed.
+        self._confirms, self._doubts = Signal(16), Signal()
+        self._continues, self._late, self._far = Signal(), Signal(), Signal()
         self._events = {name: Signal(name=f"is_{name}") for name in REASSEMBLER_COUNTERS}
         m.d.comb += [
             self.o.payload.eq(out.o.payload.beat),
@@ -135,8 +138,12 @@ class Reassembler(wiring.Component):
     def _compare(self, m: Module) -> None:
         """Compare the header with the message under way, and its number with the expected one."""
         header, under_way = self._header, self._under_way
-        ahead, starts = Signal(16), header.flags[1]
-        m.d.comb += ahead.eq(Mux(self._synced & ~starts, header.sequence - self._expected, 0))
+        ahead, confirmed, starts = Signal(16), Signal(), header.flags[1]
+        late = ahead >= (1 << 16) - LATE_MESSAGES
+        m.d.comb += [
+            ahead.eq(Mux(self._synced & ~starts, header.sequence - self._expected, 0)),
+            confirmed.eq(self._doubts & (header.sequence == self._confirms)),
+        ]
         m.d.sync += [
             self._continues.eq(
                 self._open
@@ -146,7 +153,8 @@ class Reassembler(wiring.Component):
                 & (header.fragment != 0)
             ),
             self._ahead.eq(ahead),
-            self._late.eq(ahead >= (1 << 16) - LATE_MESSAGES),
+            self._late.eq(late & ~confirmed),
+            self._far.eq(~late & (ahead > LATE_MESSAGES) & ~confirmed),
         ]
         m.next = "DECIDE"
         with m.If(header.version != VERSION):
@@ -158,7 +166,7 @@ class Reassembler(wiring.Component):
     def _decide(self, m: Module) -> None:
         """Decide what becomes of the frame."""
         header = self._header
-        begins = (header.fragment == 0) & ~self._late
+        begins = (header.fragment == 0) & ~self._late & ~self._far
         with m.If(self._continues):
             m.next = "BODY"
             with m.If(self._is_empty):
@@ -174,6 +182,8 @@ class Reassembler(wiring.Component):
                 self._events["late"].eq(header.fragment == 0),
                 self._events["stray"].eq(header.fragment != 0),
             ]
+            with m.If(self._far & (header.fragment == 0)):
+                m.d.sync += [self._confirms.eq(header.sequence + 1), self._doubts.eq(1)]
             m.next = "SKIP"
             with m.If(self._is_empty):
                 m.next = "TAKE"
@@ -264,9 +274,14 @@ class Reassembler(wiring.Component):
     def _count_lost(self, m: Module) -> None:
         """Count the messages between the last one that was whole and this one."""
         gap, total = Signal(16), Signal(33)
-        is_gap = ~self._ahead[15]
-        m.d.sync += gap.eq(Mux(self.passes & is_gap, self._ahead, 0))
+        # Behind is a new sequence. Of that, only the message that was not believed is missing.
+        missing = Mux(self._ahead[15], 1, self._ahead)
+        m.d.sync += gap.eq(Mux(self.passes, missing, 0))
         m.d.comb += total.eq(self.lost + gap)
         m.d.sync += self.lost.eq(Mux(total[32], 0xFFFF_FFFF, total[:32]))
         with m.If(self.passes):
-            m.d.sync += [self._expected.eq(self._header.sequence + 1), self._synced.eq(1)]
+            m.d.sync += [
+                self._expected.eq(self._header.sequence + 1),
+                self._synced.eq(1),
+                self._doubts.eq(0),
+            ]

@@ -118,6 +118,9 @@ class Graph(ABC):
         """
         return
 
+    ends = False
+    """Whether its messages end some day. Such a graph is not left to wait for a board for ever."""
+
     @property
     def has_ended(self) -> bool:
         """Whether nothing will come any more, and the bridge may end."""

@@ -21,7 +21,7 @@ class LinesGraph(Graph):
 
     A line is an object with `topic`, the complete name, and `packet`, the serialized message in
     hexadecimal; of a request and its response also `call`, any value of JSON. Other lines are
-    counted by what is wrong with them. The end of the input ends the bridge.
+    counted by what is wrong with them. The end of the input ends the bridge, also without a board.
 
     Parameters
     ----------
@@ -29,6 +29,8 @@ class LinesGraph(Graph):
     source, sink : text files
         In place of standard input and output.
     """
+
+    ends = True
 
     def __init__(self, description: Description, source: TextIO, sink: TextIO) -> None:
         super().__init__("none")

@@ -34,7 +34,7 @@ def parse_svg(text: str) -> ElementTree.Element:
 @pytest.fixture
 def page_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a copy of the page; measurements give invented figures."""
-    (tmp_path / "page.md").write_text((ROOT / "docs" / "performance.md").read_text())
+    (tmp_path / "page.md").write_text((ROOT / "lab" / "notes" / "performance.md").read_text())
 
     def run(tasks: Sequence[BenchTask], jobs: int | None) -> Iterator[Result]:
         assert jobs == 3
@@ -154,7 +154,7 @@ def test_without_all_figures_nothing_is_written(
 
 
 def test_the_committed_page_has_all_parts_and_plots() -> None:
-    text = (ROOT / "docs" / "performance.md").read_text()
+    text = (ROOT / "lab" / "notes" / "performance.md").read_text()
     groups = [*MEASURED, "covering"]
     for name in [*groups, *(f"{name}: made with" for name in groups), "beats", "parts"]:
         part = text.split(f"<!-- {name} -->\n")[1].split(f"<!-- end {name} -->")[0]
@@ -162,8 +162,8 @@ def test_the_committed_page_has_all_parts_and_plots() -> None:
     plots = re.findall(r"\]\((figures/\w+\.svg)\)", text)
     assert len(plots) == 3
     for plot in plots:
-        parse_svg((ROOT / "docs" / plot).read_text())
-    figures = ROOT / "docs" / "figures"
+        parse_svg((ROOT / "lab" / "notes" / plot).read_text())
+    figures = ROOT / "lab" / "notes" / "figures"
     for file, groups_of_file in (
         (bench.KEPT, list(MEASURED.values())),
         (bench.KEPT_COVERING, [covering_group(COVERING)]),

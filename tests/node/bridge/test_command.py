@@ -83,6 +83,22 @@ def test_a_board_that_never_answers_ends_with_an_error(line_file, capsys):
     assert "error: the board tcp://127.0.0.1:1 did not answer in 0.3 s" in err
 
 
+@pytest.mark.parametrize("link", ["udp", "tcp"])
+@pytest.mark.parametrize("lines", [0, 3])
+def test_the_end_of_the_input_ends_it_without_a_board(
+    file, line_file, capsys, monkeypatch, link, lines
+):
+    monkeypatch.setattr(Board, "silent_seconds", 0.5)
+    monkeypatch.setattr(bridge, "_LINGER_SECONDS", 0.1)
+    monkeypatch.setattr(sys, "stdin", io.StringIO('{"topic": "/heard", "packet": "01"}\n' * lines))
+    address = f"{link}://127.0.0.1:1"
+    options = ["--board", address, "--graph", "none"]
+    assert main(["node", "run", file if link == "udp" else line_file, *options]) == 1
+    err = capsys.readouterr().err
+    assert (f"dropped: {lines} of /heard: no board" in err) == (lines > 0)
+    assert f"error: the board {address} did not answer" in err
+
+
 class SlowBoard(SimulatedBoard):
     """A simulation that takes a minute to compile; a signal comes meanwhile."""
 

@@ -14,7 +14,7 @@ from firm_hdl.node.bridge.session import (
     WrongBoardError,
 )
 from firm_hdl.node.control import registers
-from firm_hdl.node.messages import NodeMessage
+from firm_hdl.node.messages import MessageSender, NodeMessage
 from tests.node.bridge.fakes import ECHO, FakeNode
 
 REPEAT_SECONDS = Board.repeat_seconds
@@ -381,3 +381,35 @@ def test_messages_that_wait_when_a_session_ends_are_counted():
     talk.session.take(published(talk.node), talk.now, talk.wall)
     talk.session.end()
     assert talk.session.lost_on_the_way()["held back"] == 1
+
+
+@pytest.mark.parametrize("lost", [0, 1, 2])
+@pytest.mark.parametrize("before", [20_000, 40_000, 60_000])
+def test_a_restart_is_no_gap_whatever_its_first_number_is_ahead_of(before, lost):
+    """Its first messages are lost, of which the first one says that a sequence begins."""
+    talk = Talk()
+    talk.node.sender = MessageSender(sequence=before)
+    talk.run(2)
+    talk.node = FakeNode()
+    for number in range(10):
+        frame = published(talk.node, number)
+        if number >= lost:
+            talk.got += talk.session.take(frame, talk.now, talk.wall)
+    talk.run(3)
+    assert talk.session.restarts == 1 and talk.session.is_ready
+    assert talk.session.lost_on_the_way()["lost"] <= 1
+    numbers = [int(each.packet) for each in talk.got]
+    assert numbers == sorted(numbers) and numbers[-1] == 9
+
+
+def test_a_gap_before_a_restart_stays_counted():
+    talk = Talk()
+    talk.run(2)
+    talk.node.sender = MessageSender(sequence=5000, starts=False)
+    talk.run(2)
+    real = talk.session.lost_on_the_way()["lost"]
+    assert real > 4000
+    talk.node = FakeNode()
+    talk.session.take(published(talk.node), talk.now, talk.wall)
+    talk.run(2)
+    assert talk.session.restarts == 1 and talk.session.lost_on_the_way()["lost"] == real

@@ -72,6 +72,9 @@ def test_lost_messages_are_counted_up_to_the_largest_value(before, gap, after):
         await take(4)
         assert ctx.get(part.lost) == 0
         ctx.set(part.lost, before)
+        if gap > 64:
+            # The message before is one of them, as it is too far away to be believed.
+            await take(4 + gap)
         await take(5 + gap)
         assert ctx.get(part.lost) == after
         # The next one follows, so none is missing.

@@ -97,13 +97,45 @@ A, B = bytes(range(16)), b"abcd"
         # 64 numbers back are late, and more are those of a sender that has started again.
         ([frame(1000), frame(937), frame(1001)], [1000, 1001], {"late": 1}),
         ([frame(1000, A), frame(937, A), frame(1001)], [1000, 1001], {"late": 1}),
-        ([frame(1000), frame(936), frame(937)], [1000, 936, 937], {}),
-        ([frame(1000), frame(200), frame(202)], [1000, 200, 202], {"lost": 1}),
+        ([frame(1000), frame(936), frame(937)], [1000, 937], {"late": 1, "lost": 1}),
+        (
+            [frame(1000), *map(frame, (200, 201, 203))],
+            [1000, 201, 203],
+            {"late": 1, "lost": 2},
+        ),
         ([frame(1000), frame(999, start=True), frame(1000)], [1000, 999, 1000], {}),
         ([frame(0), frame(1000, start=True), frame(1002)], [0, 1000, 1002], {"lost": 1}),
+        # A number that is more than 64 away is believed when the next one follows.
+        ([frame(9), frame(10 + 64)], [9, 10 + 64], {"lost": 64}),
+        ([frame(9), frame(10 + 65), frame(11)], [9, 11], {"late": 1, "lost": 1}),
+        (
+            [*map(frame, (0, 1, 2, 0x4003, 4, 0x4004, 6, 0xC007, 8))],
+            [0, 1, 2, 4, 6, 8],
+            {"late": 3, "lost": 3},
+        ),
+        # Whatever was doubted before.
+        ([*map(frame, (9, 500, 900, 501, 901, 902))], [9, 902], {"late": 4, "lost": 892}),
+        # One that is damaged confirms nothing, and no more do late ones.
+        (
+            [frame(9), frame(500), (frame(501), DAMAGED), frame(501)],
+            [9, 501],
+            {"cut": 1, "late": 1, "lost": 491},
+        ),
+        ([*map(frame, (1000, 990, 991, 992))], [1000], {"late": 3}),
+        # All of its frames are dropped.
+        (
+            [
+                frame(9),
+                *(frame(500, A, **FIRST), frame(500, B, **SECOND)),
+                *(frame(501, A, **FIRST), frame(501, B, **SECOND)),
+                frame(502),
+            ],
+            [9, 501, 502],
+            {"late": 1, "stray": 1, "lost": 491},
+        ),
         # Up to 32,767 messages may be missing; further ahead is back.
-        ([frame(9), frame(10 + 32767)], [9, 10 + 32767], {"lost": 32767}),
-        ([frame(9), frame(10 + 32768)], [9, 10 + 32768], {}),
+        ([*map(frame, (9, 32776, 32777))], [9, 32777], {"late": 1, "lost": 32767}),
+        ([*map(frame, (9, 32777, 32778))], [9, 32778], {"late": 1, "lost": 1}),
         ([frame(65534), frame(65537), frame(65538)], [65534, 1, 2], {"lost": 2}),
         # Another message cuts the one under way, also if it is late or a part of one.
         (

@@ -22,7 +22,7 @@ from firm_hdl.verify.ts1.known import KNOWN
 from firm_hdl.verify.ts1.oracles.oracle import Accepted
 from tests.verify.judged import assert_known, assert_passed
 
-ERRATA = Path(__file__).parents[3] / "docs" / "errata.md"
+ERRATA = Path(__file__).parents[3] / "docs" / "reference" / "errata.md"
 
 
 def refuse(read):

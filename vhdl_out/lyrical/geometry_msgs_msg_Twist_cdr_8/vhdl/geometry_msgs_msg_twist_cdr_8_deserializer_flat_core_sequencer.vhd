@@ -61,8 +61,8 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal mismatch     : std_logic;
   signal good         : std_logic;
   signal cut          : std_logic;
-  signal sub_40       : unsigned(5 downto 0);
-  signal or_84        : unsigned(5 downto 0);
+  signal sub_39       : unsigned(5 downto 0);
+  signal or_83        : unsigned(5 downto 0);
   signal map_left     : unsigned(6 downto 0);
   signal drains       : std_logic;
   signal allowed      : std_logic;
@@ -70,12 +70,12 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal step_to_exit : std_logic;
   signal exit_sum     : unsigned(6 downto 0);
   signal early_last   : unsigned(6 downto 0);
-  signal mux_195      : unsigned(2 downto 0);
-  signal and_196      : std_logic;
-  signal mux_211      : unsigned(3 downto 0);
-  signal mux_216      : unsigned(3 downto 0);
-  signal mux_223      : unsigned(3 downto 0);
-  signal mux_279      : unsigned(6 downto 0);
+  signal mux_194      : unsigned(2 downto 0);
+  signal and_195      : std_logic;
+  signal mux_210      : unsigned(3 downto 0);
+  signal mux_215      : unsigned(3 downto 0);
+  signal mux_222      : unsigned(3 downto 0);
+  signal mux_278      : unsigned(6 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal default_0     : std_logic;
@@ -87,7 +87,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal trailing      : unsigned(1 downto 0);
   signal items_at      : unsigned(6 downto 0);
   signal nul_at        : unsigned(6 downto 0);
-  signal nul_at_29     : unsigned(6 downto 0);
+  signal nul_at_28     : unsigned(6 downto 0);
   signal nonzero       : std_logic;
   signal nul_within    : unsigned(6 downto 0);
   signal oldest        : unsigned(3 downto 0);
@@ -136,12 +136,12 @@ begin
   mismatch <= '1' when step(0) = '1' and mismatch_36 = '1' and limit_sig /= first_at else '0';
   good <= present and not (step(0) and mismatch_36);
   cut <= ended and not present;
-  sub_40 <= unsigned'("000001") - sign_extend(map_offset, 6);
-  or_84 <= (limit_sig(5 downto 0) and not last_at(5 downto 0)) or (limit_sig(5 downto 0) and
+  sub_39 <= unsigned'("000001") - sign_extend(map_offset, 6);
+  or_83 <= (limit_sig(5 downto 0) and not last_at(5 downto 0)) or (limit_sig(5 downto 0) and
       unsigned'("000001") - sign_extend(map_offset, 6)) or (not last_at(5 downto 0) and
       unsigned'("000001") - sign_extend(map_offset, 6));
-  map_left <= (limit_sig xor not last_at xor unsigned'(sub_40(5) &
-      (unsigned'("000001") - sign_extend(map_offset, 6)))) + unsigned'(or_84 & '0');
+  map_left <= (limit_sig xor not last_at xor unsigned'(sub_39(5) &
+      (unsigned'("000001") - sign_extend(map_offset, 6)))) + unsigned'(or_83 & '0');
   drains <= bad and not new_error and (not at_end or ended);
   allowed <= not bad and (not ends_message or ended);
   orders_valid <= drains or (allowed and good);
@@ -151,16 +151,16 @@ begin
   step_to_exit <= issue and not ends_packet;
   exit_sum <= last_at + exit_add;
   early_last <= unsigned'(following & "000") + 7 when ends_packet = '1' else exit_sum;
-  mux_195 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends_message, "010", "011"));
-  and_196 <= drains and orders_ready;
-  mux_211 <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0), "000"), 4),
+  mux_194 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends_message, "010", "011"));
+  and_195 <= drains and orders_ready;
+  mux_210 <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0), "000"), 4),
       "1000") when two_word_map = '1' else mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8),
       "1000", map_left(3 downto 0)));
-  mux_216 <= mux_211 when code = 1 else mux(to_std_logic(code = 2) or to_std_logic(code = 5),
+  mux_215 <= mux_210 when code = 1 else mux(to_std_logic(code = 2) or to_std_logic(code = 5),
       "1000", "0000");
-  mux_223 <= mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8), "1000",
+  mux_222 <= mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8), "1000",
       map_left(3 downto 0))) when code = 1 else mux(to_std_logic(code = 2), "1000", "0000");
-  mux_279 <= following & "000" when ends_packet = '1' else mux(bad, mux(at_end, limit_sig,
+  mux_278 <= following & "000" when ends_packet = '1' else mux(bad, mux(at_end, limit_sig,
       first_at), step_end);
 
   p_aclk : process (aclk)
@@ -191,14 +191,14 @@ begin
         end if;
         if bad = '0' then
           new_error <= mismatch or cut or (ends_message and not ended and trailing_34);
-          code <= mux_195;
+          code <= mux_194;
         end if;
         if bad = '1' then
           new_error <= '0';
           if new_error = '1' then
-            items_room <= mux_216;
-            map_room <= mux_223;
-          elsif and_196 = '1' then
+            items_room <= mux_215;
+            map_room <= mux_222;
+          elsif and_195 = '1' then
             items_room <= (others => '0');
             map_room <= (others => '0');
           end if;
@@ -227,7 +227,7 @@ begin
           last_at <= early_last;
         end if;
         if issue = '1' or (bad = '1' and at_end = '1') then
-          first_at <= mux_279;
+          first_at <= mux_278;
         end if;
       end if;
     end if;
@@ -250,7 +250,7 @@ begin
   trailing <= left(1 downto 0);
   items_at <= sub_12 & map_at(2 downto 0);
   nul_at <= (others => '0');
-  nul_at_29 <= (others => '0');
+  nul_at_28 <= (others => '0');
   nonzero <= '0';
   nul_within <= limit_sig;
   oldest <= first_at(6 downto 3);
