@@ -33,6 +33,7 @@ class Wide(wiring.Component):
         return m
 
 
+@pytest.mark.thorough
 def test_paths_between_ports_count(ecp5: Device) -> None:
     text = rtlil.convert(Wide(), name="top", emit_src=False)
     seen = []

@@ -29,7 +29,7 @@ def _full_design(deep: bool = False) -> tuple[str, Vhdl]:
 
 
 @pytest.mark.parametrize("name", DESIGNS)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_memories_are_proved_equal(name: str, tools: Tools) -> None:
     proof = prove(rtlil_of(DESIGNS[name]), convert(rtlil_of(DESIGNS[name])), tools=tools)
     assert proof.result == "equal", proof

@@ -90,6 +90,7 @@ def test_keyword_as_a_name_is_refused(ghdl, tmp_path, monkeypatch):
     assert status != 0 and "buffer" in output
 
 
+@pytest.mark.thorough
 def test_every_tool_takes_every_word(ghdl, iverilog, verilator, tmp_path):
     words = sorted(KEYWORDS) if ALL else SPOT
     # The names of packages and messages are in VHDL and SystemVerilog only: as above, and in

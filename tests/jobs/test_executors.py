@@ -121,6 +121,7 @@ def cluster():
 
 # Dask leaves sockets and loops to the garbage collector.
 @pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
+@pytest.mark.thorough
 class TestDask:
     """The Dask executor, on a cluster of this machine."""
 

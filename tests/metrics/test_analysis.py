@@ -111,6 +111,7 @@ def check_sizes(message, store, name, wire):
     assert figures.max_bytes == (None if longest is None else len(write(longest, name))), message
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("distro", ["noetic", "humble", "lyrical"])
 def test_limits_of_size_are_sizes_of_real_messages(distro):
     ours, store = Library(distro), get_typestore(DISTROS[distro].store)

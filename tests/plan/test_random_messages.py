@@ -133,6 +133,7 @@ def damaged(draw: st.DrawFn, packet: bytes) -> bytes:
     return bytes(result)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("wire", WIRES)
 @slow
 @given(case=typed_values(wide=True), bus_bytes=st.sampled_from(BUS_WIDTHS))

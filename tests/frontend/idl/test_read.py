@@ -310,6 +310,7 @@ def test_a_thousand_mistakes_are_enough():
     assert [each.message for each in wrong] == ["type 'any' is not supported"] * 1000
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ["typedefs", "constants", "includes"])
 def test_long_chains_need_neither_stack_nor_time(kind):
     count, sources = by_depth(1200, 3000), {}

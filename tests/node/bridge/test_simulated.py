@@ -66,6 +66,7 @@ publish:
 """
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "stalls", [simulated._STALLS, pytest.param((), marks=pytest.mark.thorough)]
 )

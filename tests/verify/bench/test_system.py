@@ -111,6 +111,7 @@ def test_faults_are_found(ghdl, monkeypatch, file, before, after, output):
     assert not result.packets
 
 
+@pytest.mark.thorough
 def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
     both = run_bench(ghdl, "geometry_msgs/msg/Vector3")
     assert assert_passed(both) == both.packets

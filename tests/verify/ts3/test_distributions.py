@@ -38,7 +38,7 @@ def test_every_type_passes(index):
 
 
 @pytest.mark.parametrize("index", SAMPLE, ids=lambda index: TASKS[index].name)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 def test_a_sample_passes_on_other_buses(index):
     task = TASKS[index]
     width = OTHER_WIDTHS[SAMPLE.index(index) % len(OTHER_WIDTHS)]
