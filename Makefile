@@ -86,7 +86,7 @@ nightly: ## tests in full depth, all types through TS1 to TS3 and GHDL, proofs, 
 	@$(MAKE) --no-print-directory cover COVER=--check
 
 # The oldest versions of libraries that pyproject.toml allows, with today's pytest; `make test` has the
-# newest ones. Tests of tools that are no libraries are not among them.
+# newest ones. Tests of tools that are no libraries, and comparisons with other readers, are not among them.
 LOWEST := .venv-lowest
 lowest: $(VENV)/.installed-dev
 	rm -rf $(LOWEST) && $(BIN)/uv venv --quiet --python $(BIN)/python $(LOWEST)
@@ -94,7 +94,8 @@ lowest: $(VENV)/.installed-dev
 	  --python $(LOWEST)/bin/python pyproject.toml --output-file $(LOWEST)/lowest.txt
 	$(BIN)/uv pip install --quiet --python $(LOWEST)/bin/python --requirement $(LOWEST)/lowest.txt \
 	  --editable . hatchling hypothesis pygments pytest pytest-timeout pytest-xdist
-	$(LOWEST)/bin/python -m pytest -n $(JOBS) tests/cli tests/export/test_build.py tests/frontend \
+	$(LOWEST)/bin/python -m pytest -n $(JOBS) --ignore tests/frontend/conformance \
+	  tests/cli tests/export/test_build.py tests/frontend \
 	  tests/gateware/test_converters.py tests/jobs tests/plan tests/recordings tests/sim/test_loopback.py \
 	  tests/verify/ts3/test_acceptance.py tests/verilog/test_convert.py tests/wire
 
