@@ -174,7 +174,7 @@ def test_the_readme_is_short_and_its_commands_are_run():
         ". venv/bin/activate",
         "pip install .",
         "firm-hdl build geometry_msgs/msg/Twist",  # test_commands_print_what_is_quoted.
-        # tests.export.vhdl.test_bench runs the script of each covering type.
+        # tests.export.test_sample.
         "vhdl_out/lyrical/geometry_msgs_msg_Twist_cdr_8/vhdl/run_ghdl.sh",
         "firm-hdl node run examples/nodes/double/double.yaml",  # tests.examples.test_node_examples.
     ]

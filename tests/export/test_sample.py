@@ -10,6 +10,7 @@ import pytest
 
 from firm_hdl.cli import main
 from tests.export.strikes import left_when_outdated
+from tests.tools import run_script
 
 ROOT = Path(__file__).parents[2]
 SAMPLE = ROOT / "vhdl_out" / "lyrical" / "geometry_msgs_msg_Twist_cdr_8"
@@ -55,3 +56,9 @@ def test_sample_is_current(tmp_path, capsys):
     assert sorted(built) == sorted(kept)
     stale = [name for name in built if built[name] != kept[name]]
     assert not stale, f"run: {AGAIN}"
+
+
+def test_its_bench_passes(ghdl, tmp_path):
+    """A command of the README."""
+    status, output = run_script(SAMPLE / "vhdl" / "run_ghdl.sh", GHDL=ghdl, WORK=str(tmp_path))
+    assert status == 0 and output.startswith("PASS geometry_msgs/msg/Twist, "), output

@@ -12,7 +12,8 @@ from amaranth.back import rtlil
 
 from firm_hdl import Deserializer, Serializer
 from firm_hdl.export.top import DIRECTIONS, Port, Top, ports_of
-from firm_hdl.plan import Plan, build_plan
+from firm_hdl.model import Message
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan
 from firm_hdl.verilog import convert as to_verilog
 from firm_hdl.vhdl import convert as to_vhdl
 from firm_hdl.wire import lay_out
@@ -156,29 +157,44 @@ def output(folder: Path, *command: str) -> str:
     return done.stdout
 
 
-@pytest.mark.usefixtures("iverilog")
-@pytest.mark.parametrize("message", MESSAGES.values(), ids=MESSAGES)
-def test_netlist_of_vhdl_is_the_verilog_in_every_cycle(ghdl, tmp_path, message):
+def compared(
+    folder: Path, ghdl: str, message: Message, count: int, limit: int = DEFAULT_MAX_MESSAGE_BYTES
+) -> tuple[str, int]:
+    """Return what the bench printed, and how many packets it had; `limit` is that of the VHDL."""
     plan = build_plan(lay_out(message))
-    packets = damaged(random_packets(plan, by_depth(12, 100)))
+    packets = damaged(random_packets(plan, count))
     beats = [beat for packet in packets for beat in beats_of(packet, plan.bus_bytes)]
-    (tmp_path / "beats.txt").write_text("".join(f"{beat}\n" for beat in beats))
+    (folder / "beats.txt").write_text("".join(f"{beat}\n" for beat in beats))
     texts, names = [], {}
     for direction, core in CORES.items():
         circuit = rtlil.convert(Top(core(message)), name=direction, emit_src=False)
         texts.append(to_verilog(circuit, name=direction))
+        design = Top(core(message, max_message_bytes=limit))
+        circuit = rtlil.convert(design, name=direction, emit_src=False)
         vhdl = to_vhdl(circuit, name=f"{direction}_netlist")
         for name, text in vhdl.files.items():
-            (tmp_path / name).write_text(text)
+            (folder / name).write_text(text)
         options = ["--std=08", "--out=verilog"]
-        texts.append(output(tmp_path, ghdl, "--synth", *options, *vhdl.files, "-e", vhdl.top))
+        texts.append(output(folder, ghdl, "--synth", *options, *vhdl.files, "-e", vhdl.top))
         names[direction] = vhdl.top
-    cycles = 300 + 6 * len(beats)
-    texts.append(bench(plan, names, len(beats), cycles))
-    (tmp_path / "all.v").write_text("\n".join(texts))
-    output(tmp_path, "iverilog", "-g2012", "-o", "bench", "-s", "bench", "all.v")
-    printed = output(tmp_path, "vvp", "-n", "bench")
+    texts.append(bench(plan, names, len(beats), 300 + 6 * len(beats)))
+    (folder / "all.v").write_text("\n".join(texts))
+    output(folder, "iverilog", "-g2012", "-o", "bench", "-s", "bench", "all.v")
+    return output(folder, "vvp", "-n", "bench"), len(packets)
+
+
+@pytest.mark.usefixtures("iverilog")
+@pytest.mark.parametrize("message", MESSAGES.values(), ids=MESSAGES)
+def test_netlist_of_vhdl_is_the_verilog_in_every_cycle(ghdl, tmp_path, message):
+    printed, count = compared(tmp_path, ghdl, message, by_depth(12, 100))
     found = re.fullmatch(r"(\d+) statuses, (\d+) packets\n", printed)
     assert found, printed[:2000]
     # The reset loses at most one packet.
-    assert int(found[1]) >= len(packets) - 1 and int(found[2]) >= len(packets) // 2
+    assert int(found[1]) >= count - 1 and int(found[2]) >= count // 2
+
+
+@pytest.mark.usefixtures("iverilog")
+def test_netlist_of_another_circuit_is_found(ghdl, tmp_path):
+    """Its limit of a length is smaller."""
+    printed, _ = compared(tmp_path, ghdl, TEXT, 12, limit=16)
+    assert not re.fullmatch(r"(\d+) statuses, (\d+) packets\n", printed)
