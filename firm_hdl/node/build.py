@@ -170,7 +170,8 @@ def _files(design: _Design) -> dict[str, str]:
         f"{name}: a node of ROS {description.distro}, made by firm-hdl {firm_hdl.__version__}\n"
     )
     module = verilog_module(name)
-    node = convert(design.rtlil, name=name, header=header)
+    netlist = rtlil.netlist_of(design.rtlil)
+    node = convert(netlist, name=name, header=header)
     vhdl_ports = node.entities[name].ports
     records: dict[str, str] = {}
     structs: dict[str, str] = {}
@@ -193,7 +194,7 @@ def _files(design: _Design) -> dict[str, str]:
     owners = {"the node": node.files, "its messages": records, "its structs": structs}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     return {
-        **verilog_file(design.rtlil, name=name, header=header),
+        **verilog_file(netlist, name=name, header=header),
         "waivers.vlt": waivers([module]) + _UNDRIVEN.format(file=f"{module}.v"),
         **{f"systemverilog/{file}": text for file, text in structs.items()},
         **vhdl_folder(vhdl),
