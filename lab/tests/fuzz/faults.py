@@ -152,7 +152,7 @@ FAULTS = [
         (
             "bad packets pass",
             r"(?s)(\.abort +)\(abort\)(?!.*\.abort +\(abort\))",
-            r"\1(abort & ~(status_ready & packets_out_ready))",
+            r"\1(abort & ~(status__ready & packets_out__ready))",
             "a wrong packet|no status in time",
         ),
         (
