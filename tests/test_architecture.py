@@ -78,6 +78,7 @@ MAY_IMPORT["cli"] = {
     *("names", "model", "frontend", "plan", "estimates", "export"),
     *("identity", "metrics", "node", "cases", "covering", "verify", "equivalence", "bench"),
 }
+MAY_IMPORT["__main__"] = {"cli"}
 # The public interface of the package.
 MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
 

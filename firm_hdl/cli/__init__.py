@@ -47,6 +47,8 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 def _dispatch(arguments: list[str]) -> int:
     parser = _parser(arguments)
+    if arguments and arguments[0].startswith("-") and not _is_known(parser, arguments[0]):
+        parser.error(f"{arguments[0]}: options come after the command, as in firm-hdl list --help")
     if any("\0" in argument for argument in arguments):
         parser.error("an argument contains a NUL character")
     args = parser.parse_args(arguments)
@@ -95,6 +97,11 @@ def _print_error(text: str) -> None:
         print(text, file=sys.stderr, flush=True)
 
 
+def _is_known(parser: argparse.ArgumentParser, word: str) -> bool:
+    """Tell whether a word is an option of the whole command, or the start of one."""
+    return any(name.startswith(word) for each in parser._actions for name in each.option_strings)
+
+
 class _Version(argparse.Action):
     """Print the version, which is looked up for this option only."""
 
@@ -112,9 +119,10 @@ def parser_of_all() -> argparse.ArgumentParser:
 
 def _parser(arguments: Sequence[str], *, with_all: bool = False) -> argparse.ArgumentParser:
     """Make a parser with all commands, and with the arguments of the command that is called."""
+    from firm_hdl.cli.parsing import Parser
     from firm_hdl.cli.table import COMMANDS
 
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="firm-hdl",
         description="Generate hardware that reads and writes ROS messages.",
     )

@@ -6,7 +6,7 @@ messages, services and actions, in every definition language and from every orig
 
 from __future__ import annotations
 
-from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS, Distro
+from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS, Distro, replacement_of
 from firm_hdl.frontend.library import Library, load_message
 from firm_hdl.frontend.recordings import RecordingOrigin
 from firm_hdl.frontend.search import all_names, load_all, open_library
@@ -22,5 +22,6 @@ __all__ = [
     "load_all",
     "load_message",
     "open_library",
+    "replacement_of",
     "show",
 ]
