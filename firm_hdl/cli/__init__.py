@@ -52,22 +52,52 @@ def _dispatch(arguments: list[str]) -> int:
     if any("\0" in argument for argument in arguments):
         parser.error("an argument contains a NUL character")
     args = parser.parse_args(arguments)
-    from firm_hdl.errors import DefinitionError, UserError
-
     reconfigure = getattr(sys.stdout, "reconfigure", None)
     if reconfigure is not None:
         # A comment in a definition may have characters that the terminal cannot encode.
         reconfigure(errors="backslashreplace")
+    words = [args.command, *([args.action] if hasattr(args, "action") else [])]
+    args.document = {"format": 1, "command": " ".join(words), "errors": []}
+    if not getattr(args, "as_json", False):
+        return _called(args)
+    import json
+    from contextlib import redirect_stdout
+
     try:
+        with redirect_stdout(sys.stderr):
+            return _called(args)
+    finally:
+        # Errors come last, because a document may be long.
+        args.document["errors"] = args.document.pop("errors")
+        print(json.dumps(args.document, indent=1, ensure_ascii=False, allow_nan=False))
+
+
+def _called(args: argparse.Namespace) -> int:
+    """Call the function of a command, and report its errors; return the exit status."""
+    from firm_hdl.errors import DefinitionError, Diagnostic, UserError
+
+    try:
+        if hasattr(args, "type") or hasattr(args, "types"):
+            from firm_hdl.cli.types import take_spellings
+
+            take_spellings(args)
         return args.run(args) or 0
     except DefinitionError as error:
         _print_error(str(error))
+        args.document["errors"] += [each.facts() for each in error.diagnostics]
+        return 1
     except UserError as error:
-        _print_error(f"error: {error}")
+        said = str(error)
     except MemoryError:
-        _print_error("error: there is not enough memory for this")
+        said = "there is not enough memory for this"
     except RecursionError:
-        _print_error("error: the input nests too deeply")
+        said = "the input nests too deeply"
+    except (OSError, KeyboardInterrupt) as error:
+        said = str(error) or "interrupted"
+        args.document["errors"].append(Diagnostic(message=said).facts())
+        raise
+    _print_error(f"error: {said}")
+    args.document["errors"].append(Diagnostic(message=said).facts())
     return 1
 
 
@@ -129,11 +159,18 @@ def _parser(arguments: Sequence[str], *, with_all: bool = False) -> argparse.Arg
     parser.add_argument(
         "--version", action=_Version, nargs=0, help="show program's version number and exit"
     )
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    commands = parser.add_subparsers(
+        title="commands", metavar="COMMAND", dest="command", required=True
+    )
     called = next((each for each in arguments if not each.startswith("-")), None)
     for name, command in COMMANDS.items():
         text = command.help
-        sub = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+        sub = commands.add_parser(
+            name,
+            help=text,
+            description=f"{text[0].upper()}{text[1:]}.",
+            examples=command.examples,
+        )
         if with_all or name == called:
             command.add(name, sub)
     return parser

@@ -11,10 +11,12 @@ from firm_hdl.frontend.library import Library, load_message
 from firm_hdl.frontend.recordings import RecordingOrigin
 from firm_hdl.frontend.search import all_names, load_all, open_library
 from firm_hdl.frontend.show import show
+from firm_hdl.frontend.spelling import SUFFIXES, package_of_file, spelled
 
 __all__ = [
     "DEFAULT_DISTRO",
     "DISTROS",
+    "SUFFIXES",
     "Distro",
     "Library",
     "RecordingOrigin",
@@ -22,6 +24,8 @@ __all__ = [
     "load_all",
     "load_message",
     "open_library",
+    "package_of_file",
     "replacement_of",
     "show",
+    "spelled",
 ]
