@@ -15,6 +15,7 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from typing import Any
 
 __all__ = ["main", "parser_of_all"]
 
@@ -46,6 +47,11 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _dispatch(arguments: list[str]) -> int:
+    if "_ARGCOMPLETE" in os.environ:
+        # A shell asks for the words that may follow; this process answers, and ends.
+        from firm_hdl.cli.completion import called_in, complete
+
+        complete(_parser(called_in(os.environ.get("COMP_LINE", ""))))
     parser = _parser(arguments)
     if arguments and arguments[0].startswith("-") and not _is_known(parser, arguments[0]):
         parser.error(f"{arguments[0]}: options come after the command, as in firm-hdl list --help")
@@ -132,6 +138,16 @@ def _is_known(parser: argparse.ArgumentParser, word: str) -> bool:
     return any(name.startswith(word) for each in parser._actions for name in each.option_strings)
 
 
+class _Completion(argparse.Action):
+    """Print the code for the completion in a shell."""
+
+    def __call__(self, parser: argparse.ArgumentParser, _: object, shell: Any, *__: object) -> None:
+        from firm_hdl.cli.completion import shell_code
+
+        print(shell_code(shell), end="")
+        parser.exit()
+
+
 class _Version(argparse.Action):
     """Print the version, which is looked up for this option only."""
 
@@ -158,6 +174,13 @@ def _parser(arguments: Sequence[str], *, with_all: bool = False) -> argparse.Arg
     )
     parser.add_argument(
         "--version", action=_Version, nargs=0, help="show program's version number and exit"
+    )
+    parser.add_argument(
+        "--print-completion",
+        action=_Completion,
+        choices=["bash", "zsh", "fish"],
+        default=argparse.SUPPRESS,
+        help="print the code for completion in a shell, and exit",
     )
     commands = parser.add_subparsers(
         title="commands", metavar="COMMAND", dest="command", required=True

@@ -144,6 +144,13 @@ COMMANDS: dict[str, Command] = {
         module="testing",
         examples=("firm-hdl cover --path src --out types.txt",),
     ),
+    "doctor": Command(
+        help="say which tools, graphs and libraries are here, what they are for, and how to get "
+        "the others",
+        module="doctor",
+        examples=("firm-hdl doctor", "firm-hdl doctor --json"),
+        has_origins=False,
+    ),
     "md5": Command(
         help="print the md5 sums of ROS 1 types",
         module="reading",

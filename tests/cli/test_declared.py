@@ -37,6 +37,7 @@ DEFAULTS = {
         | {"board": "sim", "graph": None, "domain": None, "interface": None}
         | {"seconds": None, "engine": "auto", "quiet": False},
     ),
+    "doctor": ([], {"as_json": False}),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),
     "hash": ([], {**ORIGINS, "types": [], "all": False}),
     "proto": ([], {**ORIGINS, "types": [], "all": False, "no_quotes": False}),
