@@ -70,7 +70,7 @@ MAY_IMPORT["equivalence"] = {
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
 MAY_IMPORT["bench"] = {
-    *("arguments", "errors", "files", "jobs", "rtlil"),
+    *("arguments", "errors", "files", "jobs", "rtlil", "terminal"),
     *("model", "frontend", "wire", "plan", "gateware", "sim", "export"),
 }
 MAY_IMPORT["cli"] = {

@@ -26,6 +26,7 @@ from firm_hdl.bench.tools import versions
 from firm_hdl.files import write_file
 from firm_hdl.frontend import all_names, load_all, open_library
 from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, DIRECTIONS
+from firm_hdl.terminal import stage
 
 __all__ = ["NO_DEVICE", "add_bench_arguments", "bench_tasks", "run_bench"]
 
@@ -135,6 +136,7 @@ def run_bench(given: argparse.Namespace) -> int:
     with tqdm(total=len(tasks), unit="converter", desc="bench", disable=disable) as progress:
         for result in run_tasks(tasks, jobs):
             results.append(result)
+            stage(f"bench: {len(results)} of {len(tasks)} converters")
             with progress.external_write_mode():
                 print(row(result, path=not given.all), flush=True)
             progress.update()

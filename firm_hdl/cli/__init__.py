@@ -81,13 +81,15 @@ def _dispatch(arguments: list[str]) -> int:
 def _called(args: argparse.Namespace) -> int:
     """Call the function of a command, and report its errors; return the exit status."""
     from firm_hdl.errors import DefinitionError, Diagnostic, UserError
+    from firm_hdl.terminal import progress
 
     try:
-        if hasattr(args, "type") or hasattr(args, "types"):
-            from firm_hdl.cli.types import take_spellings
+        with progress(args.document["command"]):
+            if hasattr(args, "type") or hasattr(args, "types"):
+                from firm_hdl.cli.types import take_spellings
 
-            take_spellings(args)
-        return args.run(args) or 0
+                take_spellings(args)
+            return args.run(args) or 0
     except DefinitionError as error:
         _print_error(str(error))
         args.document["errors"] += [each.facts() for each in error.diagnostics]

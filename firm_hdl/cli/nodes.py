@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from firm_hdl.arguments import add_engine, add_json, add_path, number_between, seconds
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
+from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
     from firm_hdl.node import Description
@@ -170,7 +171,8 @@ def _act(args: argparse.Namespace, description: Description) -> None:
 def _compile(description: Description, args: argparse.Namespace) -> None:
     from firm_hdl.node.boards.simulated import SimulatedBoard
 
-    def report(stage: str) -> None:
-        print(f"board sim: {stage}", file=sys.stderr, flush=True)
+    def report(text: str) -> None:
+        print(f"board sim: {text}", file=sys.stderr, flush=True)
+        stage(f"board sim: {text}")
 
     SimulatedBoard(description, engine=args.engine, report=report).compile()

@@ -17,6 +17,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library, all_names, load_all, open_library
 from firm_hdl.jobs import ProgramMissingError, ToolError
+from firm_hdl.terminal import stage
 
 __all__ = ["add_prove_arguments", "add_timeout", "run_proofs", "run_prove"]
 
@@ -103,6 +104,7 @@ def run_proofs(tasks: Sequence[ProofTask], jobs: int | None, *, bar: bool) -> in
     with tqdm(total=len(tasks), unit="converter", desc="proofs", disable=disable) as progress:
         for task, attempt in run_tasks(tasks, 1 if len(tasks) == 1 else jobs):
             results.append((task, attempt))
+            stage(f"prove: {len(results)} of {len(tasks)} converters")
             with progress.external_write_mode():
                 print(_line(task, attempt), flush=True)
             progress.update()

@@ -23,6 +23,7 @@ from firm_hdl.errors import UserError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.plan import BUS_BYTES
+from firm_hdl.terminal import stage
 from firm_hdl.verify.choices import (
     CLIENT_NAMES,
     LONGEST,
@@ -59,6 +60,7 @@ def run_verify(given: argparse.Namespace) -> int:
         and the errors in the others are printed at the end.
     """
     request = _request(given)
+    stage("verify: reads definitions")
     try:
         # Report a type that cannot be used before simulators and oracles are imported.
         work = resolve(request)
@@ -66,6 +68,7 @@ def run_verify(given: argparse.Namespace) -> int:
             return _write_node(work, given.write_node)
     except UnknownTypeError as error:
         raise UserError(str(error)) from None
+    stage("verify: finds tools and libraries")
     from firm_hdl.verify.run import run_workload
 
     if not getattr(given, "as_json", False):

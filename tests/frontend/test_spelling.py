@@ -8,7 +8,8 @@ import pytest
 
 from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend import Library, spelled
+from firm_hdl.frontend import Library
+from firm_hdl.frontend.spelling import spelled
 from tests.frontend.workspace import make_files
 
 FILES = {

@@ -9,6 +9,7 @@ from typing import TextIO
 from firm_hdl.node.bridge.bridge import Bridge
 from firm_hdl.node.bridge.counters import summary_lines
 from firm_hdl.node.control import Register
+from firm_hdl.terminal import stage
 
 __all__ = ["Status", "account", "status_line"]
 
@@ -50,6 +51,8 @@ class Status:
 
     def show(self, bridge: Bridge) -> None:
         """Print the line of figures if it is due."""
+        # The start is over, and this line is in place of that of the command.
+        stage("")
         now = time.monotonic()
         if self._quiet or now < self._next:
             return
