@@ -14,9 +14,8 @@ from firm_hdl.node.bytestream import write_frame
 from firm_hdl.node.description import Store
 from firm_hdl.node.gateware.clock import NodeClock
 from firm_hdl.node.gateware.cobs import ByteFrameReader, CobsDecoder, CobsEncoder
-from firm_hdl.node.gateware.fragmenter import Fragmenter
-from firm_hdl.node.gateware.reassembler import Reassembler
-from firm_hdl.node.gateware.request_gate import RequestGate
+from firm_hdl.node.gateware.fragments import Fragmenter, Reassembler
+from firm_hdl.node.gateware.services import RequestGate
 from firm_hdl.node.gateware.uart import UartReceiver, UartTransmitter
 from firm_hdl.node.messages import MessageSender, NodeMessage
 from firm_hdl.sim import Stalls
