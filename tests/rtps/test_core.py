@@ -12,9 +12,7 @@ from firm_hdl.rtps import Durability, HistoryFullError, Qos, Reliability, Sample
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import Guid
-from firm_hdl.rtps.wire.numbers import NumberSet
-from firm_hdl.rtps.wire.reliability import AckNack, Gap
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import AckNack, Data, DataFrag, Gap, NumberSet
 from tests.depth import by_depth
 from tests.rtps.network import Network
 

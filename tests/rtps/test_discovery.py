@@ -18,10 +18,8 @@ from firm_hdl.rtps.wire.guid import (
     Guid,
 )
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import Pid
-from firm_hdl.rtps.wire.reliability import AckNack, Heartbeat
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import AckNack, Data, Heartbeat, NumberSet
 from tests.rtps.network import GROUP, TOPIC, TYPE, Network
 
 PREFIX, OTHER = b"\x01\x10" + bytes(9) + b"\x09", b"\x01\x10" + bytes(9) + b"\x08"

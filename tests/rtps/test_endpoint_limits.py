@@ -7,9 +7,7 @@ import pytest
 from firm_hdl.rtps import Durability, Guid, Qos
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.reader import Reader
-from firm_hdl.rtps.wire.numbers import NumberSet
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, NackFrag
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import AckNack, Data, Gap, Heartbeat, NackFrag, NumberSet
 from firm_hdl.rtps.writer import Writer
 from tests.rtps.test_endpoints import (
     BEST_EFFORT,

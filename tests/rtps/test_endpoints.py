@@ -10,10 +10,17 @@ from firm_hdl.rtps.discovery import EndpointData, key_of
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire.guid import PUBLICATIONS_READER
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import (
+    AckNack,
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    HeartbeatFrag,
+    NackFrag,
+    NumberSet,
+)
 from firm_hdl.rtps.writer import Writer
 from tests.rtps.network import route_to
 

@@ -13,10 +13,8 @@ from firm_hdl.rtps import Durability, Qos, SampleIdentity
 from firm_hdl.rtps.core import Core
 from firm_hdl.rtps.wire import message, submessages
 from firm_hdl.rtps.wire.guid import Guid
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import AckNack, Data, DataFrag, Gap, Heartbeat, NumberSet
 from tests.depth import by_depth
 from tests.rtps.captures import CAPTURES, SEDP_CYCLONE, SEDP_FAST_DDS
 from tests.rtps.network import Network

@@ -8,7 +8,7 @@ from firm_hdl.rtps.events import Matched
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import SPDP_READER, SPDP_WRITER
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import Data
 from tests.rtps.network import Network
 
 

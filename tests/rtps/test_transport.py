@@ -9,12 +9,11 @@ import pytest
 
 from firm_hdl.rtps.backlog import Backlog
 from firm_hdl.rtps.budget import Budget
-from firm_hdl.rtps.fragments import fragment
 from firm_hdl.rtps.ros import Context, names
 from firm_hdl.rtps.transport import Transport
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import Data, DataFrag, fragment
 from tests.rtps.test_participant import DOMAIN, OPTIONS
 
 THERE = Address("127.0.0.1", 9)

@@ -14,13 +14,12 @@ from firm_hdl.rtps.events import Incompatible, Matched, PeerLost, Unmatched
 from firm_hdl.rtps.peers import Peer
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.sedp import Local, Sedp
-from firm_hdl.rtps.settings import Settings
-from firm_hdl.rtps.spdp import Spdp
+from firm_hdl.rtps.spdp import Settings, Spdp
 from firm_hdl.rtps.wire.guid import PARTICIPANT, SPDP_WRITER
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.octets import MalformedError
 from firm_hdl.rtps.wire.parameters import Pid
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import Data
 from firm_hdl.rtps.writer import Writer
 
 GROUP = Address("239.255.0.1", 7400)

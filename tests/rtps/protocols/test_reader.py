@@ -11,9 +11,8 @@ from firm_hdl.rtps.backlog import Backlog
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, HeartbeatFrag, NackFrag
+from firm_hdl.rtps.wire.submessages import AckNack, Gap, HeartbeatFrag, NackFrag, NumberSet
 from tests.rtps.network import route_to
 from tests.rtps.test_endpoints import (
     BEST_EFFORT,
