@@ -9,8 +9,7 @@ import pytest
 from amaranth.hdl import Cat, Module, Signal
 
 from firm_hdl.sim import DeadlineError, StreamRuleError
-from firm_hdl.sim.bench import RESET_CYCLES, WORD_BITS, Bench, Ports
-from firm_hdl.sim.job import Job, RunOptions
+from firm_hdl.sim.bench import RESET_CYCLES, WORD_BITS, Bench, Job, Ports, RunOptions
 from firm_hdl.sim.stalls import Stalls
 from tests.sim.components import Relay
 

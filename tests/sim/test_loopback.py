@@ -27,8 +27,7 @@ from firm_hdl.sim import (
     loopback,
     to_transfers,
 )
-from firm_hdl.sim.bench import Bench, Ports
-from firm_hdl.sim.job import Job
+from firm_hdl.sim.bench import Bench, Job, Ports
 from firm_hdl.sim.transfers import PendingTransfers, split_transfers, transfer_table
 from firm_hdl.wire import lay_out
 from tests.depth import THOROUGH, by_depth
