@@ -7,7 +7,7 @@ import math
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend.check import check_members
+from firm_hdl.frontend.interfaces import check_members
 from firm_hdl.frontend.syntax import ListSyntax
 
 from .reading import constant, field, parse, refused
