@@ -47,7 +47,8 @@ def address_of(interface: str | None) -> str:
             except OSError:
                 return "127.0.0.1"
             return str(probe.getsockname()[0])
-    with suppress(OSError):
+    # A name with a NUL is a `ValueError`.
+    with suppress(OSError, ValueError):
         return socket.inet_ntoa(socket.inet_pton(socket.AF_INET, interface))
     name = interface.encode()
     # The system would take the first bytes for the name of another interface.

@@ -312,12 +312,6 @@ def test_ports_of_the_standard():
             Ports.of(domain, participant)
 
 
-def test_a_domain_has_ports_for_120_participants_of_a_host():
-    assert [len(Ports.all_of(domain)) for domain in (0, 231, 232)] == [120, 120, 63]
-    assert Ports.all_of(231)[-1].user < Ports.of(232, 0).discovery_multicast
-    assert Ports.all_of(232)[-1].user == 65535
-
-
 def test_addresses_of_other_transports_are_left_out():
     good = locators.encode(Address("10.0.0.1", 7410))
     ipv6 = b"\2\0\0\0" + good[4:]

@@ -61,13 +61,6 @@ def test_payloads_leave_in_the_next_cycle():
     assert run.taken == {"o0": [(1, 5), (2, 6), (3, 7)]}
 
 
-def test_a_bench_runs_job_after_job_from_reset():
-    run = Run([[5]])
-    assert [run.go(), run.taken["o0"]] == [6, [(1, 5)]]
-    run.taken["o0"].clear()
-    assert [run.go(), run.taken["o0"]] == [6, [(1, 5)]]
-
-
 class RelayBench:
     """A relay, a counter of clock edges without a reset, and one with a reset."""
 
