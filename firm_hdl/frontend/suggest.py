@@ -6,7 +6,7 @@ import os
 from collections.abc import Sequence
 from difflib import get_close_matches
 
-from firm_hdl.frontend.explain import clip
+from firm_hdl.frontend.explain import alternatives, clip
 from firm_hdl.frontend.names import KINDS, Kind, TypeName
 from firm_hdl.frontend.sources import PackagePlace, Sources
 
@@ -117,10 +117,4 @@ def _close_names(
 def did_you_mean(message: str, names: list[str]) -> str:
     """Add at most three suggestions to a message."""
     quoted = [f"'{name}'" for name in names[:3]]
-    match quoted:
-        case []:
-            return message
-        case [*others, last]:
-            choice = f"{', '.join(others)} or {last}" if others else last
-            return f"{message}; did you mean {choice}?"
-    raise AssertionError
+    return f"{message}; did you mean {alternatives(quoted)}?" if quoted else message

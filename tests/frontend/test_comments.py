@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from firm_hdl.errors import Source
-from firm_hdl.frontend.comments import condense
-from firm_hdl.frontend.parse import parse_message
+from firm_hdl.frontend.parse import condense, parse_message
 
 
 def comments(text, dialect="ros2"):

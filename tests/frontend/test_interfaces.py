@@ -220,11 +220,6 @@ def test_ros1_action(tmp_path):
     ]  # fmt: skip
 
 
-def test_an_action_called_like_the_start_of_header(tmp_path):
-    action = load(tmp_path, "action/Head", FIBONACCI, distro="noetic")
-    assert fields(action.wrappers[0])[0] == "std_msgs/Header header"
-
-
 def test_derived_messages_equal_their_texts(tmp_path):
     # ROS 1 tools read these texts; reading them here must give the same fields.
     action = load(tmp_path / "1", "action/F", FIBONACCI, distro="noetic")
@@ -288,15 +283,6 @@ def test_an_action_called_header_has_the_header_of_std_msgs(tmp_path):
 
 
 @pytest.mark.parametrize(("kind", "legal"), [("srv", 1), ("action", 2)])
-def test_every_separator_that_is_too_many_is_reported(tmp_path, kind, legal):
-    with pytest.raises(DefinitionError) as error:
-        load(tmp_path, f"{kind}/A", "---\nint8 a\n" * 5)
-    found = error.value.diagnostics
-    assert [each.span.line for each in found] == [1 + 2 * n for n in range(legal, 5)]
-    assert {each.span.line_text for each in found} == {"---"}
-
-
-@pytest.mark.parametrize(("kind", "legal"), [("srv", 1), ("action", 2)])
 def test_mistakes_behind_a_separator_that_is_too_many_are_reported(tmp_path, kind, legal):
     with pytest.raises(DefinitionError) as error:
         load(tmp_path, f"{kind}/A", "---\n" * (legal + 1) + "int8 B\n---\nint8 D\n")
@@ -323,21 +309,6 @@ def test_ros1_has_no_definitions_in_idl(tmp_path, kind):
     assert Library("lyrical", [tmp_path]).interface("p/A").name == f"p/{kind}/A"
     with pytest.raises(DefinitionError, match="ROS 1 has no definitions in IDL"):
         Library("noetic", [tmp_path]).interface(f"p/{kind}/A")
-
-
-@pytest.mark.parametrize("kind", ["msg", "srv", "action"])
-def test_file_included_without_a_folder_is_that_beside_the_file(tmp_path, kind):
-    make_files(tmp_path, {
-        f"p/{folder}/sizes.idl": f"module p {{ const long N = {size}; }};"
-        for folder, size in (("msg", 2), ("srv", 3), ("action", 4))
-    })  # fmt: skip
-    structs = {"msg": ["A"], "srv": ["A_Request", "A_Response"],
-               "action": ["A_Goal", "A_Result", "A_Feedback"]}[kind]  # fmt: skip
-    text = " ".join(f"struct {name} {{ long a[N]; }};" for name in structs)
-    idl = f'#include "sizes.idl"\nmodule p {{ module {kind} {{ {text} }}; }};'
-    make_files(tmp_path, {f"p/{kind}/A.idl": idl})
-    first, *_ = Library("lyrical", [tmp_path]).interface(f"p/{kind}/A").messages
-    assert fields(first) == [f"int32[{ {'msg': 2, 'srv': 3, 'action': 4}[kind] }] a"]
 
 
 def test_long_suffixes_are_tried_first(tmp_path):

@@ -8,9 +8,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend import Library, interfaces
+from firm_hdl.frontend import Library
 from firm_hdl.model import PRIMITIVES, Array, Constant, Field, Message, Sequence, String
-from tests.depth import by_depth
 from tests.steps import calls_at_most
 from tests.strategies import definitions
 
@@ -111,13 +110,6 @@ def test_limits_of_values_are_legal(tmp_path):
                 load(tmp_path, beyond, dialect)
 
 
-def test_arrays_of_any_size_cost_nothing(tmp_path):
-    with calls_at_most(600_000):
-        message = load(tmp_path, "uint8[2147483648] a\nU[2147483648] b", U="float64[8388608] x")
-        assert [f.type.count for f in message.fields] == [1 << 31, 1 << 31]
-        assert message.is_fixed_size
-
-
 def test_same_type_is_the_same_object(tmp_path):
     lib = library(tmp_path, {"p/T": "U a\nV b", "p/U": "W w", "p/V": "p/W w", "p/W": ""})
     message = lib.message("p/T")
@@ -126,38 +118,11 @@ def test_same_type_is_the_same_object(tmp_path):
     assert lib.message("p/T") is message
 
 
-def test_every_text_is_read_once_however_often_it_is_used(tmp_path, monkeypatch):
-    # A lattice: 2**40 ways from top to bottom.
-    files = {f"p/T{i}": f"T{i + 1} a\nT{i + 1}[] b\n" for i in range(40)} | {"p/T40": "int8 x"}
-    lib = library(tmp_path, files)
-    read = []
-    original = interfaces.read_message
-    monkeypatch.setattr(
-        interfaces, "read_message", lambda s, d: [read.append(s.name), original(s, d)][1]
-    )
-    assert lib.message("p/T0").depth == 41
-    assert len(read) == len(set(read)) == 41
-
-
 def test_mistakes_in_a_lattice_are_reported_once(tmp_path):
     files = {f"p/T{i}": f"T{i + 1} a\nT{i + 1}[] b\n" for i in range(40)} | {"p/T40": "int8 X"}
     with pytest.raises(DefinitionError) as error:
         library(tmp_path, files).message("p/T0")
     assert len(error.value.diagnostics) == 1
-
-
-def test_depth_is_not_limited_by_recursion(tmp_path):
-    depth = by_depth(1500, 3000)
-    last = {f"p/T{depth}": "Nothing x"}
-    files = {f"p/T{i}": f"T{i + 1} a\n" for i in range(depth)} | last
-    with pytest.raises(DefinitionError) as error:
-        library(tmp_path, files).message("p/T0")
-    assert errors_of(error.value, tmp_path) == (
-        f"p/msg/T{depth}.msg:1:1: error: type 'Nothing' is not defined in package 'p'\n"
-        "Nothing x\n^^^^^^^"
-    )
-    make_files(tmp_path, {f"p/msg/T{depth}.msg": "int8 x"})
-    assert Library("lyrical", [tmp_path]).message("p/T0").name == "p/msg/T0"
 
 
 def test_syntax_errors_do_not_hide_other_errors_of_the_file(tmp_path):
@@ -173,15 +138,6 @@ def test_mistake_in_a_dependency_is_reported_there(tmp_path):
             lib.message(name)
         assert errors_of(error.value, tmp_path).startswith("q/msg/U.msg:1:7: error: 'B' is not")
         assert len(error.value.diagnostics) == 1
-
-
-def test_mistake_far_below_is_reported_to_all_that_come_later(tmp_path):
-    texts = {"p/T": "U u", "p/U": "V v", "p/V": "int32 B", "p/W": "T t\nint8 x"}
-    lib = library(tmp_path, texts)
-    for name in ("p/T", "p/W"):
-        with pytest.raises(DefinitionError) as error:
-            lib.message(name)
-        assert errors_of(error.value, tmp_path).startswith("p/msg/V.msg:1:7: error: 'B' is not")
 
 
 def test_good_types_of_a_library_with_bad_ones_resolve(tmp_path):

@@ -100,13 +100,6 @@ def test_empty_message_shows_nothing(distro):
     assert show(Library(distro), "std_msgs/Empty") == ""
 
 
-def test_deep_types_are_shown(tmp_path):
-    files = {f"p/T{i}": f"T{i + 1} a\n" for i in range(1500)} | {"p/T1500": "int8 x"}
-    for dialect, indent in (("ros1", "  "), ("ros2", "\t")):
-        text = show(library(tmp_path, files, dialect), "p/T0")
-        assert text.splitlines()[-1] == indent * 1500 + "int8 x"
-
-
 def test_wrong_types_are_not_shown(tmp_path):
     with pytest.raises(DefinitionError):
         show(library(tmp_path, {"p/T": "T t"}), "p/T")
@@ -175,18 +168,6 @@ def test_idl_is_shown_as_msg(tmp_path):
     assert show(library, "p/msg/V") == (
         "T[2] t # v\n\tint16 LIMIT=3\n\tfloat64 x 2.5\n\tq/U[<=4] us\n\t\tint8 x\n\tstring<=5 s\n"
     )
-
-
-def test_shown_idl_is_a_definition_that_means_the_same(tmp_path):
-    idl = (
-        'module p { module msg { module T_Constants { const string S = "a\'b"; '
-        "const boolean B = TRUE; const float F = 1.5; }; struct T { "
-        '@default(value="x y") string s; @default(value=FALSE) boolean b; '
-        "long long a[3]; sequence<octet> o; @default(value=-7) long n; }; }; };"
-    )
-    library = Library("lyrical", [make_files(tmp_path / "1", {"p/msg/T.idl": idl})])
-    root = make_files(tmp_path / "2", {"p/msg/T.msg": show(library, "p/msg/T")})
-    assert Library("lyrical", [root]).message("p/T") == library.message("p/T")
 
 
 @pytest.mark.parametrize(

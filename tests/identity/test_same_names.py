@@ -8,16 +8,16 @@ import pytest
 import yaml
 
 from firm_hdl.cli import main
+from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.identity import (
-    TooLargeError,
     md5sum,
     proto,
     proto_ros1,
     proto_ros2,
     type_description,
 )
-from firm_hdl.identity.command import load_interfaces
+from firm_hdl.identity.command import of_each
 from firm_hdl.model import closure
 
 from ..frontend.workspace import library, make_files
@@ -163,13 +163,13 @@ def test_limits_of_examples_are_allowed_and_one_more_is_not(tmp_path, monkeypatc
     monkeypatch.setattr(proto_ros1, "_MAX_VALUES", 4)
     proto(ours.message("p/Four"))
     monkeypatch.setattr(proto_ros1, "_MAX_VALUES", 3)
-    with pytest.raises(TooLargeError, match=r"^p/Four has an example of .*more than 3"):
+    with pytest.raises(DefinitionError, match=r"^error: p/Four has an example of .*more than 3"):
         proto(ours.message("p/Four"))
     monkeypatch.setattr(proto_ros1, "_MAX_VALUES", 100)
     monkeypatch.setattr(proto_ros1, "_MAX_LEVELS", 3)
     proto(ours.message("p/Deep"))
     monkeypatch.setattr(proto_ros1, "_MAX_LEVELS", 2)
-    with pytest.raises(TooLargeError, match=r"^p/Deep has an example of .*more than 2"):
+    with pytest.raises(DefinitionError, match=r"^error: p/Deep has an example of .*more than 2"):
         proto(ours.message("p/Deep"))
 
 
@@ -181,7 +181,7 @@ def test_limit_of_characters_is_that_of_the_text(tmp_path, monkeypatch, text):
     proto(message)
     # The elements of an array are counted before they are written.
     monkeypatch.setattr(proto_ros2, "_MAX_CHARACTERS", len("- 0\n") * 2)
-    with pytest.raises(TooLargeError):
+    with pytest.raises(DefinitionError):
         proto(message)
 
 
@@ -191,8 +191,8 @@ def test_limit_of_characters_is_that_of_the_text(tmp_path, monkeypatch, text):
 def test_a_message_and_a_service_of_one_name_are_two(tmp_path, capsys):
     make_files(tmp_path, {"p/msg/A.msg": "int8 a", "p/srv/A.srv": "int8 b\n---\n"})
     ours = Library("noetic", [tmp_path])
-    found = load_interfaces(ours, ["p/A", "p/srv/A", "p/msg/A", "p/srv/A"])
-    assert [type(each).__name__ for each in found] == ["Message", "Service"]
+    found, wrong = of_each(ours, ["p/A", "p/srv/A", "p/msg/A", "p/srv/A"], type)
+    assert [each.__name__ for each in found] == ["Message", "Service"] and wrong is None
     assert main(["md5", "p/A", "p/srv/A", "--path", str(tmp_path)]) == 0
     assert capsys.readouterr().out == f"{digest('int8 a')}  p/A\n{digest('int8 b')}  p/A\n"
 

@@ -25,10 +25,17 @@ from firm_hdl.rtps.wire.guid import (
     SUBSCRIPTIONS_WRITER,
 )
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import Pid
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import (
+    AckNack,
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    HeartbeatFrag,
+    NackFrag,
+    NumberSet,
+)
 from tests.rtps.network import TOPIC, TYPE, Network
 
 KEEP_ALL = Qos(depth=0)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from dataclasses import replace
 
 import pytest
 
-from firm_hdl.rtps import Durability, Qos, Reliability, core, sedp
+from firm_hdl.rtps import Durability, Qos, Reliability, core
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData, key_payload
+from firm_hdl.rtps.events import Matched
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import (
     PARTICIPANT,
@@ -18,10 +21,8 @@ from firm_hdl.rtps.wire.guid import (
     Guid,
 )
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import Pid
-from firm_hdl.rtps.wire.reliability import AckNack, Heartbeat
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import AckNack, Data, Heartbeat, NumberSet
 from tests.rtps.network import GROUP, TOPIC, TYPE, Network
 
 PREFIX, OTHER = b"\x01\x10" + bytes(9) + b"\x09", b"\x01\x10" + bytes(9) + b"\x08"
@@ -109,20 +110,6 @@ def test_only_built_in_endpoints_that_a_peer_has_are_talked_to():
         station.core.tick(0.0)
         sent = [each for _, each in posted(station) if not isinstance(each, Data)]
         assert {(type(each), each.writer) for each in sent} == {talk}
-
-
-@pytest.mark.parametrize(
-    ("period", "times"),
-    [(1.0, [0, 0.1, 0.2, 0.3, 0.4, 1.4, 2.4]), (0.04, [0, 0.04, 0.08, 0.12, 0.16, 0.2, 0.24])],
-)
-def test_a_new_participant_announces_itself_quickly_at_first(period, times):
-    station = Network().station(period=period)
-    now, found = 0.0, []
-    while len(found) < len(times):
-        due = station.core.tick(now)
-        found += [now for to, each in posted(station) if to == GROUP]
-        now = due
-    assert found == pytest.approx(times)
 
 
 def test_a_flood_of_announcements_makes_no_flood_of_answers(station):
@@ -238,18 +225,6 @@ def test_policies_that_change(station):
         tell(station, 0.0, replace(ends, sequence_number=number + 1))
 
 
-def test_endpoints_of_a_peer_are_limited(station, monkeypatch):
-    monkeypatch.setattr(sedp, "_MAX_ENDPOINTS", 3)
-    announce(station, 0.0)
-    many = [replace(WRITER, guid=Guid(PREFIX, n << 8 | 3), topic=f"rt/{n}") for n in range(1, 6)]
-    changed = replace(many[0], topic="rt/new")
-    for number, each in enumerate([*many, changed], 1):
-        tell(station, 0.0, *announcement(each, number, PUBLICATIONS_WRITER))
-    # What is known may change.
-    topics = [each.topic for each in station.core.remotes(writers=True)]
-    assert topics == ["rt/new", "rt/2", "rt/3"]
-
-
 def test_what_is_announced_of_an_endpoint(station):
     announce(station, 0.0)
     station.core.add_writer(TOPIC, TYPE, Qos(depth=3), b"abc", 0.0)
@@ -309,3 +284,66 @@ def test_datagrams_that_wait_take_limited_memory(station, monkeypatch):
     dropped = station.core.counters["dropped"]
     station.core.tick(4.0)
     assert station.core.outbox and station.core.counters["dropped"] == dropped
+
+
+def test_every_endpoint_of_a_participant_that_moves_moves_with_it():
+    network = Network()
+    one, two = network.station(), network.station()
+    topics = ["rt/a", "rt/b", "rt/c"]
+    writers = [one.writer(topic=topic) for topic in topics]
+    for topic in topics:
+        two.reader(topic=topic)
+    assert network.run(10, lambda: len(one.named("Matched")) == len(topics))
+    network.run(1)
+    there = Address("10.0.0.77", 7500)
+    # Endpoints without addresses have the default ones of their participant.
+    readers = [replace(each, addresses=()) for each in one.core.remotes(writers=False)]
+    two.core._sedp.subscriptions.forget(1)
+    for each in readers:
+        two.core._sedp.subscriptions.write(each.encode(), network.now)
+    network.run(1)
+    own = two.core.settings.own
+    moved = replace(own, discovery=(Address(there.host, 7410),), user=(there,))
+    announcement = Data(
+        reader=SPDP_READER, writer=SPDP_WRITER, sequence_number=1, payload=moved.encode()
+    )
+    one.core.receive(message.write(own.prefix, [announcement]), network.now, there.host)
+    while one.core.outbox:
+        one.core.pop()
+    for writer in writers:
+        one.write(writer, b"\0\1\0\0")
+        found = []
+        while one.core.outbox:
+            found.append(one.core.pop()[0])
+        assert found == [there]
+    assert not [event for event in one.core.events if isinstance(event, Matched)]
+
+
+def test_an_endpoint_can_be_removed_twice():
+    network = Network()
+    one, two = network.station(), network.station()
+    writer, reader = one.writer(), two.reader()
+    assert network.run(5, lambda: len(writer.matched) == 1)
+    for _ in range(2):
+        one.core.remove(writer.guid, network.now)
+        two.core.remove(reader.guid, network.now)
+    assert network.run(5, lambda: not list(two.core.remotes(writers=True)))
+    assert writer.matched == reader.matched == ()
+
+
+def test_an_endpoint_that_is_removed_takes_no_memory():
+    network = Network()
+    one, two = network.station(), network.station()
+
+    def use():
+        writer, reader = one.writer(Qos(depth=0)), two.reader()
+        assert network.run(5, lambda: len(writer.matched) == 1)
+        one.write(writer, bytes(100))
+        one.core.remove(writer.guid, network.now)
+        two.core.remove(reader.guid, network.now)
+        return weakref.ref(writer), weakref.ref(reader)
+
+    kept = use()
+    assert network.run(5, lambda: not list(two.core.remotes(writers=True)))
+    gc.collect()
+    assert [each() for each in kept] == [None, None]

@@ -7,9 +7,7 @@ import pytest
 from firm_hdl.rtps import Durability, Guid, Qos
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.reader import Reader
-from firm_hdl.rtps.wire.numbers import NumberSet
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, NackFrag
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import AckNack, Data, Gap, Heartbeat, NumberSet
 from firm_hdl.rtps.writer import Writer
 from tests.rtps.test_endpoints import (
     BEST_EFFORT,
@@ -113,16 +111,6 @@ def gap(start, base, members=()):
     return Gap(reader=0, writer=0x103, start=start, numbers=NumberSet(base, members))
 
 
-def test_a_gap_far_ahead_takes_no_memory(sent):
-    reader, got, _ = listening(sent)
-    reader.on_gap(HERE, gap(2, 1 << 16), 1.0)
-    reader.on_data(HERE, data(1), None, 1.0)
-    reader.on_heartbeat(HERE, heartbeat(1, 1 << 17, count=2), 1.0)
-    (answer,) = sent.take(AckNack)
-    # What is further ahead than samples may be has to be said again.
-    assert got == [1] and answer.missing.base == 4097
-
-
 @pytest.mark.parametrize(
     ("gaps", "first", "lost"),
     [
@@ -141,27 +129,6 @@ def test_what_is_gone_is_lost_unless_it_never_was(sent, gaps, first, lost):
     assert reader.lost == 0
     reader.on_heartbeat(HERE, heartbeat(first, 9, count=2), 1.0)
     assert reader.lost == lost
-
-
-def test_a_reader_that_gets_on_asks_as_often_again(sent):
-    def asks(reader, now, most=99):
-        count = 0
-        while now < float("inf") and count < most:
-            now = reader.tick(now)
-            count += len(sent.take(AckNack))
-        return count
-
-    totals = []
-    for helps in (False, True):
-        reader, _, _ = listening(sent)
-        reader.on_heartbeat(HERE, heartbeat(1, 3, count=2), 1.0)
-        sent.clear()
-        total = asks(reader, 1.0, most=4)
-        if helps:
-            reader.on_gap(HERE, gap(1, 1, (1,)), 1.5)
-        totals.append(total + asks(reader, 10.0))
-    # Of four that were asked by themselves, and one as an answer to the heartbeat.
-    assert totals[1] == totals[0] + 5
 
 
 def test_a_heartbeat_that_is_late_takes_nothing_back(sent):
@@ -210,22 +177,6 @@ def test_an_old_answer_takes_no_acknowledgement_back(sent):
     for count, base in ((1, 2), (2, 3), (3, 2)):
         writer.on_ack_nack(THERE, ack(base, count=count), 1.1)
         assert writer.acknowledged is (count > 1)
-
-
-def test_a_sample_is_kept_until_the_slowest_reader_has_it(sent):
-    slow = Guid(bytes(11) + b"\1", 0x204)
-    writer = Writer(HERE, KEEP_ALL, sent.append)
-    for each in (THERE, slow):
-        writer.match(endpoint(each), ROUTE, 0.0)
-    writer.write(b"abcd", 1.0)
-    writer.on_ack_nack(THERE, ack(2), 1.1)
-    sent.clear()
-    writer.on_ack_nack(slow, ack(1, (1,)), 1.2)
-    assert [each.sequence_number for each in sent.take(Data, slow.prefix)] == [1]
-    writer.on_ack_nack(slow, ack(2, count=2), 1.3)
-    sent.clear()
-    writer.on_ack_nack(slow, ack(1, (1,), count=3), 1.4)
-    assert len(sent.take(Gap)) == 1
 
 
 def test_a_durable_writer_whose_history_is_empty(sent):
@@ -279,34 +230,3 @@ def test_which_samples_ask_for_an_acknowledgement(sent, qos, large, asks):
         (beat,) = sent.take(Heartbeat)
         asking += [] if beat.final else [number]
     assert asking == asks
-
-
-def test_further_samples_do_not_put_the_next_heartbeat_off(sent):
-    writer = Writer(HERE, KEEP_ALL, sent.append)
-    writer.match(endpoint(THERE), ROUTE, 0.0)
-    for now in (1.0, 1.02, 1.04):
-        writer.write(b"abcd", now)
-        assert writer.tick(now) == pytest.approx(1.05)
-    # It has them all before the fourth.
-    writer.on_ack_nack(THERE, ack(4), 1.045)
-    writer.write(b"abcd", 1.047)
-    assert writer.tick(1.047) == pytest.approx(1.097)
-
-
-@pytest.mark.parametrize("kind", ["acknowledges", "asks for fragments"])
-def test_a_reader_that_was_silent_is_asked_again_once_it_says_something(sent, kind):
-    writer = Writer(HERE, KEEP_ALL, sent.append, fragment_bytes=4)
-    writer.match(endpoint(THERE), ROUTE, 0.0)
-    writer.write(b"abcdefgh", 1.0)
-    now = 1.0
-    for _ in range(99):
-        now = min(writer.tick(now), 999.0)
-    assert writer.tick(999.0) == float("inf")
-    if kind == "acknowledges":
-        writer.on_ack_nack(THERE, ack(1), 1000.0)
-    else:
-        missing = NackFrag(
-            reader=0, writer=0x103, sequence_number=1, missing=NumberSet(1, (1,)), count=1
-        )
-        writer.on_nack_frag(THERE, missing, 1000.0)
-    assert writer.tick(1000.0) < 1002.0

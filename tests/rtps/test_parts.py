@@ -13,17 +13,16 @@ from firm_hdl.rtps import Durability, Qos, Reliability, TransportError
 from firm_hdl.rtps.backlog import Backlog
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData
-from firm_hdl.rtps.fragments import fragment, fragment_count
-from firm_hdl.rtps.pacing import Pacer
+from firm_hdl.rtps.participant import Pacer
 from firm_hdl.rtps.qos import duration, seconds
-from firm_hdl.rtps.settings import Settings
+from firm_hdl.rtps.spdp import Settings
 from firm_hdl.rtps.transport import address_of
 from firm_hdl.rtps.wire import locators
 from firm_hdl.rtps.wire.guid import Guid, is_keyed, new_prefix, user_reader, user_writer
 from firm_hdl.rtps.wire.locators import Address, Ports
 from firm_hdl.rtps.wire.octets import Cursor, MalformedError
 from firm_hdl.rtps.wire.parameters import ParameterList
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import Data, DataFrag, fragment, fragment_count
 
 # A busy machine is no fault.
 SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
@@ -311,12 +310,6 @@ def test_ports_of_the_standard():
     for domain, participant in ((-1, 0), (233, 0), (232, 63)):
         with pytest.raises(ValueError, match=r"[Dd]omain"):
             Ports.of(domain, participant)
-
-
-def test_a_domain_has_ports_for_120_participants_of_a_host():
-    assert [len(Ports.all_of(domain)) for domain in (0, 231, 232)] == [120, 120, 63]
-    assert Ports.all_of(231)[-1].user < Ports.of(232, 0).discovery_multicast
-    assert Ports.all_of(232)[-1].user == 65535
 
 
 def test_addresses_of_other_transports_are_left_out():

@@ -10,13 +10,22 @@ from hypothesis import strategies as st
 
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import Guid, SampleIdentity
-from firm_hdl.rtps.wire.infos import InfoDestination, InfoSource, InfoTimestamp
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.octets import Cursor, MalformedError
 from firm_hdl.rtps.wire.parameters import ParameterList
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
-from firm_hdl.rtps.wire.samples import Data, DataFrag
-from firm_hdl.rtps.wire.submessages import encode
+from firm_hdl.rtps.wire.submessages import (
+    AckNack,
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    HeartbeatFrag,
+    InfoDestination,
+    InfoSource,
+    InfoTimestamp,
+    NackFrag,
+    NumberSet,
+    encode,
+)
 from tests.depth import by_depth
 
 # A busy machine is no fault.
@@ -271,10 +280,10 @@ def test_unknown_kinds_are_skipped():
         ("13011c00 0000000100000002 0000000000000000 02000000 01000000 00000000", "sequence numb"),
         ("12011c00 0000000100000002 0000000000000000 02000000 00000000 00000000", "sequence numb"),
         ("15011400 00001000 0000000100000002 0000000000000000", "sequence number 0"),
-        ("15010800 0000100000000001", "4 bytes at 8 of 8"),
+        ("15010800 0000100000000001", "16 bytes at 4 of 8"),
         ("150d1400 00001000 0000000100000002 0000000001000000", "data and key at once"),
         ("15031800 00001000 0000000100000002 0000000001000000 70000800", "8 bytes at 24 of 24"),
-        ("15050800 0000ffff00000001 00000002 0000000001000000", "4 bytes at 8"),
+        ("15050800 0000ffff00000001 00000002 0000000001000000", "65535 bytes at 4 of 8"),
         (
             "16012000 00001c00 0000000100000002 0000000001000000 01000000 0000 0400 10000000",
             "0 fragments of 4 bytes from 1 of 16 bytes",

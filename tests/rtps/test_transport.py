@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import socket
-from types import SimpleNamespace
 
 import pytest
 
 from firm_hdl.rtps.backlog import Backlog
 from firm_hdl.rtps.budget import Budget
-from firm_hdl.rtps.fragments import fragment
-from firm_hdl.rtps.ros import Context, names
 from firm_hdl.rtps.transport import Transport
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.samples import Data, DataFrag
-from tests.rtps.test_participant import DOMAIN, OPTIONS
+from firm_hdl.rtps.wire.submessages import Data, DataFrag, fragment
+from tests.rtps.test_participant import DOMAIN
 
 THERE = Address("127.0.0.1", 9)
 INLINE = ParameterList(((Pid.KEY_HASH, bytes(16)),))
@@ -96,27 +93,6 @@ def test_the_largest_datagram_is_received_whole(transport):
     assert list(transport.receive(user, limit=1)) == [(datagram, "127.0.0.1")]
 
 
-def test_topics_of_peers_are_those_of_writers_and_readers(monkeypatch):
-    def endpoint(topic, kind, type_hash=None):
-        name = names.type_name(f"p/msg/{kind}")
-        data = names.user_data(type_hash)
-        return SimpleNamespace(topic=topic, type_name=name, user_data=data)
-
-    remotes = {
-        True: (endpoint("rt/a", "A", "RIHS01_1"), endpoint("rt/b", "B"), endpoint("dds", "D")),
-        False: (endpoint("rt/a", "A", "RIHS01_2"), endpoint("rt/a", "X"), endpoint("rt/c", "C")),
-    }
-    with Context(**OPTIONS) as context:
-        monkeypatch.setattr(context.participant, "remotes", remotes.get)
-        assert context.topics() == {
-            "/a": {"p/msg/A", "p/msg/X"},
-            "/b": {"p/msg/B"},
-            "/c": {"p/msg/C"},
-        }
-        assert context.type_hashes("/a") == {"RIHS01_1", "RIHS01_2"}
-        assert context.type_hashes("/b") == context.type_hashes("/d") == set()
-
-
 # Fragments.
 
 SAMPLE = Data(
@@ -158,16 +134,6 @@ def test_fragments_of_other_sizes_are_of_another_sample(change):
     assert backlog.add(part(2, b"EFGHI", **change)) is None
     assert backlog.missing(7) == [2, 3]
     assert backlog.add(part(2, b"efghij", count=2)) == SAMPLE
-
-
-def test_a_sample_without_memory_is_not_put_together():
-    # A fragment of 4 bytes takes 204.
-    for limit, found in ((203, None), (204, b"abcd")):
-        budget = Budget(limit)
-        backlog = Backlog(bytes(12), budget)
-        whole = backlog.add(part(1, b"abcd", sample_bytes=4))
-        assert (whole and whole.payload) == found and budget.used == 0
-        assert not backlog
 
 
 def test_a_sample_that_outgrows_the_memory_is_given_up_and_may_begin_again():

@@ -10,8 +10,7 @@ import pytest
 
 from firm_hdl.frontend import Library
 from firm_hdl.wire import lay_out
-from firm_hdl.wire.bands import Note, bands
-from firm_hdl.wire.picture import BYTE_WIDTH, INDENT, LEFT, ROW_BYTES, to_svg
+from firm_hdl.wire.picture import BYTE_WIDTH, INDENT, LEFT, ROW_BYTES, Note, bands, to_svg
 from tests.frontend.workspace import library
 
 SVG = "{http://www.w3.org/2000/svg}"

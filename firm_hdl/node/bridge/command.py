@@ -4,27 +4,25 @@ from __future__ import annotations
 
 import signal
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.boards import board_of
 from firm_hdl.node.bridge.bridge import Bridge
+from firm_hdl.node.bridge.counters import BridgeCounters
 from firm_hdl.node.bridge.session import WrongBoardError
 from firm_hdl.node.capacity import rate_problems
+from firm_hdl.node.control import Register
 from firm_hdl.node.description import Description
 from firm_hdl.node.graphs import graph_of
+from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
     from firm_hdl.sim.fast import EngineName
-import time
-from typing import TextIO
-
-from firm_hdl.node.bridge.counters import BridgeCounters
-from firm_hdl.node.control import Register
-from firm_hdl.terminal import stage
 
 __all__ = ["Status", "account", "run_bridge", "status_line"]
 

@@ -7,7 +7,16 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from firm_hdl.cases.values import Plain, changed, packed
-from firm_hdl.model import Array, Field, FieldType, Message, Primitive, String, closure, rebuilt
+from firm_hdl.model import (
+    Array,
+    Field,
+    FieldType,
+    Message,
+    Primitive,
+    String,
+    closure,
+    map_messages,
+)
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.references.objects import full_text
@@ -126,4 +135,4 @@ def _without(message: Message, value: Plain, owner: Message, item: Field) -> tup
     def change(kind: Message) -> Message:
         return replace(kind, fields=tuple(f for f in kind.fields if is_kept(kind, f.name)))
 
-    return rebuilt(message, change), changed(message, value, without)
+    return map_messages(message, change), changed(message, value, without)

@@ -7,7 +7,7 @@ from rosbags.rosbag1 import Writer
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import RecordingOrigin, open_library
-from tests.frontend.recordings import make_old_db3, record, record_in_idl
+from tests.frontend.recordings import make_old_db3, record
 
 LINE = "=" * 80
 
@@ -58,32 +58,6 @@ def test_names_of_types_have_a_package_and_at_most_one_of_three_kinds(tmp_path, 
     assert open_library(bags=[path]).interfaces() == [*([want] if is_legal else []), "q/msg/B"]
 
 
-def test_definition_in_idl_without_a_text_is_a_missing_one(tmp_path):
-    path = record_in_idl(tmp_path / "r", "p/msg/A", "", ("p/msg/B", "struct B { long b; };"))
-    ours = open_library(bags=[path])
-    assert ours.names() == ["p/msg/B"]
-    with pytest.raises(DefinitionError, match="a topic of type 'p/msg/A', but not its definition"):
-        ours.message("p/A")
-
-
-def test_definition_in_idl_of_blanks_is_none_of_that_type(tmp_path):
-    ours = open_library(bags=[record_in_idl(tmp_path / "r", "p/msg/A", " \n ")])
-    assert ours.names() == ["p/msg/A"]
-    with pytest.raises(DefinitionError, match="the file ends here"):
-        ours.message("p/A")
-
-
-def test_type_whose_topic_lacks_a_definition_has_that_of_another_topic(tmp_path):
-    a = f"{LINE}\nIDL: p/msg/A\nstruct A {{ p::msg::B b; }};\n"
-    b = f"{LINE}\nIDL: p/msg/B\nstruct B {{ long x; }};\n"
-    for order in (1, -1):
-        topics = [("p/msg/B", ""), ("p/msg/A", a + b)][::order]
-        path = record_in_idl(tmp_path / str(order), *topics[0], topics[1])
-        ours = open_library(bags=[path])
-        assert ours.names() == ["p/msg/A", "p/msg/B"]
-        assert [field.name for field in ours.message("p/B").fields] == ["x"]
-
-
 def test_constants_of_an_included_section_are_known(tmp_path):
     a = """#include "p/msg/B.idl"
     module p { module msg { struct A { p::msg::B b; Many c; long d[B_Constants::N]; }; }; };"""
@@ -94,12 +68,6 @@ def test_constants_of_an_included_section_are_known(tmp_path):
     assert [str(f.type) for f in ours.message("p/A").fields] == [
         "p/msg/B", "int32[<=7]", "int32[3]"
     ]  # fmt: skip
-
-
-def test_scopes_of_idl_stand_in_names_of_definitions_in_idl_alone(tmp_path):
-    (path,) = record(tmp_path / "r", "p/msg//Long", "int8 a\n").glob("*.mcap")
-    path.write_bytes(path.read_bytes().replace(b"p/msg//Long", b"p::msg::Lon"))
-    assert "type 'p::msg::Lon', which is not the name of a type" in refused(path)
 
 
 @pytest.mark.parametrize("ending", ["", "\n", "\n\n"])

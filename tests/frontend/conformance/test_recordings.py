@@ -123,13 +123,6 @@ def test_texts_are_cut_at_headings_alone(tmp_path):
     assert ours.source("p/D").text == ""
 
 
-def test_empty_lines_at_the_end_are_of_the_last_text(tmp_path):
-    text = f"B b\n\n\n{SEPARATOR}\nMSG: p/B\nint8 x\n\n"
-    ours = open_library(bags=[record(tmp_path / "r", "p/msg/A", text)])
-    assert ours.source("p/A").text == "B b\n\n"
-    assert ours.source("p/B").text == "int8 x\n\n"
-
-
 def test_mistake_is_shown_where_it_is_in_its_type(tmp_path):
     path = record(tmp_path / "r", "p/msg/A", f"B b\n{SEPARATOR}\nMSG: p/B\nint8 x\nint33 y\n")
     with pytest.raises(DefinitionError) as error:
@@ -282,14 +275,6 @@ def test_definition_in_that_of_another_topic_will_do(tmp_path, order):
     ours = open_library(bags=[record(tmp_path / "r", *topics[0], topics[1])])
     assert ours.names() == ["p/msg/A", "p/msg/B"]
     assert [field.name for field in ours.message("p/B").fields] == ["x"]
-
-
-@pytest.mark.parametrize("place", [0, 1, 2])
-def test_each_of_several_recordings_is_to_be_of_one_ros(tmp_path, place):
-    paths = [record(tmp_path / str(n), "p/msg/A", "int8 a\n") for n in range(3)]
-    paths[place] = make_recording(tmp_path, "bag")
-    with pytest.raises(DefinitionError, match="read them one at a time"):
-        open_library(bags=paths)
 
 
 @pytest.mark.parametrize(

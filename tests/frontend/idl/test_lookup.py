@@ -12,7 +12,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.model import String
 
-from ..workspace import make_files
+from ..workspace import errors_of, make_files
 from .rosidl import read
 
 
@@ -106,18 +106,6 @@ def test_constants_have_the_kind_of_their_type_and_not_of_their_value(kind, valu
       struct T {{ long a[N]; }}; }}; }};"""
     (wrong,) = read(text)[1]
     assert wrong.message == "the length of an array must be an integer"
-
-
-def test_structs_keep_their_own_constants():
-    messages, wrong = read(
-        SERVICE.format(outer="const long X = 1;", inner="", request="", response="")
-    )
-    assert wrong == []
-    found = {
-        name: [(m.name.text, m.value.value) for m in syntax.members if hasattr(m, "value")]
-        for name, syntax in messages.items()
-    }
-    assert found == {"S_Request": [("N", 3), ("A", 13)], "S_Response": [("N", 4), ("B", 14)]}
 
 
 def test_a_scope_is_followed_from_the_inside_to_the_outside():
@@ -373,3 +361,101 @@ def test_a_constant_keeps_its_first_value_and_place():
     ]
     n, m, a = messages["T"].members
     assert (n.name.text, n.value.value, m.value.value, a.type.size.value) == ("N", 2, 2, 2)
+
+
+# A constant sees only those above it.
+LATE = "\nmodule p { module msg { const long A = B; const long B = 3; struct T { long a; }; }; };"
+
+
+@pytest.mark.parametrize("path", ["p/msg/T.idl", "T.idl"])
+def test_a_file_that_includes_itself_declares_nothing_earlier(tmp_path, path):
+    files = {"p/msg/T.idl": f'#include "{path}"{LATE}'}
+    library = Library("lyrical", [make_files(tmp_path, files)])
+    with pytest.raises(DefinitionError) as error:
+        library.message("p/T")
+    assert "T.idl:2:" in errors_of(error.value, tmp_path)
+    assert "error: constant 'B' is not declared above" in str(error.value)
+
+
+def test_two_files_that_include_each_other_declare_nothing_earlier(tmp_path):
+    files = {
+        "p/msg/T.idl": f'#include "U.idl"{LATE}',
+        "p/msg/U.idl": '#include "T.idl"\nmodule p { module msg { struct U { long a; }; }; };',
+    }
+    library = Library("lyrical", [make_files(tmp_path, files)])
+    with pytest.raises(DefinitionError, match="constant 'B' is not declared above"):
+        library.message("p/T")
+    assert library.message("p/U").fields[0].name == "a"
+
+
+@pytest.mark.parametrize(
+    ("word", "message"),
+    [
+        ("true", "'true' is not a boolean: TRUE or FALSE"),
+        ("false", "'false' is not a boolean: TRUE or FALSE"),
+        ("False", "constant 'False' is not declared above"),
+        ("p::true", "constant 'p::true' is not declared above"),
+    ],
+)
+def test_booleans_of_other_languages_are_told_from_names(word, message):
+    _, wrong = read(f"module p {{ struct T {{ @default(value={word}) boolean a; }}; }};")
+    assert [each.message for each in wrong] == [message]
+
+
+FAR = "module q {{ module msg {{ const long N = 2; typedef long V[2]; {typedef} }}; }}; "
+NEAR = "module p {{ module msg {{ const long N = 5; {near} struct T {{ {use} x; }}; }}; }};"
+
+
+def of_member(text):
+    """Return the array size and the bound of the only member, or what is wrong."""
+    messages, wrong = read(text)
+    if wrong:
+        return wrong[0].message
+    type_ = messages["T"].members[-1].type
+    return type_.size and type_.size.value, type_.bound and type_.bound.value
+
+
+@pytest.mark.parametrize("use", ["W", "q::msg::W", "q::msg::X"])
+@pytest.mark.parametrize(
+    ("typedef", "found"),
+    [
+        ("typedef msg::V W;", (2, None)),
+        ("typedef q::msg::V W;", (2, None)),
+        ("typedef ::q::msg::V W;", (2, None)),
+        ("typedef long W[N];", (2, None)),
+        ("typedef long W[msg::N];", (2, None)),
+        ("typedef sequence<long, N> W;", (2, None)),
+        ("typedef string<N> W;", (None, 2)),
+        ("typedef string<msg::N> W;", (None, 2)),
+    ],
+)
+def test_names_in_a_typedef_are_those_of_its_own_module(typedef, found, use):
+    far = FAR.format(typedef=f"{typedef} typedef W X;")
+    assert of_member(far + NEAR.format(near="", use=use)) == found
+
+
+@pytest.mark.parametrize("use", ["W", "q::msg::X"])
+def test_a_typedef_does_not_see_the_module_where_it_is_used(use):
+    far = FAR.format(typedef="typedef msg::P W; typedef W X;")
+    message = of_member(far + NEAR.format(near="typedef long P[6];", use=use))
+    assert message.startswith("'msg::P' is not a type;")
+
+
+def test_a_typedef_has_no_struct_whose_constants_it_sees_first():
+    text = """module p {{ module msg {{ module S_Constants {{ const long N = 6; }};
+      module T_Constants {{ const long N = 7; }};
+      typedef long W{}; struct T {{ W x{}; }}; }}; }};"""
+    assert of_member(text.format("", "[N]")) == (7, None)
+    wrong = "constant 'N' is not declared above; there are 2 of that name elsewhere"
+    assert of_member(text.format("[N]", "")) == wrong
+
+
+@pytest.mark.parametrize(("outer", "found"), [("msg::V", (3, None)), ("p::V", (4, None))])
+def test_each_typedef_of_a_chain_has_its_own_module(outer, found):
+    """The first one stands in p, the second in p::msg, the member in r."""
+    text = f"""module p {{ typedef {outer} A; typedef long V[4]; }};
+      module p {{ module msg {{ typedef p::A B; }}; }};
+      module r {{ typedef msg::B C; struct T {{ p::msg::B x; }}; }};"""
+    if outer == "msg::V":
+        text = text.replace("typedef long V[4];", "module msg { typedef long V[3]; };")
+    assert of_member(text) == found

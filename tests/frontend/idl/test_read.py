@@ -15,7 +15,7 @@ from tests.depth import by_depth
 from tests.frontend.workspace import make_files
 from tests.steps import calls_at_most
 
-from .rosidl import describe, read
+from .rosidl import read
 
 
 def library(tmp_path, files, distro="lyrical"):
@@ -89,20 +89,6 @@ def test_typedefs_are_expanded_whatever_their_order(tmp_path):
         "c": "string<=5[]",
         "d": "string<=5[2]",
     }
-
-
-def test_constants_are_looked_up_from_the_inside_to_the_outside():
-    text = """module p { const long N = 1; module msg {
-      const long N = 2;
-      module T_Constants { const long N = 3; const long M = N; const long O = p::N; };
-      module U_Constants { const long N = 4; const long P = 5; };
-      struct T { long a[N]; long b[M]; long c[O + 1]; long d[::p::N + 1]; long e[P];
-                 long f[U_Constants::N]; long g[msg::T_Constants::N]; };
-    }; };"""
-    (found,) = describe(read(text)[0])
-    sizes = [field["type"] for field in found["fields"]]
-    assert sizes == [f"int32[{n}]" for n in (2, 3, 2, 2, 5, 4, 3)]
-    assert read(text)[1] == []
 
 
 @pytest.mark.parametrize("module", ["b", "bits", "B_constants"])
@@ -286,12 +272,6 @@ def test_annotations_of_others_promise_nothing():
     assert read("module p { struct T { @vendor::optional long a; }; };")[1] == []
     (only,) = read("module p { struct T { @optional long a; }; };")[1]
     assert only.message == "annotation '@optional' is not supported"
-
-
-def test_enumerators_do_not_disturb():
-    text = "module p { enum E { a, T }; struct T { long a; }; };"
-    messages, wrong = read(text)
-    assert wrong == [] and [*messages] == ["T"]
 
 
 def test_good_members_stay_when_others_are_wrong():

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 from firm_hdl.rtps import Guid
@@ -11,9 +9,7 @@ from firm_hdl.rtps.backlog import Backlog
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
-from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, HeartbeatFrag, NackFrag
+from firm_hdl.rtps.wire.submessages import AckNack, Gap, HeartbeatFrag, NackFrag, NumberSet
 from tests.rtps.network import route_to
 from tests.rtps.test_endpoints import (
     BEST_EFFORT,
@@ -154,14 +150,6 @@ def test_what_is_left_of_a_history_that_is_gone_is_delivered_in_order(sent):
     assert reader.got == [3, 4, 5] and reader.lost == 2
 
 
-@pytest.mark.parametrize(("first", "lost"), [(1, 0), (2, 1), (3, 2)])
-def test_samples_below_a_heartbeat_are_lost(sent, first, lost):
-    reader = Listener(sent)
-    reader.on_heartbeat(HERE, heartbeat(first, 4, count=2), 1.0)
-    (answer,) = sent.take(AckNack)
-    assert answer.missing == NumberSet(first, tuple(range(first, 5))) and reader.lost == lost
-
-
 # Asking.
 
 
@@ -273,13 +261,6 @@ def test_a_gap_that_was_passed_is_not_counted_again(sent):
         assert reader.lost == lost
 
 
-def test_a_gap_that_begins_where_the_history_does_is_not_lost_before(sent):
-    reader = Listener(sent)
-    reader.on_gap(HERE, gap(3, 4), 1.0)
-    reader.on_heartbeat(HERE, heartbeat(3, 4, count=2), 1.0)
-    assert reader.lost == 2
-
-
 # Fragments.
 
 
@@ -339,15 +320,6 @@ def test_a_flood_of_heartbeats_gets_an_answer_each_millisecond(sent):
     # The last one gets its answer, too.
     assert reader.tick(2.0) == pytest.approx(2.001)
     assert reader.tick(2.001) == float("inf") and len(sent.take(AckNack)) == 1
-
-
-def test_a_sample_in_fragments_keeps_its_inline_qos():
-    """It names the request that a large reply answers."""
-    inline = ParameterList(((Pid.KEY_HASH, bytes(16)),))
-    backlog = Backlog(HERE.prefix, Budget(1 << 20))
-    assert backlog.add(replace(part(1, 1, 2), inline=inline)) is None
-    whole = backlog.add(replace(part(1, 3), inline=inline))
-    assert whole is not None and whole.inline == inline and whole.payload == bytes(12)
 
 
 @pytest.mark.parametrize(

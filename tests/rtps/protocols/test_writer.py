@@ -5,12 +5,17 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.rtps import Durability, Guid, Qos
-from firm_hdl.rtps.wire.infos import InfoTimestamp
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.reliability import Gap, Heartbeat, NackFrag
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import (
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    InfoTimestamp,
+    NackFrag,
+    NumberSet,
+)
 from firm_hdl.rtps.writer import HistoryFullError, Writer
 from tests.rtps.network import route_to
 from tests.rtps.test_endpoints import (
