@@ -24,7 +24,7 @@ DEFAULTS = {
     ),
     "list": ([], ORIGINS),
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
-    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B"}),
+    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B", "program": False}),
     "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"]}),
     "part": (
         ["gate", "a/B"],
