@@ -37,7 +37,8 @@ MAY_IMPORT = {
     "metrics": {"errors", "model", "frontend", "identity", "wire"},
     "plan": {"model", "wire"},
     "estimates": {"plan"},
-    "gateware": {"model", "wire", "plan"},
+    "program": {"plan", "wire"},
+    "gateware": {"model", "wire", "plan", "program"},
     # `jobs`: compilers.
     "sim": {
         *("errors", "garbage", "jobs", "rtlil", "verilog", "model", "wire", "plan", "gateware"),
@@ -75,7 +76,7 @@ MAY_IMPORT["bench"] = {
 }
 MAY_IMPORT["cli"] = {
     *("firm_hdl", "arguments", "errors", "jobs", "terminal"),
-    *("names", "model", "frontend", "plan", "estimates", "export"),
+    *("names", "model", "frontend", "plan", "program", "estimates", "export"),
     *("identity", "metrics", "node", "cases", "covering", "verify", "equivalence", "bench"),
 }
 MAY_IMPORT["__main__"] = {"cli"}

@@ -88,6 +88,11 @@ def _build(args: argparse.Namespace) -> None:
 def add_plan(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl plan``."""
     command.add_argument("type", metavar="TYPE", help=TYPE_HELP)
+    command.add_argument(
+        "--program",
+        action="store_true",
+        help="print what the circuits of both directions make of the plan: their states",
+    )
     _add_options(command)
     command.set_defaults(run=_plan)
 
@@ -95,10 +100,14 @@ def add_plan(command: argparse.ArgumentParser) -> None:
 def _plan(args: argparse.Namespace) -> None:
     from firm_hdl.frontend import load_all
     from firm_hdl.plan import to_yaml
+    from firm_hdl.program.table import program_text
 
     for index, message in enumerate(load_all(library_of(args), [args.type])):
         plan = _planned(message, args)
-        print("---\n" * bool(index) + to_yaml(plan), end="")
+        if args.program:
+            print("\n" * bool(index) + program_text(plan), end="")
+        else:
+            print("---\n" * bool(index) + to_yaml(plan), end="")
 
 
 def add_info(command: argparse.ArgumentParser) -> None:

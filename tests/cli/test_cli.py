@@ -17,6 +17,7 @@ import firm_hdl
 from firm_hdl.cli import main
 from firm_hdl.errors import UserError
 from firm_hdl.plan import build_plan, from_yaml
+from firm_hdl.program.table import program_text
 from firm_hdl.wire import lay_out
 from tests.depth import THOROUGH
 
@@ -218,6 +219,8 @@ def test_plan_reads_back(workdir, capsys):
     message = firm_hdl.load_message("sensor_msgs/Imu", distro="noetic")
     plan = build_plan(lay_out(message), bus_bytes=16, max_message_bytes=1024)
     assert from_yaml(capsys.readouterr().out) == plan
+    assert main(["plan", "sensor_msgs/Imu", *options, "--program"]) == 0
+    assert capsys.readouterr().out == program_text(plan)
 
 
 def test_services_and_actions_stand_for_all_their_messages(workdir, capsys):

@@ -24,7 +24,7 @@ DEFAULTS = {
     ),
     "list": ([], {**ORIGINS, "only_path": False, "as_json": False}),
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
-    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B"}),
+    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B", "program": False}),
     "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"], "as_json": False}),
     "part": (
         ["gate", "a/B"],

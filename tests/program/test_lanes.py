@@ -7,10 +7,8 @@ from itertools import product
 import pytest
 
 from firm_hdl.plan import build_plan, decode, encode
-from firm_hdl.plan.geometry import (
-    geometry,
-)
 from firm_hdl.plan.ir import RunStep
+from firm_hdl.program import deserializer_program, start_lanes
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out
 from tests.strategies import make
@@ -20,7 +18,9 @@ ANY = tuple(range(8))
 
 
 def needs(fields, wire, bus_bytes):
-    return geometry(build_plan(lay_out(make("ros2", fields), wire), bus_bytes=bus_bytes))
+    return deserializer_program(
+        build_plan(lay_out(make("ros2", fields), wire), bus_bytes=bus_bytes)
+    )
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def needs(fields, wire, bus_bytes):
 )
 def test_lanes_where_items_and_maps_start(fields, wire, bus_bytes, items, maps):
     found = needs(fields, wire, bus_bytes)
-    assert (found.item_lanes, found.map_lanes) == (items, maps)
+    assert (found.items.lanes, found.map.lanes) == (items, maps)
 
 
 def visited(plan, packet):
@@ -72,7 +72,7 @@ def visited(plan, packet):
 def test_packets_start_their_steps_in_these_lanes_and_no_others(after, wire, bus_bytes):
     message = make("ros2", {"s": "string", "a": "uint64[]", "b": "uint16[]", "c": after})
     plan = build_plan(lay_out(message, wire), bus_bytes=bus_bytes)
-    places = geometry(plan).places
+    starts = start_lanes(plan)
     found = set()
     for text, large, small in product(range(1, 18), (0, 3), (0, 1, 3, 9)):
         value = {"s": "x" * text, "a": [0] * large, "b": [0] * small}
@@ -80,5 +80,5 @@ def test_packets_start_their_steps_in_these_lanes_and_no_others(after, wire, bus
         packet, status = encode(plan, to_transfers(plan, message, value))
         assert status == "OK"
         found.update(visited(plan, packet))
-    want = {(index, lane) for index, place in enumerate(places) for lane in place.map}
+    want = {(index, lane) for index, place in enumerate(starts) for lane in place.map}
     assert found == want
