@@ -58,8 +58,8 @@ def format_of(float_bits: int) -> FloatFormat:
 class Fixed(ShapeCastable):
     """Signed fixed point: the number is the integer, divided by ``2**fraction_bits``.
 
-    An Amaranth shape, ``signed(bits)``: ``Signal(Fixed(32, 16), init=0.5)``. Values of this shape
-    are plain signed integers, with the operators of these.
+    An Amaranth shape, ``signed(bits)``: ``Signal(Fixed(32, 16), init=0.5)``. Constants are numbers.
+    Values of this shape are plain signed integers, with the operators of these, also in simulation.
 
     Parameters
     ----------
@@ -112,8 +112,9 @@ class Fixed(ShapeCastable):
     def const(self, init: float | Fraction | None) -> Const:
         return Const(self.raw(init or 0), signed(self.bits))
 
-    def from_bits(self, raw: int) -> Fraction:
-        return self.number(Const(raw, self.as_shape()).value)
+    def from_bits(self, raw: int) -> int:
+        # As `ctx.get` of a signal.
+        return Const(raw, self.as_shape()).value
 
 
 def float_bits(number: float, bits: int) -> int:
