@@ -82,6 +82,16 @@ class Diagnostic:
     message: str
     span: Span | None = None
 
+    def facts(self) -> dict[str, str | int | None]:
+        """Return the problem as values of JSON: message, file, line and column."""
+        span = self.span
+        return {
+            "message": self.message,
+            "file": None if span is None else span.source.name,
+            "line": None if span is None else span.line,
+            "column": None if span is None else span.column,
+        }
+
     def __str__(self) -> str:
         message = printable(self.message)
         if self.span is None:

@@ -76,10 +76,11 @@ MAY_IMPORT["bench"] = {
     *("model", "frontend", "wire", "plan", "gateware", "sim", "export"),
 }
 MAY_IMPORT["cli"] = {
-    *("firm_hdl", "arguments", "errors", "terminal"),
+    *("firm_hdl", "arguments", "errors", "jobs", "terminal"),
     *("names", "model", "frontend", "plan", "estimates", "export"),
     *("identity", "metrics", "node", "cases", "covering", "verify", "equivalence", "bench"),
 }
+MAY_IMPORT["__main__"] = {"cli"}
 # The public interface of the package.
 MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
 
@@ -107,7 +108,9 @@ VERIFY_MAY_IMPORT["run"] = {
     *("bench", "board", "clients", "references", "report", "request", "results"),
     *("systems", "ts1", "ts2", "ts3"),
 }
-VERIFY_MAY_IMPORT["command"] = {"board", "choices", "request", "run", "systems"}
+VERIFY_MAY_IMPORT["command"] = {
+    *("board", "choices", "report", "request", "results", "run", "systems"),
+}
 VERIFY_MAY_IMPORT["__main__"] = {"command"}
 VERIFY_MAY_IMPORT["verify"] = set()
 

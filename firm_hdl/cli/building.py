@@ -6,7 +6,7 @@ import argparse
 import os
 from typing import TYPE_CHECKING
 
-from firm_hdl.arguments import add_jobs, add_options
+from firm_hdl.arguments import TYPE_HELP, add_jobs, add_json, add_options
 from firm_hdl.cli.types import library_of
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def _build(args: argparse.Namespace) -> None:
 
 def add_plan(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl plan``."""
-    command.add_argument("type", metavar="TYPE")
+    command.add_argument("type", metavar="TYPE", help=TYPE_HELP)
     _add_options(command)
     command.set_defaults(run=_plan)
 
@@ -105,17 +105,30 @@ def add_info(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl info``."""
     _add_types(command)
     _add_options(command)
+    add_json(command)
     command.set_defaults(run=_info)
 
 
 def _info(args: argparse.Namespace) -> None:
     from firm_hdl.estimates import estimate_text
+    from firm_hdl.export.manifest import figures_of
     from firm_hdl.frontend import load_all
     from firm_hdl.plan.timing import describe, recovery_text, timing
 
+    messages = args.document["messages"] = []
     for message in load_all(library_of(args), args.types):
         plan = _planned(message, args)
         figures = timing(plan)
+        if args.as_json:
+            messages.append(
+                {
+                    "name": message.name,
+                    "wire": plan.wire,
+                    "bus_bytes": plan.bus_bytes,
+                    **figures_of(plan, figures),
+                }
+            )
+            continue
         print(describe(message.name, plan, figures))
         print(recovery_text(figures))
         if estimate := estimate_text(plan):
@@ -135,4 +148,4 @@ def _add_options(command: argparse.ArgumentParser) -> None:
 
 
 def _add_types(command: argparse.ArgumentParser) -> None:
-    command.add_argument("types", nargs="+", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
+    command.add_argument("types", nargs="+", metavar="TYPE", help=TYPE_HELP)

@@ -23,7 +23,7 @@ from firm_hdl.model import Constant, Message, closure
 from firm_hdl.plan import Leaf, Plan, to_yaml
 from firm_hdl.plan.timing import LINE_RATES, Cost, Timing, clock_mhz
 
-__all__ = ["FORMAT", "MANIFEST", "digest", "inputs_of", "make_manifest", "to_json"]
+__all__ = ["FORMAT", "MANIFEST", "digest", "figures_of", "inputs_of", "make_manifest", "to_json"]
 
 FORMAT = 1
 """Version of the manifest's format."""
@@ -81,8 +81,7 @@ def make_manifest(
         "format": FORMAT,
         "inputs": dict(inputs),
         "inputs_sha256": digest(to_json(inputs)),
-        "timing": _timing(figures),
-        "estimates": {name: asdict(found) for name, found in estimates_of(plan).items()},
+        **figures_of(plan, figures),
         "status": {status.name: status.value for status in statuses},
         **sections,
         "leaves": list(_leaves(message, plan)),
@@ -103,6 +102,14 @@ def digest(text: str) -> str:
 
 def _dependencies(message: Message) -> list[str]:
     return sorted(child.name for child in closure(message.children))
+
+
+def figures_of(plan: Plan, figures: Timing) -> dict[str, Any]:
+    """Return timing and estimates of the converters of a plan, as a manifest has them."""
+    return {
+        "timing": _timing(figures),
+        "estimates": {name: asdict(found) for name, found in estimates_of(plan).items()},
+    }
 
 
 def _timing(figures: Timing) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from firm_hdl.frontend.interfaces import Unit
 from firm_hdl.frontend.names import KINDS, Kind, TypeName, owners
 from firm_hdl.frontend.resolve import Resolver
 from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Origin, Sources
+from firm_hdl.frontend.spelling import spelled
 from firm_hdl.frontend.suggest import did_you_mean, similar_types, unknown_type
 from firm_hdl.model import Action, Dialect, Interface, Message, Service, closure
 
@@ -93,13 +94,16 @@ class Library:
         If two types of ROS 1 have the same name, the second is listed with its kind:
         ``package/srv/Name``.
         """
-        names: dict[str, TypeName] = {}
+        return list(self.kinds())
+
+    def kinds(self) -> dict[str, Kind]:
+        """Return the kind of every type that `interfaces` lists, by its name and in that order."""
+        names: dict[str, Kind] = {}
         order = {kind: index for index, kind in enumerate(KINDS)}
         for package, kind, name in sorted(self._sources.names, key=lambda n: order[n[1]]):
-            full = TypeName(package, kind, name, self.dialect)
-            short = str(full)
-            names[short if short not in names else f"{package}/{kind}/{name}"] = full
-        return sorted(names)
+            short = str(TypeName(package, kind, name, self.dialect))
+            names[short if short not in names else f"{package}/{kind}/{name}"] = kind
+        return dict(sorted(names.items()))
 
     def problems(self) -> list[Diagnostic]:
         """List why types cannot be used although they are listed: two files have them."""
@@ -111,8 +115,9 @@ class Library:
         Parameters
         ----------
         name : str
-            ``package/msg/Name`` or ``package/Name``. Messages of services and actions have names,
-            too: ``package/srv/Name_Request``, and in ROS 1 ``package/NameRequest``.
+            ``package/msg/Name`` or ``package/Name``, or another spelling of these that
+            :func:`.spelled` knows. Messages of services and actions have names, too:
+            ``package/srv/Name_Request``, and in ROS 1 ``package/NameRequest``.
 
         Raises
         ------
@@ -140,15 +145,15 @@ class Library:
         Parameters
         ----------
         name : str
-            ``package/kind/Name``, or ``package/Name`` for the first of message, service and action
-            of that name; also any name that `message` takes.
+            ``package/kind/Name``, or ``package/Name``; also any name that `message` takes. In
+            ROS 1, ``package/Name`` is the first of message, service and action of that name.
 
         Raises
         ------
         DefinitionError
-            As by `message`.
+            As by `message`; also if ``package/Name`` of ROS 2 can be several types.
         """
-        candidates = self._parse(name)
+        candidates = self._unambiguous(name)
         for candidate in self._by_origin(candidates):
             unit = self._resolver.unit(candidate)
             if unit is not None and not unit.is_message:
@@ -199,7 +204,7 @@ class Library:
         return digest.hexdigest()
 
     def _unit(self, name: str) -> Unit:
-        candidates = self._parse(name)
+        candidates = self._unambiguous(name)
         for candidate in self._by_origin(candidates):
             unit = self._resolver.unit(candidate) or self._resolver.unit_of(candidate)
             if unit is not None:
@@ -220,15 +225,26 @@ class Library:
         if not isinstance(name, str):
             raise TypeError(f"Name of a type must be a string, not {name!r}")
         kinds: tuple[Kind, ...] = KINDS
-        match name.split("/"):
+        match spelled(name).split("/"):
             case [package, base] if package and base:
                 return [TypeName(package, kind, base, self.dialect) for kind in kinds]
             case [package, "msg" | "srv" | "action" as kind, base] if package and base:
                 return [TypeName(package, kind, base, self.dialect)]
+            case [*parts, base]:
+                package = parts[0] if parts else ""
         form = "package/msg/Name" if self.dialect == "ros2" else "package/Name"
         message = f"'{clip(name)}' is not the name of a type, which is '{form}'"
-        similar = similar_types(self._sources, "", name.rpartition("/")[2])
+        similar = similar_types(self._sources, package, base)
         raise self._error(did_you_mean(message, self._spell(similar)))
+
+    def _unambiguous(self, name: str) -> list[TypeName]:
+        """List the types that a name can mean; in ROS 2, only one of them has a definition."""
+        candidates = self._parse(name)
+        defined = [n for n in candidates if (n.package, n.kind, n.name) in self._sources.names]
+        if self.dialect == "ros2" and len(defined) > 1:
+            choice = " or ".join(f"'{each}'" for each in defined)
+            raise self._error(f"'{clip(name)}' can be {choice}; name one of them")
+        return candidates
 
     def _by_origin(self, names: list[TypeName]) -> list[TypeName]:
         """Sort names by the origin that defines them; drop those that no origin defines.

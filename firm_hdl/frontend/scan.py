@@ -18,7 +18,7 @@ from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.files import read_file
 from firm_hdl.frontend.names import KINDS, Kind
 
-__all__ = ["MAX_BYTES", "PackageFolder", "Scan"]
+__all__ = ["MAX_BYTES", "PackageFolder", "Scan", "package_name"]
 
 MAX_BYTES = 1 << 22
 """Limit on a file: ten times the longest definition in a thousand packages."""
@@ -102,7 +102,7 @@ class Scan:
             found = PackageFolder(package=os.path.basename(path), path=path)
             self._add_files(found, names, is_package=is_package)
             if is_package or found.files:
-                found.package, found.wrong = _package_name(path, is_package)
+                found.package, found.wrong = package_name(path, is_package)
                 config = os.path.join(path, "cmake", f"{found.package}Config.cmake")
                 found.is_part = not is_package and os.path.isfile(config)
                 yield found
@@ -189,7 +189,7 @@ def _listed(path: str) -> list[str]:
         return []
 
 
-def _package_name(folder: str, is_named: bool) -> tuple[str, str]:
+def package_name(folder: str, is_named: bool) -> tuple[str, str]:
     """Read a package's name; also return the reason if it cannot be read."""
     name, wrong = None, ""
     if is_named:

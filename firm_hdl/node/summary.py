@@ -21,7 +21,7 @@ from firm_hdl.plan import build_plan
 from firm_hdl.plan.timing import Cost, timing
 from firm_hdl.wire import lay_out
 
-__all__ = ["facts_of", "summary"]
+__all__ = ["facts_of", "summary", "warnings_of"]
 
 _SERVICES = {"in": "request", "out": "response"}
 
@@ -120,7 +120,7 @@ def _store(topic: Topic, direction: Direction, store: Store, figures: _Figures) 
 def summary(description: Description) -> str:
     """Describe a node on a page of text, as ``firm-hdl node info`` prints it."""
     facts = facts_of(description)
-    warnings = [f"warning: {line}" for line in _warnings(description, facts)]
+    warnings = [f"warning: {line}" for line in warnings_of(description, facts)]
     lines = [*_head(description, facts), "", *_table(facts), "", *_totals(facts)]
     return "\n".join([*lines, *([""] if warnings else []), *warnings])
 
@@ -196,7 +196,7 @@ def _totals(facts: dict[str, Any]) -> Iterator[str]:
     yield "cycles: of the packet that is hardest for its converter, of those that were tried"
 
 
-def _warnings(description: Description, facts: dict[str, Any]) -> Iterator[str]:
+def warnings_of(description: Description, facts: dict[str, Any]) -> Iterator[str]:
     """Yield what the node cannot carry: rates and sizes."""
     for topic in facts["topics"]:
         for store in topic["packets"].values():

@@ -140,7 +140,17 @@ def test_impossible_requests_exit_1(workdir, capsys, arguments, message):
     [
         ([], "the following arguments are required: COMMAND"),
         (["build"], "the following arguments are required: TYPE"),
-        (["built", "x"], "invalid choice: 'built'"),
+        (["built", "x"], "; did you mean 'build'?"),
+        (["node", "bild", "n"], "; did you mean 'build'?"),
+        (["part", "Gate", "a/b"], "; did you mean 'gate'?"),
+        (["build", "a/b", "--bus_byts=4"], "--bus_byts=4; did you mean '--bus-bytes'?"),
+        (["list", "--Pth", "src"], "firm-hdl list: error: unrecognized arguments: --Pth src; did"),
+        (["verify", "a/b", "--engine", "Verilator"], "; did you mean 'verilator'?"),
+        (["plan", "a/b", "--wire", "ros2"], "; did you mean 'cdr'?"),
+        (["list", "--distro", "Humble"], "; did you mean 'humble'?"),
+        (["list", "--distro", "rolling"], "the types of rolling change any day: take 'lyrical'"),
+        (["list", "--distro", "galactic"], "do not come with firm-hdl: take 'humble', the next"),
+        (["--distro", "humble", "list"], "--distro: options come after the command"),
         (["build", "a/b", "--bus-bytes", "3"], "argument --bus-bytes: invalid choice: 3"),
         (["build", "a/b", "--distro", "melodic"], "argument --distro: invalid choice: 'melodic'"),
         (["plan", "a/b", "--wire", "json"], "argument --wire: invalid choice: 'json'"),
@@ -244,6 +254,8 @@ def test_version(capsys):
         main(["--version"])
     assert caught.value.code == 0
     assert capsys.readouterr().out == f"firm-hdl {firm_hdl.__version__}\n"
+    command = [sys.executable, "-m", "firm_hdl", "--version"]
+    assert subprocess.check_output(command, text=True) == f"firm-hdl {firm_hdl.__version__}\n"
 
 
 def test_out_that_is_a_file_exits_1(workdir, capsys):
