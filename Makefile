@@ -72,7 +72,7 @@ examples: $(VENV)/.installed-dev ghdl verilog ## designs that act on good packet
 	$(BIN)/python examples/range_filter.py
 	$(BIN)/python examples/half_speed.py
 	$(BIN)/python examples/fast_simulation.py
-	for file in wheels/wheels filter/near echo_ros1/echo; do \
+	for file in wheels/wheels odometry/odometry filter/near echo_ros1/echo; do \
 	  $(BIN)/firm-hdl node run examples/nodes/$$file.yaml --graph none </dev/null || exit; \
 	done
 

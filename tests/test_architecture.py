@@ -44,6 +44,8 @@ MAY_IMPORT = {
         *("errors", "garbage", "jobs", "rtlil", "verilog", "model", "wire", "plan", "gateware"),
     },
 }
+# What a user's accelerator is made of. `sim`: values of messages become transfers.
+MAY_IMPORT["accelerator"] = {"gateware", "model", "plan", "sim", "wire"}
 MAY_IMPORT["export"] = {
     *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl", "verilog"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
