@@ -67,7 +67,8 @@ def test_plans_are_made_with_all_options(workdir, capsys, left_out):
     assert (plan.wire, plan.bus_bytes) == (known.get("wire", "cdr"), known["bus_bytes"])
     assert main(["info", "p/A", "--path", ".", *words]) == 0
     head = capsys.readouterr().out.splitlines()[0]
-    assert f"on {plan.wire}, {8 * plan.bus_bytes}-bit bus: {len(plan.steps)} step" in head
+    wire = {"ros1": "ROS 1", "cdr": "CDR, as in ROS 2"}[plan.wire]
+    assert head == f"p/msg/A ({wire}) on a bus of {plan.bus_bytes} bytes per clock cycle"
 
 
 def test_build_is_given_all_options(workdir, monkeypatch):
