@@ -53,7 +53,7 @@ def _build(args: argparse.Namespace) -> None:
     library = library_of(args)
     # Errors in definitions are reported before Amaranth is imported, which takes time.
     messages = load_all(library, args.types)
-    stage(f"build: {messages[0].name}" if len(messages) == 1 else f"build: {len(messages)} types")
+    stage(f"build: {messages[0].name}" if len(messages) == 1 else "build")
     from firm_hdl.export.backend import Options
     from firm_hdl.export.build import build
 
@@ -68,7 +68,7 @@ def _build(args: argparse.Namespace) -> None:
     def report(built: Built) -> None:
         nonlocal written
         written += 1
-        stage(f"build: {written} of {len(messages)} types")
+        stage("build: types", written, len(messages))
         state = "current" if built.was_current else "wrote"
         print(f"{state:8}{built.folder}{os.sep}", flush=True)
         for name in built.kept:

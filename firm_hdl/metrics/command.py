@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tqdm import tqdm
-
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.identity.command import load_interfaces
@@ -22,8 +20,6 @@ def metrics_text(
     names: Iterable[str],
     form: str,
     wire: Wire | None,
-    *,
-    bar: bool,
 ) -> tuple[str, DefinitionError | None]:
     """Write the figures of types. A service or an action gives the figures of its messages.
 
@@ -35,8 +31,6 @@ def metrics_text(
         A key of `FORMATS`.
     wire : "ros1", "cdr" or None
         `None`: the wire format of the library's dialect.
-    bar : bool
-        Whether to show a progress bar if standard error is a terminal.
 
     Returns
     -------
@@ -52,10 +46,8 @@ def metrics_text(
                 rows[message.name] = analyses.metrics(message)
 
     wrong = None
-    # `None` shows no bar where standard error is no terminal.
-    shown = tqdm(list(names), unit="type", leave=False, disable=None if bar else True)
     try:
-        load_interfaces(library, shown, on_loaded=on_loaded)
+        load_interfaces(library, names, on_loaded=on_loaded)
     except DefinitionError as error:
         wrong = error
     return report(rows.values(), form), wrong
