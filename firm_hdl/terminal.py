@@ -25,8 +25,6 @@ SECONDS_BETWEEN = 1.0
 # Control characters except tab and line feed, line and paragraph separators, and characters that
 # change the direction of writing.
 _CONTROL = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
-# Texts that tqdm writes besides its bars: they move the cursor and reset the colour.
-_MOVES = re.compile(r"(?:\n|\x1b\[A|\x1b\[0m)*")
 
 
 def printable(text: str) -> str:
@@ -44,25 +42,18 @@ class _Printable:
     Parameters
     ----------
     stream : text stream
-    bars : bool
-        Whether progress bars are written to the stream. They use carriage returns.
+    replaces : bool
+        Whether a text may begin with a carriage return, and so replace the line before.
     """
 
-    def __init__(self, stream: TextIO, *, bars: bool) -> None:
+    def __init__(self, stream: TextIO, *, replaces: bool) -> None:
         self._stream = stream
-        self._bars = bars
+        self._replaces = replaces
 
     def write(self, text: str) -> int:
         with _line.erased():
-            return self._write(text)
-
-    def _write(self, text: str) -> int:
-        head = ""
-        if self._bars:
-            if _MOVES.fullmatch(text):
-                return self._stream.write(text)
-            head = "\r" if text.startswith("\r") else ""
-        return self._stream.write(head + printable(text[len(head) :]))
+            head = "\r" if self._replaces and text.startswith("\r") else ""
+            return self._stream.write(head + printable(text[len(head) :]))
 
     def writelines(self, lines: Any) -> None:
         for line in lines:
@@ -76,8 +67,8 @@ class _Printable:
 def printable_streams() -> Iterator[None]:
     """Escape control characters in all that goes to standard output and standard error."""
     before = sys.stdout, sys.stderr
-    sys.stdout = _Printable(sys.stdout, bars=False)
-    sys.stderr = _Printable(sys.stderr, bars=True)
+    sys.stdout = _Printable(sys.stdout, replaces=False)
+    sys.stderr = _Printable(sys.stderr, replaces=True)
     try:
         yield
     finally:
@@ -91,10 +82,14 @@ class _Line:
     ----------
     text : str
         What the command does; empty: no line is shown.
+    done, total : int
+        How much of it is done; a total of 0: not known.
     """
 
     def __init__(self) -> None:
         self.text = ""
+        self.done = self.total = 0
+        self._first, self._since = 0, 0.0
         self._descriptor = -1
         self._process = 0
         self._width = 0
@@ -106,6 +101,24 @@ class _Line:
         thread = threading.Thread(target=self._run, args=(ends,), daemon=True)
         thread.start()
         return thread
+
+    def tell(self, text: str, done: int, total: int) -> None:
+        """Set the attributes."""
+        if text != self.text:
+            self._first, self._since = done, time.monotonic()
+        self.text, self.done, self.total = text, done, total
+
+    def _said(self, seconds: float) -> str:
+        if not self.text:
+            return ""
+        if not self.total:
+            return f"{self.text}, {seconds:.0f} s"
+        said = f"{self.text}: {self.done} of {self.total}, {seconds:.0f} s"
+        if self._first < self.done < self.total:
+            each = (time.monotonic() - self._since) / (self.done - self._first)
+            left = each * (self.total - self.done)
+            said += f", {left:.0f} s left" if left < 100 else f", {left / 60:.0f} min left"
+        return said
 
     @contextmanager
     def erased(self) -> Iterator[None]:
@@ -123,13 +136,8 @@ class _Line:
         wait = SECONDS_UNTIL_SHOWN
         while not ends.wait(wait):
             wait = SECONDS_BETWEEN
-            seconds = time.monotonic() - began
-            if bars := _bars():
-                for bar in bars:
-                    bar.refresh()
-                continue
             with self._lock:
-                self._show(f"{self.text}, {seconds:.0f} s" if self.text else "")
+                self._show(self._said(time.monotonic() - began))
         with self._lock:
             self._show("")
             self._process = 0
@@ -148,15 +156,17 @@ class _Line:
 _line = _Line()
 
 
-def _bars() -> list[Any]:
-    """Return the bars of tqdm that are shown; their seconds have to go on, too."""
-    module = sys.modules.get("tqdm")
-    return [] if module is None else list(getattr(module.tqdm, "_instances", ()))
+def stage(text: str, done: int = 0, total: int = 0) -> None:
+    """Say what the command does from now on, for the line of `progress`; empty: show none.
 
-
-def stage(text: str) -> None:
-    """Say what the command does from now on, for the line of `progress`; empty: show none."""
-    _line.text = text
+    Parameters
+    ----------
+    text : str
+        With a total, it names what is counted, such as ``"verify: types"``.
+    done, total : int
+        How much of it is done; a total of 0: not known.
+    """
+    _line.tell(text, done, total)
 
 
 @contextmanager

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from firm_hdl.arguments import TYPE_HELP, add_jobs, add_json, add_options
 from firm_hdl.cli.types import library_of
+from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
     from firm_hdl.export.build import Built
@@ -50,7 +52,8 @@ def _build(args: argparse.Namespace) -> None:
 
     library = library_of(args)
     # Errors in definitions are reported before Amaranth is imported, which takes time.
-    load_all(library, args.types)
+    messages = load_all(library, args.types)
+    stage(f"build: {messages[0].name}" if len(messages) == 1 else "build")
     from firm_hdl.export.backend import Options
     from firm_hdl.export.build import build
 
@@ -60,7 +63,12 @@ def _build(args: argparse.Namespace) -> None:
 
         return stimuli(message, plan)
 
+    written = 0
+
     def report(built: Built) -> None:
+        nonlocal written
+        written += 1
+        stage("build: types", written, len(messages))
         state = "current" if built.was_current else "wrote"
         print(f"{state:8}{built.folder}{os.sep}", flush=True)
         for name in built.kept:
@@ -83,6 +91,15 @@ def _build(args: argparse.Namespace) -> None:
     )
     for built in done:
         print(built.description)
+    for built in done[:1]:
+        print(f"next: {_next(built.folder)}")
+
+
+def _next(folder: Path) -> str:
+    """Say what a user may do with a folder."""
+    script = folder / "vhdl" / "run_ghdl.sh"
+    run = f"{script} runs its test bench in GHDL; " if script.is_file() else ""
+    return f"{run}{folder / '*.veo'} show how to instantiate it in Verilog"
 
 
 def add_plan(command: argparse.ArgumentParser) -> None:
@@ -142,6 +159,10 @@ def _info(args: argparse.Namespace) -> None:
         print(recovery_text(figures))
         if estimate := estimate_text(plan):
             print(estimate)
+    if not args.as_json:
+        print(
+            "next: firm-hdl build, with the same arguments, writes VHDL, Verilog and SystemVerilog"
+        )
 
 
 def _planned(message: Message, args: argparse.Namespace) -> Plan:

@@ -8,8 +8,6 @@ import json
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, fields
 
-from tqdm import tqdm
-
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.identity.command import of_each
@@ -95,8 +93,6 @@ def metrics_text(
     names: Iterable[str],
     form: str,
     wire: Wire | None,
-    *,
-    bar: bool,
 ) -> tuple[str, DefinitionError | None]:
     """Write the figures of types. A service or an action gives the figures of its messages.
 
@@ -108,8 +104,6 @@ def metrics_text(
         A key of `FORMATS`.
     wire : "ros1", "cdr" or None
         `None`: the wire format of the library's dialect.
-    bar : bool
-        Whether to show a progress bar if standard error is a terminal.
 
     Returns
     -------
@@ -124,7 +118,5 @@ def metrics_text(
             if message.name not in rows:
                 rows[message.name] = analyses.metrics(message)
 
-    # `None` shows no bar where standard error is no terminal.
-    shown = tqdm(list(names), unit="type", leave=False, disable=None if bar else True)
-    _, wrong = of_each(library, shown, analyse)
+    _, wrong = of_each(library, names, analyse)
     return report(rows.values(), form), wrong

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from firm_hdl.errors import DefinitionError, UserError
-from firm_hdl.terminal import printable_streams
+from firm_hdl.terminal import printable_streams, progress
 from firm_hdl.verify.command import add_verify_arguments, run_verify
 
 __all__ = ["main"]
@@ -21,7 +21,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     given.all = given.all or not (given.types or given.node)
     try:
-        return run_verify(given)
+        with progress("verify"):
+            return run_verify(given)
     except DefinitionError as error:
         print(error, file=sys.stderr)
         return 1

@@ -186,20 +186,24 @@ def test_build_prints_its_results(workdir, capsys):
     out, err = capsys.readouterr()
     folder = os.path.join("gen", "lyrical", "geometry_msgs_msg_Twist_cdr_4", "")
     figures = (
-        "geometry_msgs/msg/Twist on cdr, 32-bit bus: 12 steps; packet 52 bytes, 13 beats, "
-        "13 cycles\n"
-        "    clock for every packet: 100 Mbit/s 3.1 MHz, 1 Gbit/s 31.2 MHz, 10 Gbit/s 312.5 MHz\n"
+        "geometry_msgs/msg/Twist (CDR, as in ROS 2) on a bus of 4 bytes per clock cycle\n"
+        "    every packet: 52 bytes in 13 beats (words of the bus) and 13 clock cycles\n"
+        "    clock that keeps up with a full line   100 Mbit/s     1 Gbit/s    10 Gbit/s\n"
+        "        of these packets                      3.1 MHz     31.2 MHz    312.5 MHz\n"
     )
-    assert (out, err) == (f"wrote   {folder}\n{figures}", "")
+    script = Path(folder, "vhdl", "run_ghdl.sh")
+    assert (out.startswith(f"wrote   {folder}\n{figures}next: {script} runs "), err) == (True, "")
+    assert script.exists() and out.count("\n") == 6
     assert main(arguments) == 0
-    assert capsys.readouterr() == (f"current {folder}\n{figures}", "")
+    assert capsys.readouterr() == (out.replace("wrote  ", "current"), "")
     assert main(["info", *arguments[1:2], "--bus-bytes", "4"]) == 0
     out, err = capsys.readouterr()
     recovery = (
-        "    recovery from a bad packet: at most 16 cycles (0.16 us at 100 MHz); the longest legal "
-        "packet takes 13\n"
+        "    after a damaged packet: ready within 16 cycles (0.16 us at 100 MHz); the longest "
+        "legal packet takes 13\n"
     )
-    assert out.startswith(f"{figures}{recovery}    estimate, ECP5 ") and out.count("\n") == 4
+    assert out.startswith(f"{figures}{recovery}    deserializer on an ECP5 ")
+    assert out.splitlines()[-1].startswith("next: firm-hdl build") and out.count("\n") == 8
     assert err == ""
 
 
@@ -241,7 +245,8 @@ def test_services_and_actions_stand_for_all_their_messages(workdir, capsys):
         assert plans == [build_plan(lay_out(message)) for message in messages]
         assert main(["info", name, *options]) == 0
         lines = capsys.readouterr().out.splitlines()
-        heads = [line.split(" on cdr")[0] for line in lines if not line.startswith(" ")]
+        heads = [line.split(" (CDR")[0] for line in lines if not line.startswith(" ")]
+        assert heads.pop().startswith("next: ")
         assert heads == [message.name for message in messages]
     assert main(["build", "my_msgs/srv/Ask", "my_msgs/srv/Ask_Request", *options]) == 0
     folders = sorted(path.name for path in Path("vhdl_out/humble").iterdir())

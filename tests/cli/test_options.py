@@ -67,7 +67,8 @@ def test_plans_are_made_with_all_options(workdir, capsys, left_out):
     assert (plan.wire, plan.bus_bytes) == (known.get("wire", "cdr"), known["bus_bytes"])
     assert main(["info", "p/A", "--path", ".", *words]) == 0
     head = capsys.readouterr().out.splitlines()[0]
-    assert f"on {plan.wire}, {8 * plan.bus_bytes}-bit bus: {len(plan.steps)} step" in head
+    wire = {"ros1": "ROS 1", "cdr": "CDR, as in ROS 2"}[plan.wire]
+    assert head == f"p/msg/A ({wire}) on a bus of {plan.bus_bytes} bytes per clock cycle"
 
 
 def test_build_is_given_all_options(workdir, monkeypatch):
@@ -89,8 +90,8 @@ def proof_tasks(monkeypatch, arguments, status=0):
     """The tasks that `prove` starts."""
     seen = {}
 
-    def run_proofs(tasks, jobs, *, bar):
-        seen.update(tasks=list(tasks), jobs=jobs, bar=bar)
+    def run_proofs(tasks, jobs, *, with_summary):
+        seen.update(tasks=list(tasks), jobs=jobs, with_summary=with_summary)
         return status
 
     monkeypatch.setattr(prove_command, "run_proofs", run_proofs)
@@ -102,7 +103,7 @@ def proof_tasks(monkeypatch, arguments, status=0):
 def test_prove_is_given_all_options_and_gives_its_status(workdir, monkeypatch, status):
     words = [*WORDS, "--timeout", "7", "--jobs", "3", "--distro", "iron"]
     seen = proof_tasks(monkeypatch, ["p/A", "p/srv/S", "--path", ".", *words], status)
-    assert seen["jobs"] == 3 and seen["bar"] is False
+    assert seen["jobs"] == 3 and seen["with_summary"] is False
     names = ["p/msg/A", "p/srv/S_Request", "p/srv/S_Response", "p/srv/S_Event"]
     assert [(t.name, t.direction) for t in seen["tasks"]] == [
         (name, direction) for name in names for direction in DIRECTIONS
@@ -118,7 +119,7 @@ def test_prove_all_is_of_all_messages(workdir, monkeypatch, distro):
     make_files(workdir / "src", FILES)
     words = ["--path", "src", "--depends", "more", "--distro", distro]
     seen = proof_tasks(monkeypatch, ["--all", *words])
-    assert seen["bar"] is True
+    assert seen["with_summary"] is True
     library = Library(distro, ["src"])
     names = [name for name in library.interfaces() if name[:2] == "p/" and "Bad" not in name]
     messages = {each.name for name in names for each in library.interface(name).messages}

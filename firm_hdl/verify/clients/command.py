@@ -8,9 +8,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import closing
 from typing import Any
 
-from tqdm import tqdm
-
 from firm_hdl.cases.values import shown
+from firm_hdl.terminal import stage
 from firm_hdl.verify.clients.finding import Finding
 from firm_hdl.verify.clients.judge import LibraryResult
 from firm_hdl.verify.clients.run import command_of, comparison_of, judge_types, reference_of
@@ -63,13 +62,10 @@ def run_sut(tasks: Sequence[TypeUnderTest], options: Request) -> list[Judged]:
     for line in _judges(_wires(tasks, options), options, versions, missing, installed):
         print(line)
     results: list[tuple[TypeUnderTest, LibraryResult]] = []
-    with (
-        tqdm(total=len(tasks), unit="type", desc="client libraries", disable=None) as bar,
-        closing(judge_types(tasks, options, installed)) as run,
-    ):
-        for task, found in run:
+    with closing(judge_types(tasks, options, installed)) as run:
+        for number, (task, found) in enumerate(run):
             results += [(task, result) for result in found]
-            bar.update()
+            stage("verify, client libraries: types", number + 1, len(tasks))
     for line in _differences(results, options):
         print(line)
     for line in _summary([result for _, result in results], options, versions):

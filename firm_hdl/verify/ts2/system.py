@@ -12,8 +12,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
-from tqdm import tqdm
-
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases.figures import digest, figures
 from firm_hdl.errors import DefinitionError
@@ -150,7 +148,7 @@ class Ts2(TypesSystem):
             known[path] = record = Record(test=test, verdict=verdict, command=command)
             recorder.add(record)
             for text in failure_of(str(path), record):
-                tqdm.write(text)
+                print(text)
         found = [Judged(what=str(path), verdict=known[path].verdict) for path in known]
         differing = sum(isinstance(each.verdict, Failed) for each in found)
         print(f"golden plans: {len(goldens)} compared, {differing} differ")
