@@ -76,13 +76,6 @@ def test_ros1_times_are_messages_of_two_fields(tmp_path):
     ]
 
 
-def test_ros1_header_is_that_of_std_msgs_but_an_array_is_the_packages_own(tmp_path):
-    text = "Header a\nHeader[] b\nHeader[2] c\np/Header d\nstd_msgs/Header e"
-    message = load(tmp_path, text, "ros1", Header="int8 mine")
-    kinds = [getattr(f.type, "element", f.type).name for f in message.fields]
-    assert kinds == ["std_msgs/Header", "p/Header", "p/Header", "p/Header", "std_msgs/Header"]
-
-
 def test_ros2_header_is_the_packages_own(tmp_path):
     message = load(tmp_path, "Header a\nstd_msgs/Header b", Header="int8 mine")
     assert [f.type.name for f in message.fields] == ["p/msg/Header", "std_msgs/msg/Header"]

@@ -96,13 +96,6 @@ def test_blanks_at_the_end_do_not_count(tmp_path):
     assert md5sum(blank) == hashlib.md5(b"string S=x").hexdigest() == md5sum(message)
 
 
-def test_values_of_constants_count_as_they_are_written(tmp_path):
-    text = "int8 X= +07 # c\nbool a\nfloat32 Y =1.50\nstring S= x # y\n"
-    message = library(tmp_path, {"p/A": text}, "ros1").message("p/A")
-    want = "int8 X=+07\nfloat32 Y=1.50\nstring S=x # y\nbool a"
-    assert md5sum(message) == hashlib.md5(want.encode()).hexdigest()
-
-
 def test_lengths_of_arrays_count_as_they_are_written(tmp_path):
     texts = {"p/A": "int8[003] a\nint8[3] b\ntime[02] c\nB[09] d\nint8[]  e\n", "p/B": "int8 x"}
     message = library(tmp_path, texts, "ros1").message("p/A")

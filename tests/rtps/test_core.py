@@ -12,7 +12,7 @@ from firm_hdl.rtps import Durability, Qos, Reliability, SampleIdentity
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import Guid
-from firm_hdl.rtps.wire.submessages import AckNack, Data, DataFrag, NumberSet
+from firm_hdl.rtps.wire.submessages import AckNack, Data, DataFrag
 from tests.depth import by_depth
 from tests.rtps.network import Network
 
@@ -133,21 +133,6 @@ def test_a_late_reader_gets_what_a_durable_writer_keeps():
     network.run(5)
     assert late.payloads == sent[-5:]
     assert volatile.payloads == []
-
-
-def test_what_a_writer_no_longer_has_is_a_gap():
-    network = Network()
-    one, two, writer = pair(network, Qos(depth=2), Qos())
-    network.loss = 1
-    for each in payloads([8] * 10):
-        one.write(writer, each)
-    network.run(0.01)
-    network.loss = 0
-    network.run(5)
-    assert two.payloads == payloads([8] * 10)[-2:]
-    assert writer.acknowledged
-    writer.forget(9)
-    assert writer.last == 10
 
 
 @pytest.mark.parametrize(
@@ -279,21 +264,6 @@ def test_a_peer_that_did_not_listen_yet():
     network.run(0.01)
     two.core.receive = listening
     assert network.run(0.2, lambda: len(two.core.peers) == 1)
-
-
-@pytest.mark.parametrize(("vendor", "base"), [("010f", 0), ("0101", 0), ("0110", 1), ("01ff", 1)])
-def test_the_first_acknack_is_one_that_the_vendor_answers(vendor, base):
-    network = Network()
-    one, two = network.station(bytes.fromhex(vendor) + bytes(10)), network.station()
-    one.writer()
-    two.reader()
-    assert network.run(5, lambda: bool(one.named("Matched")))
-    network.run(1)
-    firsts = {}
-    for each in sent_to(one, AckNack):
-        firsts.setdefault(each.writer, each)
-    assert len(firsts) == 3
-    assert {(each.missing, each.final) for each in firsts.values()} == {(NumberSet(base), False)}
 
 
 def test_participants_of_another_domain_are_none():

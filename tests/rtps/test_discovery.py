@@ -225,19 +225,6 @@ def test_policies_that_change(station):
         tell(station, 0.0, replace(ends, sequence_number=number + 1))
 
 
-def test_what_is_announced_of_an_endpoint(station):
-    announce(station, 0.0)
-    station.core.add_writer(TOPIC, TYPE, Qos(depth=3), b"abc", 0.0)
-    ((_, data),) = [
-        pair
-        for pair in posted(station)
-        if getattr(pair[1], "payload", None) and pair[1].writer == PUBLICATIONS_WRITER
-    ]
-    found = EndpointData.decode(data.payload, writer=True)
-    assert (found.topic, found.type_name, found.user_data) == (TOPIC, TYPE, b"abc")
-    assert found.addresses == station.core.settings.own.user
-
-
 def test_a_removed_writer_says_nothing_more(station):
     writer = station.writer(Qos(durability=Durability.TRANSIENT_LOCAL))
     # A peer that announces readers, and does not listen to announcements.

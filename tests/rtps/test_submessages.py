@@ -204,15 +204,6 @@ def test_a_set_has_at_most_256_numbers():
     assert full.bitmap("<") == bytes.fromhex("00010000") + b"\xff" * 32
 
 
-def test_the_sample_that_is_answered_by_vendor():
-    value = OTHER + bytes.fromhex("00000103 00000000 05000000")
-    answered = SampleIdentity(Guid(OTHER, 0x103), 5)
-    fast_dds, standard = (ParameterList(((pid, value),)) for pid in (0x800F, 0x83))
-    for vendor, known in ((b"\1\x0f", True), (b"\1\xff", True), (b"\1\x10", False)):
-        assert standard.related(vendor) == answered
-        assert fast_dds.related(vendor) == (answered if known else None)
-
-
 def test_a_size_of_0_means_to_the_end():
     whole = encode(Data(reader=1, writer=2, sequence_number=7, payload=bytes(70_000)))
     assert whole[2:4] == bytes(2)

@@ -105,14 +105,6 @@ def part(first, payload, **changes):
     return DataFrag(reader=5, writer=6, first=first, payload=payload, inline=INLINE, **given)
 
 
-def test_a_fragment_has_all_that_its_sample_has():
-    assert [fragment(SAMPLE, number, 4) for number in (1, 2, 3)] == [
-        part(1, b"abcd"),
-        part(2, b"efgh"),
-        part(3, b"ij"),
-    ]
-
-
 def test_a_sample_that_was_cut_has_all_that_it_had():
     backlog = Backlog(bytes(12), Budget(1 << 20))
     found = [backlog.add(fragment(SAMPLE, number, 4)) for number in (3, 1, 2)]

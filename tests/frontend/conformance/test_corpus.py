@@ -23,7 +23,7 @@ from tests.frontend.structure import field_descriptions
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
 KINDS = ("msg", "srv", "action")
 # One file in so many is read.
-STEP = by_depth(24, 1)
+STEP = by_depth(48, 1)
 
 
 @cache
