@@ -74,7 +74,8 @@ def program_of(
     build = _Build(source(), verilator, (*compiler, *options, *_ALWAYS), cache, tell)
     versions = _said(verilator, "--version"), _said(compiler, "--version")
     text = SERVER.read_text(encoding="utf-8")
-    parts = (build.source.verilog, build.source.main, text, *versions, *build.command)
+    more = [each for module in build.source.modules.items() for each in module]
+    parts = (build.source.verilog, build.source.main, text, *more, *versions, *build.command)
     try:
         return kept_program("simulation", parts, build.make, cache)
     except OSError as error:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Literal, TypeAlias
@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.jobs.programs import find_compiler, find_verilator
 from firm_hdl.sim.fast.amaranth_engine import AmaranthEngine
-from firm_hdl.sim.fast.compilers import Report, program_of
+from firm_hdl.sim.fast.compilers import BuildError, Report, program_of
 from firm_hdl.sim.fast.process import VerilatorEngine
 from firm_hdl.sim.fast.top import Top
 from firm_hdl.sim.fast.verilated import verilated_source
@@ -53,9 +53,14 @@ def start(
     options: Sequence[str],
     cache: Path | None,
     report: Report | None = None,
+    modules: Mapping[str, str] | None = None,
 ) -> VerilatorEngine | AmaranthEngine:
     """Start an engine. Parameters and errors are those of :class:`.FastSimulation`."""
-    if expected_engine(engine)[0] == "amaranth":
+    found, why = expected_engine(engine)
+    if found == "amaranth":
+        if modules:
+            reason = f": {why}" if why else ""
+            raise BuildError(f"Amaranth's simulator takes no modules of Verilog{reason}")
         return AmaranthEngine(top)
-    source = partial(verilated_source, top)
+    source = partial(verilated_source, top, modules or {})
     return VerilatorEngine(program_of(source, options=options, cache=cache, report=report))
