@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from pathlib import PurePath
 from typing import Any
 
 import firm_hdl
 from firm_hdl import rtlil
-from firm_hdl.errors import UserError
+from firm_hdl.errors import DefinitionError, Diagnostic, UserError
 from firm_hdl.export.design import (
     BuiltDesign,
     core_file,
@@ -35,10 +36,9 @@ from firm_hdl.node.node import Node
 from firm_hdl.node.records import MessagePort, message_ports, record_files, struct_files
 from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodePort, NodeTop, node_ports
-from firm_hdl.node.units import check_units
 from firm_hdl.vhdl.convert import convert
 
-__all__ = ["build_node"]
+__all__ = ["build_node", "check_units"]
 
 SUMMARY = "summary.txt"
 
@@ -282,3 +282,45 @@ def _bench(name: str, language: str) -> dict[str, str]:
         **(vhdl if language in ("", "vhdl") else {}),
         **(verilog if language != "vhdl" else {}),
     }
+
+
+_SUFFIXES = (".vhd", ".sv")
+
+
+def check_units(
+    description: Description, name: str, *, top: str, files: Mapping[str, Iterable[str]]
+) -> None:
+    """Refuse a name of a node if two design units would have one name.
+
+    VHDL ignores the case of names (IEEE Std 1076-2008, 15.4.2), and units of VHDL and of
+    SystemVerilog may be in one library. So the names of all of them differ in more than case.
+
+    Parameters
+    ----------
+    name : str
+        Name that the outermost entity is to have.
+    top : str
+        Name that this entity has in VHDL.
+    files : mapping of str to iterable of str
+        Names of files by what they belong to, such as ``"the messages"``. Those with another
+        suffix than ``.vhd`` and ``.sv`` do not count.
+
+    Raises
+    ------
+    DefinitionError
+        At the name of the node in the description.
+    """
+    if top != name:
+        raise _refused(description, f"the VHDL of every node uses the name '{name}' itself")
+    owners: dict[str, str] = {}
+    for owner, names in files.items():
+        for unit in (PurePath(each).stem for each in names if each.endswith(_SUFFIXES)):
+            first = owners.setdefault(unit.lower(), owner)
+            if first != owner:
+                what = f"{first} and {owner} would both have a unit with the name '{unit}'"
+                raise _refused(description, what)
+
+
+def _refused(description: Description, reason: str) -> DefinitionError:
+    message = f"{reason}; give the node another name"
+    return DefinitionError([Diagnostic(message=message, span=description.node_span)])

@@ -16,7 +16,7 @@ from firm_hdl.node.capacity import rate_problems, size_problems
 from firm_hdl.node.control import IDENTITY, registers
 from firm_hdl.node.description import Description, Direction, Store, Topic
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
-from firm_hdl.node.link_reading import LINK_OPTIONS
+from firm_hdl.node.reading import LINK_OPTIONS
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.timing import Cost, timing
 from firm_hdl.wire import lay_out

@@ -14,7 +14,8 @@ from tqdm import tqdm
 
 from firm_hdl.arguments import add_jobs, number_between, positive
 from firm_hdl.errors import DefinitionError
-from firm_hdl.jobs.processes import in_processes, unwound_when_terminated
+from firm_hdl.jobs import run_each
+from firm_hdl.jobs.processes import unwound_when_terminated
 from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.plan import BUS_BYTES
 from firm_hdl.terminal import printable_streams
@@ -70,9 +71,9 @@ def _run(tasks: Sequence[FuzzTask], jobs: int | None, results: TextIO | None) ->
     print(HEAD)
     with tqdm(total=len(tasks), unit="circuit set", desc="fuzzing", disable=None) as progress:
         work = [(task, (task,)) for task in tasks]
-        for task, result in in_processes(run_task, work, 1 if len(tasks) == 1 else jobs):
+        for task, result in run_each(run_task, work, jobs=1 if len(tasks) == 1 else jobs):
             if isinstance(result, Exception):
-                failure = Failure(rule=f"the process failed: {result}")
+                failure = Failure(rule=f"the process failed: {result!r}")
                 wire = message_of(task.type).wire
                 result = Outcome(task=task, wire=wire, failures=(failure,))
             outcomes.append(result)

@@ -14,12 +14,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from firm_hdl.jobs import processes
+from firm_hdl.jobs import processes, run_each
 from firm_hdl.jobs.processes import (
     ToolError,
     cpu_seconds,
     hang_up,
-    in_processes,
     made_by,
     run_tool,
     unwound_when_terminated,
@@ -120,29 +119,6 @@ def test_cpu_seconds_include_children():
     before = cpu_seconds()
     time.sleep(0.1)
     assert cpu_seconds() - before < 0.1
-
-
-def test_tasks_of_one_job_run_in_this_process_in_order():
-    here = []
-    tasks = [("b", (2,)), ("a", (1,))]
-
-    def work(number):
-        here.append((os.getpid(), number))
-        return -number
-
-    results = in_processes(work, tasks, 1)
-    assert next(results) == ("b", -2)
-    assert here == [(os.getpid(), 2)]
-    assert list(results) == [("a", -1)]
-
-
-def fails(number):
-    raise ValueError(number)
-
-
-def test_error_of_a_task_has_the_name_of_its_type():
-    ((key, error),) = in_processes(fails, [("a", (7,))], 2)
-    assert (key, str(error)) == ("a", "ValueError: 7")
 
 
 def test_terminated_process_runs_its_cleanup():
@@ -270,7 +246,7 @@ def test_process_that_ends_while_it_is_killed_is_no_error(monkeypatch):
 
 def test_temporary_files_of_workers_go_with_their_pool(tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    ((_, folder),) = in_processes(tempfile.mkdtemp, [("a", ())], 2)
+    ((_, folder),) = run_each(tempfile.mkdtemp, [("a", ())], jobs=2)
     assert Path(folder).parent.parent == tmp_path
     assert Path(folder).parent.name.startswith("firm-hdl-")
     assert list(tmp_path.iterdir()) == []

@@ -13,7 +13,7 @@ import time
 import pytest
 
 from firm_hdl.jobs import processes
-from firm_hdl.jobs.processes import cpu_seconds, in_processes, run_tool, worker_pool
+from firm_hdl.jobs.processes import cpu_seconds, run_tool, worker_pool
 
 
 def test_a_program_leads_a_group_and_a_session_of_its_own(tmp_path):
@@ -139,21 +139,6 @@ def test_an_interrupted_pool_ends_its_own_processes_only():
         other.kill()
         other.join()
         other.close()
-
-
-def test_a_pool_has_as_many_processes_as_it_is_given(monkeypatch):
-    """`None` is one for each processor."""
-    given = []
-
-    class Pool(processes.ProcessPoolExecutor):
-        def __init__(self, workers, **options):
-            given.append(workers)
-            super().__init__(1, **options)
-
-    monkeypatch.setattr(processes, "ProcessPoolExecutor", Pool)
-    for jobs in (3, None):
-        assert list(in_processes(abs, [("a", (-1,))], jobs)) == [("a", 1)]
-    assert given == [3, None]
 
 
 def test_the_limit_of_time_is_that_of_the_program_in_seconds(tmp_path):

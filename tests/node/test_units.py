@@ -13,9 +13,8 @@ from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
 from firm_hdl.node import Node
 from firm_hdl.node import build as node_build
-from firm_hdl.node.build import build_node
+from firm_hdl.node.build import build_node, check_units
 from firm_hdl.node.top import node_ports
-from firm_hdl.node.units import check_units
 from tests.node.samples import RELAY, read
 
 FILES = {

@@ -17,8 +17,7 @@ from contextlib import suppress
 from firm_hdl.errors import UserError
 from firm_hdl.node.boards.board import Board
 from firm_hdl.node.bridge.boardside import BoardSide
-from firm_hdl.node.bridge.counters import BridgeCounters
-from firm_hdl.node.bridge.load import Load
+from firm_hdl.node.bridge.counters import BridgeCounters, Load
 from firm_hdl.node.bridge.waiting import RETRY_SECONDS, Call, Calls, MessageQueue, Retry, Waiting
 from firm_hdl.node.capacity import most_bytes
 from firm_hdl.node.control import Register

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter, deque
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 
@@ -318,16 +319,24 @@ class Session:
         and the counters are final. The answer to the first of them confirms all messages.
         """
         self._is_finishing = True
-        # An answer to a request of before shows nothing of the last messages.
+        losses = [each.number for each in self._counters if _is_loss(each)]
+        losses.remove(self._lost_register)
+        self.read([0, *losses, self._lost_register, self._requests_register], now)
+
+    def read(self, numbers: Iterable[int], now: float) -> None:
+        """Let the next requests read some registers, in place of all counters in turn.
+
+        No answer to a request of before counts, and a board that was not asked for a while is not
+        silent yet. :attr:`has_read` tells when the values are there.
+        """
+        self._todo = deque(map(_read, numbers))
         self._asks_from = self._control.asked
-        self._todo = deque([_read(0)])
-        self._todo.extend(
-            _read(each.number)
-            for each in self._counters
-            if _is_loss(each) and each.number != self._lost_register
-        )
-        self._read_lost()
-        self._waits_until = now
+        self._heard = self._waits_until = now
+
+    @property
+    def has_read(self) -> bool:
+        """Whether all requests of :meth:`read` were answered."""
+        return self.is_ready and not self._todo
 
     def _read_lost(self) -> None:
         """Read what the link has lost, and then which part of this were requests."""
@@ -500,6 +509,11 @@ class Session:
         if asked.request.operation == Operation.READ:
             if response.result == Result.OK:
                 self._keep(asked.request.argument, response.value)
+            elif not self.is_ready:
+                raise WrongBoardError(
+                    f"the board refuses to read register {asked.request.argument}: its node is of "
+                    "another version"
+                )
             if asked.request.argument == self._requests_register:
                 self._note_requests(asked, response.value)
         if asked.is_sample:
@@ -519,7 +533,7 @@ class Session:
             self.end()
             raise WrongBoardError(
                 f"the board's fingerprint is {found:016x}, and that of the description is "
-                f"{self._description.fingerprint:016x}: one of them is older"
+                f"{self._description.fingerprint:016x}: its node is another one, or an older one"
             )
 
     def _note_requests(self, asked: _Asked, taken: int) -> None:

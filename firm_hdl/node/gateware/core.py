@@ -21,9 +21,8 @@ from firm_hdl.node.control import (
 from firm_hdl.node.description import CONTROL_TOPIC, Description, Kind, Topic
 from firm_hdl.node.frame import VERSION
 from firm_hdl.node.gateware.clock import NodeClock
-from firm_hdl.node.gateware.control_unit import ControlUnit
-from firm_hdl.node.gateware.counters import ByteCounter, RegisterReader
-from firm_hdl.node.gateware.request_gate import RequestGate
+from firm_hdl.node.gateware.control_unit import ByteCounter, ControlUnit, RegisterReader
+from firm_hdl.node.gateware.services import RequestGate, TaggedFifo
 from firm_hdl.node.gateware.streams import (
     LENGTH_BITS,
     TAG_BITS,
@@ -34,7 +33,6 @@ from firm_hdl.node.gateware.streams import (
     passes,
     time_layout,
 )
-from firm_hdl.node.gateware.tagged_fifo import TaggedFifo
 
 __all__ = ["NodeCore", "node_counters_layout"]
 

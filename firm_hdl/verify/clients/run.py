@@ -9,7 +9,7 @@ from firm_hdl.cases.effort import all_cases
 from firm_hdl.cases.user_oracle import judge_of
 from firm_hdl.cases.values import Plain, from_objects
 from firm_hdl.errors import DefinitionError
-from firm_hdl.jobs.processes import in_processes
+from firm_hdl.jobs import run_each
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.clients.judge import LibraryComparison, LibraryResult
@@ -113,7 +113,7 @@ def judge_types(
 ) -> Generator[tuple[TypeUnderTest, list[LibraryResult]], None, None]:
     """Judge all libraries on types, and yield each type's results when they are done."""
     work = [(task, (task.distro, task.name, options, installed)) for task in tasks]
-    for task, results in in_processes(judge_type, work, options.jobs):
+    for task, results in run_each(judge_type, work, jobs=options.jobs):
         if isinstance(results, Exception):
             # A worker process died, or our own code raised: the run has no result.
             raise results

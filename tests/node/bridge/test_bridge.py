@@ -11,8 +11,8 @@ import pytest
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.bridge import WrongBoardError, bridge
+from firm_hdl.node.bridge.command import account, status_line
 from firm_hdl.node.bridge.counters import CAUSES
-from firm_hdl.node.bridge.status import account, status_line
 from firm_hdl.node.messages import NodeMessage
 from tests.node.bridge.fakes import (
     CAL,

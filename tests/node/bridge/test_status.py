@@ -8,9 +8,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from firm_hdl.node.bridge import status
+from firm_hdl.node.bridge import command
+from firm_hdl.node.bridge.command import Status, account, status_line
 from firm_hdl.node.bridge.counters import BridgeCounters
-from firm_hdl.node.bridge.status import Status, account, status_line
 from tests.node.bridge.fakes import ECHO
 
 
@@ -31,7 +31,7 @@ class Screen(io.StringIO):
 @pytest.fixture
 def clock(monkeypatch):
     made = SimpleNamespace(now=100.0)
-    monkeypatch.setattr(status, "time", SimpleNamespace(monotonic=lambda: made.now))
+    monkeypatch.setattr(command, "time", SimpleNamespace(monotonic=lambda: made.now))
     return made
 
 
