@@ -51,10 +51,11 @@ MAY_IMPORT["export"] = {
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
-    # `terminal`: names of peers are printed.
+    # `terminal`: names of peers are printed. `equivalence`, `jobs`: accelerators in VHDL and
+    # Verilog are read by GHDL and Verilator.
     *("firm_hdl", "errors", "files", "garbage", "names", "rtlil", "rtps", "terminal", "vhdl"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
-    *("sim", "export"),
+    *("sim", "export", "equivalence", "jobs"),
 }
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {

@@ -42,7 +42,20 @@ def add_node(command: argparse.ArgumentParser) -> None:
     command.set_defaults(run=_node)
 
 
+def _add_new(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--language",
+        choices=["amaranth", "vhdl", "verilog", "sv"],
+        help="language of the accelerator (default: that of the description, else amaranth)",
+    )
+
+
 def _add_info(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--members",
+        action="store_true",
+        help="also list the fields that an accelerator has to take and to offer",
+    )
     add_json(command)
 
 
@@ -77,6 +90,11 @@ def _add_run(command: argparse.ArgumentParser) -> None:
 
 
 _ACTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None], tuple[str, ...]]] = {
+    "new": (
+        "write a file to begin the accelerator with, beside the description",
+        _add_new,
+        ("firm-hdl node new double.yaml --language vhdl",),
+    ),
     "info": (
         "check a description and its accelerator, and print topics, sizes, cycles, clocks and area",
         _add_info,
@@ -136,6 +154,14 @@ def _leave_unused() -> None:
 
 
 def _act(args: argparse.Namespace, description: Description) -> None:
+    if args.action == "new":
+        from firm_hdl.node.hdl import new_accelerator
+
+        place, value = new_accelerator(description, args.language)
+        print(f"wrote   {place}")
+        if not description.accelerator:
+            print(f"Add this line to {args.file}:\n\naccelerator: {value}")
+        return
     if args.action == "run":
         from firm_hdl.node.bridge.command import run_bridge
 
@@ -166,6 +192,10 @@ def _act(args: argparse.Namespace, description: Description) -> None:
         if args.sim:
             _compile(description, args)
     print(summary(description))
+    if args.action == "info" and args.members:
+        from firm_hdl.node.hdl.members import members_text
+
+        print(f"\n{members_text(description)}")
 
 
 def _compile(description: Description, args: argparse.Namespace) -> None:

@@ -99,6 +99,7 @@ def core_file(
     kind: str,
     description: str,
     more: Mapping[str, Mapping[str, Any]] | None = None,
+    change: Callable[[dict[str, Any]], dict[str, Any]] | None = None,
 ) -> dict[str, str]:
     """Write a core of FuseSoC: the VHDL by default, or the Verilog.
 
@@ -112,6 +113,8 @@ def core_file(
         Library of the core, such as ``"node"``, and what the design is, for people.
     more : mapping or None
         More entries of the core by section, such as ``targets``.
+    change : callable or None
+        Called with the core, and returns it as it is written.
     """
     module = verilog_module(name)
     core: dict[str, Any] = {
@@ -128,6 +131,7 @@ def core_file(
     }
     for section, entries in (more or {}).items():
         core[section] = {**core.get(section, {}), **entries}
+    core = change(core) if change else core
     return {f"{name}.core": "CAPI=2:\n" + yaml.safe_dump(core, sort_keys=False, width=1000)}
 
 

@@ -31,6 +31,7 @@ from firm_hdl.names.identifiers import identifier
 from firm_hdl.node.accelerator import conflicts_reported
 from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_core, bench_files, link_script
 from firm_hdl.node.description import Description
+from firm_hdl.node.hdl.copies import AcceleratorFiles, accelerator_files
 from firm_hdl.node.node import Node
 from firm_hdl.node.records import MessagePort, message_ports, record_files, struct_files
 from firm_hdl.node.summary import facts_of, summary
@@ -40,6 +41,10 @@ from firm_hdl.vhdl.convert import convert
 __all__ = ["build_node", "check_units"]
 
 SUMMARY = "summary.txt"
+
+_OF_VHDL = ("_tb.vhd", "firm_hdl_bench_pkg.vhd", "bench_files.txt", "run_ghdl.sh")
+_OF_VERILOG = ("_tb.v", "run_iverilog.sh")
+"""How files of benches end, by the language of the simulator."""
 
 _UNDRIVEN = """
 // Outputs of parts that the node does not use are wires without a driver.
@@ -76,6 +81,9 @@ def build_node(
         name, or the folder cannot be written.
     """
     name = identifier(description.node)
+    if description.hdl is not None and description.hdl.entity.lower() == name.lower():
+        # Both would be one entity.
+        name += "_node"
     folder = design_folder(out, name)
     design = _designed(description, name, accelerator, stimuli)
     facts, script = facts_of(description), design.script
@@ -87,13 +95,15 @@ def build_node(
                 "facts": facts,
                 # The accelerator's code is part of the circuit; packets of the benches are not.
                 "frames_sha256": None if script is None else digest(script.text),
+                "accelerator_files": {**design.own.texts, **design.own.headers},
             },
             design.rtlil,
         ),
         facts={
             **facts,
             "records": _records(design),
-            "bench": None if script is None else _bench(name),
+            "accelerator_files": design.own.facts(),
+            "bench": None if script is None else _bench(name, design.own.language),
             "clock": "aclk",
             "reset": "aresetn",
         },
@@ -121,6 +131,8 @@ class _Design:
         Why there are none.
     script : LinkScript or None
         Frames of the benches, if there are some.
+    own : AcceleratorFiles
+        Files of the user's.
     """
 
     description: Description
@@ -130,6 +142,7 @@ class _Design:
     messages: Sequence[MessagePort]
     reason: str
     script: LinkScript | None
+    own: AcceleratorFiles
 
 
 def _designed(
@@ -159,6 +172,7 @@ def _designed(
         messages=messages,
         reason=reason,
         script=link_script(description, stimuli, has_accelerator=has_accelerator),
+        own=accelerator_files(node.accelerator),
     )
 
 
@@ -177,7 +191,10 @@ def _files(design: _Design) -> dict[str, str]:
     if design.messages:
         records = record_files(name, ports, design.messages, vhdl_ports=vhdl_ports, header=header)
         structs = struct_files(name, module, ports, design.messages, header=header)
-    vhdl = {**node.files, **records}
+    own = design.own
+    is_vhdl = own.language == "vhdl"
+    inside = {file.removeprefix("vhdl/"): text for file, text in own.texts.items()}
+    vhdl = {**(inside if is_vhdl else {}), **node.files, **records}
     benches: dict[str, str] = {}
     if script is not None:
         benches = bench_files(
@@ -189,21 +206,30 @@ def _files(design: _Design) -> dict[str, str]:
             vhdl_ports=vhdl_ports,
             vhdl_files=list(vhdl),
             header=header,
+            more=list(own.texts),
         )
+        # A simulator reads one language.
+        other = () if not own.language else _OF_VERILOG if is_vhdl else _OF_VHDL
+        benches = {file: text for file, text in benches.items() if not file.endswith(other)}
     owners = {"the node": node.files, "its messages": records, "its structs": structs}
+    if own.language:
+        owners["its accelerator"] = {f"{own.entity}.vhd": ""}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     return {
         **verilog_file(design.rtlil, name=name, header=header),
         "waivers.vlt": waivers([module]) + _UNDRIVEN.format(file=f"{module}.v"),
         **{f"systemverilog/{file}": text for file, text in structs.items()},
+        **({} if is_vhdl else own.texts),
+        **own.headers,
         **vhdl_folder(vhdl),
         SUMMARY: summary(description) + "\n",
         **core_file(
             name,
-            vhdl,
+            {**node.files, **records},
             kind="node",
             description=f"Node {description.node} of ROS {description.distro}",
             more=None if script is None else bench_core(name),
+            change=own.core,
         ),
         **benches,
     }
@@ -239,16 +265,22 @@ def _record(port: MessagePort) -> dict[str, Any]:
     }
 
 
-def _bench(name: str) -> dict[str, str]:
-    """Describe the benches for the manifest."""
-    return {
-        "frames": FRAMES,
+def _bench(name: str, language: str) -> dict[str, str]:
+    """Describe the benches for the manifest: those that read the language of the accelerator."""
+    vhdl = {
         "vhdl": f"{name}_tb",
         "vhdl_files": "vhdl/bench_files.txt",
         "run_ghdl": "vhdl/run_ghdl.sh",
+    }
+    verilog = {
         "verilog": f"{name}_tb",
         "verilog_file": f"{name}_tb.v",
         "run_iverilog": "run_iverilog.sh",
+    }
+    return {
+        "frames": FRAMES,
+        **(vhdl if language in ("", "vhdl") else {}),
+        **(verilog if language != "vhdl" else {}),
     }
 
 

@@ -14,12 +14,24 @@ from ipaddress import AddressValueError, IPv4Address
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
 from firm_hdl.files import read_file
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS, Library, open_library
 from firm_hdl.metrics import metrics_of
 from firm_hdl.model import WIRE_OF, Action, Interface, Message, Service
-from firm_hdl.node.description import LINKS, Description, Direction, Kind, Link, Qos, Store, Topic
+from firm_hdl.node.description import (
+    LINKS,
+    Description,
+    Direction,
+    Hdl,
+    Kind,
+    Link,
+    Qos,
+    Store,
+    Topic,
+)
 from firm_hdl.node.marked_yaml import Entry, Marked, parse
 from firm_hdl.node.names import (
     MOST_TOPIC_CHARACTERS,
@@ -43,6 +55,8 @@ KINDS: tuple[Kind, ...] = ("subscribe", "publish", "serve")
 
 _KEYS = ("node", "namespace", "distro", "paths", "bags", "bus_bytes", "clock_mhz", "link", "remap")
 KEYS = (*_KEYS, *KINDS, "accelerator")
+
+LANGUAGES = ("vhdl", "verilog", "systemverilog")
 
 
 def read_description(
@@ -149,7 +163,9 @@ class _Reader:
         self._check_remap(names)
         if not topics and not self.marked.noted:
             self.marked.error_at_start(f"a node needs a topic: {', '.join(KINDS)}")
-        accelerator = known["accelerator"].checked(_class_problem) if "accelerator" in known else ""
+        accelerator, hdl = "", None
+        if "accelerator" in known:
+            accelerator, hdl = self._accelerator(known["accelerator"])
         self.marked.check()
         return Description(
             **given,
@@ -160,12 +176,40 @@ class _Reader:
             link=with_memory(link, topics, known.get("link")),
             topics=tuple(topics),
             accelerator=accelerator,
+            hdl=hdl,
             folder=self.folder,
             accelerator_span=(
                 self.marked.span(known["accelerator"].value) if accelerator else None
             ),
             node_span=self.marked.span(known["node"].value),
         )
+
+    def _accelerator(self, entry: Entry) -> tuple[str, Hdl | None]:
+        """Read the name of a class, or the files of an accelerator in another language."""
+        if not isinstance(entry.value, yaml.MappingNode):
+            return entry.checked(_class_problem), None
+        marked = self.marked
+        given = marked.mapping(entry.value, "'accelerator'")
+        known = marked.known(given, (*LANGUAGES, "entity"), "an accelerator")
+        languages = [each for each in known.values() if each.name in LANGUAGES]
+        if len(languages) != 1:
+            if given.keys() <= known.keys():
+                entry.error(f"an accelerator has the files of one of {', '.join(LANGUAGES)}")
+            return "", None
+        (language,) = languages
+        files = language.texts()
+        for file in files:
+            if problem := _path_problem(file):
+                language.error(problem)
+        if not files:
+            return "", None
+        entity = os.path.splitext(os.path.basename(files[-1]))[0]
+        if "entity" in known:
+            entity = known["entity"].checked(_entity_problem)
+        elif problem := _entity_problem(entity):
+            language.error(f"{problem}: name the 'entity'")
+        hdl = Hdl(language=language.name, files=tuple(files), entity=entity)  # type: ignore[arg-type]
+        return f"{entity} ({', '.join(files)})", hdl
 
     def _library(self, known: dict[str, Entry]) -> Library:
         """Open the definitions; without them, no type can be checked, so errors are final."""
@@ -318,8 +362,16 @@ def _class_problem(text: str) -> str:
     module, colon, name = text.partition(":")
     words = [*module.split("."), *name.split(".")]
     if not colon or not all(word.isidentifier() for word in words) or len(text) > 255:
-        return "an accelerator is named as 'module:Class', such as 'wheels.core:Wheels'"
+        return (
+            "an accelerator is named as 'module:Class', such as 'wheels.core:Wheels', or as "
+            "{vhdl: wheels.vhd, entity: wheels}"
+        )
     return ""
+
+
+def _entity_problem(text: str) -> str:
+    is_name = re.fullmatch("[A-Za-z][A-Za-z0-9_]*", text) and len(text) <= 255
+    return "" if is_name else f"'{text}' is no name of an entity or a module"
 
 
 NODE_BUS_BYTES = tuple(width for width in BUS_BYTES if width <= 16)

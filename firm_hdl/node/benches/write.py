@@ -47,6 +47,7 @@ def bench_files(
     vhdl_ports: Mapping[str, str],
     vhdl_files: Sequence[str],
     header: str,
+    more: Sequence[str] = (),
 ) -> dict[str, str]:
     """Write the benches of a node, the frames, and the scripts that run them.
 
@@ -65,6 +66,8 @@ def bench_files(
         Files of the node in compile order.
     header : str
         Lines of a comment at the head of each file.
+    more : sequence of str
+        More files of Verilog.
 
     Returns
     -------
@@ -79,6 +82,9 @@ def bench_files(
         "vhdl_ports": vhdl_ports,
         "frames_file": FRAMES,
         "header": header.splitlines(),
+        "more": more,
+        "standard": 2012 if any(file.endswith(".sv") for file in more) else 2005,
+        "folders": list(dict.fromkeys(file.rpartition("/")[0] for file in more)),
     }
     bench = [_HELPERS, f"{top}.vhd"]
     return {

@@ -13,7 +13,7 @@ import re
 import shlex
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
@@ -63,6 +63,8 @@ _OPTIONS = (
     "--assert",
     # Registers and memories have initial values, and wires have drivers.
     *("--x-assign", "fast", "--x-initial", "fast", "-O3"),
+    # Files of a user's may have words that are keywords of SystemVerilog only.
+    "+1364-2005ext+v",
     # Several files, for the processors of the machine.
     *("--output-split", "20000"),
     *("--top-module", _MODULE, "--prefix", _PREFIX, "--Mdir", "."),
@@ -112,7 +114,8 @@ def program_of(
     build = _Build(source(), verilator, (*compiler, *options, *_ALWAYS), cache, tell)
     versions = _said(verilator, "--version"), _said(compiler, "--version")
     text = SERVER.read_text(encoding="utf-8")
-    parts = (build.source.verilog, build.source.main, text, *versions, *build.command)
+    more = [each for module in build.source.modules.items() for each in module]
+    parts = (build.source.verilog, build.source.main, text, *more, *versions, *build.command)
     try:
         return kept_program("simulation", parts, build.make, cache)
     except OSError as error:
@@ -231,14 +234,17 @@ class VerilatedSource:
         It has no paths, so that it is the same for the same design.
     main : str
         C++ with the table of the ports.
+    modules : mapping of str to str
+        More Verilog by file name: modules that the design has instances of.
     """
 
     verilog: str
     main: str
+    modules: Mapping[str, str]
 
 
 @search_put_off()
-def verilated_source(top: Top) -> VerilatedSource:
+def verilated_source(top: Top, modules: Mapping[str, str]) -> VerilatedSource:
     """Elaborate a design.
 
     Raises
@@ -252,7 +258,7 @@ def verilated_source(top: Top) -> VerilatedSource:
         plain=top.ports.plain,
         clocks=top.clocks,
     )
-    return VerilatedSource(convert(netlist, name=_MODULE), main)
+    return VerilatedSource(convert(netlist, name=_MODULE), main, modules)
 
 
 def translate(
@@ -273,7 +279,9 @@ def translate(
     (folder / "design.v").write_text(source.verilog, encoding="utf-8")
     (folder / "main.cpp").write_text(source.main, encoding="utf-8")
     (folder / SERVER.name).write_bytes(SERVER.read_bytes())
-    run_tool([*verilator, *_OPTIONS, "design.v"], folder)
+    for name, text in source.modules.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    run_tool([*verilator, *_OPTIONS, "design.v", *source.modules], folder)
     makefile = made_by("Verilator", folder / f"{_PREFIX}_classes.mk").read_text(encoding="utf-8")
     # Which parts of the runtime a model needs depends on the version.
     parts = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", makefile, re.MULTILINE)

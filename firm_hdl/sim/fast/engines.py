@@ -7,7 +7,7 @@ import signal
 import socket
 import subprocess
 import weakref
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -125,9 +125,14 @@ def start(
     options: Sequence[str],
     cache: Path | None,
     report: Report | None = None,
+    modules: Mapping[str, str] | None = None,
 ) -> VerilatorEngine | AmaranthEngine:
     """Start an engine. Parameters and errors are those of :class:`.FastSimulation`."""
-    if expected_engine(engine)[0] == "amaranth":
+    found, why = expected_engine(engine)
+    if found == "amaranth":
+        if modules:
+            reason = f": {why}" if why else ""
+            raise BuildError(f"Amaranth's simulator takes no modules of Verilog{reason}")
         return AmaranthEngine(top)
-    source = partial(verilated_source, top)
+    source = partial(verilated_source, top, modules or {})
     return VerilatorEngine(program_of(source, options=options, cache=cache, report=report))

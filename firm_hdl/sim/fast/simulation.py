@@ -75,6 +75,9 @@ class FastSimulation:
         simulation would take more and more memory.
     report : callable or None
         Called with a line of text at each stage of a compilation.
+    modules : mapping of str to str, or None
+        Verilog by file name, ``.v`` or ``.sv``: modules of which the design has an
+        `amaranth.hdl.Instance`. Only for Verilator.
 
     Attributes
     ----------
@@ -111,6 +114,7 @@ class FastSimulation:
         cache: Path | None = None,
         ignored: Collection[str] = (),
         report: Report | None = None,
+        modules: Mapping[str, str] | None = None,
     ):
         self.ports = ports_of(design)
         top = Top(design, self.ports)
@@ -126,7 +130,9 @@ class FastSimulation:
         self.is_live = False
         self._clear()
         self._stalls = stalls
-        self._channel: Channel = start(top, engine, options=options, cache=cache, report=report)
+        self._channel: Channel = start(
+            top, engine, options=options, cache=cache, report=report, modules=modules
+        )
         self.engine: Literal["verilator", "amaranth"] = self._channel.engine
         self._open = top.open
         try:
