@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from firm_hdl.arguments import TYPE_HELP, add_jobs, add_json, add_options
 from firm_hdl.cli.types import library_of
+from firm_hdl.export.options import EXTRAS, PORTS, Extra, Options
 from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
@@ -16,10 +17,7 @@ if TYPE_CHECKING:
     from firm_hdl.model import Message
     from firm_hdl.plan import Plan
 
-__all__ = ["PORT_NAMES", "add_build", "add_info", "add_plan"]
-
-PORT_NAMES = ("records", "flat")
-"""Values of ``--ports``: `firm_hdl.export.backend.PORTS`, copied to avoid that module's imports."""
+__all__ = ["add_build", "add_info", "add_plan"]
 
 
 class _Gone(argparse.Action):
@@ -38,13 +36,30 @@ def add_build(command: argparse.ArgumentParser) -> None:
     command.add_argument("--out", default="vhdl_out", help="folder to write to (%(default)s)")
     command.add_argument(
         "--ports",
-        choices=PORT_NAMES,
+        choices=PORTS,
         default="records",
         help="whether the VHDL has records, or plain vectors only; default: %(default)s",
+    )
+    command.add_argument(
+        "--with",
+        dest="extras",
+        type=_extras,
+        default=frozenset(),
+        metavar="EXTRA,...",
+        help=f"more files: {', '.join(EXTRAS)}, or all",
     )
     command.add_argument("--force", action="store_true", help="also write folders that are current")
     add_jobs(command)
     command.set_defaults(run=_build)
+
+
+def _extras(text: str) -> frozenset[Extra]:
+    """Read names of extras, separated by commas."""
+    chosen = {each for name in text.split(",") for each in (EXTRAS if name == "all" else [name])}
+    if unknown := chosen - {*EXTRAS}:
+        listed = ", ".join([*EXTRAS, "all"])
+        raise argparse.ArgumentTypeError(f"{min(unknown)!r} is not one of {listed}")
+    return frozenset(each for each in EXTRAS if each in chosen)
 
 
 def _build(args: argparse.Namespace) -> None:
@@ -54,7 +69,6 @@ def _build(args: argparse.Namespace) -> None:
     # Errors in definitions are reported before Amaranth is imported, which takes time.
     messages = load_all(library, args.types)
     stage(f"build: {messages[0].name}" if len(messages) == 1 else "build")
-    from firm_hdl.export.backend import Options
     from firm_hdl.export.build import build
 
     def packets_of(message: Message, plan: Plan) -> list[bytes]:
@@ -83,6 +97,7 @@ def _build(args: argparse.Namespace) -> None:
             bus_bytes=args.bus_bytes,
             max_message_bytes=args.max_message_bytes,
             ports=args.ports,
+            extras=args.extras,
         ),
         force=args.force,
         stimuli=packets_of,

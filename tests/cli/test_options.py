@@ -11,8 +11,8 @@ import pytest
 from firm_hdl.cli import main
 from firm_hdl.equivalence import command as prove_command
 from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.export.backend import Options
 from firm_hdl.export.build import BuildError
+from firm_hdl.export.options import Options
 from firm_hdl.export.top import DIRECTIONS
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.names import TypeName

