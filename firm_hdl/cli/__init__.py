@@ -1,3 +1,4 @@
+# PYTHON_ARGCOMPLETE_OK, for shells in which argcomplete completes all commands.
 """The command ``firm-hdl``: it parses arguments, calls other modules, and prints their results.
 
 Exit status: 0 for success; 1 if a definition cannot be used or a request cannot be met, with the
@@ -72,10 +73,15 @@ def _dispatch(arguments: list[str]) -> int:
     try:
         with redirect_stdout(sys.stderr):
             return _called(args)
+    except SystemExit:
+        # Wrong arguments: there is no answer, as for those that the parser finds.
+        args.document.clear()
+        raise
     finally:
-        # Errors come last, because a document may be long.
-        args.document["errors"] = args.document.pop("errors")
-        print(json.dumps(args.document, indent=1, ensure_ascii=False, allow_nan=False))
+        if args.document:
+            # Errors come last, because a document may be long.
+            args.document["errors"] = args.document.pop("errors")
+            print(json.dumps(args.document, indent=1, ensure_ascii=False, allow_nan=False))
 
 
 def _called(args: argparse.Namespace) -> int:
