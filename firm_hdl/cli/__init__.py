@@ -179,6 +179,12 @@ def _parser(arguments: Sequence[str], *, with_all: bool = False) -> argparse.Arg
     parser = Parser(
         prog="firm-hdl",
         description="Generate hardware that reads and writes ROS messages.",
+        examples=(
+            "firm-hdl doctor                            what is installed here, and where to read",
+            "firm-hdl info geometry_msgs/msg/Twist      what its converters take",
+            "firm-hdl build geometry_msgs/msg/Twist     write them",
+            "firm-hdl build --help                      all options of a command",
+        ),
     )
     parser.add_argument(
         "--version", action=_Version, nargs=0, help="show program's version number and exit"

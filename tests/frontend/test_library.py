@@ -59,7 +59,7 @@ def test_load_message_takes_paths(tmp_path):
 
 @pytest.mark.parametrize(
     "name",
-    ["", "/", "/b", "a/", "a//b", "/a/b", "a/b/", "a/b/c", "a/b/c/d", "/msg/b", "a/msg/", "time"],
+    ["", "/", "/b", "a/", "a//b", "/a/b", "a/b/", "a/b/c", "a/b/c/d", "/msg/b", "a/msg/"],
 )
 def test_malformed_names(name):
     assert refused(Library("noetic").message, name) == (
