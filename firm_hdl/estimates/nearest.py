@@ -110,7 +110,7 @@ def estimate_text(plan: Plan) -> str:
     for direction, each in estimates_of(plan).items():
         what = "measured" if each.is_same else f"that of {each.type}, the nearest measured type"
         lines.append(
-            f"    {direction} on an {each.part}: {each.lut:,} look-up tables, {each.ff:,} "
+            f"    {direction} on {each.part}: {each.lut:,} look-up tables, {each.ff:,} "
             f"flip-flops, {each.mhz:.0f} MHz ({what})"
         )
     return "\n".join(lines)

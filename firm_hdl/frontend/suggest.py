@@ -81,7 +81,8 @@ def similar_types(
         (other, kind, base)
         for other, types in sources.types.items()
         for kind, base in types
-        if kind in kinds and _plain(base) == _plain(name) and _plain(other) == _plain(package)
+        if kind in kinds and (other, base) != (package, name)
+        if _plain(base) == _plain(name) and _plain(other) == _plain(package)
     ]
     for kind in kinds:
         packages = sources.packages_of.get((kind, name), [])

@@ -202,7 +202,7 @@ def test_build_prints_its_results(workdir, capsys):
         "    after a damaged packet: ready within 16 cycles (0.16 us at 100 MHz); the longest "
         "legal packet takes 13\n"
     )
-    assert out.startswith(f"{figures}{recovery}    deserializer on an ECP5 ")
+    assert out.startswith(f"{figures}{recovery}    deserializer on ECP5 ")
     assert out.splitlines()[-1].startswith("next: firm-hdl build") and out.count("\n") == 8
     assert err == ""
 

@@ -95,6 +95,14 @@ def test_verify_has_each_test_with_its_verdict(said):
     assert "p/msg/No" in error["message"]
 
 
+def test_wrong_arguments_have_no_object(capsys):
+    for words in (["list", "--only-path"], ["metrics"], ["verify"], ["info"]):
+        with pytest.raises(SystemExit, match="2"):
+            main([*words, "--json"])
+        out, err = capsys.readouterr()
+        assert out == "" and err.startswith(f"usage: firm-hdl {words[0]}")
+
+
 def test_errors_of_every_kind_are_there(said, monkeypatch):
     for raised, told in (
         (BuildError("no"), "no"),

@@ -168,13 +168,15 @@ def test_options_of_the_command_reach_every_proof(
 ) -> None:
     asked: list[tuple[object, ...]] = []
     monkeypatch.setattr(
-        command, "run_proofs", lambda tasks, jobs, bar: asked.append((tasks, jobs, bar)) or 0
+        command,
+        "run_proofs",
+        lambda tasks, jobs, with_summary: asked.append((tasks, jobs, with_summary)) or 0,
     )
     options = ["--distro", "jazzy", "--path", str(tmp_path), "--bus-bytes", "4"]
     options += ["--max-message-bytes", "999", "--timeout", "7", "--jobs", "3"]
     assert main(["prove", "std_msgs/msg/Bool", "std_msgs/Int8", *options]) == 0
-    [(tasks, jobs, bar)] = asked
-    assert (jobs, bar) == (3, False)
+    [(tasks, jobs, with_summary)] = asked
+    assert (jobs, with_summary) == (3, False)
     assert tasks == [
         ProofTask(
             distro="jazzy",

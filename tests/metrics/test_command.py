@@ -72,7 +72,7 @@ def test_all_are_all_messages_of_the_folder_or_of_the_distribution(run, capsys):
 
 def test_types_that_are_wrong_do_not_hide_the_others(run, tmp_path):
     make_files(tmp_path, {"p/msg/Bad.msg": "int33 a\n", "p/srv/Bad.srv": "int34 a\n---\n"})
-    status, out, err = run("p/Bad", "p/B", "p/srv/Bad", "--format", "csv")
+    status, out, err = run("p/msg/Bad", "p/B", "p/srv/Bad", "--format", "csv")
     assert status == 1
     assert [row["name"] for row in csv.DictReader(io.StringIO(out))] == ["p/msg/B"]
     assert "'int33'" in err and "'int34'" in err

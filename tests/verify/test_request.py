@@ -11,7 +11,7 @@ import pytest
 
 import firm_hdl.verify.run as run
 from firm_hdl.cli import main
-from firm_hdl.errors import DefinitionError
+from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.verify.request import Workload, resolve
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.verdict import NotJudged, Passed
@@ -144,7 +144,7 @@ def workload(problems=None, **options):
     return Workload(request=Request(**options), tasks=(), problems=problems or {})
 
 
-def test_results_are_bound_to_all_options_and_inputs(tmp_path, fixed, capsys):
+def test_results_are_bound_to_all_options_and_inputs(tmp_path, fixed):
     fixed(ts1=Passed(1), ts3=Passed(1))
     inputs = "src/p/msg/A.msg", "golden/x.yaml", "node.yaml", "b.bag", "more/q/msg/B.msg"
     make_files(tmp_path, dict.fromkeys(inputs, ""))
@@ -173,8 +173,8 @@ def test_results_are_bound_to_all_options_and_inputs(tmp_path, fixed, capsys):
         before = (tmp_path / name).read_text()
         times = os.stat(tmp_path / name)
         (tmp_path / name).write_text(f"changed {number}")
-        assert run.run_workload(workload(**given)) == 1
-        assert "is of another run: inputs was" in capsys.readouterr().err
+        with pytest.raises(UserError, match="is of another run: inputs was"):
+            run.run_workload(workload(**given))
         (tmp_path / name).write_text(before)
         os.utime(tmp_path / name, ns=(times.st_atime_ns, times.st_mtime_ns))
     assert run.run_workload(workload(**given)) == 0
