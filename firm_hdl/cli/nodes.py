@@ -6,6 +6,7 @@ import argparse
 import sys
 import warnings
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from firm_hdl.arguments import add_engine, add_json, add_path, number_between, seconds
@@ -181,6 +182,20 @@ def _act(args: argparse.Namespace, description: Description) -> None:
     if args.action == "info" and args.as_json:
         facts = facts_of(description)
         args.document |= {**facts, "warnings": list(warnings_of(description, facts))}
+        if args.members:
+            from firm_hdl.node.hdl.members import accelerator_streams
+
+            args.document["members"] = [
+                {
+                    "topic": each.topic.name,
+                    "message": each.message,
+                    "member": each.member,
+                    "direction": each.direction,
+                    "type": each.type,
+                    "ports": [asdict(port) for port in each.ports],
+                }
+                for each in accelerator_streams(description)
+            ]
         return
     if args.action == "build":
         from firm_hdl.node.build import build_node
