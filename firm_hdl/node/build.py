@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import PurePath
 from typing import Any
 
@@ -77,64 +77,6 @@ def build_node(
     """
     name = identifier(description.node)
     folder = design_folder(out, name)
-    design = _designed(description, name, accelerator, stimuli)
-    facts, script = facts_of(description), design.script
-    return write_design(
-        folder,
-        inputs=inputs_of_design(
-            {
-                "node": description.node,
-                "facts": facts,
-                # The accelerator's code is part of the circuit; packets of the benches are not.
-                "frames_sha256": None if script is None else digest(script.text),
-            },
-            design.rtlil,
-        ),
-        facts={
-            **facts,
-            "records": _records(design),
-            "bench": None if script is None else _bench(name),
-            "clock": "aclk",
-            "reset": "aresetn",
-        },
-        ports=[asdict(port) for port in design.ports],
-        make_files=lambda: _files(design),
-        force=force,
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Design:
-    """What all files are made of.
-
-    Attributes
-    ----------
-    description : Description
-    name : str
-        Name of the entity and of the folder.
-    rtlil : str
-        The circuit.
-    ports : sequence of NodePort
-    messages : sequence of MessagePort
-        The message ports with records; empty if there are none.
-    reason : str
-        Why there are none.
-    script : LinkScript or None
-        Frames of the benches, if there are some.
-    """
-
-    description: Description
-    name: str
-    rtlil: str
-    ports: Sequence[NodePort]
-    messages: Sequence[MessagePort]
-    reason: str
-    script: LinkScript | None
-
-
-def _designed(
-    description: Description, name: str, accelerator: Any, stimuli: Stimuli | None
-) -> _Design:
     node = Node(description, accelerator)
     try:
         ports = node_ports(node)
@@ -151,32 +93,52 @@ def _designed(
             reason = str(error)
     with conflicts_reported(description), search_put_off():
         circuit = rtlil.rtlil_of(NodeTop(node), name=name)
-    return _Design(
-        description=description,
-        name=name,
-        rtlil=circuit,
-        ports=ports,
-        messages=messages,
-        reason=reason,
-        script=link_script(description, stimuli, has_accelerator=has_accelerator),
+    script = link_script(description, stimuli, has_accelerator=has_accelerator)
+    facts = facts_of(description)
+    return write_design(
+        folder,
+        inputs=inputs_of_design(
+            {
+                "node": description.node,
+                "facts": facts,
+                # The accelerator's code is part of the circuit; packets of the benches are not.
+                "frames_sha256": None if script is None else digest(script.text),
+            },
+            circuit,
+        ),
+        facts={
+            **facts,
+            "records": _records(name, messages, reason),
+            "bench": None if script is None else _bench(name),
+            "clock": "aclk",
+            "reset": "aresetn",
+        },
+        ports=[asdict(port) for port in ports],
+        make_files=lambda: _files(description, name, circuit, ports, messages, script),
+        force=force,
     )
 
 
-def _files(design: _Design) -> dict[str, str]:
+def _files(
+    description: Description,
+    name: str,
+    circuit: str,
+    ports: Sequence[NodePort],
+    messages: Sequence[MessagePort],
+    script: LinkScript | None,
+) -> dict[str, str]:
     """Write the design and its benches in each language."""
-    description, name, ports = design.description, design.name, design.ports
-    script = design.script
     header = (
         f"{name}: a node of ROS {description.distro}, made by firm-hdl {firm_hdl.__version__}\n"
     )
     module = verilog_module(name)
-    node = convert(design.rtlil, name=name, header=header)
+    node = convert(circuit, name=name, header=header)
     vhdl_ports = node.entities[name].ports
     records: dict[str, str] = {}
     structs: dict[str, str] = {}
-    if design.messages:
-        records = record_files(name, ports, design.messages, vhdl_ports=vhdl_ports, header=header)
-        structs = struct_files(name, module, ports, design.messages, header=header)
+    if messages:
+        records = record_files(name, ports, messages, vhdl_ports=vhdl_ports, header=header)
+        structs = struct_files(name, module, ports, messages, header=header)
     vhdl = {**node.files, **records}
     benches: dict[str, str] = {}
     if script is not None:
@@ -193,7 +155,7 @@ def _files(design: _Design) -> dict[str, str]:
     owners = {"the node": node.files, "its messages": records, "its structs": structs}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     return {
-        **verilog_file(design.rtlil, name=name, header=header),
+        **verilog_file(circuit, name=name, header=header),
         "waivers.vlt": waivers([module]) + _UNDRIVEN.format(file=f"{module}.v"),
         **{f"systemverilog/{file}": text for file, text in structs.items()},
         **vhdl_folder(vhdl),
@@ -209,17 +171,16 @@ def _files(design: _Design) -> dict[str, str]:
     }
 
 
-def _records(design: _Design) -> dict[str, Any]:
-    """Describe the message ports with records and structs for the manifest."""
-    if not design.messages:
-        return {"built": False, "reason": design.reason}
-    name = design.name
+def _records(name: str, messages: Sequence[MessagePort], reason: str) -> dict[str, Any]:
+    """Describe the message ports with records and structs, or why there are none."""
+    if not messages:
+        return {"built": False, "reason": reason}
     return {
         "built": True,
         "entity": f"{name}_records",
         "module": f"{name}_sv",
         "sv_files": "systemverilog/files.f",
-        "ports": [_record(each) for each in design.messages],
+        "ports": [_record(each) for each in messages],
     }
 
 
