@@ -144,7 +144,8 @@ def _files(
         f"{name}: a node of ROS {description.distro}, made by firm-hdl {firm_hdl.__version__}\n"
     )
     module = verilog_module(name)
-    node = convert(circuit, name=name, header=header)
+    netlist = rtlil.netlist_of(circuit)
+    node = convert(netlist, name=name, header=header)
     vhdl_ports = node.entities[name].ports
     records: dict[str, str] = {}
     structs: dict[str, str] = {}
@@ -175,7 +176,7 @@ def _files(
         owners["its accelerator"] = {f"{own.entity}.vhd": ""}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     return {
-        **verilog_file(circuit, name=name, header=header),
+        **verilog_file(netlist, name=name, header=header),
         "waivers.vlt": waivers([module]) + _UNDRIVEN.format(file=f"{module}.v"),
         **{f"systemverilog/{file}": text for file, text in structs.items()},
         **({} if is_vhdl else own.texts),
