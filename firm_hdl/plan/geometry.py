@@ -10,7 +10,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from firm_hdl.plan.ir import BeginRun, IntoBody, Jump, Plan, RunStep, Step, successors
+from firm_hdl.plan.ir import BeginRun, IntoBody, Jump, RunStep, Step, successors
+from firm_hdl.plan.tree import Plan
 from firm_hdl.wire import residues as rs
 
 __all__ = [

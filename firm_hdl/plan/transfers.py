@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from firm_hdl.plan.ir import Part, Plan, RunStep, Step, successors
+from firm_hdl.plan.ir import Part, RunStep, Step, successors
+from firm_hdl.plan.tree import Plan
 
 __all__ = ["repeated_leaves", "transfers"]
 
