@@ -25,8 +25,8 @@ MAY_IMPORT = {
     "recordings": {"errors", "files"},
     "rtlil": {"names"},
     "vhdl": {"names", "rtlil"},
-    # `errors`, `jobs`: Yosys may have too little memory; its process ends with this one.
-    "verilog": {"errors", "jobs", "names", "rtlil"},
+    # The netlist, the names and the statements are those of the VHDL.
+    "verilog": {"names", "rtlil", "vhdl"},
     "rtps": set[str](),
     # Know messages.
     "model": {"errors"},
@@ -70,7 +70,7 @@ MAY_IMPORT["verify"] = {
     "terminal",
 }
 MAY_IMPORT["equivalence"] = {
-    *("arguments", "errors", "jobs", "names", "terminal", "vhdl", "verilog"),
+    *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
 MAY_IMPORT["bench"] = {

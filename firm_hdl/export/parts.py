@@ -18,7 +18,6 @@ from amaranth.hdl import Cat, Module, Mux, Value
 from amaranth.lib import wiring
 
 import firm_hdl
-from firm_hdl import rtlil
 from firm_hdl.errors import UserError
 from firm_hdl.export.design import (
     BuiltDesign,
@@ -44,6 +43,7 @@ from firm_hdl.gateware.packets import (
 )
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import plain
+from firm_hdl.rtlil import netlist_of, rtlil_of
 from firm_hdl.vhdl.convert import convert
 from firm_hdl.vhdl.names import legal
 
@@ -392,15 +392,16 @@ def build_part(
     folder = design_folder(out, name)
     ports = part_ports(part)
     with search_put_off():
-        design = rtlil.rtlil_of(PartTop(part), name=name)
+        design = rtlil_of(PartTop(part), name=name)
     settings = ", ".join(f"{key} {value}" for key, value in part.parameters.items())
     what = f"packet {part.kind}: {settings}"
 
     def make_files() -> dict[str, str]:
         header = f"{name}: {what}\nMade by firm-hdl {firm_hdl.__version__}\n"
-        vhdl = convert(design, name=name, header=header).files
+        netlist = netlist_of(design)
+        vhdl = convert(netlist, name=name, header=header).files
         return {
-            **verilog_file(design, name=name, header=header),
+            **verilog_file(netlist, name=name, header=header),
             **vhdl_folder(vhdl),
             **core_file(name, vhdl, kind="part", description=what),
         }

@@ -17,6 +17,7 @@ from firm_hdl.model import Message, Wire
 __all__ = [
     "CONTROL_TOPIC",
     "LINKS",
+    "SERVICE_PARTS",
     "Description",
     "Direction",
     "Hdl",
@@ -39,6 +40,9 @@ LinkKind: TypeAlias = Literal["stream", "udp", "uart"]
 
 LINKS: tuple[LinkKind, ...] = ("stream", "udp", "uart")
 """All links."""
+
+SERVICE_PARTS: dict[Direction, str] = {"in": "request", "out": "response"}
+"""What a service has in each direction."""
 
 CONTROL_TOPIC = 0
 """The id of control messages. Topics are numbered from 1 on."""

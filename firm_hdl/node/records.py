@@ -25,14 +25,12 @@ from firm_hdl.export.vhdl.wrapper import Conversions, Core, Line, entity_around
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import flat_names
-from firm_hdl.node.description import Description, Store
+from firm_hdl.node.description import SERVICE_PARTS, Description, Store
 from firm_hdl.node.top import NodePort
 from firm_hdl.plan import Plan, build_plan
 from firm_hdl.wire import lay_out
 
 __all__ = ["MessagePort", "message_ports", "record_files", "struct_files"]
-
-_SERVICE = {"in": "request", "out": "response"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,7 +121,7 @@ def _found(description: Description) -> Iterator[tuple[str, Direction, Store]]:
     for topic in description.topics:
         for way, store in topic.stores:
             base = f"{topic.kind}.{topic.port}"
-            member = f"{base}.{_SERVICE[way]}" if topic.kind == "serve" else base
+            member = f"{base}.{SERVICE_PARTS[way]}" if topic.kind == "serve" else base
             yield member, "deserializer" if way == "in" else "serializer", store
 
 

@@ -14,7 +14,7 @@ from firm_hdl.metrics import Metrics, metrics_of
 from firm_hdl.model import Message
 from firm_hdl.node.capacity import rate_problems, size_problems
 from firm_hdl.node.control import IDENTITY, registers
-from firm_hdl.node.description import Description, Direction, Store, Topic
+from firm_hdl.node.description import SERVICE_PARTS, Description, Direction, Store, Topic
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
 from firm_hdl.node.reading import LINK_OPTIONS
 from firm_hdl.plan import build_plan
@@ -23,7 +23,6 @@ from firm_hdl.wire import lay_out
 
 __all__ = ["facts_of", "summary", "warnings_of"]
 
-_SERVICES = {"in": "request", "out": "response"}
 
 _Figures: TypeAlias = tuple[Metrics, Cost, Mapping[str, Estimate]]
 """Of a message: its sizes, its hardest packet, and the measured converters that are near."""
@@ -153,7 +152,7 @@ def _table(facts: dict[str, Any]) -> Iterator[str]:
 def _rows(facts: dict[str, Any]) -> Iterator[list[str]]:
     for topic in facts["topics"]:
         for direction, store in topic["packets"].items():
-            kind = _SERVICES[direction] if topic["kind"] == "serve" else topic["kind"]
+            kind = SERVICE_PARTS[direction] if topic["kind"] == "serve" else topic["kind"]
             least, most = store["min_bytes"], store["max_bytes"]
             size = f"{least}" if least == most else f"{least}-{'' if most is None else most}"
             rate, clock = topic["rate_hz"], store["clock_hz"]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from firm_hdl.plan.ir import BeginRun, Plan, RunStep, Step
+from firm_hdl.plan.ir import BeginRun, RunStep, Step
+from firm_hdl.plan.tree import Plan
 
 __all__ = ["first_step", "may_end_empty", "most_beats", "only_ends", "ring_beats"]
 

@@ -90,7 +90,7 @@ def timing(plan: Plan) -> Timing:
                 hardest = cost
     return Timing(
         bus_bytes=bus,
-        steps=len(plan.steps),
+        steps=sum(item.steps for item in plan.items),
         shortest=shortest,
         hardest=hardest,
         recovery=recovery(plan, shortest.cycles),
@@ -128,7 +128,7 @@ def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cos
         raise _TooLongError
 
     runs = {leaf.path[:-1] for leaf in plan.leaves if leaf.kind == "items"}
-    limits = {leaf: begin.limit for leaf, begin in plan.begins.items()}
+    limits = {leaf: length.limit for leaf, length in plan.lengths.items()}
     streams: dict[int, Iterable[Payload]] = {}
     for index, leaf in enumerate(plan.leaves):
         payload: Payload = 0

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginRun, Jump, Plan, RunStep
+from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginRun, Jump, RunStep
+from firm_hdl.plan.tree import Plan
 
 __all__ = ["Control", "Load", "Transition", "control_of", "most_loaded", "start_of"]
 

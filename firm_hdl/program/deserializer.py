@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 
-from firm_hdl.plan.ir import Fixed, Plan, RunStep
+from firm_hdl.plan.ir import Fixed, RunStep
+from firm_hdl.plan.tree import Plan
 from firm_hdl.program.control import Control, control_of, most_loaded, start_of
 from firm_hdl.program.lanes import StartLanes, start_lanes, word_lanes
 from firm_hdl.program.lengths import Length, NextMap, length_of

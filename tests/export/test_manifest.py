@@ -14,6 +14,7 @@ from firm_hdl.export.top import DIRECTIONS, leaf_names, ports_of
 from firm_hdl.model import PRIMITIVES, Constant, Field, Message, String
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.timing import timing
+from firm_hdl.rtlil import netlist_of
 from firm_hdl.wire import lay_out
 from tests.export.conftest import EVERYTHING
 from tests.frontend.workspace import library
@@ -38,7 +39,7 @@ def manifest_of(message: Message, **options):
         plan=plan,
         name="f",
         options=Options(extras=EVERYTHING),
-        circuits=dict.fromkeys(DIRECTIONS, EMPTY),
+        circuits=dict.fromkeys(DIRECTIONS, netlist_of(EMPTY)),
     )
     sections = converter_sections(message, plan, timing(plan))
     return plan, {**sections, **verilog.write(made).manifest}

@@ -21,6 +21,7 @@ from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan
+from firm_hdl.rtlil.ir import Design
 from firm_hdl.vhdl.convert import convert
 from firm_hdl.vhdl.package import PACKAGE_NAME
 
@@ -64,7 +65,7 @@ class _Parts:
         return "".join(comment(self.header, ""))
 
     @search_put_off()
-    def core(self, circuit: str | RecordTop, name: str) -> Core:
+    def core(self, circuit: Design | RecordTop, name: str) -> Core:
         made = convert(circuit, name=name)
         package = f"{PACKAGE_NAME}.vhd"
         entities = [text for file, text in made.files.items() if file != package]

@@ -95,7 +95,7 @@ def run_bridge(
     if not quiet:
         for line in account(bridge):
             status.report(line)
-    if not (bridge.was_ready or bridge.was_stopped):
+    if not (bridge.side.was_ready or bridge.was_stopped):
         within = "" if seconds is None else f" in {seconds:g} s"
         raise UserError(f"the board {board} did not answer{within}")
 
@@ -201,7 +201,7 @@ def status_line(bridge: Bridge, rates: tuple[float, ...]) -> str:
     dropped = bridge.counters.dropped.total()
     parts = [
         f"{bridge.description.node}",
-        "ready" if bridge.is_ready else "no board",
+        "ready" if bridge.side.is_ready else "no board",
         f"to board {rates[0]:.0f}/s",
         f"to graph {rates[1]:.0f}/s",
         f"dropped {dropped + sum(value for _, value in _drops(bridge))}",
@@ -221,11 +221,11 @@ def account(bridge: Bridge) -> Iterator[str]:
         yield f"dropped: {value} {name}"
     for name, value in _signs(bridge):
         yield f"seen: {value} {name}"
-    if not bridge.was_ready:
+    if not bridge.side.was_ready:
         yield "the board has never answered"
-    elif bridge.restarts:
-        yield f"the board was started again or lost {bridge.restarts} times"
-    if bridge.was_ready and not bridge.side.has_read_last:
+    elif bridge.side.restarts:
+        yield f"the board was started again or lost {bridge.side.restarts} times"
+    if bridge.side.was_ready and not bridge.side.has_read_last:
         yield "not all counters on the board could be read at the end"
 
 
@@ -254,7 +254,7 @@ def _drops(bridge: Bridge) -> Iterator[tuple[str, int]]:
     for name, value in sorted(bridge.graph.counters.items()):
         if value and name not in _GRAPH_SIGNS:
             yield f"in the graph: {name}", value
-    for register, value in bridge.last_drops:
+    for register, value in bridge.side.drops():
         if not _is_sign(register):
             yield f"on the board, {register.owner} {register.part}: {register.name}", value
 
@@ -267,13 +267,13 @@ def _signs(bridge: Bridge) -> Iterator[tuple[str, int]]:
     for name in _GRAPH_SIGNS:
         if value := bridge.graph.counters[name]:
             yield f"in the graph: {name}", value
-    for register, value in bridge.last_drops:
+    for register, value in bridge.side.drops():
         if _is_sign(register):
             yield f"on the board, {register.owner} {register.part}: {register.name}", value
 
 
 def _way(bridge: Bridge) -> list[tuple[str, int]]:
-    return sorted(bridge.on_the_way.items())
+    return sorted(bridge.side.on_the_way.items())
 
 
 def _is_sign(register: Register) -> bool:

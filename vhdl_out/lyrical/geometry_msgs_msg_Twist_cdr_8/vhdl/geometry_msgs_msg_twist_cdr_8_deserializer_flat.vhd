@@ -781,24 +781,18 @@ begin
   go_5 <= active_5 and not blocked_5 and not blocked_4;
   blocked_5 <= active_5 and message_angular_z_valid_q;
   orders_ready <= not slow;
-  mux_44 <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 1) when orders_ready = '1' else active_0 and
-      not go_0;
-  mux_51 <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 2) when orders_ready = '1' else active_1 and
-      not go_1;
-  mux_58 <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 3) when orders_ready = '1' else active_2 and
-      not go_2;
-  mux_65 <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 4) when orders_ready = '1' else active_3 and
-      not go_3;
-  mux_72 <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 5) when orders_ready = '1' else active_4 and
-      not go_4;
-  mux_79 <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 5) when orders_ready = '1' else active_5 and
-      not go_5;
+  mux_44 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      1) when orders_ready = '1' else active_0 and not go_0;
+  mux_51 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      2) when orders_ready = '1' else active_1 and not go_1;
+  mux_58 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      3) when orders_ready = '1' else active_2 and not go_2;
+  mux_65 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      4) when orders_ready = '1' else active_3 and not go_3;
+  mux_72 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      5) when orders_ready = '1' else active_4 and not go_4;
+  mux_79 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      5) when orders_ready = '1' else active_5 and not go_5;
   or_126 <= or unsigned'((orders_valid and orders_payload(38) and status_valid_q and
       not status_ready) & (orders_valid and not orders_payload(3) and
       to_std_logic(orders_payload(2 downto 0) = 5) and message_angular_z_valid_q and
@@ -1502,8 +1496,8 @@ begin
       ((and unsigned(s_axis_tkeep(5 downto 0))) and not s_axis_tkeep(6)) &
       ((and unsigned(s_axis_tkeep(4 downto 0))) and not s_axis_tkeep(5)) &
       ((and unsigned(s_axis_tkeep(3 downto 0))) and not s_axis_tkeep(4)));
-  packets_payload_64 <= (and unsigned(s_axis_tkeep)) & or_39 & or_26 &
-      or_13 when s_axis_tlast = '1' else "1000";
+  packets_payload_64 <= (and unsigned(s_axis_tkeep)) & or_39 & or_26 & or_13 when s_axis_tlast =
+      '1' else "1000";
 
   m_axis_status_tdata <= std_logic_vector(resize(status_payload, 8));
 

@@ -249,8 +249,8 @@ begin
   p_aclk_2 : process (aclk)
   begin
     if rising_edge(aclk) then
-      if free = '1' and unsigned'((step(5) and served_1) & ((or step(4 downto 1)) and
-          served_0)) = 0 then
+      if free = '1' and unsigned'((step(5) and served_1) & ((or step(4 downto 1)) and served_0)) =
+          0 then
         map_0 <= or_124;
       end if;
       if free = '1' then

@@ -1,4 +1,4 @@
-"""The messages that a board may not have passed on, were it gone now.
+"""What of the messages and requests for a board is lost, as far as a host can know.
 
 Nobody knows what a dead board took, but an answer to a request of control shows what the core has
 received: the link keeps the order, so all that was sent before the request came before it. Such a
@@ -13,8 +13,9 @@ What is not confirmed is an upper bound, and most of it may have been passed on.
 from __future__ import annotations
 
 from collections import Counter, deque
+from dataclasses import dataclass
 
-__all__ = ["PASS_SECONDS", "Unconfirmed"]
+__all__ = ["PASS_SECONDS", "LostRequests", "Unconfirmed"]
 
 PASS_SECONDS = 0.05
 """The time in which a message passes through a node, from the core on."""
@@ -53,3 +54,47 @@ class Unconfirmed:
         self._sent.clear()
         self._answered.clear()
         return found
+
+
+@dataclass(slots=True)
+class LostRequests:
+    """How many requests and answers were lost, which are no losses of messages: they are repeated.
+
+    The board counts the requests that it takes, so those that were lost on the way to it differ
+    from those whose answer was lost. Of a board that does not count them, nothing is known.
+
+    Attributes
+    ----------
+    asked, answered : int
+        Requests that were sent, and answers that came.
+    lost_there, lost_back : int
+        What was lost on the way to the board, and back.
+    """
+
+    asked: int = 0
+    answered: int = 0
+    lost_there: int = 0
+    lost_back: int = 0
+    # By how much the numbers differ when nothing is lost.
+    _taken: int = 0
+    _there: int = 0
+    _back: int | None = None
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the board was asked for the requests that it has taken since it started."""
+        return self._back is not None
+
+    def begin(self, asked: int, taken: int, lost: int) -> None:
+        """Begin with a request of this number, as of which the board has taken and lost so many."""
+        self.lost_there += lost
+        self._taken, self._there = taken, asked - taken - self.lost_there
+        if self._back is None:
+            self._back = taken - self.answered
+
+    def note(self, asked: int, taken: int) -> None:
+        """Note how many requests the board has taken, up to one with its number."""
+        assert self._back is not None
+        if taken > self._taken:
+            self.lost_there = max(0, asked - taken - self._there)
+            self.lost_back = max(0, taken - self.answered - self._back)
