@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 
-from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases import stimuli as module
 from firm_hdl.cases.make import Case
 from firm_hdl.cases.stimuli import stimuli, stimulus_cases
@@ -41,11 +40,6 @@ def sizes_of(plan=PLAN):
     return [len(case.packet) for case in stimulus_cases(JUDGE, plan)]
 
 
-def test_packets_that_the_circuits_refuse_are_left_out(made):
-    made(1, 101, 100, 99, 102, 3)
-    assert sizes_of() == [1, 100, 99, 3]
-
-
 def test_packets_end_before_they_are_too_many_bytes(made, monkeypatch):
     monkeypatch.setattr(module, "MOST_BYTES", 60)
     made(10, 20, 30, 1, 1)
@@ -55,16 +49,6 @@ def test_packets_end_before_they_are_too_many_bytes(made, monkeypatch):
     # The first packet may have any size.
     made(90, 1)
     assert sizes_of() == [90]
-
-
-def test_the_reason_of_the_oracle_is_kept(made):
-    made(1, error=NotJudgedError("rosbags does not write can"))
-    with pytest.raises(NotJudgedError, match=r"^rosbags does not write can$"):
-        sizes_of()
-    assert stimuli(BOOL, PLAN) == []
-    made(1, error=KeyError("gone"))
-    with pytest.raises(NotJudgedError, match=r"^rosbags cannot write it: KeyError: 'gone'$"):
-        sizes_of()
 
 
 def test_sixteen_packets_of_a_type_are_written_for_the_bus_and_the_wire():

@@ -7,10 +7,10 @@ import sys
 
 from firm_hdl.cli.building import PORT_NAMES
 from firm_hdl.export.backend import PORTS
-from firm_hdl.verify import choices
 from firm_hdl.verify.references.clients import CLIENTS, WRITERS
 from firm_hdl.verify.run import SYSTEMS
 from firm_hdl.verify.simulators.programs import SIMULATORS
+from firm_hdl.verify.systems import options as choices
 from firm_hdl.verify.ts1.oracles import ORACLES
 
 

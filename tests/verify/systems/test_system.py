@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.verify.results.file import ResultsWriter, read_results
-from firm_hdl.verify.results.records import MOST_FAILURES, Seconds
+from firm_hdl.verify.results.records import Seconds
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.systems import system
 from firm_hdl.verify.systems.system import (
@@ -17,7 +17,6 @@ from firm_hdl.verify.systems.system import (
     judged,
     kept,
     recorded,
-    run_tests,
     shares_of,
 )
 from tests.verify.report.samples import a_record, a_test
@@ -77,17 +76,6 @@ def test_the_worst_that_is_known_is_the_verdict(given, verdict):
     for name, value in given.items():
         setattr(trial, name, value)
     assert trial.end().verdict == verdict
-
-
-def fails_often(context, test):
-    return recorded(test, lambda trial: trial.failures.extend(["no"] * (MOST_FAILURES + 3)))
-
-
-def test_of_many_failures_the_first_are_kept_and_the_others_counted():
-    run = run_tests(fails_often, None, [a_test()], lambda test: "again", lambda record: [], jobs=1)
-    ((((_, record, _),)),) = run
-    assert record.failures == (*["no"] * MOST_FAILURES, "and 3 more")
-    assert record.command == "again"
 
 
 def test_the_verdict_that_counts_is_that_of_the_circuit():
