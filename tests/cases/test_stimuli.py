@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases import stimuli as module
 from firm_hdl.cases.make import Case
 from firm_hdl.cases.stimuli import stimuli, stimulus_cases
@@ -72,3 +73,13 @@ def test_wide_text_has_packets_too(make_message):
     packets = stimuli(message, plan)
     assert packets and all((len(packet) - 8) % 4 == 0 for packet in packets)
     assert stimuli(message, replace(plan, wire="can")) == []
+
+
+def test_the_reason_of_the_oracle_is_kept(made):
+    made(1, error=NotJudgedError("rosbags does not write can"))
+    with pytest.raises(NotJudgedError, match=r"^rosbags does not write can$"):
+        sizes_of()
+    assert stimuli(BOOL, PLAN) == []
+    made(1, error=KeyError("gone"))
+    with pytest.raises(NotJudgedError, match=r"^rosbags cannot write it: KeyError: 'gone'$"):
+        sizes_of()

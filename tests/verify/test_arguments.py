@@ -181,3 +181,9 @@ def test_releases_have_the_versions_of_their_packages(monkeypatch, tmp_path):
     assert RELEASES[0].python == tmp_path / "jazzy" / "bin" / "python"
     monkeypatch.setenv("FIRM_HDL_ROS2_WHEELS", "")
     assert RELEASES[1].folder.parts[-2:] == ("ros2", "kilted")
+
+
+def test_a_node_is_written_instead_of_a_run(tmp_path, capsys):
+    path = tmp_path / "node.yaml"
+    assert main(["verify", "std_msgs/msg/Bool", "--write-node", str(path)]) == 0
+    assert path.exists() and capsys.readouterr().out == f"wrote   {path}\n"

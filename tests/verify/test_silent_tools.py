@@ -13,12 +13,15 @@ from firm_hdl.cases.make import make_cases
 from firm_hdl.cases.oracle import distro_oracle
 from firm_hdl.cli import main
 from firm_hdl.frontend import Library
+from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.verify.clients.judge import LibraryComparison
 from firm_hdl.verify.references.clients import CLIENTS
 from firm_hdl.verify.results.verdict import Passed
+from firm_hdl.verify.simulators.programs import Verilator
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.ts3.confirm import confirm
 from tests.depth import by_depth
+from tests.tools import need
 from tests.verify.judged import accept
 
 BOOL = "std_msgs/msg/Bool"
@@ -161,3 +164,16 @@ def test_library_that_does_not_answer_everything_fails(library_here, is_referenc
     trial = LibraryComparison(*both, "cdr").judge(message, [{"data": True}, {"data": False}])
     (failure,) = trial.verdict.failures
     assert failure.startswith("few gave ") and " questions" in failure
+
+
+def test_cross_check_does_not_pass_with_a_silent_compiler(fake):
+    try:
+        Verilator()
+    except ProgramMissingError as error:
+        need(f"verilator ({error})", None)
+    compiler = fake(SILENT[0], "g++")
+    # Not with Fast CDR, whose compiler it would be in all further tests.
+    options = Options(simulator="verilator", most_cases=1, references=())
+    result = accept("lyrical", BOOL, options)
+    (failure,) = result.verdict.failures
+    assert failure == f"Verilator: {compiler} ended without an error, but did not write replay"

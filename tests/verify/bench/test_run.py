@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from firm_hdl.verify.bench.run import _check_transfers, _compare
+from firm_hdl.verify.bench import _check_transfers, _compare
 
 from firm_hdl.cases.make import Case
 from firm_hdl.plan import build_plan

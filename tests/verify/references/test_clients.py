@@ -15,6 +15,7 @@ from firm_hdl.frontend import Library
 from firm_hdl.model import PRIMITIVES, Field, Message
 from firm_hdl.verify.references.client import Refusal, UnsupportedError
 from firm_hdl.verify.references.clients import CLIENTS, client
+from firm_hdl.verify.references.fastcdr import FastCdr
 from tests.verify.references.plain import plain
 
 TEXT = "string s\nfloat64[2] d\nB[] b\nuint16 from\nbool t\n"
@@ -250,3 +251,13 @@ def test_a_process_that_dies_is_replaced(make_message, library_here, name):
         assert codec.decode(codec.encode({"a": 1})) == {"a": 1}
     finally:
         library.close()
+
+
+@pytest.mark.parametrize(
+    ("compiler", "output"),
+    [("/nowhere/c++", "there is no such command"), ("true", "apt install g++ libfastcdr-dev")],
+)
+def test_without_compiler_or_library_fast_cdr_is_missing(monkeypatch, compiler, output):
+    monkeypatch.setenv("CXX", compiler)
+    why = FastCdr().missing()
+    assert output in why

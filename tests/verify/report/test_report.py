@@ -12,7 +12,7 @@ import pytest
 from firm_hdl.cli import main
 from firm_hdl.verify.report import formats, tables
 from firm_hdl.verify.report.formats import FORMATS
-from firm_hdl.verify.report.summary import count, outcomes_of, summarise
+from firm_hdl.verify.report.summary import count, failures_of, outcomes_of, summarise
 from firm_hdl.verify.results.file import Results, ResultsWriter
 from firm_hdl.verify.results.records import OracleVerdict, PlanCoverage, Seconds
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
@@ -252,3 +252,31 @@ def test_command_refuses_other_files(tmp_path, capsys):
     path = written(tmp_path / "r.jsonl", a_run(2))
     assert main(["report", path, "--out", str(tmp_path / "r.pdf")]) == 1
     assert "must end in .html, .md, .json" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("other", "verdict", "why"),
+    [
+        (a_record(shape="aa"), "passed", ""),
+        (a_record(shape="bb"), "failed", "not the circuit of 'KEY', as its record says"),
+        (
+            replace(FAILED, test=a_test(), shape="aa"),
+            "failed",
+            "has the circuit of 'KEY', which failed",
+        ),
+        (None, "not run", "has the circuit of KEY, which was not run"),
+        (
+            a_record(verdict=NotJudged("x"), shape="aa"),
+            "not judged",
+            "has the circuit of 'KEY', which was not judged",
+        ),
+    ],
+)
+def test_a_shared_circuit_has_the_verdict_of_its_test(other, verdict, why):
+    twin = a_record(a_test("a/msg/Twin"), same_as=a_test().key, shape="aa")
+    records = [twin] if other is None else [twin, other]
+    (outcome,) = (o for o in outcomes_of([run_of(*records)]) if o.test == twin.test)
+    assert outcome.verdict.name == verdict
+    said = outcome.verdict.reason if verdict.startswith("not") else failures_of(outcome)
+    wanted = why.replace("KEY", a_test().key)
+    assert said == wanted if verdict.startswith("not") else said == ((wanted,) if why else ())

@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.verify.results.file import ResultsWriter, read_results
-from firm_hdl.verify.results.records import Seconds
+from firm_hdl.verify.results.records import MOST_FAILURES, Seconds
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.systems import system
 from firm_hdl.verify.systems.system import (
@@ -17,6 +17,7 @@ from firm_hdl.verify.systems.system import (
     judged,
     kept,
     recorded,
+    run_tests,
     shares_of,
 )
 from tests.verify.report.samples import a_record, a_test
@@ -127,3 +128,14 @@ def test_shares_have_all_items_in_their_order(items, most, parts, sizes):
     found = shares_of(range(items), most, parts)
     assert [len(share) for share in found] == sizes
     assert [item for share in found for item in share] == list(range(items))
+
+
+def fails_often(context, test):
+    return recorded(test, lambda trial: trial.failures.extend(["no"] * (MOST_FAILURES + 3)))
+
+
+def test_of_many_failures_the_first_are_kept_and_the_others_counted():
+    run = run_tests(fails_often, None, [a_test()], lambda test: "again", lambda record: [], jobs=1)
+    ((((_, record, _),)),) = run
+    assert record.failures == (*["no"] * MOST_FAILURES, "and 3 more")
+    assert record.command == "again"

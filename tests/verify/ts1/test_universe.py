@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.verify.ts1.universe import Universe, write_definitions
+from firm_hdl.verify.ts1.universe import DefinitionCase, Universe, write_definitions
 from tests.frontend.workspace import make_files
 
 FILES = {
@@ -146,3 +146,20 @@ def test_definitions_are_written_as_they_are_wherever_they_are_from(tmp_path):
     assert (folder / "q" / "srv" / "S.srv").read_text() == "int8 s\n---\n"
     for case in universe.select([]):
         assert (folder / case.package / case.kind / case.file).read_text() == case.text
+
+
+def test_changes_are_lines_without_their_surroundings():
+    text = "a\nb\nc\nd\n"
+    case = DefinitionCase(
+        dialect="ros1", package="p", kind="srv", name="S", language="srv", text=text
+    )
+    names = (case.full_name, case.spelled_name, case.file)
+    assert names == ("p/S", "p/srv/S", "S.srv") and not case.is_changed
+    ros2 = replace(case, dialect="ros2", kind="msg", language="idl")
+    assert (ros2.full_name, ros2.spelled_name, ros2.file) == ("p/msg/S", "p/msg/S", "S.idl")
+    changed = replace(case, text="a\nx\tb\nc\n", before=text)
+    assert changed.is_changed and changed.changes == ["-b", "+x\\tb", "-d"]
+    # A text may have been empty before, or have become empty.
+    assert replace(case, before="").is_changed
+    assert replace(case, text="", before="a\nb").changes == ["-a", "-b"]
+    assert replace(case, source="other") == case != changed

@@ -114,3 +114,10 @@ def test_statuses(field, change, output):
 def test_marks(marked):
     (difference,) = differences_of(packet_errors=marked)
     assert difference == f"here: packet_error is {marked} instead of [False, False, True]"
+
+
+def test_leaves_that_are_missing_or_unknown():
+    assert len(differences_of(transfers={})) == 3
+    more = [{**WANTED.transfers[0], ("y",): [1]}, *WANTED.transfers[1:]]
+    found = list(run_differences("here", PLAN, SEEN, replace(WANTED, transfers=more), NAMES))
+    assert found == ["here: no leaves y"]
