@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from firm_hdl.arguments import add_options
+from firm_hdl.arguments import add_json, add_options
 
 __all__ = ["add_bench", "add_cover", "add_golden", "add_prove", "add_report", "add_verify"]
 
@@ -14,12 +14,13 @@ def add_verify(command: argparse.ArgumentParser) -> None:
     from firm_hdl.verify.command import add_verify_arguments, run_verify
 
     add_verify_arguments(command)
+    add_json(command)
     command.set_defaults(run=run_verify)
 
 
 def add_report(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl report``."""
-    from firm_hdl.verify.report.command import add_report_arguments, run_report
+    from firm_hdl.verify.report.formats import add_report_arguments, run_report
 
     add_report_arguments(command)
     command.set_defaults(run=run_report)

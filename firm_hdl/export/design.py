@@ -97,6 +97,7 @@ def core_file(
     kind: str,
     description: str,
     more: Mapping[str, Mapping[str, Any]] | None = None,
+    change: Callable[[dict[str, Any]], dict[str, Any]] | None = None,
 ) -> dict[str, str]:
     """Write a core of FuseSoC: the VHDL by default, or the Verilog.
 
@@ -110,6 +111,8 @@ def core_file(
         Library of the core, such as ``"node"``, and what the design is, for people.
     more : mapping or None
         More entries of the core by section, such as ``targets``.
+    change : callable or None
+        Called with the sections, and returns them as they are written.
     """
     module = verilog_module(name)
     sections: dict[str, dict[str, Any]] = {
@@ -124,6 +127,7 @@ def core_file(
     }
     for section, entries in (more or {}).items():
         sections[section] = {**sections.get(section, {}), **entries}
+    sections = change(sections) if change else sections
     version = firm_hdl.__version__
     return {f"{name}.core": core(f"firm-hdl:{kind}:{name}:{version}", description, **sections)}
 

@@ -29,6 +29,7 @@ __all__ = [
     "converter_facts",
     "converter_sections",
     "digest",
+    "figures_of",
     "inputs_of",
     "manifest_of",
     "to_json",
@@ -88,8 +89,7 @@ def converter_sections(message: Message, plan: Plan, figures: Timing) -> dict[st
     """Describe the converters of a type."""
     statuses: Any = Status
     return {
-        "timing": _timing(figures),
-        "estimates": {name: asdict(found) for name, found in estimates_of(plan).items()},
+        **figures_of(plan, figures),
         "status": {status.name: status.value for status in statuses},
         "leaves": list(_leaves(message, plan)),
         "constants": [_constant(constant) for constant in message.constants],
@@ -104,6 +104,14 @@ def to_json(value: Any) -> str:
 def digest(text: str) -> str:
     """Return the SHA-256 of a text, in hexadecimal."""
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def figures_of(plan: Plan, figures: Timing) -> dict[str, Any]:
+    """Return timing and estimates of the converters of a plan, as a manifest has them."""
+    return {
+        "timing": _timing(figures),
+        "estimates": {name: asdict(found) for name, found in estimates_of(plan).items()},
+    }
 
 
 def _timing(figures: Timing) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from firm_hdl.plan import (
     DEFAULT_MAX_MESSAGE_BYTES,
     build_plan,
 )
+from firm_hdl.program import deserializer_program
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["Deserializer"]
@@ -86,10 +87,11 @@ class Deserializer(Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         plan = self.plan
+        program = deserializer_program(plan)
         m.submodules.buffer = buffer = Buffer(plan)
-        m.submodules.sequencer = sequencer = Sequencer(plan)
+        m.submodules.sequencer = sequencer = Sequencer(program)
         m.submodules.queue = queue = OrderQueue(plan)
-        m.submodules.mover = mover = Mover(plan, leaf_streams(self.message, self.tree))
+        m.submodules.mover = mover = Mover(program, leaf_streams(self.message, self.tree))
         orders = queue.o
         m.d.comb += [
             buffer.packets.payload.eq(self.packets.payload),

@@ -14,9 +14,8 @@ from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import order_layout
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
 from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
-from firm_hdl.plan import LoopEnd, Part, Plan, Run, RunStep, Step
-from firm_hdl.plan.geometry import geometry
-from firm_hdl.plan.transfers import repeated_leaves, transfers
+from firm_hdl.plan import LoopEnd, Part, Run
+from firm_hdl.program import DeserializerProgram, DeserializerState, Transfer
 
 __all__ = ["Mover"]
 
@@ -31,7 +30,7 @@ class Mover(wiring.Component):
 
     Parameters
     ----------
-    plan : Plan
+    program : DeserializerProgram
     leaves : mapping of int to stream.Interface
         By leaf: streams of `leaf_shape(leaf)`, which the mover drives. Members of its own would
         only copy those of the converter.
@@ -44,8 +43,9 @@ class Mover(wiring.Component):
     status : Out(StatusSignature)
     """
 
-    def __init__(self, plan: Plan, leaves: Mapping[int, stream.Interface]):
-        self.plan, self.leaves = plan, leaves
+    def __init__(self, program: DeserializerProgram, leaves: Mapping[int, stream.Interface]):
+        self.program, self.plan, self.leaves = program, program.plan, leaves
+        plan = self.plan
         super().__init__(
             {
                 "beat": In(beat_layout(plan)),
@@ -64,12 +64,10 @@ class _Writer:
 
     Attributes
     ----------
-    step : int
+    state : DeserializerState
     slot : int
-        Number of the transfer in its step, in wire order.
-    leaf : int
-    part : Part or None
-        Its bytes in the map of the step; `None` for a word or the rest of a run.
+        Number of the transfer in its state, in wire order.
+    transfer : Transfer
     active : Signal
         The current order is of this step, and the transfer is not written yet.
     blocked : Signal
@@ -78,10 +76,9 @@ class _Writer:
         The transfer is written in this cycle.
     """
 
-    step: int
+    state: DeserializerState
     slot: int
-    leaf: int
-    part: Part | None
+    transfer: Transfer
     active: Signal
     blocked: Signal
     go: Signal
@@ -92,6 +89,7 @@ class _MoverLogic:
 
     def __init__(self, mover: Mover):
         self.c, self.plan, self.ring = mover, mover.plan, Ring(mover.plan)
+        self.program = mover.program
         self.m = m = Module()
         plan = self.plan
         self.order = mover.orders.payload
@@ -119,7 +117,7 @@ class _MoverLogic:
         self._carry()
         for writer in chain.from_iterable(self.writers):
             with m.If(writer.go):
-                m.d.sync += self.streams[writer.leaf].valid.eq(1)
+                m.d.sync += self.streams[writer.transfer.leaf].valid.eq(1)
                 self._write(writer)
 
     def _kept(self, name: str) -> Signal:
@@ -133,15 +131,12 @@ class _MoverLogic:
 
     def _read(self) -> None:
         """Read the words of the order."""
-        m, plan, order, bus = self.m, self.plan, self.order, self.plan.bus_bytes
-        sizes = geometry(plan)
-        counted = [plan.runs[s.run].counted for s in plan.steps if isinstance(s, RunStep)]
+        m, program, order, bus = self.m, self.program, self.order, self.plan.bus_bytes
         ports = {}
-        # A step takes the rest of each counted run.
-        if any(s.rest is not None or s.bytes > bus for s in plan.steps):
-            ports["items"] = (order.items_at, sizes.item_lanes, order.items_bytes)
-        if not all(counted) or any(s.bytes for s in plan.steps):
-            ports["map"] = (order.map_at, sizes.map_lanes, order.map_bytes)
+        if program.items.used:
+            ports["items"] = (order.items_at, program.items.lanes, order.items_bytes)
+        if program.map.used:
+            ports["map"] = (order.map_at, program.map.lanes, order.map_bytes)
         lanes = self._memories({name: (at, starts) for name, (at, starts, _) in ports.items()})
         for name, (at, starts, size) in ports.items():
             lane = self.ring.lane(at)
@@ -183,19 +178,18 @@ class _MoverLogic:
     def _writers(self) -> Iterator[list[_Writer]]:
         """Yield the transfers of each step, in wire order."""
         number = count()
-        for index, step in enumerate(self.plan.steps):
+        for state in self.program.states:
             writers = []
-            for slot, (leaf, part) in enumerate(transfers(self.plan, step)):
+            for slot, transfer in enumerate(state.transfers):
                 k = next(number)
                 active, blocked, go = (
                     Signal(name=f"{what}_{k}") for what in ("active", "blocked", "go")
                 )
                 writers.append(
                     _Writer(
-                        step=index,
+                        state=state,
                         slot=slot,
-                        leaf=leaf,
-                        part=part,
+                        transfer=transfer,
                         active=active,
                         blocked=blocked,
                         go=go,
@@ -215,17 +209,18 @@ class _MoverLogic:
         combinationally.
         """
         m, c = self.m, self.c
-        repeated = repeated_leaves(self.plan)
+        repeated = self.program.repeated_leaves
         # Reasons to wait: combinational ones, and those of `slow` as an order is taken and later.
         now, first, later = list[Value](), list[Value](), list[Value]()
         wanted: dict[int, list[tuple[Value, Value]]] = {}
         for writers in self.writers:
             for writer in writers:
-                port = self.streams[writer.leaf]
+                leaf = writer.transfer.leaf
+                port = self.streams[leaf]
                 chosen = self._schedule(writer, writers)
-                if writer.leaf in repeated:
+                if leaf in repeated:
                     m.d.comb += writer.blocked.eq(writer.active & _is_full(port))
-                    wanted.setdefault(writer.leaf, []).append((chosen, writer.go))
+                    wanted.setdefault(leaf, []).append((chosen, writer.go))
                 else:
                     m.d.comb += writer.blocked.eq(writer.active & port.valid)
                     first.append(chosen & _is_full(port))
@@ -235,8 +230,7 @@ class _MoverLogic:
             for leaf, cases in wanted.items()
         ]
         ends = c.orders.valid & self.order.ends
-        start = self.plan.steps[self.plan.start.step or 0]
-        if start.exits.default.step is None:
+        if self.program.ends_at_once:
             # A packet may end in every cycle.
             now.append(self.ends & _is_full(c.status))
         else:
@@ -257,8 +251,8 @@ class _MoverLogic:
             All of the step, in wire order.
         """
         m, order = self.m, self.order
-        chosen = self.c.orders.valid & ~order.blank & (order.step == writer.step)
-        if writer.part is None and self._run(writer).counted:
+        chosen = self.c.orders.valid & ~order.blank & (order.step == writer.state.number)
+        if writer.transfer.run is not None and writer.transfer.run.counted:
             chosen = chosen & order.items
         earlier = [each.blocked for each in writers[: writer.slot]]
         m.d.sync += writer.active.eq(Mux(self.take, chosen, writer.active & ~writer.go))
@@ -287,78 +281,71 @@ class _MoverLogic:
             with m.If(self.ends):
                 m.d.sync += [port.valid.eq(1), port.payload.eq(status)]
 
-    def _run(self, writer: _Writer) -> Run:
-        """Return the run of which the writer writes a word or the rest."""
-        step = self.plan.steps[writer.step]
-        index = step.run if isinstance(step, RunStep) else step.rest
-        assert index is not None
-        return self.plan.runs[index]
-
     # Values.
 
-    def _byte(self, step: Step, at: int) -> tuple[Value, Value]:
-        """Return a byte of a step's map, and whether the byte is good."""
+    def _byte(self, state: DeserializerState, at: int) -> tuple[Value, Value]:
+        """Return a byte of a state's map, and whether the byte is good."""
         bus = self.plan.bus_bytes
-        name = "items" if step.bytes > bus > at else "map"
+        name = "items" if state.two_word_map and bus > at else "map"
         at %= bus
         return self.word[name][8 * at : 8 * at + 8], self.good[name][at]
 
     def _carry(self) -> None:
         """Store the bytes of a transfer that continues in the next step."""
         m, plan = self.m, self.plan
-        most = max((part.first for step in plan.steps for part in step.parts), default=0)
-        self.carried = Signal(8 * most, name="carried", reset_less=True)
-        for index, step in enumerate(plan.steps):
-            cut = [part for part in step.parts if not part.completes]
-            if not cut:
+        size = 8 * self.program.carried_bytes
+        self.carried = Signal(size, name="carried", reset_less=True)
+        for state in self.program.states:
+            part = state.cut
+            if part is None:
                 continue
-            (part,) = cut
-            here = Signal(name=f"cut_{index}")
+            here = Signal(name=f"cut_{state.number}")
             with m.If(self.take):
-                chosen = ~self.order.blank & (self.order.step == index)
+                chosen = ~self.order.blank & (self.order.step == state.number)
                 m.d.sync += here.eq(self.c.orders.valid & chosen)
             size = plan.leaves[part.leaf].item_bytes
             for k in range(part.bytes):
-                value, _ = self._byte(step, part.at + k)
+                value, _ = self._byte(state, part.at + k)
                 # An item that ends in this step is zeroed here: items before an error keep theirs.
                 end = (part.first + k) // size * size + size
                 if end <= part.first + part.bytes:
-                    _, good = self._byte(step, part.at + end - part.first - 1)
+                    _, good = self._byte(state, part.at + end - part.first - 1)
                     value = Mux(good, value, 0)
                 at = 8 * (part.first + k)
                 with m.If(self.take & here):
                     m.d.sync += self.carried[at : at + 8].eq(value)
 
-    def _whole(self, writer: _Writer, begin: int, end: int) -> tuple[Value, Value]:
-        """Return bytes of a transfer that is complete with this step, and whether they are good."""
-        part, step = writer.part, self.plan.steps[writer.step]
-        assert part is not None
+    def _whole(self, writer: _Writer, part: Part, begin: int, end: int) -> tuple[Value, Value]:
+        """Return bytes of a transfer of the map, and whether they are good."""
         carried = max(begin, min(end, part.first))
-        here = [self._byte(step, part.at + k - part.first) for k in range(carried, end)]
+        here = [self._byte(writer.state, part.at + k - part.first) for k in range(carried, end)]
         value = Cat(self.carried[8 * begin : 8 * carried], *(byte for byte, _ in here))
         # The last byte is good only if those before it are.
         return value, here[-1][1] if here else Const(1)
 
     def _write(self, writer: _Writer) -> None:
         m, plan = self.m, self.plan
-        leaf, payload, part = plan.leaves[writer.leaf], self.payloads[writer.leaf], writer.part
-        if part is None:
-            self._write_word(writer)
-        elif leaf.kind == "items":
+        transfer = writer.transfer
+        leaf, payload = plan.leaves[transfer.leaf], self.payloads[transfer.leaf]
+        if transfer.run is not None:
+            self._write_word(transfer, transfer.run)
+            return
+        part = transfer.part
+        assert part is not None
+        if leaf.kind == "items":
             self._write_items(writer, part)
         elif leaf.kind == "trigger":
             m.d.sync += payload.eq(1)
         else:
-            value, good = self._whole(writer, 0, part.size)
+            value, good = self._whole(writer, part, 0, part.size)
             if leaf.kind == "length":
-                value = value - plan.has_nul(plan.begins[writer.leaf])
+                value = value - transfer.counts_nul
                 good = good & self.length_good
             self._put(payload, value, good, leaf.type)
 
-    def _write_word(self, writer: _Writer) -> None:
+    def _write_word(self, transfer: Transfer, run: Run) -> None:
         """Write a word or the rest of a run."""
-        leaf, payload = self.plan.leaves[writer.leaf], self.payloads[writer.leaf]
-        run = self._run(writer)
+        leaf, payload = self.plan.leaves[transfer.leaf], self.payloads[transfer.leaf]
         name, size = "items" if run.counted else "map", leaf.item_bytes
         self.m.d.sync += payload.last.eq(self.last & run.last)
         for lane in range(leaf.lanes):
@@ -367,7 +354,8 @@ class _MoverLogic:
 
     def _write_items(self, writer: _Writer, part: Part) -> None:
         """Write a transfer of static size."""
-        leaf, payload = self.plan.leaves[writer.leaf], self.payloads[writer.leaf]
+        index = writer.transfer.leaf
+        leaf, payload = self.plan.leaves[index], self.payloads[index]
         size = leaf.item_bytes
         last: Value = Const(part.end is not None)
         if isinstance(part.end, LoopEnd):
@@ -376,7 +364,7 @@ class _MoverLogic:
         for lane in range(leaf.lanes):
             value, good = Const(0), Const(1)
             if (lane + 1) * size <= part.size:
-                value, good = self._whole(writer, lane * size, (lane + 1) * size)
+                value, good = self._whole(writer, part, lane * size, (lane + 1) * size)
             self._put(payload.data[lane], value, good, leaf.type)
 
     def _put(self, target: Value, value: Value, good: Value, type_: str) -> None:

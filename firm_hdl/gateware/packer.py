@@ -12,8 +12,7 @@ from firm_hdl.gateware.collect import words_layout
 from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, known_lane_bits, rotate
 from firm_hdl.gateware.signatures import PacketSignature
-from firm_hdl.plan import Plan
-from firm_hdl.plan.geometry import geometry, may_end_empty, most_beats
+from firm_hdl.program import SerializerProgram
 
 __all__ = ["Packer"]
 
@@ -28,7 +27,7 @@ class Packer(wiring.Component):
 
     Parameters
     ----------
-    plan : Plan
+    program : SerializerProgram
 
     Members
     -------
@@ -39,8 +38,9 @@ class Packer(wiring.Component):
         The packet is marked with an error. Set only with the last beat of the packet.
     """
 
-    def __init__(self, plan: Plan):
-        self.plan = plan
+    def __init__(self, program: SerializerProgram):
+        self.program, self.plan = program, program.plan
+        plan = self.plan
         super().__init__(
             {
                 "words": In(stream.Signature(words_layout(plan))),
@@ -66,7 +66,7 @@ class _PackerLogic:
     """The packer's logic, built by one method for each part of it."""
 
     def __init__(self, packer: Packer):
-        self.c, self.plan = packer, packer.plan
+        self.c, self.plan, self.program = packer, packer.plan, packer.program
         self.ring = ring = Ring(packer.plan)
         self.m = m = Module()
         # Beats before `complete` can be sent; `first` is the next one.
@@ -99,11 +99,10 @@ class _PackerLogic:
             map_at.eq(Cat(ring.lane(base), ring.beat(base) + words.lead)),
             map_end.eq(map_at + words.map_bytes),
         ]
-        sizes = geometry(plan)
         items_at = Mux(words.lead, base, self.at)
         self.placed = {
-            "items": self._rotated("items", items_at, words.items_bytes, sizes.item_lanes),
-            "map": self._rotated("map", map_at, words.map_bytes, sizes.map_lanes),
+            "items": self._rotated("items", items_at, words.items_bytes, self.program.items.lanes),
+            "map": self._rotated("map", map_at, words.map_bytes, self.program.map.lanes),
         }
         # The first beat that these words do not complete; whether the packet ends.
         self.complete_next = Signal(ring.beat_bits, name="complete_next")
@@ -112,7 +111,7 @@ class _PackerLogic:
         self.failed, self.waits = Signal(name="failed"), Signal(name="waits")
         # The packet may end without another byte: then a beat that is just full is held back. A
         # step of an empty packet has no beat to hold.
-        holds_last = may_end_empty(plan)
+        holds_last = self.program.may_end_without_bytes
         sent = Mux(words.last | words.empty, self.end, self.end - 1) if holds_last else self.end
         done = ring.beat(sent)
         full = Cat(ring.lane(map_end), Const(0, 1)) - 1
@@ -171,7 +170,7 @@ class _PackerLogic:
         """Make `words.ready` high only if the ring has room for the largest step."""
         m, ring = self.m, self.ring
         # The last beat in which a step may start.
-        bound = Signal(ring.beat_bits, name="bound", init=ring.depth - most_beats(self.plan))
+        bound = Signal(ring.beat_bits, name="bound", init=ring.depth - self.program.most_beats)
         newest, room = (Signal(ring.beat_bits, name=name) for name in ("newest", "room"))
         ready = Signal(name="ready", init=1)
         m.d.comb += [
@@ -187,11 +186,10 @@ class _PackerLogic:
 
     def _beat(self) -> Value:
         """Write words to the ring, and return the bytes of the next beat to send."""
-        plan = self.plan
-        sizes = geometry(plan)
-        units = {"items": sizes.item_unit, "map": sizes.map_unit}
+        plan, program = self.plan, self.program
+        units = {"items": program.items.unit, "map": program.map.unit}
         # Without padding, a byte that is not of items is of a map, or after the packet's end.
-        padded = bool(plan.header_bytes) or sizes.aligns
+        padded = bool(plan.header_bytes) or program.aligns
         words = {
             name: [self._lanes(name, k, unit, has_flags=padded or name == "items") for k in starts]
             for name, unit in units.items()

@@ -14,6 +14,7 @@ from firm_hdl.gateware.signatures import PacketSignature, StatusSignature
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, check_bus_bytes
 from firm_hdl.plan.outline import outline
+from firm_hdl.program import deserializer_program
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = [
@@ -119,8 +120,9 @@ class Parser(Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
+        program = deserializer_program(self.plan, has_leaves=False)
         m.submodules.buffer = buffer = Buffer(self.plan)
-        m.submodules.sequencer = sequencer = Sequencer(self.plan, has_leaves=False)
+        m.submodules.sequencer = sequencer = Sequencer(program)
         m.submodules.packet_sizes = sizes = PacketSizes(self.plan)
         m.submodules.verdicts = verdicts = VerdictQueue()
         m.d.comb += [

@@ -9,10 +9,10 @@ from amaranth.lib import data
 
 from firm_hdl.plan import Plan
 from firm_hdl.plan.geometry import ring_beats
+from firm_hdl.program import align_addend
 
 __all__ = [
     "Ring",
-    "align_addend",
     "align_up",
     "any_of",
     "beat_layout",
@@ -91,14 +91,6 @@ def beat_layout(plan: Plan) -> data.StructLayout:
             "valid": 1,
         }
     )
-
-
-def align_addend(align: int, phase: int, shift: int = 0) -> int:
-    """Return the addend after which clearing the low bits rounds up; see `align_up`.
-
-    Parameters are those of `align_up`, with a constant phase.
-    """
-    return align - 1 - phase % align + (phase % align + shift) // align * align
 
 
 def align_up(

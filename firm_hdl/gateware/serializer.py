@@ -17,6 +17,7 @@ from firm_hdl.gateware.signatures import (
 )
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, build_plan
+from firm_hdl.program import serializer_program
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["Serializer"]
@@ -83,10 +84,11 @@ class Serializer(Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
+        program = serializer_program(self.plan)
         m.submodules.collector = collector = Collector(
-            self.plan, leaf_streams(self.message, self.tree)
+            program, leaf_streams(self.message, self.tree)
         )
-        m.submodules.packer = packer = Packer(self.plan)
+        m.submodules.packer = packer = Packer(program)
         m.d.comb += [
             packer.words.payload.eq(collector.words.payload),
             packer.words.valid.eq(collector.words.valid),

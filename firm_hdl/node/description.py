@@ -17,8 +17,10 @@ from firm_hdl.model import Message, Wire
 __all__ = [
     "CONTROL_TOPIC",
     "LINKS",
+    "SERVICE_PARTS",
     "Description",
     "Direction",
+    "Hdl",
     "Kind",
     "Link",
     "Qos",
@@ -32,10 +34,15 @@ Kind: TypeAlias = Literal["subscribe", "publish", "serve"]
 Direction: TypeAlias = Literal["in", "out"]
 """The way of packets: `in` from the host to the node, `out` from the node to the host."""
 
+Language: TypeAlias = Literal["vhdl", "verilog", "systemverilog"]
+
 LinkKind: TypeAlias = Literal["stream", "udp", "uart"]
 
 LINKS: tuple[LinkKind, ...] = ("stream", "udp", "uart")
 """All links."""
+
+SERVICE_PARTS: dict[Direction, str] = {"in": "request", "out": "response"}
+"""What a service has in each direction."""
 
 CONTROL_TOPIC = 0
 """The id of control messages. Topics are numbered from 1 on."""
@@ -168,6 +175,24 @@ class Link:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Hdl:
+    """An accelerator in another language than Amaranth.
+
+    Attributes
+    ----------
+    language : "vhdl", "verilog" or "systemverilog"
+    files : tuple of str
+        Files in compile order, relative to the folder of the description.
+    entity : str
+        Name of the entity or module.
+    """
+
+    language: Language
+    files: tuple[str, ...]
+    entity: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Description:
     """A node: its name, its topics, its link and its accelerator.
 
@@ -187,7 +212,10 @@ class Description:
     topics : tuple of Topic
         In the order of their ids.
     accelerator : str
-        ``module:Class``; empty if the message ports come out of the node.
+        ``module:Class``, or what `hdl` is, for people; empty if the message ports come out of the
+        node.
+    hdl : Hdl or None
+        The files of an accelerator that is not in Amaranth.
     folder : str
         The folder of the file, in which the module of the accelerator is searched, too.
     accelerator_span, node_span : Span or None
@@ -203,6 +231,7 @@ class Description:
     link: Link
     topics: tuple[Topic, ...]
     accelerator: str = ""
+    hdl: Hdl | None = None
     folder: str = field(default="", compare=False)
     accelerator_span: Span | None = field(default=None, compare=False, repr=False)
     node_span: Span | None = field(default=None, compare=False, repr=False)

@@ -14,16 +14,15 @@ from firm_hdl.metrics import Metrics, metrics_of
 from firm_hdl.model import Message
 from firm_hdl.node.capacity import rate_problems, size_problems
 from firm_hdl.node.control import IDENTITY, registers
-from firm_hdl.node.description import Description, Direction, Store, Topic
+from firm_hdl.node.description import SERVICE_PARTS, Description, Direction, Store, Topic
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
-from firm_hdl.node.link_reading import LINK_OPTIONS
+from firm_hdl.node.reading import LINK_OPTIONS
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.timing import Cost, timing
 from firm_hdl.wire import lay_out
 
-__all__ = ["facts_of", "summary"]
+__all__ = ["facts_of", "summary", "warnings_of"]
 
-_SERVICES = {"in": "request", "out": "response"}
 
 _Figures: TypeAlias = tuple[Metrics, Cost, Mapping[str, Estimate]]
 """Of a message: its sizes, its hardest packet, and the measured converters that are near."""
@@ -120,7 +119,7 @@ def _store(topic: Topic, direction: Direction, store: Store, figures: _Figures) 
 def summary(description: Description) -> str:
     """Describe a node on a page of text, as ``firm-hdl node info`` prints it."""
     facts = facts_of(description)
-    warnings = [f"warning: {line}" for line in _warnings(description, facts)]
+    warnings = [f"warning: {line}" for line in warnings_of(description, facts)]
     lines = [*_head(description, facts), "", *_table(facts), "", *_totals(facts)]
     return "\n".join([*lines, *([""] if warnings else []), *warnings])
 
@@ -153,7 +152,7 @@ def _table(facts: dict[str, Any]) -> Iterator[str]:
 def _rows(facts: dict[str, Any]) -> Iterator[list[str]]:
     for topic in facts["topics"]:
         for direction, store in topic["packets"].items():
-            kind = _SERVICES[direction] if topic["kind"] == "serve" else topic["kind"]
+            kind = SERVICE_PARTS[direction] if topic["kind"] == "serve" else topic["kind"]
             least, most = store["min_bytes"], store["max_bytes"]
             size = f"{least}" if least == most else f"{least}-{'' if most is None else most}"
             rate, clock = topic["rate_hz"], store["clock_hz"]
@@ -196,7 +195,7 @@ def _totals(facts: dict[str, Any]) -> Iterator[str]:
     yield "cycles: of the packet that is hardest for its converter, of those that were tried"
 
 
-def _warnings(description: Description, facts: dict[str, Any]) -> Iterator[str]:
+def warnings_of(description: Description, facts: dict[str, Any]) -> Iterator[str]:
     """Yield what the node cannot carry: rates and sizes."""
     for topic in facts["topics"]:
         for store in topic["packets"].values():

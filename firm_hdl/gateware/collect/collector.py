@@ -11,13 +11,12 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import Out
 
 from firm_hdl.gateware.collect.fill import Filler
-from firm_hdl.gateware.collect.state import COUNT_BITS, CollectState
+from firm_hdl.gateware.collect.state import CollectState
 from firm_hdl.gateware.collect.words import words_layout
 from firm_hdl.gateware.positions import any_of, pick
 from firm_hdl.gateware.signatures import Status, StatusSignature
-from firm_hdl.plan import BeginRun, LoopEnd, Part, Plan, RunStep, Step
-from firm_hdl.plan.geometry import only_ends
-from firm_hdl.plan.transfers import transfers
+from firm_hdl.plan import LoopEnd
+from firm_hdl.program import LENGTH_BITS, SerializerProgram, SerializerState, Transfer
 
 __all__ = ["Collector"]
 
@@ -31,7 +30,7 @@ class Collector(wiring.Component):
 
     Parameters
     ----------
-    plan : Plan
+    program : SerializerProgram
     leaves : mapping of int to stream.Interface
         By leaf: streams of `leaf_shape(leaf)`, which the collector takes. `ready` depends
         combinationally on the `valid` of this leaf and of earlier leaves of the same step.
@@ -44,8 +43,9 @@ class Collector(wiring.Component):
         One transfer per packet; `OK`, `LENGTH` or `ITEMS`.
     """
 
-    def __init__(self, plan: Plan, leaves: Mapping[int, stream.Interface]):
-        self.plan, self.leaves = plan, leaves
+    def __init__(self, program: SerializerProgram, leaves: Mapping[int, stream.Interface]):
+        self.program, self.plan, self.leaves = program, program.plan, leaves
+        plan = self.plan
         super().__init__(
             {"words": Out(stream.Signature(words_layout(plan))), "status": Out(StatusSignature)}
         )
@@ -88,10 +88,11 @@ class _CollectorLogic:
     def __init__(self, collector: Collector):
         self.c = collector
         self.m, self.plan = m, plan = Module(), collector.plan
+        self.program = collector.program
         streams = [collector.leaves[k] for k in range(len(plan.leaves))]
-        self.state = state = CollectState(m, plan, streams)
+        self.state = state = CollectState(m, self.program, streams)
         self._decide()
-        self.readers = [self._readers(*each) for each in enumerate(plan.steps)]
+        self.readers = [self._readers(each) for each in self.program.states]
         self._serve()
         self._hold_lengths()
         self._judge()
@@ -101,13 +102,13 @@ class _CollectorLogic:
     # The step.
 
     def _decide(self) -> None:
-        m, plan, state = self.m, self.plan, self.state
+        m, state, states = self.m, self.state, self.program.states
         traits, flow = state.traits, state.flow
         is_begin = traits.begins_run | traits.begins_loop
         skips = state.of_length(lambda length: length.skips)
         # A last step that only takes a rest is skipped if there is no rest.
-        rests = {i for i, step in enumerate(plan.steps) if only_ends(step)}
-        to_rest = any_of([each.taken for each in flow.exits if each.jump.step in rests])
+        rests = {each.number for each in states if each.is_final_tail}
+        to_rest = any_of([each.taken for each in flow.exits if each.way.to in rests])
         no_rest = is_begin & state.zero & ~traits.begins_string & to_rest
         m.d.comb += [
             state.done.eq(
@@ -116,18 +117,18 @@ class _CollectorLogic:
             state.ends.eq(state.done & (flow.exit_ends | no_rest)),
         ]
 
-    def _readers(self, index: int, step: Step) -> list[_Reader]:
-        """Return the transfers of a step, in wire order."""
+    def _readers(self, state: SerializerState) -> list[_Reader]:
+        """Return the transfers of a state, in wire order."""
         readers = []
-        for slot, (leaf, part) in enumerate(transfers(self.plan, step)):
+        for slot, transfer in enumerate(state.transfers):
             left, lacks, go = (
-                Signal(name=f"{name}_{index}_{slot}") for name in ("left", "lacks", "go")
+                Signal(name=f"{name}_{state.number}_{slot}") for name in ("left", "lacks", "go")
             )
             readers.append(
                 _Reader(
-                    leaf=leaf,
-                    last=self._last(step, part),
-                    optional=part is None and not isinstance(step, RunStep),
+                    leaf=transfer.leaf,
+                    last=self._last(transfer),
+                    optional=transfer.is_rest,
                     left=left,
                     lacks=lacks,
                     go=go,
@@ -135,16 +136,15 @@ class _CollectorLogic:
             )
         return readers
 
-    def _last(self, step: Step, part: Part | None) -> Value:
+    def _last(self, transfer: Transfer) -> Value:
         """Return the value that `items.last` must have in a transfer."""
-        flow = self.state.flow
+        flow, part, run = self.state.flow, transfer.part, transfer.run
         if part is not None:
             if isinstance(part.end, LoopEnd):
                 return flow.levels[part.end.level].last
             return Const(part.end is not None, 1)
-        if not isinstance(step, RunStep):
+        if run is None or transfer.is_rest:
             return Const(1, 1)
-        run = self.plan.runs[step.run]
         return Const(0, 1) if run.counted else flow.words.last & run.last
 
     def _serve(self) -> None:
@@ -156,15 +156,14 @@ class _CollectorLogic:
         m, c, state, streams = self.m, self.c, self.state, self.state.streams
         ready: dict[int, list[Value]] = {}
         missing: list[Value] = []
-        for index, (step, readers) in enumerate(zip(self.plan.steps, self.readers, strict=True)):
+        for each, readers in zip(self.program.states, self.readers, strict=True):
             for slot, reader in enumerate(readers):
-                self._take(index, slot)
+                self._take(each.number, slot)
                 ready.setdefault(reader.leaf, []).append(reader.go)
             missing += [reader.lacks for reader in readers]
             # A transfer that continues in the next step is taken in that step.
-            for part in step.parts:
-                if not part.completes:
-                    missing.append(state.step[index] & ~streams[part.leaf].valid)
+            if each.cut is not None:
+                missing.append(state.step[each.number] & ~streams[each.cut.leaf].valid)
         for leaf, cases in ready.items():
             m.d.comb += streams[leaf].ready.eq(any_of(cases))
         status_free = ~c.status.valid | c.status.ready
@@ -195,22 +194,13 @@ class _CollectorLogic:
         """Keep a length that is taken while its step waits until `status` is free."""
         state = self.state
         held: dict[int, list[Value]] = {leaf: [] for leaf in state.lengths}
-        for index, (step, readers) in enumerate(zip(self.plan.steps, self.readers, strict=True)):
+        for each, readers in zip(self.program.states, self.readers, strict=True):
             for slot, reader in enumerate(readers):
-                if reader.leaf in held and self._may_wait_for_status(step):
-                    taken = reader.go | (state.step[index] & state.served[slot])
+                if reader.leaf in held and each.may_wait_for_status:
+                    taken = reader.go | (state.step[each.number] & state.served[slot])
                     held[reader.leaf].append(taken & ~state.complete)
         for leaf, cases in held.items():
             self.m.d.comb += state.lengths[leaf].held.eq(any_of(cases))
-
-    def _may_wait_for_status(self, step: Step) -> bool:
-        """Tell whether a step may take its length, and then wait until `status` is free.
-
-        A length is the last transfer of its step; so nothing else can delay the step after it.
-        """
-        return step.begin is not None and any(
-            jump.step is None or only_ends(self.plan.steps[jump.step]) for jump in step.exits.jumps
-        )
 
     def _judge(self) -> None:
         """Keep the packet's first error, and report it with the last step."""
@@ -248,7 +238,9 @@ class _CollectorLogic:
     def _advance(self) -> None:
         m, state = self.m, self.state
         traits, flow = state.traits, state.flow
-        next_rest = state.of_length(lambda length: length.rest, len(state.rest), BeginRun)
+        next_rest = state.of_length(
+            lambda length: length.rest, len(state.rest), lambda length: length.level is None
+        )
         single = state.of_length(lambda length: length.single)
         count = self._count()
         flow.count(
@@ -273,8 +265,7 @@ class _CollectorLogic:
         """Return the payload of the step's length, 32 bits; 0 if the step has no length."""
         state = self.state
         cases = [
-            (state.step[i], state.streams[step.begin.length].payload)
-            for i, step in enumerate(self.plan.steps)
-            if step.begin is not None
+            (state.step[number], state.streams[length.leaf].payload)
+            for number, length in self.program.lengths.items()
         ]
-        return pick(cases, COUNT_BITS)
+        return pick(cases, LENGTH_BITS)

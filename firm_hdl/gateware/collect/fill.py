@@ -3,37 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from amaranth.hdl import Cat, Const, Mux, Signal, Value
 from amaranth.lib import stream
 
 from firm_hdl.gateware.collect.state import CollectState
-from firm_hdl.gateware.positions import Ring, align_addend, any_of, pick
-from firm_hdl.plan import BeginRun, Fixed, Part, RunStep, Step
-from firm_hdl.plan.geometry import first_step
+from firm_hdl.gateware.positions import Ring, any_of, pick
+from firm_hdl.program import WireByte, align_addend
 
 __all__ = ["Filler"]
-
-
-@dataclass(frozen=True, slots=True)
-class _Byte:
-    """A byte of a step's words.
-
-    Attributes
-    ----------
-    leaf : int or None
-        Index of the leaf that the byte belongs to; `None` for a constant.
-    at : int
-        Number of the byte in the transfer, or the value of the constant.
-    slot : int
-        Number of the byte's transfer in the step; -1 for a constant, or if a later step takes the
-        transfer.
-    """
-
-    leaf: int | None
-    at: int
-    slot: int
 
 
 class Filler:
@@ -52,6 +31,8 @@ class Filler:
     def __init__(self, state: CollectState, words: stream.Interface):
         self.m, self.state, self.words = state.m, state, words
         self.plan, self.step = state.plan, state.step
+        lengths = state.program.lengths.values()
+        self.counts_nul = {each.leaf for each in lengths if each.has_nul}
         self._write_bytes()
         self._compute_sizes()
 
@@ -60,11 +41,12 @@ class Filler:
     def _write_bytes(self) -> None:
         """Write the bytes that the step selects to the words, until their leaf is taken."""
         m, state = self.m, self.state
-        lanes: dict[str, list[dict[int, _Byte]]] = {}
-        for index, step in enumerate(self.plan.steps):
-            for name, lane, byte in self._bytes(step):
-                word = lanes.setdefault(name, [{} for _ in range(self.plan.bus_bytes)])
-                word[lane][index] = byte
+        lanes: dict[str, list[dict[int, WireByte]]] = {}
+        for each in state.program.states:
+            for name, found in (("items", each.items), ("map", each.map)):
+                for lane, byte in found:
+                    word = lanes.setdefault(name, [{} for _ in range(self.plan.bus_bytes)])
+                    word[lane][each.number] = byte
         for name, word in lanes.items():
             for lane, stretch in _stretches(word):
                 cases = stretch[0]
@@ -79,7 +61,7 @@ class Filler:
                 bits = getattr(self.words.payload, name)[8 * lane :]
                 m.d.comb += bits[: len(register)].eq(register)
 
-    def _selected(self, stretch: list[dict[int, _Byte]]) -> Value:
+    def _selected(self, stretch: list[dict[int, WireByte]]) -> Value:
         """Return the bytes of a stretch that the step selects; don't care if there are none."""
         size = len(stretch)
         groups: dict[tuple[int, int], tuple[Value, list[Value]]] = {}
@@ -94,34 +76,6 @@ class Filler:
         found = [(any_of(on), value) for value, on in groups.values()]
         return found[0][1] if len(found) == 1 else pick(found, 8 * size)
 
-    def _bytes(self, step: Step) -> Iterator[tuple[str, int, _Byte]]:
-        """Yield the bytes of a step's words: the word, the lane, and the byte."""
-        plan, bus = self.plan, self.plan.bus_bytes
-        slot = 0
-        if step.rest is not None:
-            yield from (("items", *each) for each in self._word(plan.runs[step.rest].items, slot))
-            slot += 1
-        for item in step.slices:
-            found = [_Byte(None, 0, -1)] * item.bytes
-            if isinstance(item, Fixed):
-                found = [_Byte(None, value, -1) for value in item.data]
-            elif isinstance(item, Part):
-                number = slot if item.completes else -1
-                found = [_Byte(item.leaf, item.first + k, number) for k in range(item.bytes)]
-                slot += item.completes
-            for k, byte in enumerate(found, item.at):
-                name = "items" if step.bytes > bus > k else "map"
-                yield name, k % bus if step.bytes > bus else k, byte
-        if isinstance(step, RunStep):
-            run = plan.runs[step.run]
-            name = "items" if run.counted else "map"
-            yield from ((name, *each) for each in self._word(run.items, slot))
-
-    def _word(self, leaf: int, slot: int) -> Iterator[tuple[int, _Byte]]:
-        """Yield the bytes of a transfer of items, with their lanes."""
-        items = self.plan.leaves[leaf]
-        return ((k, _Byte(leaf, k, slot)) for k in range(items.lanes * items.item_bytes))
-
     def _wire_bits(self, leaf: int) -> Value:
         """Return the bits of a leaf's transfer on the wire."""
         plan, payload = self.plan, self.state.streams[leaf].payload
@@ -129,7 +83,7 @@ class Filler:
             case "items":
                 return Cat(_item_bits(item) for item in payload.data)
             case "length":
-                return (payload + plan.has_nul(plan.begins[leaf]))[:32]
+                return (payload + (leaf in self.counts_nul))[:32]
             case _:
                 return _item_bits(payload)
 
@@ -174,7 +128,7 @@ class Filler:
                 words.end_mask.eq(end_mask),
                 words.last.eq(state.ends),
                 words.empty.eq(~begins),
-                words.waits.eq(any_of([self.step[i] for i in range(first_step(self.plan))])),
+                words.waits.eq(state.flow.on(lambda s: s.precedes_leaves)),
             ]
 
     def _items_align(self) -> tuple[Value, Value]:
@@ -184,11 +138,11 @@ class Filler:
         """
         plan = self.plan
         cases: list[tuple[Value, int, int]] = []
-        for index, step in enumerate(plan.steps):
-            if isinstance(step.begin, BeginRun) and step.begin.align > 1:
-                align = step.begin.align
+        for index, length in self.state.program.lengths.items():
+            if length.align > 1:
+                align = length.align
                 addend = align_addend(align, plan.header_bytes) if plan.bus_bytes >= 8 else 0
-                not_empty = self.step[index] & ~self.state.lengths[step.begin.length].zero
+                not_empty = self.step[index] & ~self.state.lengths[length.leaf].zero
                 cases.append((not_empty, addend, align - 1))
         return (
             pick([(not_empty, addend) for not_empty, addend, _ in cases], 3),
@@ -196,7 +150,7 @@ class Filler:
         )
 
 
-def _stretches(word: list[dict[int, _Byte]]) -> Iterator[tuple[int, list[dict[int, _Byte]]]]:
+def _stretches(word: list[dict[int, WireByte]]) -> Iterator[tuple[int, list[dict[int, WireByte]]]]:
     """Divide a word into stretches of lanes with common selects; yield first lane and stretch."""
     first = 0
     for lane in range(1, len(word) + 1):
@@ -207,7 +161,7 @@ def _stretches(word: list[dict[int, _Byte]]) -> Iterator[tuple[int, list[dict[in
         first = lane
 
 
-def _follows(before: dict[int, _Byte], after: dict[int, _Byte]) -> bool:
+def _follows(before: dict[int, WireByte], after: dict[int, WireByte]) -> bool:
     """Tell whether two lanes have consecutive bytes of the same leaves in the same steps."""
     return before.keys() == after.keys() and all(
         after[index] == replace(byte, at=byte.at + 1)

@@ -6,7 +6,7 @@ from amaranth.hdl import Module, Mux, Signal, Value
 from amaranth.lib import stream
 
 from firm_hdl.gateware.flow import exceeds, last_word
-from firm_hdl.plan import BeginLoop, BeginRun, Plan
+from firm_hdl.program import Length
 
 __all__ = ["OfferedLength"]
 
@@ -16,12 +16,9 @@ class OfferedLength:
 
     Parameters
     ----------
-    leaf : int
-        Index of the leaf of the length.
+    length : Length
     port : stream.Interface
         Stream of the leaf.
-    taken : Value(1)
-        The length transfers in this cycle.
 
     Attributes
     ----------
@@ -41,30 +38,29 @@ class OfferedLength:
         complete.
     """
 
-    def __init__(self, m: Module, plan: Plan, leaf: int, port: stream.Interface, taken: Value):
-        begin, length = plan.begins[leaf], port.payload
-        self.leaf = leaf
+    def __init__(self, m: Module, length: Length, port: stream.Interface):
+        leaf = length.leaf
         self.known = Signal(name=f"known_{leaf}")
         names = ("zero", "over", "skips", "single")
         self.zero, self.over, self.skips, self.single = (
             Signal(name=f"{name}_{leaf}", reset_less=True) for name in names
         )
         self.held = Signal(name=f"held_{leaf}")
-        m.d.sync += self.known.eq(port.valid & ~taken & ~self.held)
+        m.d.sync += self.known.eq(port.valid & ~port.ready & ~self.held)
         with m.If(~self.held):
-            self._decode(m, plan, begin, length)
+            self._decode(m, length, port.payload)
 
-    def _decode(self, m: Module, plan: Plan, begin: BeginRun | BeginLoop, length: Value) -> None:
-        zero = ~length.any()
-        m.d.sync += [self.zero.eq(zero), self.over.eq(exceeds(length, begin.limit))]
-        if isinstance(begin, BeginLoop):
-            self.rest = Signal(1, name=f"rest_{self.leaf}")
-            m.d.sync += [self.skips.eq(zero), self.single.eq(length == 1)]
+    def _decode(self, m: Module, length: Length, value: Value) -> None:
+        zero = ~value.any()
+        m.d.sync += [self.zero.eq(zero), self.over.eq(exceeds(value, length.limit))]
+        if length.level is not None:
+            self.rest = Signal(1, name=f"rest_{length.leaf}")
+            m.d.sync += [self.skips.eq(zero), self.single.eq(value == 1)]
             return
-        lanes = plan.items_leaf(begin.run).lanes
-        self.rest = Signal(range(lanes + 1), name=f"rest_{self.leaf}", reset_less=True)
+        lanes = length.lanes
+        self.rest = Signal(range(lanes + 1), name=f"rest_{length.leaf}", reset_less=True)
         m.d.sync += [
-            self.skips.eq(~exceeds(length, lanes)),
-            self.single.eq(~exceeds(length, 2 * lanes)),
-            self.rest.eq(Mux(zero, 0, last_word(length, lanes))),
+            self.skips.eq(~exceeds(value, lanes)),
+            self.single.eq(~exceeds(value, 2 * lanes)),
+            self.rest.eq(Mux(zero, 0, last_word(value, lanes))),
         ]

@@ -10,13 +10,9 @@ from amaranth.lib import stream
 from firm_hdl.gateware.collect.offered import OfferedLength
 from firm_hdl.gateware.flow import Flow
 from firm_hdl.gateware.positions import pick
-from firm_hdl.plan import BeginLoop, BeginRun, Plan, RunStep
-from firm_hdl.plan.transfers import transfers
+from firm_hdl.program import Length, SerializerProgram, SerializerState
 
-__all__ = ["COUNT_BITS", "CollectState"]
-
-COUNT_BITS = 32
-"""Width of lengths. Counters have this width, because the items of any length are taken."""
+__all__ = ["CollectState"]
 
 
 class CollectState:
@@ -25,6 +21,7 @@ class CollectState:
     Attributes
     ----------
     m : Module
+    program : SerializerProgram
     plan : Plan
     streams : sequence of stream.Interface
         By leaf.
@@ -52,11 +49,12 @@ class CollectState:
         By number of a transfer in its step: it was taken in an earlier cycle. Registers.
     """
 
-    def __init__(self, m: Module, plan: Plan, streams: Sequence[stream.Interface]):
-        self.m, self.plan, self.streams = m, plan, streams
+    def __init__(self, m: Module, program: SerializerProgram, streams: Sequence[stream.Interface]):
+        self.m, self.program, self.plan, self.streams = m, program, program.plan, streams
+        plan = self.plan
         self.lengths = {
-            leaf: OfferedLength(m, plan, leaf, streams[leaf], streams[leaf].ready)
-            for leaf in plan.begins
+            each.leaf: OfferedLength(m, each, streams[each.leaf])
+            for each in program.lengths.values()
         }
         self.flow = self._flow()
         self.traits, self.step = self.flow.traits, self.flow.step
@@ -65,49 +63,35 @@ class CollectState:
         self.zero = self.of_length(lambda length: length.zero)
         self.done, self.ends = Signal(name="done"), Signal(name="ends")
         self.free, self.complete = Signal(name="free"), Signal(name="complete")
-        most = max(len(list(transfers(plan, step))) for step in plan.steps)
+        most = max(len(each.transfers) for each in program.states)
         self.served = [Signal(name=f"served_{k}") for k in range(most)]
 
-    def _flow(self) -> Flow:
-        size = self.plan.bus_bytes.bit_length()
-        widths = {"map_bytes": size, "items_bytes": size, "map_mask": 3, "map_addend": 3}
-        flags = "begins_nothing begins_run begins_string begins_loop is_words takes_rest"
-        widths |= dict.fromkeys([*flags.split(), "two_word_map"], 1)
-        most = (1 << COUNT_BITS) - 1
-        return Flow(self.m, self.plan, lambda _: most, widths, self._traits, has_end=False)
-
-    def _traits(self, index: int | None) -> dict[str, int]:
-        if index is None:
-            return {}
-        plan, bus = self.plan, self.plan.bus_bytes
-        step = plan.steps[index]
-        is_words = isinstance(step, RunStep)
-        counted = isinstance(step, RunStep) and plan.runs[step.run].counted
-        lead = step.bytes > bus
-        begin = step.begin
-        map_addend = step.align - 1 - plan.header_bytes % step.align if bus >= 8 else 0
-        return {
-            "map_bytes": bus if is_words and not counted else step.bytes - bus * lead,
-            "items_bytes": bus if lead or counted else 0,
-            "map_mask": step.align - 1,
-            "map_addend": map_addend,
-            "begins_nothing": begin is None and not is_words,
-            "begins_run": isinstance(begin, BeginRun),
-            "begins_string": isinstance(begin, BeginRun) and plan.runs[begin.run].terminated,
-            "begins_loop": isinstance(begin, BeginLoop),
-            "is_words": is_words,
-            "takes_rest": step.rest is not None,
-            "two_word_map": lead,
-        }
+    def _flow(self) -> Flow[SerializerState]:
+        flow, bits = Flow(self.m, self.program), self.plan.bus_bytes.bit_length()
+        flow.register("map_bytes", bits, lambda s: s.word_bytes)
+        flow.register("items_bytes", bits, lambda s: s.item_word_bytes)
+        flow.register("map_mask", 3, lambda s: s.map_mask)
+        flow.register("map_addend", 3, lambda s: s.map_addend)
+        flow.register("begins_nothing", 1, lambda s: s.begins_nothing)
+        flow.register("begins_run", 1, lambda s: s.begins_run)
+        flow.register("begins_string", 1, lambda s: s.begins_string)
+        flow.register("begins_loop", 1, lambda s: s.begins_loop)
+        flow.register("is_words", 1, lambda s: s.is_words)
+        flow.register("takes_rest", 1, lambda s: s.takes_rest)
+        flow.register("two_word_map", 1, lambda s: s.two_word_map)
+        flow.add_exits()
+        return flow
 
     def of_length(
-        self, field: Callable[[OfferedLength], Value], width: int = 1, kind: type = object
+        self,
+        field: Callable[[OfferedLength], Value],
+        width: int = 1,
+        test: Callable[[Length], bool] = lambda _: True,
     ) -> Value:
-        """Return a field of the step's length; 0 if the step begins nothing of the kind."""
-        begins = ((i, step.begin) for i, step in enumerate(self.plan.steps))
+        """Return a field of the step's length; 0 if the step has none, or the test fails."""
         cases = [
-            (self.step[i], field(self.lengths[begin.length]))
-            for i, begin in begins
-            if begin is not None and isinstance(begin, kind)
+            (self.step[number], field(self.lengths[length.leaf]))
+            for number, length in self.program.lengths.items()
+            if test(length)
         ]
         return pick(cases, width)

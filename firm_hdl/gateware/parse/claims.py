@@ -41,9 +41,9 @@ class Claims:
         self.m, self.state = state.m, state
         m = state.m
         self.claims = {
-            index: step.begin.claim
-            for index, step in enumerate(state.plan.steps)
-            if step.begin is not None and step.begin.claim is not None
+            index: length.claim
+            for index, length in state.program.lengths.items()
+            if length.claim is not None
         }
         total = max(claim.total or 0 for claim in self.claims.values())
         # What is left can be negative; and a legal length has at most the bytes of the budget and

@@ -66,7 +66,7 @@ class Judge:
     def _check_bytes(self, beat: data.View) -> None:
         """Check the bytes of the step."""
         m, state, ring = self.m, self.state, self.state.ring
-        m.submodules.marks = marks = Marks(state.plan)
+        m.submodules.marks = marks = Marks(state.program)
         too_many = exceeds(state.left[:-1], state.plan.max_trailing_bytes)
         m.d.comb += [
             marks.beat.eq(beat),
@@ -75,7 +75,7 @@ class Judge:
             self.wrong_nul.eq(state.has_nul & state.traits.takes_rest & marks.nonzero),
             self.has_trailing.eq(state.present & too_many),
         ]
-        headers = [state.step[i] & marks.mismatch[k] for k, i in enumerate(marks.steps)]
+        headers = [state.step[i] & marks.mismatch[k] for k, i in enumerate(marks.states)]
         wrong_header = any_of(headers)
         if headers:
             # The checked bytes of a header are the first bytes of its step, and nothing before the

@@ -8,7 +8,7 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout
-from firm_hdl.plan import Fixed, Plan
+from firm_hdl.program import DeserializerProgram
 
 __all__ = ["Marks"]
 
@@ -20,12 +20,12 @@ class Marks(wiring.Component):
 
     Parameters
     ----------
-    plan : Plan
+    program : DeserializerProgram
 
     Attributes
     ----------
-    steps : list of int
-        Steps with bytes of the encapsulation header that are checked.
+    states : list of int
+        States with bytes of the encapsulation header that are checked.
 
     Members
     -------
@@ -34,35 +34,30 @@ class Marks(wiring.Component):
     nonzero : Out(1)
         The byte at `nul_at` is not NUL.
     header_at : In(beat)
-    mismatch : Out(max(1, len(steps)))
-        Bit k: the beat at `header_at` differs from the checked bytes of `steps[k]`. Bytes after the
-        packet's end are not compared.
+    mismatch : Out(max(1, len(states)))
+        Bit k: the beat at `header_at` differs from the checked bytes of `states[k]`. Bytes after
+        the packet's end are not compared.
     """
 
-    def __init__(self, plan: Plan):
-        self.plan, self.ring = plan, Ring(plan)
-        self.checks = {
-            index: [(item.at + k, byte) for k, byte in enumerate(item.data)]
-            for index, step in enumerate(plan.steps)
-            for item in step.slices
-            if isinstance(item, Fixed) and item.check
-        }
-        self.steps = list(self.checks)
+    def __init__(self, program: DeserializerProgram):
+        self.program, self.ring = program, Ring(program.plan)
+        self.checks = {each.number: each.checks for each in program.states if each.checks}
+        self.states = list(self.checks)
         super().__init__(
             {
-                "beat": In(beat_layout(plan)),
+                "beat": In(beat_layout(program.plan)),
                 "nul_at": In(self.ring.bits),
                 "nonzero": Out(1),
                 "header_at": In(self.ring.beat_bits),
-                "mismatch": Out(max(1, len(self.steps))),
+                "mismatch": Out(max(1, len(self.states))),
             }
         )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
         beat, ring = self.beat, self.ring
-        lanes = [beat.data[8 * k : 8 * k + 8] for k in range(self.plan.bus_bytes)]
-        if any(run.terminated for run in self.plan.runs):
+        lanes = [beat.data[8 * k : 8 * k + 8] for k in range(self.program.plan.bus_bytes)]
+        if self.program.has_strings:
             memory = LutMemory(m, "nonzero", len(lanes), ring.depth)
             write, read = memory.write, memory.reader()
             m.d.comb += [
@@ -72,8 +67,8 @@ class Marks(wiring.Component):
                 read.addr.eq(ring.slot(self.nul_at)),
                 self.nonzero.eq((read.data >> ring.lane(self.nul_at))[0]),
             ]
-        if self.steps:
-            memory = LutMemory(m, "headers", len(self.steps), ring.depth)
+        if self.states:
+            memory = LutMemory(m, "headers", len(self.states), ring.depth)
             write, read = memory.write, memory.reader()
             # The checked bytes of a step are in its first beat: a header is cut at bus words.
             wrong = [

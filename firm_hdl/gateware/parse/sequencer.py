@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import takewhile
 from typing import Any
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
@@ -10,7 +9,6 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.parse.judge import Judge
-from firm_hdl.gateware.parse.lengths import shift_of
 from firm_hdl.gateware.parse.orders import order_layout
 from firm_hdl.gateware.parse.packet_judge import PacketJudge, verdict_layout
 from firm_hdl.gateware.parse.places import NextPlace
@@ -24,7 +22,7 @@ from firm_hdl.gateware.positions import (
     pick,
 )
 from firm_hdl.gateware.signatures import Status
-from firm_hdl.plan import BeginRun, Plan, RunStep
+from firm_hdl.program import DeserializerProgram
 
 __all__ = ["Sequencer"]
 
@@ -49,10 +47,9 @@ class Sequencer(wiring.Component):
 
     Parameters
     ----------
-    plan : Plan
-    has_leaves : bool
-        Whether there are orders, which write leaves. Without leaves, no steps are executed after an
-        error, and elements without bytes are skipped.
+    program : DeserializerProgram
+        With leaves, there are orders. Without leaves, no steps are executed after an error, and
+        elements without bytes are skipped.
 
     Members
     -------
@@ -84,8 +81,9 @@ class Sequencer(wiring.Component):
         Only without leaves. Depends on registers only.
     """
 
-    def __init__(self, plan: Plan, *, has_leaves: bool = True):
-        self.plan, self.has_leaves = plan, has_leaves
+    def __init__(self, program: DeserializerProgram):
+        self.program, self.plan, self.has_leaves = program, program.plan, program.has_leaves
+        plan, has_leaves = self.plan, self.has_leaves
         ring = Ring(plan)
         has_holds = plan.has_claims and has_leaves
         checks = {"holds": Out(1), "refuses": Out(1)} if has_holds else {}
@@ -120,8 +118,8 @@ class _SequencerLogic:
 
     def __init__(self, sequencer: Sequencer):
         self.c = c = sequencer
-        self.m, self.plan = m, plan = Module(), sequencer.plan
-        self.state = state = ParseState(m, plan, has_leaves=sequencer.has_leaves)
+        self.m, self.plan = m, _ = Module(), sequencer.plan
+        self.state = state = ParseState(m, sequencer.program)
         self.length = StepLength(state, c.beat)
         self.claims = self.length.claims
         self._decide()
@@ -244,11 +242,8 @@ class _SequencerLogic:
         Only for the leading steps without bytes: others wait for their bytes.
         """
         state = self.state
-        leading = takewhile(
-            lambda i: not isinstance(self.plan.steps[i], RunStep) and not self.plan.steps[i].bytes,
-            range(len(self.plan.steps)),
-        )
-        return any_of([state.step[i] for i in leading]) & ~state.left.any() & ~self.c.ended
+        leading = state.flow.on(lambda each: each.is_leading)
+        return leading & ~state.left.any() & ~self.c.ended
 
     # The next step.
 
@@ -269,7 +264,8 @@ class _SequencerLogic:
             flow.go(ends=state.ends_packet, done=state.done, aborts=aborts)
         if state.refused is not None and self.claims is not None:
             # Back to the step of the length. It begins nothing, and is left at once.
-            back = {s.begin.body.step: i for i, s in enumerate(self.plan.steps) if s.begin}
+            states = state.program.states
+            back = {s.body.to: s.number for s in states if s.length and s.body}
             begun = {i: state.step[k] for k, i in back.items() if k}
             with m.If(self.claims.fails):
                 m.d.sync += state.traits.begins_nothing.eq(1)
@@ -284,9 +280,7 @@ class _SequencerLogic:
         """Store the rest of a run that begins; clear it after the step that takes it."""
         m, state = self.m, self.state
         good = ~state.bad & ~self.length.over
-        terminated = state.flow.on(
-            lambda s: isinstance(s.begin, BeginRun) and self.plan.runs[s.begin.run].terminated
-        )
+        terminated = state.flow.on(lambda each: each.begins_string)
         with m.If(state.traits.begins_run):
             m.d.sync += [
                 state.rest.eq(Mux(good, self.length.rest, 0)),
@@ -302,11 +296,12 @@ class _SequencerLogic:
         start = Signal(ring.bits, name="next_packet")
         m.d.comb += start.eq(Cat(Const(0, ring.lane_bits), c.following))
         places = NextPlace(
-            m, state.flow, state.last_at, state.phase, state.meanings, self.length.entry
+            m, state.program, state.flow, state.last_at, state.phase, self.length.entry
         )
         # Decisions by a length are late. After an error, `last_at` has no meaning.
         early, last = ring.position("early_last"), ring.position("next_last")
-        begin = start + shift_of(plan, plan.start.step)
+        first_state = state.program.states[state.program.start.to or 0]
+        begin = start + first_state.last_offset
         m.d.comb += [
             early.eq(
                 Mux(state.ends_packet, begin, Mux(state.exits_always, places.exit, places.body))
@@ -326,7 +321,7 @@ class _SequencerLogic:
             m.d.sync += state.first_at.eq(first)
         with m.If(state.issue):
             m.d.sync += state.last_at.eq(last)
-            if any(run.terminated for run in plan.runs):
+            if state.program.has_strings:
                 rest = Mux(state.traits.is_words, state.rest, self.length.rest)
                 m.d.sync += state.nul_at.eq(state.step_end + rest)
             if isinstance(state.phase, Signal):
@@ -337,11 +332,11 @@ class _SequencerLogic:
         """Return the first item of the run that the step begins; else the end of the step."""
         state = self.state
         start: Value = state.step_end
-        aligns = {s.begin.align for s in self.plan.steps if isinstance(s.begin, BeginRun)} - {1}
-        for align in sorted(aligns):
-            steps = enumerate(self.plan.steps)
-            runs = [(i, s.begin) for i, s in steps if isinstance(s.begin, BeginRun)]
-            chosen = any_of([state.step[i] for i, begin in runs if begin.align == align])
+        aligns: dict[int, list[Value]] = {}
+        for number, length in state.program.lengths.items():
+            aligns.setdefault(length.align, []).append(state.step[number])
+        for align in sorted(aligns.keys() - {1}):
+            chosen = any_of(aligns[align])
             aligned = align_up(self.m, state.step_end, 0, align, state.phase)
             start = Mux(chosen & ~self.length.zero, aligned, start)
         return start

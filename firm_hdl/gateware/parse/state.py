@@ -5,11 +5,9 @@ from __future__ import annotations
 from amaranth.hdl import Const, Module, Signal, Value
 
 from firm_hdl.gateware.flow import Flow
-from firm_hdl.gateware.parse.lengths import meanings_of, shift_of
-from firm_hdl.gateware.parse.places import place_fields, place_traits
+from firm_hdl.gateware.parse.places import add_next_positions
 from firm_hdl.gateware.positions import Ring
-from firm_hdl.plan import BeginLoop, BeginRun, Plan, RunStep
-from firm_hdl.plan.geometry import geometry
+from firm_hdl.program import DeserializerProgram, DeserializerState
 
 __all__ = ["ParseState"]
 
@@ -20,18 +18,15 @@ class ParseState:
     Parameters
     ----------
     m : Module
-    plan : Plan
-    has_leaves : bool
-        As of :class:`Sequencer`.
+    program : DeserializerProgram
 
     Attributes
     ----------
     m : Module
+    program : DeserializerProgram
     plan : Plan
     has_leaves : bool
     ring : Ring
-    meanings : dict of int to Meaning
-        Decoded fields of a step's length, by the step's index.
     flow : Flow
         The step and the counters.
     traits, step : SimpleNamespace, list of Value(1)
@@ -83,16 +78,16 @@ class ParseState:
         The packet has an error, and the step is ordered whatever its bytes are.
     """
 
-    def __init__(self, m: Module, plan: Plan, *, has_leaves: bool):
-        self.m, self.plan, self.has_leaves = m, plan, has_leaves
+    def __init__(self, m: Module, program: DeserializerProgram):
+        self.m, self.program = m, program
+        self.plan, self.has_leaves = plan, has_leaves = program.plan, program.has_leaves
         self.ring = ring = Ring(plan)
-        self.meanings = meanings_of(plan, has_leaves=has_leaves)
         checks = has_leaves and plan.has_claims
         self.refused = Signal(name="refused") if checks else None
         self.flow = self._flow()
         self.traits, self.step = self.flow.traits, self.flow.step
-        start = shift_of(plan, plan.start.step) % (1 << ring.bits)
-        self.last_at = ring.position("last_at", init=start)
+        start = program.states[program.start.to or 0].last_offset
+        self.last_at = ring.position("last_at", init=start % (1 << ring.bits))
         self.first_at = ring.position("first_at")
         lanes = plan.max_run_lanes
         self.rest = Signal(range(lanes + 1), name="rest")
@@ -100,8 +95,9 @@ class ParseState:
         self.phase: Value | int = plan.header_bytes
         if plan.bus_bytes < 8:
             header = plan.header_bytes % 8
-            aligns = geometry(plan).aligns
-            self.phase = Signal(3, name="phase", init=header) if aligns else Const(header, 3)
+            self.phase = Const(header, 3)
+            if program.aligns:
+                self.phase = Signal(3, name="phase", init=header)
         self.bad, self.new_error = Signal(name="bad"), Signal(name="new_error")
         self.fails = Signal(name="fails")
         self.items_at, self.map_at = ring.position("items_at"), ring.position("map_at")
@@ -112,36 +108,20 @@ class ParseState:
         self.ends_packet = Signal(name="ends_packet")
         self.issue, self.drains = Signal(name="issue"), Signal(name="drains")
 
-    def _flow(self) -> Flow:
-        plan = self.plan
-        flags = "begins_nothing begins_run begins_loop is_words is_counted takes_rest"
-        # `map_offset` is in two's complement.
-        widths = {"map_offset": plan.bus_bytes.bit_length() + 1}
-        widths |= dict.fromkeys([*flags.split(), "two_word_map", "at_end"], 1)
-        # On a narrow bus, positions are short: their traits are not worth registers.
-        widths |= place_fields(plan) if plan.bus_bytes >= 8 else {}
+    def _flow(self) -> Flow[DeserializerState]:
+        program, bus = self.program, self.plan.bus_bytes
+        flow = Flow(self.m, program)
+        flow.register("map_offset", bus.bit_length() + 1, lambda s: s.map_offset)
         # After a length that claims too much, its step begins nothing.
-        written = "begins_nothing" if self.refused is not None else ""
-        return Flow(
-            self.m, plan, plan.max_count, widths, self._traits, has_end=True, written=written
-        )
-
-    def _traits(self, index: int | None) -> dict[str, int]:
-        plan, bus = self.plan, self.plan.bus_bytes
-        if index is None:
-            return {"at_end": 1, "begins_nothing": 1, "map_offset": 1}
-        step = plan.steps[index]
-        is_words = isinstance(step, RunStep)
-        is_lead = step.bytes > bus
-        return {
-            # From the last byte to the first one of the map's last word.
-            "map_offset": is_lead * bus - shift_of(plan, index),
-            "begins_nothing": step.begin is None and not is_words,
-            "begins_run": isinstance(step.begin, BeginRun),
-            "begins_loop": isinstance(step.begin, BeginLoop),
-            "is_words": is_words,
-            "is_counted": isinstance(step, RunStep) and plan.runs[step.run].counted,
-            "takes_rest": step.rest is not None,
-            "two_word_map": is_lead,
-            **(place_traits(plan, index) if bus >= 8 else {}),
-        }
+        written = self.refused is not None
+        flow.register("begins_nothing", 1, lambda s: s.begins_nothing, written=written)
+        flow.register("begins_run", 1, lambda s: s.begins_run)
+        flow.register("begins_loop", 1, lambda s: s.begins_loop)
+        flow.register("is_words", 1, lambda s: s.is_words)
+        flow.register("is_counted", 1, lambda s: s.is_counted)
+        flow.register("takes_rest", 1, lambda s: s.takes_rest)
+        flow.register("two_word_map", 1, lambda s: s.two_word_map)
+        flow.register("at_end", 1, lambda s: s.at_end)
+        add_next_positions(flow)
+        flow.add_exits()
+        return flow

@@ -8,10 +8,9 @@ from amaranth.hdl import Cat, Const, Signal, Value
 from amaranth.lib import data
 
 from firm_hdl.gateware.parse.claims import Claims
-from firm_hdl.gateware.parse.lengths import Lengths, LoopMeaning, RunMeaning
+from firm_hdl.gateware.parse.lengths import Lengths
 from firm_hdl.gateware.parse.state import ParseState
 from firm_hdl.gateware.positions import any_of, pick
-from firm_hdl.plan.geometry import geometry
 
 __all__ = ["StepLength"]
 
@@ -31,7 +30,7 @@ class StepLength:
     Attributes
     ----------
     entry : View or None
-        The fields that :class:`Meaning` names; `None` if the plan has no lengths.
+        The fields that :class:`Length` names; `None` if the plan has no lengths.
     count : Value
         The length on the wire, a cycle later. It includes the NUL of a CDR `string`.
     claims : Claims or None
@@ -56,13 +55,14 @@ class StepLength:
         self.zero: Value = Const(0, 1)
         self.over = self.run_skips = self.loop_skips = self.zero
         self.single = self.double = self.count = self.rest = self.zero
-        if not state.meanings:
+        lengths = state.program.lengths
+        if not lengths:
             return
         self.entry = self._look_up(beat)
         self.zero = self.entry.zero
-        every = state.meanings.items()
-        runs = [(index, each) for index, each in every if isinstance(each, RunMeaning)]
-        loops = [(index, each) for index, each in every if isinstance(each, LoopMeaning)]
+        every = lengths.items()
+        runs = [(index, each) for index, each in every if each.level is None]
+        loops = [(index, each) for index, each in every if each.level is not None]
         self.over = self._select((index, each.over) for index, each in every)
         self.run_skips = self._select(((index, each.skips) for index, each in runs), exact=True)
         self.loop_skips = self._select(((index, each.skips) for index, each in loops), exact=True)
@@ -77,9 +77,7 @@ class StepLength:
     def _look_up(self, beat: data.View) -> data.View:
         """Return the entry of the step's length."""
         m, plan, ring = self.state.m, self.state.plan, self.state.ring
-        m.submodules.lengths = lengths = Lengths(
-            plan, geometry(plan), list(self.state.meanings.values())
-        )
+        m.submodules.lengths = lengths = Lengths(self.state.program)
         m.d.comb += [lengths.beat.eq(beat), lengths.key.eq(self.state.last_at)]
         self.count = lengths.count
         if isinstance(self.state.phase, Signal):

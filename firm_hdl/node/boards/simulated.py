@@ -125,6 +125,7 @@ class SimulatedBoard(Board):
                 options=_OPTIONS,
                 ignored=ignored,
                 report=self._report,
+                modules=getattr(node.accelerator, "modules", None),
             )
 
     def fileno(self) -> int:

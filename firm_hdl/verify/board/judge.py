@@ -24,10 +24,11 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.node import Description, Topic
+from firm_hdl.node.capacity import most_bytes
 from firm_hdl.node.control import FIFO_COUNTERS, GATE_COUNTERS, LINK_COUNTERS, registers
 from firm_hdl.plan import Plan, build_plan
 from firm_hdl.plan.interpret import decode, encode
-from firm_hdl.verify.board.talk import Talk, room_for
+from firm_hdl.verify.board.talk import Talk
 from firm_hdl.verify.references.clients import may_stand_in
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
@@ -113,7 +114,8 @@ def judge_loop(
     )
     trial.record.shape = digest(plan)
     cases = all_cases(judge.oracle, judge.name, plan, seed=options.seed, most=options.most_cases)
-    cases = _fitting(cases, min(room_for(description, loop), store.max_message_bytes), trial)
+    room = min(most_bytes(description, way, each) for topic in loop for way, each in topic.stores)
+    cases = _fitting(cases, min(room, store.max_message_bytes), trial)
     trial.record.cases = len(cases)
     trial.record.metrics = figures(message, plan, [case.packet for case in cases])
     confirm_cases(message, wire, cases, options, trial, judge.oracle)
@@ -122,7 +124,7 @@ def judge_loop(
     runs = [_good_run(plan, cases)]
     if options.broken:
         rng = random.Random(f"{options.seed}/{message.name}/broken")
-        runs.append(_damaged_run(plan, cases, rng, room_for(description, loop)))
+        runs.append(_damaged_run(plan, cases, rng, room))
     talk.take(loop[1])
     for number, run in enumerate(runs):
         trial.watch.enter("simulation")

@@ -16,6 +16,7 @@ from firm_hdl.frontend import load_message
 from firm_hdl.gateware.parse.claims import Claims
 from firm_hdl.gateware.parse.state import ParseState
 from firm_hdl.plan import Begin, Plan, build_plan
+from firm_hdl.program import deserializer_program
 from firm_hdl.wire import lay_out
 from lab.formal.bugs import Bug
 from lab.formal.catalog import Claim, Study
@@ -93,7 +94,8 @@ def _study(distro: str) -> Study:
         steps = _Steps(scene, plan, begins)
         refused = Signal(name="refused")
         # What the budget needs of a deserializer's state.
-        state = SimpleNamespace(m=scene.m, plan=plan, has_leaves=True, refused=refused)
+        program = deserializer_program(plan)
+        state = SimpleNamespace(m=scene.m, program=program, has_leaves=True, refused=refused)
         state.step, state.issue, state.bad = steps.step, steps.issue, steps.bad
         counted = steps.counted & (steps.number < len(begins))
         block = Claims(cast("ParseState", state), counted, steps.count)

@@ -36,7 +36,7 @@ class LoopNode:
         self.description = description
         self.receiver, self.sender = MessageReceiver(), MessageSender(272)
         self.fingerprint = description.fingerprint
-        self.counters = Counter()
+        self.counters, self.seconds = Counter(), 0
         self.loops = {came.id: back.id for came, back in description.loops()}
         self.plans = {came.id: self.plan(came) for came, _ in description.loops()}
         self.heard = 0
@@ -86,14 +86,16 @@ class LoopNode:
         return self.send(0, self.response(message.packet), message.tag)
 
     def response(self, packet):
-        assert len(packet) == 16 and packet[0] == 1
-        number = int.from_bytes(packet[4:8], "little")
+        operation, number = packet[0], int.from_bytes(packet[4:8], "little")
         halves = {1: self.fingerprint & 0xFFFF_FFFF, 2: self.fingerprint >> 32}
-        value = halves.get(number, 0)
-        if number >= 16:
+        value, seconds = halves.get(number, 0), self.seconds
+        if operation == 2:
+            self.seconds = int.from_bytes(packet[8:12], "little")
+        elif operation == 1 and number >= 16:
             (found,) = (each for each in registers(self.description) if each.number == number)
             value = self.counters[found.topic, found.name]
-        return bytes([1, 0, 0, 0]) + value.to_bytes(4, "little") + bytes(8)
+        numbers = value.to_bytes(4, "little") + seconds.to_bytes(4, "little") + bytes(4)
+        return bytes([operation, 0, 0, 0]) + numbers
 
 
 def verdicts(loop_node, description=None, names=(), loses=lambda frame: False, **options):

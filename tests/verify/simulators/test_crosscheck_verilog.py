@@ -42,7 +42,7 @@ WIDE = ("lyrical", "service_msgs/msg/ServiceEventInfo", 16)
         ("iverilog", WIDE),
         # A bus of one byte; no bytes at all, and a leaf that is only a trigger.
         ("iverilog", ("noetic", by_depth("std_msgs/String", "std_msgs/Header"), 1)),
-        ("iverilog", ("noetic", "bond/Constants", 8)),
+        pytest.param("iverilog", ("noetic", "bond/Constants", 8), marks=pytest.mark.thorough),
     ],
     indirect=["of_verilog"],
 )
