@@ -114,7 +114,7 @@ class Fixed(ShapeCastable):
 
     def from_bits(self, raw: int) -> int:
         # As `ctx.get` of a signal.
-        return Const(raw, self.as_shape()).value
+        return int(Const(raw, self.as_shape()).value)
 
 
 def float_bits(number: float, bits: int) -> int:

@@ -62,5 +62,5 @@ def start(
             reason = f": {why}" if why else ""
             raise BuildError(f"Amaranth's simulator takes no modules of Verilog{reason}")
         return AmaranthEngine(top)
-    source = partial(verilated_source, top, modules or {})
+    source = partial(verilated_source, top, modules)
     return VerilatorEngine(program_of(source, options=options, cache=cache, report=report))

@@ -53,12 +53,12 @@ class VerilatedSource:
         More Verilog by file name: modules that the design has instances of.
     """
 
-    def __init__(self, verilog: str, main: str, modules: Mapping[str, str]):
-        self.verilog, self.main, self.modules = verilog, main, modules
+    def __init__(self, verilog: str, main: str, modules: Mapping[str, str] | None = None):
+        self.verilog, self.main, self.modules = verilog, main, modules or {}
 
 
 @search_put_off()
-def verilated_source(top: Top, modules: Mapping[str, str]) -> VerilatedSource:
+def verilated_source(top: Top, modules: Mapping[str, str] | None = None) -> VerilatedSource:
     """Elaborate a design.
 
     Raises
