@@ -54,13 +54,17 @@ def start(
     cache: Path | None,
     report: Report | None = None,
     modules: Mapping[str, str] | None = None,
+    wave: Path | None = None,
 ) -> VerilatorEngine | AmaranthEngine:
     """Start an engine. Parameters and errors are those of :class:`.FastSimulation`."""
     found, why = expected_engine(engine)
     if found == "amaranth":
+        reason = f": {why}" if why else ""
         if modules:
-            reason = f": {why}" if why else ""
             raise BuildError(f"Amaranth's simulator takes no modules of Verilog{reason}")
+        if wave:
+            raise BuildError(f"Amaranth's simulator writes no waveform while it is live{reason}")
         return AmaranthEngine(top)
-    source = partial(verilated_source, top, modules)
-    return VerilatorEngine(program_of(source, options=options, cache=cache, report=report))
+    source = partial(verilated_source, top, modules, traced=wave is not None)
+    program = program_of(source, options=options, cache=cache, report=report)
+    return VerilatorEngine(program, wave)

@@ -29,6 +29,8 @@ class VerilatorEngine(Channel):
     ----------
     program : Path
         From :func:`.program_of`.
+    wave : Path or None
+        The file of the waveform, if the program writes one.
 
     Attributes
     ----------
@@ -42,10 +44,10 @@ class VerilatorEngine(Channel):
 
     engine = "verilator"
 
-    def __init__(self, program: Path):
-        self._program = program
+    def __init__(self, program: Path, wave: Path | None = None):
+        self._program, self._wave = program, wave
         own, other = socket.socketpair()
-        command = [str(program), str(os.getpid())]
+        command = [str(program), str(os.getpid()), *([str(wave.absolute())] if wave else [])]
         try:
             # Texts of `Print` and `Assert` go where those of this process go.
             self.process = start_program(command, stdin=other.fileno(), stdout=None, stderr=None)
@@ -59,7 +61,7 @@ class VerilatorEngine(Channel):
         self._finalizer = weakref.finalize(self, _end, own, self.process)
 
     def again(self) -> VerilatorEngine:
-        return VerilatorEngine(self._program)
+        return VerilatorEngine(self._program, self._wave)
 
     def close(self) -> None:
         self._finalizer()
