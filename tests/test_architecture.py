@@ -66,7 +66,7 @@ MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
     "cases",
     *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil"}),
-    *("arguments", "drawing", "export", "identity", "node", "recordings", "sim"),
+    *("arguments", "drawing", "export", "identity", "node", "recordings", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
     *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
