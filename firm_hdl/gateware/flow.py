@@ -1,10 +1,9 @@
-"""The control flow of a plan, common to both directions: step, counters, exits."""
+"""The control flow of a program, common to both directions: state, counters, transitions."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import Generic
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
@@ -66,22 +65,20 @@ class Exit:
 
 @dataclass(frozen=True, slots=True)
 class _Register:
-    """A register that is written together with the number of the state: its value by state."""
+    """A register that is written together with the state: its value by state, and at the end."""
 
     signal: Signal
     values: Sequence[int]
     if_ended: int
 
     def at(self, state: int | None) -> int:
-        """Return the value at a state; `None` is the end of the packet."""
         return self.if_ended if state is None else self.values[state]
 
 
 class Flow(Generic[AnyState]):
     """State, counters and transitions of a program. Not a component: logic of one module.
 
-    A constant of the states is a register of its own, written together with the state's number. So
-    it is valid at the start of a cycle. One that is the same in all states is a `Const`.
+    Declare constants by :meth:`register`, then add the transitions by :meth:`advance`, once.
 
     Parameters
     ----------
@@ -92,9 +89,10 @@ class Flow(Generic[AnyState]):
     Attributes
     ----------
     step : list of Value(1)
-        Whether the circuit is in a state, by number.
-    traits : SimpleNamespace of Signal or Const
-        The constants of the state, by name.
+        Whether the circuit is in a state, by number. The state is one-hot, so this is a bit of a
+        register.
+    bits : Value(states)
+        All of `step`.
     exits : list of Exit
         All exits of all states; at most one of them is taken.
     exit_ends : Value(1)
@@ -107,111 +105,32 @@ class Flow(Generic[AnyState]):
 
     def __init__(self, m: Module, program: Program[AnyState]):
         self.m, self.program = m, program
-        self.traits = SimpleNamespace()
+        self._registers: list[_Register] = []
+        self._is_complete = False
         count, most = len(program.states), REGISTER_BITS
-        self._steps: list[_Register] = []
         for low in range(0, count, most):
             name = "step" if count <= most else f"step_{low}"
             one_hot = [1 << number >> low & ((1 << most) - 1) for number in range(count)]
-            self._steps.append(self._register(name, min(most, count - low), one_hot))
-        self._registers = list(self._steps)
+            self._add(name, min(most, count - low), one_hot)
+        self._steps = list(self._registers)
+        self.bits = Cat(each.signal for each in self._steps)
         self.step: list[Value] = [bit for each in self._steps for bit in each.signal]
-
-    def _register(self, name: str, bits: int, values: Sequence[int]) -> _Register:
-        start, end = self.program.start.to, self.program.end
-        assert start is not None
-        signal = Signal(bits, init=values[start], name=name)
-        return _Register(signal, values, 0 if end is None else values[end])
-
-    def register(
-        self, name: str, bits: int, of: Callable[[AnyState], int], *, written: bool = False
-    ) -> None:
-        """Add a constant of the states to `traits`.
-
-        Parameters
-        ----------
-        bits : int
-            At most 32.
-        of : function
-            Returns the constant of a state; negative numbers are in two's complement.
-        written : bool
-            The caller writes the register, too.
-        """
-        values = [of(state) & ((1 << bits) - 1) for state in self.program.states]
-        if written or any(value != values[0] for value in values[1:]):
-            self._registers.append(self._register(name, bits, values))
-            setattr(self.traits, name, self._registers[-1].signal)
-        else:
-            setattr(self.traits, name, Const(values[0], bits))
-
-    def add_exits(self) -> None:
-        """Add the counters, and the logic that decides which exit is taken."""
-        program = self.program
         init = {load.level: load.number for load in program.start.loads}
-        self.words = Counter(program.most_words, "words", init.get(None))
+        self.words = Counter(program.most_loaded(None), "words", init.get(None))
         self.levels = [
-            Counter(most, f"level_{level}", init.get(level))
-            for level, most in enumerate(program.most_elements)
+            Counter(program.most_loaded(level), f"level_{level}", init.get(level))
+            for level in range(program.plan.levels)
         ]
         self.exits = list(self._exits())
         self.exit_ends = any_of([each.taken for each in self.exits if each.way.to is None])
 
-    def go(self, *, ends: Value, done: Value, aborts: Value | None = None) -> None:
-        """Go to the next state; the caller's `m.If` says when.
-
-        Parameters
-        ----------
-        ends : Value
-            To the start of the next packet.
-        aborts : Value or None
-            Else, to the end of the packet.
-        done : Value
-            Else, through an exit if `done`, and into the body that the state begins if not.
-        """
-        exits = [(each.taken, each.way.to) for each in self.exits]
-        bodies = [
-            (self.step[state.number], state.body.to)
-            for state in self.program.states
-            if state.body is not None
-        ]
-        m, sync = self.m, self.m.d.sync
-        with m.If(ends):
-            sync += [each.signal.eq(each.at(self.program.start.to)) for each in self._registers]
-        if aborts is not None:
-            with m.Elif(aborts):
-                sync += [each.signal.eq(each.at(None)) for each in self._registers]
-        for condition, ways in ((m.Elif(done), exits), (m.Else(), bodies)):
-            with condition:
-                for each in self._registers:
-                    choices = [(on, each.at(to)) for on, to in ways]
-                    sync += each.signal.eq(pick(choices, len(each.signal)))
-
-    def go_to(self, states: Mapping[int, Value]) -> None:
-        """Change the state, but none of its constants: to the state whose value is high."""
-        bits = Cat(states.get(i, Const(0, 1)) for i in range(len(self.step)))
-        for k, each in enumerate(self._steps):
-            self.m.d.sync += each.signal.eq(bits[REGISTER_BITS * k :])
-
-    def on(self, test: Callable[[AnyState], bool]) -> Value:
-        """Return, as one bit, whether a test holds for the current state."""
-        return any_of([self.step[each.number] for each in self.program.states if test(each)])
-
-    def rest_bytes(self, rest: Value) -> Value:
-        """Return the size in bytes of the rest that the state takes, without the NUL.
-
-        Parameters
-        ----------
-        rest : Value
-            Number of items in the rest.
-        """
-        units: dict[int, list[Value]] = {}
-        for state in self.program.states:
-            if state.takes_rest:
-                units.setdefault(state.rest_unit, []).append(self.step[state.number])
-        cases = [(any_of(on), rest << (unit.bit_length() - 1)) for unit, on in units.items()]
-        if len(cases) == 1:
-            return cases[0][1]
-        return pick(cases, self.program.plan.bus_bytes.bit_length())
+    def _add(self, name: str, bits: int, values: Sequence[int]) -> Signal:
+        start, end = self.program.start.to, self.program.end
+        assert start is not None
+        assert not self._is_complete, "the register would keep its initial value"
+        signal = Signal(bits, init=values[start], name=name)
+        self._registers.append(_Register(signal, values, 0 if end is None else values[end]))
+        return signal
 
     def _exits(self) -> Iterator[Exit]:
         for state in self.program.states:
@@ -227,7 +146,53 @@ class Flow(Generic[AnyState]):
                     no_repeat = no_repeat & last
                 yield Exit(taken=taken, state=state.number, way=way)
 
-    def count(
+    def register(
+        self, name: str, bits: int, of: Callable[[AnyState], int], *, written: bool = False
+    ) -> Signal | Const:
+        """Return a constant of the current state, at most 32 bits.
+
+        It is a register that is written together with the state, and so is valid at the start of a
+        cycle: no logic from the state's number comes before it. A constant that is the same in all
+        states is no register.
+
+        Parameters
+        ----------
+        of : function
+            Returns the constant of a state; negative numbers are in two's complement.
+        written : bool
+            The caller writes the register, too.
+        """
+        values = [of(state) & ((1 << bits) - 1) for state in self.program.states]
+        if written or any(value != values[0] for value in values[1:]):
+            return self._add(name, bits, values)
+        return Const(values[0], bits)
+
+    def select(self, bits: int, of: Callable[[AnyState], int]) -> Value:
+        """Return a constant of the current state, as logic from the state's number."""
+        return pick([(self.step[each.number], int(of(each))) for each in self.program.states], bits)
+
+    def on(self, test: Callable[[AnyState], object]) -> Value:
+        """Return, as one bit, whether a test holds for the current state."""
+        return any_of([self.step[each.number] for each in self.program.states if test(each)])
+
+    def rest_bytes(self, rest: Value) -> Value:
+        """Return the size in bytes of the rest that the state takes, without the NUL.
+
+        Parameters
+        ----------
+        rest : Value
+            Number of items in the rest.
+        """
+        units = {state.rest_unit for state in self.program.states if state.takes_rest}
+        cases = [
+            (self.on(lambda s, unit=unit: s.rest_unit == unit), rest << (unit.bit_length() - 1))
+            for unit in sorted(units)
+        ]
+        if len(cases) == 1:
+            return cases[0][1]
+        return pick(cases, self.program.plan.bus_bytes.bit_length())
+
+    def advance(
         self,
         *,
         moves: Value,
@@ -237,14 +202,20 @@ class Flow(Generic[AnyState]):
         single: Value,
         double: Value | None = None,
         nul: bool,
+        aborts: Value | None = None,
     ) -> None:
-        """Add the logic that loads and decrements the counters.
+        """Add the logic that goes to the next state, and loads and decrements the counters.
 
         Parameters
         ----------
-        moves, ends, done : Value
-            The state is executed in this cycle (`moves`). If `ends`, the packet ends with it.
-            Otherwise, the state is left through an exit if `done`, else into its body.
+        moves : Value
+            The state is executed in this cycle.
+        ends : Value
+            The packet ends with the state: the next one is the first one of a packet.
+        aborts : Value or None
+            Else, it is the end of the packet.
+        done : Value
+            Else, the state is left through an exit if `done`, and into its body if not.
         count : Value
             The length of the current state. If `double` is given: of that of the cycle before.
         single, double : Value
@@ -253,59 +224,64 @@ class Flow(Generic[AnyState]):
         nul : bool
             Whether the count of a string includes the NUL.
         """
+        m, program, self._is_complete = self.m, self.program, True
         to_exit, to_body = Signal(name="step_to_exit"), Signal(name="step_to_body")
-        self.m.d.comb += [to_exit.eq(moves & ~ends & done), to_body.eq(moves & ~ends & ~done)]
-        self._load_constants(moves & ends, to_exit, to_body)
-        self._load_levels(count, single, double)
-        self._load_words(count, single, double, nul)
+        m.d.comb += [to_exit.eq(moves & ~ends & done), to_body.eq(moves & ~ends & ~done)]
+        exits = [(each.taken, each.way) for each in self.exits]
+        bodies = [(self.step[s.number], s.body) for s in program.states if s.body is not None]
+        loads: dict[tuple[int | None, int], list[Value]] = {}
+        for when, ways in (
+            (moves & ends, [(Const(1, 1), program.start)]),
+            (to_exit, exits),
+            (to_body, bodies),
+        ):
+            for taken, way in ways:
+                for load in way.loads:
+                    loads.setdefault((load.level, load.number), []).append(when & taken)
+        for (level, number), on in loads.items():
+            (self.words if level is None else self.levels[level]).load(any_of(on), number)
+        self._load_lengths(count, single, double, nul)
         for each in self.exits:
             if each.way.level is not None:
                 self.levels[each.way.level].down(to_exit & each.taken)
         self.words.down(to_body & self.on(lambda state: state.is_words))
         for counter in (self.words, *self.levels):
-            counter.add_logic(self.m)
+            counter.add_logic(m)
+        with m.If(moves):
+            with m.If(ends):
+                m.d.sync += [each.signal.eq(each.at(program.start.to)) for each in self._registers]
+            if aborts is not None:
+                with m.Elif(aborts):
+                    m.d.sync += [each.signal.eq(each.at(None)) for each in self._registers]
+            for condition, ways in ((m.Elif(done), exits), (m.Else(), bodies)):
+                with condition:
+                    for register in self._registers:
+                        cases = [(taken, register.at(way.to)) for taken, way in ways]
+                        m.d.sync += register.signal.eq(pick(cases, len(register.signal)))
 
-    def _load_constants(self, starts: Value, to_exit: Value, to_body: Value) -> None:
-        """Load counters where a run or loop of a constant count starts."""
-        ways = [(starts, self.program.start)]
-        ways += [(to_exit & each.taken, each.way) for each in self.exits]
-        ways += [
-            (to_body & self.step[state.number], state.body)
-            for state in self.program.states
-            if state.body is not None
-        ]
-        loads: dict[tuple[int | None, int], list[Value]] = {}
-        for on, way in ways:
-            for load in way.loads:
-                loads.setdefault((load.level, load.number), []).append(on)
-        for (level, number), on in loads.items():
-            counter = self.words if level is None else self.levels[level]
-            counter.load(any_of(on), number)
+    def go_to(self, states: Mapping[int, Value]) -> None:
+        """Change the state, but none of its constants: to the state whose value is high."""
+        bits = Cat(states.get(i, Const(0, 1)) for i in range(len(self.step)))
+        for k, each in enumerate(self._steps):
+            self.m.d.sync += each.signal.eq(bits[REGISTER_BITS * k :])
 
-    def _load_levels(self, count: Value, single: Value, double: Value | None) -> None:
-        """Load the counter of a loop that the state may begin.
+    def _load_lengths(self, count: Value, single: Value, double: Value | None, nul: bool) -> None:
+        """Load the counter of the loop or run that the state may begin.
 
-        The counter is not in use before the loop, so every cycle of the state may load it.
+        The counter is not in use before, so every cycle of the state may load it.
         """
+        lengths = self.program.lengths.items()
         for level, counter in enumerate(self.levels):
-            lengths = self.program.lengths.items()
             chosen = [self.step[number] for number, length in lengths if length.level == level]
             if chosen:
                 counter.preload(any_of(chosen), count, single, double)
-
-    def _load_words(
-        self, count: Value, single: Value, double: Value | None, nul_counts: bool
-    ) -> None:
-        """Load the counter of words of a run that the state may begin, like `_load_levels`.
-
-        Of n items in words of w, (n - 1) // w words are taken before the rest.
-        """
-        groups: dict[tuple[int, int], list[Value]] = {}
-        for number, length in self.program.lengths.items():
+        # Of n items in words of w, (n - 1) // w words are taken before the rest.
+        groups: dict[tuple[int, bool], list[Value]] = {}
+        for number, length in lengths:
             if length.level is None:
-                key = length.lanes.bit_length() - 1, int(length.has_nul and nul_counts)
+                key = length.lanes.bit_length() - 1, length.has_nul and nul
                 groups.setdefault(key, []).append(self.step[number])
-        for (shift, nul), chosen in groups.items():
-            less = ~exceeds(count[:shift], nul) if shift else Const(1)
-            value = count - 1 if nul and not shift else count[shift:]
+        for (shift, has_nul), chosen in groups.items():
+            less = ~exceeds(count[:shift], int(has_nul)) if shift else Const(1)
+            value = count - 1 if has_nul and not shift else count[shift:]
             self.words.preload(any_of(chosen), value, single, double, less)

@@ -16,7 +16,7 @@ __all__ = [
     "align_up",
     "any_of",
     "beat_layout",
-    "known_lane_bits",
+    "constant_low_lane_bits",
     "pick",
     "rotate",
     "sum_of_three",
@@ -186,7 +186,7 @@ def rotate(
         at = 8 * ((-lane if back else lane) % count)
         return Cat(value, value)[at : at + len(value)]
 
-    first, known = known_lane_bits(lanes, count)
+    first, known = constant_low_lane_bits(lanes, count)
     now = turned(value, first)
     for bit in reversed(range(known, count.bit_length() - 1)):
         result = Signal(len(value), name=f"{name}_{bit}")
@@ -195,7 +195,7 @@ def rotate(
     return now
 
 
-def known_lane_bits(lanes: Sequence[int], bus_bytes: int) -> tuple[int, int]:
+def constant_low_lane_bits(lanes: Sequence[int], bus_bytes: int) -> tuple[int, int]:
     """Return the low bits that are equal in all lanes: their value and their number."""
     common = bus_bytes
     while any(lane % common != lanes[0] % common for lane in lanes):

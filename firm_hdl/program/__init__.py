@@ -12,6 +12,7 @@ from firm_hdl.program.deserializer import (
     NextPosition,
     align_addend,
     deserializer_program,
+    distance_to,
 )
 from firm_hdl.program.lanes import StartLanes, WordLanes, start_lanes
 from firm_hdl.program.lengths import Length, NextMap
@@ -44,6 +45,7 @@ __all__ = [
     "WordLanes",
     "align_addend",
     "deserializer_program",
+    "distance_to",
     "serializer_program",
     "start_lanes",
 ]

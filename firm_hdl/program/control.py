@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginRun, Jump, RunStep
+from firm_hdl.plan.ir import RUN_COUNTER, Begin, Jump, RunStep
 from firm_hdl.plan.tree import Plan
 
-__all__ = ["Control", "Load", "Transition", "control_of", "most_loaded", "start_of"]
+__all__ = ["Control", "Load", "Transition", "control_of", "start_of"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,12 +74,6 @@ class Control:
     exits: tuple[Transition, ...]
     begin: Begin | None
 
-    def successors(self) -> Iterator[Transition]:
-        """Yield all transitions: the body, then the exits."""
-        if self.body is not None:
-            yield self.body
-        yield from self.exits
-
 
 def start_of(plan: Plan) -> Transition:
     """Return the transition to the first state of each packet."""
@@ -111,33 +104,3 @@ def _transition(plan: Plan, jump: Jump, level: int | None = None) -> Transition:
         else:
             loads.append(Load(level=int(counter), number=count))
     return Transition(to=jump.step, loads=tuple(loads), level=level)
-
-
-def most_loaded(
-    plan: Plan, start: Transition, control: Sequence[Control], most_of: Callable[[Begin], int]
-) -> tuple[int, tuple[int, ...]]:
-    """Return the largest number that is loaded into the counter of words, and of each loop.
-
-    Parameters
-    ----------
-    most_of : function
-        Returns the largest count of a run or loop that a length begins.
-    """
-    words, levels = 1, [1] * plan.levels
-
-    def note(level: int | None, number: int) -> None:
-        nonlocal words
-        if level is None:
-            words = max(words, number)
-        else:
-            levels[level] = max(levels[level], number)
-
-    for transition in (start, *(each for c in control for each in c.successors())):
-        for load in transition.loads:
-            note(load.level, load.number)
-    for each in control:
-        if isinstance(each.begin, BeginRun):
-            note(None, most_of(each.begin) // plan.items_leaf(each.begin.run).lanes)
-        elif each.begin is not None:
-            note(each.begin.level, most_of(each.begin))
-    return words, tuple(levels)

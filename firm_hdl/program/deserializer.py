@@ -8,7 +8,7 @@ from itertools import takewhile
 
 from firm_hdl.plan.ir import Fixed, RunStep
 from firm_hdl.plan.tree import Plan
-from firm_hdl.program.control import Control, control_of, most_loaded, start_of
+from firm_hdl.program.control import Control, control_of, start_of
 from firm_hdl.program.lanes import StartLanes, start_lanes, word_lanes
 from firm_hdl.program.lengths import Length, NextMap, length_of
 from firm_hdl.program.state import Program, State, common_fields, repeated_leaves
@@ -19,6 +19,7 @@ __all__ = [
     "NextPosition",
     "align_addend",
     "deserializer_program",
+    "distance_to",
 ]
 
 
@@ -108,6 +109,16 @@ class DeserializerProgram(Program[DeserializerState]):
         """Whether any run ends in a NUL."""
         return any(run.terminated for run in self.plan.runs)
 
+    @property
+    def count_bits(self) -> int:
+        """Bits of the largest legal length."""
+        return max((each.max_count.bit_length() for each in self.lengths.values()), default=1)
+
+    @property
+    def rest_bits(self) -> int:
+        """Bits of the number of items in a rest."""
+        return self.plan.max_run_lanes.bit_length()
+
 
 def align_addend(align: int, phase: int, shift: int = 0) -> int:
     """Return the addend after which clearing the low bits rounds a position up.
@@ -127,7 +138,6 @@ def deserializer_program(plan: Plan, *, has_leaves: bool = True) -> Deserializer
     start, control = start_of(plan), control_of(plan)
     starts = start_lanes(plan)
     items, map_ = word_lanes(plan, starts)
-    most_words, most_elements = most_loaded(plan, start, control, plan.max_count)
     number = len(plan.steps)
     end = DeserializerState(number=number, at_end=True, last_offset=-1, map_offset=1)
     leading = len(list(takewhile(lambda s: not (s.bytes or isinstance(s, RunStep)), plan.steps)))
@@ -141,8 +151,6 @@ def deserializer_program(plan: Plan, *, has_leaves: bool = True) -> Deserializer
         states=(*states, end),
         start=start,
         end=number,
-        most_words=most_words,
-        most_elements=most_elements,
         items=items,
         map=map_,
         has_leaves=has_leaves,
@@ -198,13 +206,18 @@ def _next_map(plan: Plan, number: int | None) -> NextMap:
 
 def _next(plan: Plan, to: NextMap, *, over_rest: bool = False) -> NextPosition:
     """Return the way to the last byte of a map or word that follows."""
-    header, mask = plan.header_bytes, to.align - 1
+    # On a narrow bus, packets start at any offset modulo 8: alignment counts from a register.
+    low = (plan.header_bytes + to.last_offset) % to.align if plan.bus_bytes >= 8 else to.last_offset
+    return NextPosition(add=distance_to(plan, to), mask=to.align - 1, low=low, over_rest=over_rest)
+
+
+def distance_to(plan: Plan, to: NextMap) -> int:
+    """Return the distance from a state's last byte to that of the next one, before alignment."""
     if plan.bus_bytes < 8:
-        # Packets start at any lane modulo 8, so alignment counts from a register.
-        return NextPosition(add=1, mask=mask, low=to.last_offset, over_rest=over_rest)
-    add = to.last_offset if to.align == 1 else align_addend(to.align, header, to.last_offset)
-    low = (header + to.last_offset) % to.align
-    return NextPosition(add=1 + add, mask=mask, low=low, over_rest=over_rest)
+        return 1
+    if to.align == 1:
+        return 1 + to.last_offset
+    return 1 + align_addend(to.align, plan.header_bytes, to.last_offset)
 
 
 def _length(plan: Plan, control: Sequence[Control], number: int, *, has_leaves: bool) -> Length:

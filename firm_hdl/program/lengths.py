@@ -92,14 +92,14 @@ class Length:
         return f"skips_{self.kind}_{self.max_count}"
 
     @property
-    def single(self) -> str:
+    def at_most_one_pass(self) -> str:
         """At most one pass of the body."""
-        return f"single_{self.kind}"
+        return f"at_most_one_{self.kind}"
 
     @property
-    def double(self) -> str:
-        """Two passes of the body; valid only if `single` is 0."""
-        return f"double_{self.kind}"
+    def two_passes(self) -> str:
+        """Two passes of the body; valid only if `at_most_one_pass` is 0."""
+        return f"two_{self.kind}"
 
     @property
     def rest(self) -> str:
@@ -107,9 +107,9 @@ class Length:
         return f"rest_{self.kind}"
 
     @property
-    def counted(self) -> str | None:
+    def charged(self) -> str | None:
         """The value is large enough to be charged to the budget; `None`: it has no claim."""
-        return None if self.claim is None else f"counted_{self.claim.least}"
+        return None if self.claim is None else f"charged_{self.claim.least}"
 
     def next_last(self, following: NextMap) -> str:
         """The last byte of what follows, if all items are in the rest."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from firm_hdl.plan.geometry import first_step, may_end_empty, most_beats, only_ends
 from firm_hdl.plan.ir import Fixed, Part, RunStep, Step
 from firm_hdl.plan.tree import Plan
-from firm_hdl.program.control import Control, control_of, most_loaded, start_of
+from firm_hdl.program.control import Control, control_of, start_of
 from firm_hdl.program.lanes import start_lanes, word_lanes
 from firm_hdl.program.state import Program, State, common_fields
 
@@ -99,13 +99,11 @@ def serializer_program(plan: Plan) -> SerializerProgram:
     """Return the program of a serializer."""
     start, control = start_of(plan), control_of(plan)
     items, map_ = word_lanes(plan, start_lanes(plan))
-    most_words, most_elements = most_loaded(plan, start, control, lambda _: (1 << LENGTH_BITS) - 1)
     return SerializerProgram(
         plan=plan,
         states=tuple(_state(plan, number, each) for number, each in enumerate(control)),
         start=start,
-        most_words=most_words,
-        most_elements=most_elements,
+        most_counted=(1 << LENGTH_BITS) - 1,
         items=items,
         map=map_,
         most_beats=most_beats(plan),

@@ -84,6 +84,12 @@ class State:
     transfers: tuple[Transfer, ...] = ()
     cut: Part | None = None
 
+    def successors(self) -> Iterator[Transition]:
+        """Yield all transitions: the body, then the exits."""
+        if self.body is not None:
+            yield self.body
+        yield from self.exits
+
     @property
     def begins_nothing(self) -> bool:
         """The state always takes an exit."""
@@ -121,21 +127,18 @@ class Program(Generic[AnyState]):
         To the first state of each packet.
     end : int or None
         The state that waits for the end of the packet; `None`: there is none.
-    most_words, most_elements : int, tuple of int
-        Largest number that is loaded into the counter of words, and into that of each loop.
+    most_counted : int or None
+        Largest length that a counter is loaded with; `None`: the length's own limit.
     items, map : WordLanes
         Where the two words of a state may be: the rest, counted items or the first word of a map
         with two, and the map or another word.
-    aligns : bool
-        Whether anything has padding of variable size before it.
     """
 
     plan: Plan
     states: tuple[AnyState, ...]
     start: Transition
     end: int | None = None
-    most_words: int
-    most_elements: tuple[int, ...]
+    most_counted: int | None = None
     items: WordLanes
     map: WordLanes
 
@@ -149,6 +152,17 @@ class Program(Generic[AnyState]):
         """Whether anything has padding of variable size before it."""
         runs = (length.align > 1 for length in self.lengths.values())
         return any(each.align > 1 for each in self.states) or any(runs)
+
+    def most_loaded(self, level: int | None) -> int:
+        """Return the largest number that is loaded into the counter of a loop, or of words."""
+        ways = [self.start, *(way for each in self.states for way in each.successors())]
+        most = [load.number for way in ways for load in way.loads if load.level == level]
+        most += [
+            (self.most_counted or length.max_count) // length.lanes
+            for length in self.lengths.values()
+            if length.level == level
+        ]
+        return max([1, *most])
 
 
 def common_fields(plan: Plan, number: int, control: Control) -> dict[str, Any]:
@@ -192,8 +206,7 @@ def repeated_leaves(states: Sequence[State], start: Transition) -> frozenset[int
     leaves = [{transfer.leaf for transfer in state.transfers} for state in states]
     repeated: set[int] = set()
     for state in states:
-        ways = state.exits if state.body is None else (state.body, *state.exits)
-        for way in ways:
+        for way in state.successors():
             to = start.to if way.to is None else way.to
             repeated |= leaves[state.number] & leaves[to or 0]
     return frozenset(repeated)

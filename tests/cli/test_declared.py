@@ -35,7 +35,7 @@ DEFAULTS = {
         ["run", "n.yaml"],
         {"action": "run", "file": "n.yaml", "path": []}
         | {"board": "sim", "graph": None, "domain": None, "interface": None}
-        | {"seconds": None, "engine": "auto", "quiet": False},
+        | {"seconds": None, "engine": "auto", "quiet": False, "wave": None},
     ),
     "doctor": ([], {"as_json": False}),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),

@@ -28,7 +28,7 @@ RUN = {
     "verify": "firm_hdl.verify.command",
     "golden": "firm_hdl.verify.ts2.golden_command",
     "cover": "firm_hdl.covering.command",
-    "report": "firm_hdl.verify.report.command",
+    "report": "firm_hdl.verify.report.formats",
     "prove": "firm_hdl.equivalence.command",
     "bench": "firm_hdl.bench.command",
 }

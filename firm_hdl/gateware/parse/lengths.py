@@ -2,22 +2,32 @@
 
 The sequencer has one cycle from a length to the position after the items that the length counts.
 So all that follows from the value alone is computed here, before the sequencer needs it:
-comparisons, the size of the rest, and the position of the next step. The sequencer then selects an
-entry by its position, and fields of the entry by its step.
+comparisons, the size of the rest, and the position of the next state. The sequencer then selects an
+entry by its position, and columns of the entry by its state.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.flow import exceeds, last_word
+from firm_hdl.gateware.flow import Flow, exceeds, last_word
 from firm_hdl.gateware.memories import LutMemory
-from firm_hdl.gateware.positions import Ring, align_up, beat_layout, known_lane_bits
-from firm_hdl.program import DeserializerProgram, Length
+from firm_hdl.gateware.positions import (
+    Ring,
+    align_up,
+    any_of,
+    beat_layout,
+    constant_low_lane_bits,
+    pick,
+)
+from firm_hdl.program import DeserializerProgram, DeserializerState, Length
 
-__all__ = ["Lengths"]
+__all__ = ["Lengths", "StepLength", "length_of_step"]
 
 LENGTH_BYTES = 4
 
@@ -36,48 +46,40 @@ class Lengths(wiring.Component):
     -------
     beat : In(beat_layout(plan))
         The beat that is written to the packet buffer in this cycle.
-    phase : In(3)
-        Position after the encapsulation header of the beat's packet, modulo 8. Not used on a bus
-        of 8 bytes or more.
     key : In(position)
         Last byte of a length.
     entry : Out
-        The fields that :class:`Length` names, and `zero`.
-    count : Out
-        The length that was looked up in the cycle before, as wide as legal values. The number is
-        not needed earlier, and its memories do not load `key`, which is late in the cycle.
+        The columns that :class:`Length` names, and `zero`.
+    count : Out(count_bits)
+        The length that was looked up in the cycle before. The number is not needed earlier, and its
+        memories do not load `key`, which is late in the cycle.
     """
 
     def __init__(self, program: DeserializerProgram):
-        self.plan, self.ring, self.lanes = program.plan, Ring(program.plan), program.length_lanes
-        self.lengths = list(program.lengths.values())
-        self.layout = data.StructLayout(self._fields())
-        self.count_bits = max((each.max_count.bit_length() for each in self.lengths), default=1)
+        self.program, self.plan, self.ring = program, program.plan, Ring(program.plan)
+        columns = {"zero": 1}
+        for each in program.lengths.values():
+            columns |= {each.over: 1, each.skips: 1}
+            columns |= {each.at_most_one_pass: 1, each.two_passes: 1}
+            if each.charged is not None:
+                columns[each.charged] = 1
+            if each.level is None:
+                columns[each.rest] = each.lanes.bit_length()
+                columns |= {each.next_last(following): self.ring.bits for following in each.nexts}
+        self.layout = data.StructLayout(columns)
         super().__init__(
             {
                 "beat": In(beat_layout(self.plan)),
-                "phase": In(3),
                 "key": In(self.ring.bits),
                 "entry": Out(self.layout),
-                "count": Out(self.count_bits),
+                "count": Out(program.count_bits),
             }
         )
 
-    def _fields(self) -> dict[str, int]:
-        fields = {"zero": 1}
-        for each in self.lengths:
-            fields |= {each.over: 1, each.skips: 1, each.single: 1, each.double: 1}
-            if each.counted is not None:
-                fields[each.counted] = 1
-            if each.level is None:
-                fields[each.rest] = each.lanes.bit_length()
-                for following in each.nexts:
-                    fields[each.next_last(following)] = self.ring.bits
-        return fields
-
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        ring = self.ring
+        ring, lanes = self.ring, self.program.length_lanes
+        phase = self._phase(m)
         # The first bytes of a length may be in earlier beats.
         history = Signal(8 * (LENGTH_BYTES - 1), reset_less=True)
         stream = Cat(history, self.beat.data)
@@ -86,16 +88,38 @@ class Lengths(wiring.Component):
         entries, counts = [], []
         key = ring.position("key_before")
         m.d.sync += key.eq(self.key)
-        for lane in self.lanes:
+        for lane in lanes:
             length = Signal(8 * LENGTH_BYTES, name=f"length_{lane}")
             entry = Signal(self.layout, name=f"entry_{lane}")
             m.d.comb += length.eq(stream[8 * lane : 8 * (lane + LENGTH_BYTES)])
-            self._decode(m, length, lane, entry)
+            self._decode(m, length, lane, phase, entry)
             entries.append(self._store(m, f"entry_{lane}", Value.cast(entry), self.key))
-            counts.append(self._store(m, f"count_{lane}", length[: self.count_bits], key))
-        self._select(m, Value.cast(self.entry), self.key, entries)
-        self._select(m, self.count, key, counts)
+            counts.append(self._store(m, f"count_{lane}", length[: len(self.count)], key))
+        # Select the lane of the key; only lanes in which lengths end occur.
+        _, constant = constant_low_lane_bits(lanes, self.plan.bus_bytes)
+        selections = (Value.cast(self.entry), self.key, entries), (self.count, key, counts)
+        for target, at, values in selections:
+            with m.Switch(ring.lane(at)[constant:]):
+                for lane, value in zip(lanes[:-1], values, strict=False):
+                    with m.Case(lane >> constant):
+                        m.d.comb += target.eq(value)
+                with m.Default():
+                    m.d.comb += target.eq(values[-1])
         return m
+
+    def _phase(self, m: Module) -> Value | int:
+        """Return the position after the encapsulation header of the beat's packet, modulo 8.
+
+        Packets start at a bus word; so the position is a constant on a bus of 8 bytes or more.
+        """
+        header, beat = self.plan.header_bytes, self.beat
+        if self.plan.bus_bytes >= 8 or not self.program.aligns:
+            return header
+        phase = Signal(3, name="phase", init=header % 8)
+        with m.If(beat.valid & beat.last):
+            at = Cat(Const(0, self.ring.lane_bits), beat.at)
+            m.d.sync += phase.eq(at + self.plan.bus_bytes + header)
+        return phase
 
     def _store(self, m: Module, name: str, value: Value, key: Value) -> Value:
         """Write a value with each beat; return that of the beat with `key`."""
@@ -110,58 +134,142 @@ class Lengths(wiring.Component):
         ]
         return read.data
 
-    def _select(self, m: Module, target: Value, key: Value, values: list[Value]) -> None:
-        """Select the value of the lane of `key`; only lanes in which lengths end occur."""
-        _, known = known_lane_bits(self.lanes, self.plan.bus_bytes)
-        lane = self.ring.lane(key)[known:]
-        with m.Switch(lane):
-            for number, value in zip(self.lanes[:-1], values, strict=False):
-                with m.Case(number >> known):
-                    m.d.comb += target.eq(value)
-            with m.Default():
-                m.d.comb += target.eq(values[-1])
-
-    def _decode(self, m: Module, length: Signal, lane: int, entry: data.View) -> None:
+    def _decode(
+        self, m: Module, length: Signal, lane: int, phase: Value | int, entry: data.View
+    ) -> None:
+        """Decode all columns of an entry, as if a length ended in a lane of the beat."""
         zero = ~length.any()
-        m.d.comb += entry.zero.eq(zero)
-        for each in self.lengths:
+        columns: dict[str, Value] = {"zero": zero}
+        for each in self.program.lengths.values():
             over = exceeds(length, each.max_count)
             if each.level is not None:
                 skips = Const(1, 1) if each.counts_nothing else zero
-                single, double = length == 1, length == 2
+                one, two = length == 1, length == 2
             else:
-                lanes, word = each.lanes, each.word
-                skips, single, double = (~exceeds(length, n * lanes + word) for n in range(3))
-                m.d.comb += entry[each.rest].eq(self._rest(length, lanes, each.has_nul))
-                self._places(m, length, lane, entry, each)
-            m.d.comb += [
-                entry[each.over].eq(over),
-                entry[each.skips].eq(skips | over),
-                entry[each.single].eq(single),
-                entry[each.double].eq(double),
-            ]
-            if each.claim is not None:
-                m.d.comb += entry[each.counted].eq(exceeds(length, each.claim.least - 1))
+                # A word and its NUL are the rest, so n passes take n words more.
+                skips, one, two = (~exceeds(length, n * each.lanes + each.word) for n in range(3))
+                if each.rest not in columns:
+                    nul = int(each.has_nul)
+                    items = last_word(length[:8] - nul, each.lanes)
+                    columns[each.rest] = Mux(exceeds(length, nul), items, 0)
+                columns |= self._next_last(m, length, lane, phase, each, columns)
+            columns |= {
+                each.over: over,
+                each.skips: skips | over,
+                each.at_most_one_pass: one,
+                each.two_passes: two,
+            }
+            if each.claim is not None and each.charged is not None:
+                columns[each.charged] = exceeds(length, each.claim.least - 1)
+        m.d.comb += [entry[name].eq(value) for name, value in columns.items()]
 
-    @staticmethod
-    def _rest(length: Value, lanes: int, nul: int) -> Value:
-        """Return the number of items in the last word; 0 if the length counts no item."""
-        return Mux(exceeds(length, nul), last_word(length[:8] - nul, lanes), 0)
-
-    def _places(self, m: Module, length: Signal, lane: int, entry: data.View, each: Length) -> None:
-        """Decode the last byte of the next step, if no word comes before the rest."""
+    def _next_last(
+        self,
+        m: Module,
+        length: Signal,
+        lane: int,
+        phase: Value | int,
+        of: Length,
+        known: dict[str, Value],
+    ) -> dict[str, Value]:
+        """Return the last byte of each next state, if no word comes before the rest."""
+        nexts = {of.next_last(each): each for each in of.nexts}
+        if nexts.keys() <= known.keys():
+            return {}
         ring = self.ring
-        phase: Value | int = self.plan.header_bytes if self.plan.bus_bytes >= 8 else self.phase
-        items = Signal(ring.bits, name=f"items_{lane}_{each.kind}")
-        items_end = Signal(ring.bits, name=f"items_end_{lane}_{each.kind}")
+        items = Signal(ring.bits, name=f"items_{lane}_{of.kind}")
+        items_end = Signal(ring.bits, name=f"items_end_{lane}_{of.kind}")
         beat = Cat(Const(0, ring.lane_bits), self.beat.at)
-        count = length[: each.word.bit_length()]
-        first_align = each.align
-        aligned = align_up(m, beat, lane + 1, first_align, phase)
+        count = length[: of.word.bit_length()]
+        aligned = align_up(m, beat, lane + 1, of.align, phase)
+        # An empty run has no padding.
         m.d.comb += [
-            items.eq(Mux(length.any(), aligned, beat + (lane + 1)) if first_align > 1 else aligned),
-            items_end.eq(items + (count << (each.item_bytes.bit_length() - 1))),
+            items.eq(Mux(length.any(), aligned, beat + (lane + 1)) if of.align > 1 else aligned),
+            items_end.eq(items + (count << (of.item_bytes.bit_length() - 1))),
         ]
-        for following in each.nexts:
-            last = align_up(m, items_end, 0, following.align, phase, following.last_offset)
-            m.d.comb += entry[each.next_last(following)].eq(last)
+        return {
+            name: align_up(m, items_end, 0, each.align, phase, each.last_offset)
+            for name, each in nexts.items()
+            if name not in known
+        }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepLength:
+    """The length of the current state.
+
+    All values are combinational, from registers and the table. In a state without a length,
+    `run_skips`, `loop_skips` and `charged` are 0, and the other values have no meaning.
+
+    Attributes
+    ----------
+    entry : View or None
+        The columns that :class:`Length` names; `None` if the program has no lengths.
+    count : Value
+        The length on the wire, a cycle later. It includes the NUL of a CDR `string`.
+    zero, over : Value(1)
+        The length is 0; the length is above the largest legal value.
+    charged : Value(1)
+        The length is legal by itself, and large enough to be charged to the budget.
+    run_skips, loop_skips : Value(1)
+        The body of the run or of the loop is skipped: no element, no word before the rest, or an
+        illegal length.
+    at_most_one_pass, two_passes : Value(1)
+        Passes of the body; `two_passes` is valid only if the other one is 0.
+    rest : Value(range(lanes + 1))
+        Items in the rest.
+    """
+
+    entry: data.View | None
+    count: Value
+    zero: Value
+    over: Value
+    charged: Value
+    run_skips: Value
+    loop_skips: Value
+    at_most_one_pass: Value
+    two_passes: Value
+    rest: Value
+
+
+def length_of_step(
+    m: Module,
+    program: DeserializerProgram,
+    flow: Flow[DeserializerState],
+    beat: Value,
+    last_at: Value,
+) -> StepLength:
+    """Return the length of the current state, of which `last_at` is the last byte."""
+    lengths = program.lengths
+    if not lengths:
+        names = [field.name for field in fields(StepLength)]
+        return StepLength(**{**dict.fromkeys(names, Const(0, 1)), "entry": None})
+    m.submodules.lengths = table = Lengths(program)
+    m.d.comb += [Value.cast(table.beat).eq(beat), table.key.eq(last_at)]
+    entry = table.entry
+
+    def select(
+        column: Callable[[Length], str | None], width: int = 1, *, exact: bool = False
+    ) -> Value:
+        """Select a column by the state; 0 in states that have none, if `exact`."""
+        states: dict[str, list[Value]] = {}
+        for number, length in lengths.items():
+            name = column(length)
+            if name is not None:
+                states.setdefault(name, []).append(flow.step[number])
+        cases = [(any_of(on), Value.cast(entry[name])) for name, on in states.items()]
+        return cases[0][1] if len(cases) == 1 and not exact else pick(cases, width)
+
+    over = select(lambda each: each.over)
+    return StepLength(
+        entry=entry,
+        count=table.count,
+        zero=entry.zero,
+        over=over,
+        charged=select(lambda each: each.charged, exact=True) & ~over,
+        run_skips=select(lambda each: each.skips if each.level is None else None, exact=True),
+        loop_skips=select(lambda each: None if each.level is None else each.skips, exact=True),
+        at_most_one_pass=select(lambda each: each.at_most_one_pass),
+        two_passes=select(lambda each: each.two_passes),
+        rest=select(lambda each: each.rest if each.level is None else None, program.rest_bits),
+    )

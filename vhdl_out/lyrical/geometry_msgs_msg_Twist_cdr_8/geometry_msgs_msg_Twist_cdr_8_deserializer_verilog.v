@@ -55,6 +55,11 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   wire [10:0] newest;
 
   reg [10:0] ends [0:7];
+  integer ends_at;
+  initial begin
+    for (ends_at = 0; ends_at < 8; ends_at = ends_at + 1)
+      ends[ends_at] = 11'd0;
+  end
 
   assign arrives = packets_valid & packets_ready_q;
   assign used = arrived - freed;
@@ -67,13 +72,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   assign follows = ended_q & ends_now;
   assign or_14 = next_sig | ~ended_q;
   assign mux_15 = has_second ? second : {next_beat, newest_0};
-  assign mux_22 = has_second ? (next_sig ? more : 1'b1) : (next_sig ? 1'b0 : follows);
-
-  integer ends_at;
-  initial begin
-    for (ends_at = 0; ends_at < 8; ends_at = ends_at + 1)
-      ends[ends_at] = 11'd0;
-  end
+  assign mux_22 = has_second ? (~next_sig | more) : (~next_sig & follows);
 
   always @(posedge aclk) begin
     ends[pushed[2:0]] <= {next_beat, add_3};
@@ -158,15 +157,14 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_marks (
   wire headers_read_data;
 
   reg [0:0] headers [0:7];
-
-  assign headers_write_data = |{(beat[15:8] != 8'd1) & (~beat[68] | (beat[67:64] > 4'd1)),
-      (beat[7:0] != 8'd0) & (~beat[68] | (beat[67:64] > 4'd0))};
-
   integer headers_at;
   initial begin
     for (headers_at = 0; headers_at < 8; headers_at = headers_at + 1)
       headers[headers_at] = 1'b0;
   end
+
+  assign headers_write_data = |{(beat[15:8] != 8'd1) & (~beat[68] | (beat[67:64] > 4'd1)),
+      (beat[7:0] != 8'd0) & (~beat[68] | (beat[67:64] > 4'd0))};
 
   always @(posedge aclk) begin
     if (beat[73]) begin
@@ -647,20 +645,60 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire [2:0] lane_7_map_addr;
 
   reg [7:0] lane_0 [0:7];
+  integer lane_0_at;
+  initial begin
+    for (lane_0_at = 0; lane_0_at < 8; lane_0_at = lane_0_at + 1)
+      lane_0[lane_0_at] = 8'd0;
+  end
 
   reg [7:0] lane_1 [0:7];
+  integer lane_1_at;
+  initial begin
+    for (lane_1_at = 0; lane_1_at < 8; lane_1_at = lane_1_at + 1)
+      lane_1[lane_1_at] = 8'd0;
+  end
 
   reg [7:0] lane_2 [0:7];
+  integer lane_2_at;
+  initial begin
+    for (lane_2_at = 0; lane_2_at < 8; lane_2_at = lane_2_at + 1)
+      lane_2[lane_2_at] = 8'd0;
+  end
 
   reg [7:0] lane_3 [0:7];
+  integer lane_3_at;
+  initial begin
+    for (lane_3_at = 0; lane_3_at < 8; lane_3_at = lane_3_at + 1)
+      lane_3[lane_3_at] = 8'd0;
+  end
 
   reg [7:0] lane_4 [0:7];
+  integer lane_4_at;
+  initial begin
+    for (lane_4_at = 0; lane_4_at < 8; lane_4_at = lane_4_at + 1)
+      lane_4[lane_4_at] = 8'd0;
+  end
 
   reg [7:0] lane_5 [0:7];
+  integer lane_5_at;
+  initial begin
+    for (lane_5_at = 0; lane_5_at < 8; lane_5_at = lane_5_at + 1)
+      lane_5[lane_5_at] = 8'd0;
+  end
 
   reg [7:0] lane_6 [0:7];
+  integer lane_6_at;
+  initial begin
+    for (lane_6_at = 0; lane_6_at < 8; lane_6_at = lane_6_at + 1)
+      lane_6[lane_6_at] = 8'd0;
+  end
 
   reg [7:0] lane_7 [0:7];
+  integer lane_7_at;
+  initial begin
+    for (lane_7_at = 0; lane_7_at < 8; lane_7_at = lane_7_at + 1)
+      lane_7[lane_7_at] = 8'd0;
+  end
 
   assign go_0 = active_0 & ~blocked_0;
   assign blocked_0 = active_0 & message_linear_x_valid_q;
@@ -702,12 +740,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
       ~message_linear_z_ready, blocked_1 & ~message_linear_y_ready, blocked_0 &
       ~message_linear_x_ready};
 
-  integer lane_0_at;
-  initial begin
-    for (lane_0_at = 0; lane_0_at < 8; lane_0_at = lane_0_at + 1)
-      lane_0[lane_0_at] = 8'd0;
-  end
-
   always @(posedge aclk) begin
     if (beat[73]) begin
       lane_0[beat[71:69]] <= beat[7:0];
@@ -715,12 +747,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   end
   assign lane_0_items_data = lane_0[orders_payload[9:7]];
   assign lane_0_map_data = lane_0[orders_payload[15:13]];
-
-  integer lane_1_at;
-  initial begin
-    for (lane_1_at = 0; lane_1_at < 8; lane_1_at = lane_1_at + 1)
-      lane_1[lane_1_at] = 8'd0;
-  end
 
   always @(posedge aclk) begin
     if (beat[73]) begin
@@ -730,12 +756,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign lane_1_items_data = lane_1[orders_payload[9:7]];
   assign lane_1_map_data = lane_1[orders_payload[15:13]];
 
-  integer lane_2_at;
-  initial begin
-    for (lane_2_at = 0; lane_2_at < 8; lane_2_at = lane_2_at + 1)
-      lane_2[lane_2_at] = 8'd0;
-  end
-
   always @(posedge aclk) begin
     if (beat[73]) begin
       lane_2[beat[71:69]] <= beat[23:16];
@@ -743,12 +763,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   end
   assign lane_2_items_data = lane_2[orders_payload[9:7]];
   assign lane_2_map_data = lane_2[orders_payload[15:13]];
-
-  integer lane_3_at;
-  initial begin
-    for (lane_3_at = 0; lane_3_at < 8; lane_3_at = lane_3_at + 1)
-      lane_3[lane_3_at] = 8'd0;
-  end
 
   always @(posedge aclk) begin
     if (beat[73]) begin
@@ -758,12 +772,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign lane_3_items_data = lane_3[orders_payload[9:7]];
   assign lane_3_map_data = lane_3[orders_payload[15:13]];
 
-  integer lane_4_at;
-  initial begin
-    for (lane_4_at = 0; lane_4_at < 8; lane_4_at = lane_4_at + 1)
-      lane_4[lane_4_at] = 8'd0;
-  end
-
   always @(posedge aclk) begin
     if (beat[73]) begin
       lane_4[beat[71:69]] <= beat[39:32];
@@ -771,12 +779,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   end
   assign lane_4_items_data = lane_4[orders_payload[9:7]];
   assign lane_4_map_data = lane_4[orders_payload[15:13]];
-
-  integer lane_5_at;
-  initial begin
-    for (lane_5_at = 0; lane_5_at < 8; lane_5_at = lane_5_at + 1)
-      lane_5[lane_5_at] = 8'd0;
-  end
 
   always @(posedge aclk) begin
     if (beat[73]) begin
@@ -786,12 +788,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign lane_5_items_data = lane_5[orders_payload[9:7]];
   assign lane_5_map_data = lane_5[orders_payload[15:13]];
 
-  integer lane_6_at;
-  initial begin
-    for (lane_6_at = 0; lane_6_at < 8; lane_6_at = lane_6_at + 1)
-      lane_6[lane_6_at] = 8'd0;
-  end
-
   always @(posedge aclk) begin
     if (beat[73]) begin
       lane_6[beat[71:69]] <= beat[55:48];
@@ -799,12 +795,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   end
   assign lane_6_items_data = lane_6[orders_payload[9:7]];
   assign lane_6_map_data = lane_6[orders_payload[15:13]];
-
-  integer lane_7_at;
-  initial begin
-    for (lane_7_at = 0; lane_7_at < 8; lane_7_at = lane_7_at + 1)
-      lane_7[lane_7_at] = 8'd0;
-  end
 
   always @(posedge aclk) begin
     if (beat[73]) begin

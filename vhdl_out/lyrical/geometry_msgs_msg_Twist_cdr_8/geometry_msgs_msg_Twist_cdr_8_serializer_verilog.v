@@ -366,12 +366,32 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   wire [4:0] ends_write_data;
 
   reg [63:0] items_0 [0:7];
+  integer items_0_at;
+  initial begin
+    for (items_0_at = 0; items_0_at < 8; items_0_at = items_0_at + 1)
+      items_0[items_0_at] = 64'd0;
+  end
 
   reg [31:0] map_0 [0:7];
+  integer map_0_at;
+  initial begin
+    for (map_0_at = 0; map_0_at < 8; map_0_at = map_0_at + 1)
+      map_0[map_0_at] = 32'd0;
+  end
 
   reg [31:0] map_4 [0:7];
+  integer map_4_at;
+  initial begin
+    for (map_4_at = 0; map_4_at < 8; map_4_at = map_4_at + 1)
+      map_4[map_4_at] = 32'd0;
+  end
 
   reg [4:0] ends [0:7];
+  integer ends_at;
+  initial begin
+    for (ends_at = 0; ends_at < 8; ends_at = ends_at + 1)
+      ends[ends_at] = 5'd0;
+  end
 
   assign takes = words_valid & words_ready_q;
   assign total = at + {2'd0, words_payload_128[13:9]};
@@ -385,23 +405,17 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign newest = at[6:3] + {1'd0, takes ? words_payload_128[28:26] : 3'd0};
   assign room = bound - newest;
   assign items_used_0 = writes & (items_size > 4'd0);
-  assign items_written_0 = items_has_0 >> first[2:0];
+  assign items_written_0 = items_has_0[first[2:0]];
   assign map_used_0 = writes & (map_size > 4'd0);
-  assign map_written_0 = map_has_0 >> first[2:0];
+  assign map_written_0 = map_has_0[first[2:0]];
   assign map_used_4 = writes & (map_size > 4'd4);
-  assign map_written_4 = map_has_4 >> first[2:0];
+  assign map_written_4 = map_has_4[first[2:0]];
   assign ends_write_addr = complete_next[2:0] - 3'd1;
   assign ends_write_en = writes & ends_packet;
   assign reads = (complete != first) & (~packets_valid_q | packets_ready);
-  assign is_last = last >> first[2:0];
+  assign is_last = last[first[2:0]];
   assign and_139 = writes & ~waits;
   assign sub_140 = complete_next[2:0] - 3'd1;
-
-  integer items_0_at;
-  initial begin
-    for (items_0_at = 0; items_0_at < 8; items_0_at = items_0_at + 1)
-      items_0[items_0_at] = 64'd0;
-  end
 
   always @(posedge aclk) begin
     if (items_used_0) begin
@@ -410,12 +424,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   end
   assign items_0_read_data = items_0[first[2:0]];
 
-  integer map_0_at;
-  initial begin
-    for (map_0_at = 0; map_0_at < 8; map_0_at = map_0_at + 1)
-      map_0[map_0_at] = 32'd0;
-  end
-
   always @(posedge aclk) begin
     if (map_used_0) begin
       map_0[map_start[5:3]] <= map_placed[31:0];
@@ -423,24 +431,12 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   end
   assign map_0_read_data = map_0[first[2:0]];
 
-  integer map_4_at;
-  initial begin
-    for (map_4_at = 0; map_4_at < 8; map_4_at = map_4_at + 1)
-      map_4[map_4_at] = 32'd0;
-  end
-
   always @(posedge aclk) begin
     if (map_used_4) begin
       map_4[map_start[5:3]] <= map_placed[63:32];
     end
   end
   assign map_4_read_data = map_4[first[2:0]];
-
-  integer ends_at;
-  initial begin
-    for (ends_at = 0; ends_at < 8; ends_at = ends_at + 1)
-      ends[ends_at] = 5'd0;
-  end
 
   always @(posedge aclk) begin
     if (ends_write_en) begin

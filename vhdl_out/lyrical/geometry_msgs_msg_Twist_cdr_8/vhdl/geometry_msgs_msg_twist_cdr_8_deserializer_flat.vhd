@@ -83,7 +83,7 @@ begin
   follows <= ended_q and ends_now;
   or_14 <= next_sig or not ended_q;
   mux_15 <= second when has_second = '1' else next_beat & newest_0;
-  mux_22 <= mux(next_sig, more, '1') when has_second = '1' else mux(next_sig, '0', follows);
+  mux_22 <= not next_sig or more when has_second = '1' else not next_sig and follows;
 
   process (aclk)
   begin

@@ -1,4 +1,4 @@
-"""Marks of beats for the sequencer: bytes that are not NUL, headers that are wrong."""
+"""Flags of bytes for the sequencer: those that are not NUL, and headers that are wrong."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout
 from firm_hdl.program import DeserializerProgram
 
-__all__ = ["Marks"]
+__all__ = ["ByteFlags"]
 
 
-class Marks(wiring.Component):
+class ByteFlags(wiring.Component):
     """One bit for each byte of the packet buffer, and one for each header.
 
-    Marks are written together with their beat, and read combinationally.
+    Flags are written together with their beat, and read combinationally.
 
     Parameters
     ----------
@@ -41,8 +41,7 @@ class Marks(wiring.Component):
 
     def __init__(self, program: DeserializerProgram):
         self.program, self.ring = program, Ring(program.plan)
-        self.checks = {each.number: each.checks for each in program.states if each.checks}
-        self.states = list(self.checks)
+        self.states = [each.number for each in program.states if each.checks]
         super().__init__(
             {
                 "beat": In(beat_layout(program.plan)),
@@ -70,10 +69,15 @@ class Marks(wiring.Component):
         if self.states:
             memory = LutMemory(m, "headers", len(self.states), ring.depth)
             write, read = memory.write, memory.reader()
-            # The checked bytes of a step are in its first beat: a header is cut at bus words.
+            # The checked bytes of a state are in its first beat: a header is cut at bus words.
             wrong = [
-                any_of([(lanes[k] != byte) & (~beat.last | (beat.count > k)) for k, byte in checks])
-                for checks in self.checks.values()
+                any_of(
+                    [
+                        (lanes[lane] != byte) & (~beat.last | (beat.count > lane))
+                        for lane, byte in self.program.states[number].checks
+                    ]
+                )
+                for number in self.states
             ]
             m.d.comb += [
                 write.addr.eq(beat.at),
