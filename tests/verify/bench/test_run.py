@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from firm_hdl.verify.bench import _check_transfers, _compare
 
 from firm_hdl.cases.make import Case
 from firm_hdl.plan import build_plan
+from firm_hdl.verify.bench import _check_transfers, _compare
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
