@@ -25,8 +25,8 @@ MAY_IMPORT = {
     "recordings": {"errors", "files"},
     "rtlil": {"names"},
     "vhdl": {"names", "rtlil"},
-    # `errors`, `jobs`: Yosys may have too little memory; its process ends with this one.
-    "verilog": {"errors", "jobs", "names", "rtlil"},
+    # The netlist, the names and the statements are those of the VHDL.
+    "verilog": {"names", "rtlil", "vhdl"},
     "rtps": set[str](),
     # Know messages.
     "model": {"errors"},
@@ -37,7 +37,8 @@ MAY_IMPORT = {
     "metrics": {"errors", "model", "frontend", "identity", "wire"},
     "plan": {"model", "wire"},
     "estimates": {"plan"},
-    "gateware": {"model", "wire", "plan"},
+    "program": {"plan", "wire"},
+    "gateware": {"model", "wire", "plan", "program"},
     # `jobs`: compilers.
     "sim": {
         *("errors", "garbage", "jobs", "rtlil", "verilog", "model", "wire", "plan", "gateware"),
@@ -58,27 +59,26 @@ MAY_IMPORT["node"] = {
 }
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {
-    *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
+    *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export", "terminal"),
 }
 # Messages and packets to try, and the oracle that writes them.
 MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
     "cases",
     *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil"}),
-    *("arguments", "drawing", "export", "identity", "node", "recordings", "sim"),
-    "terminal",
+    *("arguments", "drawing", "export", "identity", "node", "recordings", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
-    *("arguments", "errors", "jobs", "names", "terminal", "vhdl", "verilog"),
+    *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
 MAY_IMPORT["bench"] = {
-    *("arguments", "errors", "files", "jobs", "rtlil"),
+    *("arguments", "errors", "files", "jobs", "rtlil", "terminal"),
     *("model", "frontend", "wire", "plan", "gateware", "sim", "export"),
 }
 MAY_IMPORT["cli"] = {
     *("firm_hdl", "arguments", "errors", "jobs", "terminal"),
-    *("names", "model", "frontend", "plan", "estimates", "export"),
+    *("names", "model", "frontend", "plan", "program", "estimates", "export"),
     *("identity", "metrics", "node", "cases", "covering", "verify", "equivalence", "bench"),
 }
 MAY_IMPORT["__main__"] = {"cli"}
@@ -87,32 +87,25 @@ MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
 
 # Allowed imports of the parts of `firm_hdl.verify`.
 VERIFY_MAY_IMPORT = {
-    "choices": set[str](),
     "results": set[str](),
     "ros2_wheels": set[str](),
     "ros_python": set[str](),
     "references": {"ros2_wheels", "ros_python"},
     "simulators": set[str](),
-    "systems": {"choices", "results"},
+    "systems": {"results"},
     "clients": {"references", "results", "systems"},
     "ts1": {"results", "ros2_wheels", "ros_python", "systems"},
     "ts2": {"results", "systems"},
-    "ts3": {
-        *("choices", "clients", "references", "results", "simulators", "systems"),
-    },
+    "ts3": {"clients", "references", "results", "simulators", "systems"},
     "bench": {"references", "results", "systems", "ts3"},
     "board": {"references", "results", "systems", "ts3"},
     "report": {"results"},
 }
-VERIFY_MAY_IMPORT["request"] = {"board", "systems", "ts3"}
 VERIFY_MAY_IMPORT["run"] = {
-    *("bench", "board", "clients", "references", "report", "request", "results"),
+    *("bench", "board", "clients", "command", "references", "report", "results"),
     *("systems", "ts1", "ts2", "ts3"),
 }
-VERIFY_MAY_IMPORT["command"] = {
-    *("board", "choices", "report", "request", "results", "run", "systems"),
-}
-VERIFY_MAY_IMPORT["__main__"] = {"command"}
+VERIFY_MAY_IMPORT["command"] = {"board", "report", "results", "run", "systems", "ts3"}
 VERIFY_MAY_IMPORT["verify"] = set()
 
 

@@ -1,3 +1,4 @@
+# PYTHON_ARGCOMPLETE_OK, for shells in which argcomplete completes all commands.
 """The command ``firm-hdl``: it parses arguments, calls other modules, and prints their results.
 
 Exit status: 0 for success; 1 if a definition cannot be used or a request cannot be met, with the
@@ -72,22 +73,29 @@ def _dispatch(arguments: list[str]) -> int:
     try:
         with redirect_stdout(sys.stderr):
             return _called(args)
+    except SystemExit:
+        # Wrong arguments: there is no answer, as for those that the parser finds.
+        args.document.clear()
+        raise
     finally:
-        # Errors come last, because a document may be long.
-        args.document["errors"] = args.document.pop("errors")
-        print(json.dumps(args.document, indent=1, ensure_ascii=False, allow_nan=False))
+        if args.document:
+            # Errors come last, because a document may be long.
+            args.document["errors"] = args.document.pop("errors")
+            print(json.dumps(args.document, indent=1, ensure_ascii=False, allow_nan=False))
 
 
 def _called(args: argparse.Namespace) -> int:
     """Call the function of a command, and report its errors; return the exit status."""
     from firm_hdl.errors import DefinitionError, Diagnostic, UserError
+    from firm_hdl.terminal import progress
 
     try:
-        if hasattr(args, "type") or hasattr(args, "types"):
-            from firm_hdl.cli.types import take_spellings
+        with progress(args.document["command"]):
+            if hasattr(args, "type") or hasattr(args, "types"):
+                from firm_hdl.cli.types import take_spellings
 
-            take_spellings(args)
-        return args.run(args) or 0
+                take_spellings(args)
+            return args.run(args) or 0
     except DefinitionError as error:
         _print_error(str(error))
         args.document["errors"] += [each.facts() for each in error.diagnostics]
@@ -171,6 +179,12 @@ def _parser(arguments: Sequence[str], *, with_all: bool = False) -> argparse.Arg
     parser = Parser(
         prog="firm-hdl",
         description="Generate hardware that reads and writes ROS messages.",
+        examples=(
+            "firm-hdl doctor                            what is installed here, and where to read",
+            "firm-hdl info geometry_msgs/msg/Twist      what its converters take",
+            "firm-hdl build geometry_msgs/msg/Twist     write them",
+            "firm-hdl build --help                      all options of a command",
+        ),
     )
     parser.add_argument(
         "--version", action=_Version, nargs=0, help="show program's version number and exit"

@@ -6,17 +6,19 @@ import argparse
 import os
 from typing import Any
 
-import argcomplete
+from argcomplete import autocomplete
 from argcomplete.completers import FilesCompleter
+from argcomplete.shell_integration import shellcode
 
-from firm_hdl.frontend import SUFFIXES, Library, open_library
+from firm_hdl.frontend import Library, open_library
+from firm_hdl.frontend.spelling import SUFFIXES
 
 __all__ = ["called_in", "complete", "shell_code"]
 
 
 def shell_code(shell: str) -> str:
     """Return the code that a shell has to run before it completes the command."""
-    return argcomplete.shellcode(["firm-hdl"], shell=shell)
+    return shellcode(["firm-hdl"], shell=shell)
 
 
 def called_in(line: str) -> list[str]:
@@ -27,7 +29,7 @@ def called_in(line: str) -> list[str]:
 def complete(parser: argparse.ArgumentParser) -> None:
     """Answer the shell, and end this process."""
     _add_completers(parser)
-    argcomplete.autocomplete(parser)
+    autocomplete(parser)
 
 
 def _add_completers(parser: argparse.ArgumentParser) -> None:

@@ -6,12 +6,14 @@ import argparse
 import sys
 import warnings
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from firm_hdl.arguments import add_engine, add_json, add_path, number_between, seconds
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
+from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
     from firm_hdl.node import Description
@@ -185,6 +187,20 @@ def _act(args: argparse.Namespace, description: Description) -> None:
     if args.action == "info" and args.as_json:
         facts = facts_of(description)
         args.document |= {**facts, "warnings": list(warnings_of(description, facts))}
+        if args.members:
+            from firm_hdl.node.hdl.members import accelerator_streams
+
+            args.document["members"] = [
+                {
+                    "topic": each.topic.name,
+                    "message": each.message,
+                    "member": each.member,
+                    "direction": each.direction,
+                    "type": each.type,
+                    "ports": [asdict(port) for port in each.ports],
+                }
+                for each in accelerator_streams(description)
+            ]
         return
     if args.action == "build":
         from firm_hdl.node.build import build_node
@@ -205,7 +221,8 @@ def _act(args: argparse.Namespace, description: Description) -> None:
 def _compile(description: Description, args: argparse.Namespace) -> None:
     from firm_hdl.node.boards.simulated import SimulatedBoard
 
-    def report(stage: str) -> None:
-        print(f"board sim: {stage}", file=sys.stderr, flush=True)
+    def report(text: str) -> None:
+        print(f"board sim: {text}", file=sys.stderr, flush=True)
+        stage(f"board sim: {text}")
 
     SimulatedBoard(description, engine=args.engine, report=report).compile()

@@ -55,7 +55,7 @@ class Parser(argparse.ArgumentParser):
         except argparse.ArgumentError as error:
             text = error.message
             if action.dest == "distro":
-                from firm_hdl.frontend import replacement_of
+                from firm_hdl.frontend.embedded import replacement_of
 
                 if instead := replacement_of(value):
                     raise argparse.ArgumentError(action, f"{text}; {instead}") from None

@@ -114,7 +114,7 @@ def _metrics(args: argparse.Namespace) -> None:
     from firm_hdl.metrics.command import metrics_text
 
     names, form = names_of(args), "json" if args.as_json else args.format
-    text, wrong = metrics_text(library_of(args), names, form, args.wire, bar=args.all)
+    text, wrong = metrics_text(library_of(args), names, form, args.wire)
     if args.as_json:
         args.document["messages"] = json.loads(text)
     else:

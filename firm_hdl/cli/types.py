@@ -8,14 +8,8 @@ import sys
 
 from firm_hdl.arguments import check_types_or_all
 from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.frontend import (
-    SUFFIXES,
-    Library,
-    all_names,
-    open_library,
-    package_of_file,
-    spelled,
-)
+from firm_hdl.frontend import Library, all_names, open_library
+from firm_hdl.frontend.spelling import SUFFIXES, package_of_file, spelled
 
 __all__ = ["library_of", "names_of", "print_unusable", "take_spellings"]
 

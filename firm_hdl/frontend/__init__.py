@@ -6,17 +6,15 @@ messages, services and actions, in every definition language and from every orig
 
 from __future__ import annotations
 
-from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS, Distro, replacement_of
+from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS, Distro
 from firm_hdl.frontend.library import Library, load_message
 from firm_hdl.frontend.recordings import RecordingOrigin
 from firm_hdl.frontend.search import all_names, load_all, open_library
 from firm_hdl.frontend.show import show
-from firm_hdl.frontend.spelling import SUFFIXES, package_of_file, spelled
 
 __all__ = [
     "DEFAULT_DISTRO",
     "DISTROS",
-    "SUFFIXES",
     "Distro",
     "Library",
     "RecordingOrigin",
@@ -24,8 +22,5 @@ __all__ = [
     "load_all",
     "load_message",
     "open_library",
-    "package_of_file",
-    "replacement_of",
     "show",
-    "spelled",
 ]

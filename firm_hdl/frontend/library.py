@@ -8,11 +8,19 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source
-from firm_hdl.frontend.assemble import assemble
 from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.explain import clip
 from firm_hdl.frontend.interfaces import Unit
-from firm_hdl.frontend.names import KINDS, Kind, TypeName, owners
+from firm_hdl.frontend.names import (
+    ACTION_SERVICES,
+    ACTION_WRAPPERS,
+    EVENT,
+    KINDS,
+    PARTS,
+    Kind,
+    TypeName,
+    owners,
+)
 from firm_hdl.frontend.resolve import Resolver
 from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Origin, Sources
 from firm_hdl.frontend.spelling import spelled
@@ -136,7 +144,7 @@ class Library:
                 what = "a service" if candidate.kind == "srv" else "an action"
                 text = f"'{candidate}' is {what}, not a message"
                 parts = [str(candidate)[: -len(candidate.name)] + part for part in unit.messages]
-                raise self._error(did_you_mean(text, parts))
+                raise DefinitionError.of(did_you_mean(text, parts))
         raise self._unknown(candidates)
 
     def interface(self, name: str) -> Interface:
@@ -213,12 +221,29 @@ class Library:
 
     def _assembled(self, name: TypeName, unit: Unit) -> Service | Action:
         if name not in self._interfaces:
-
-            def resolve(part: str) -> Message | None:
-                return self._resolver.resolve(replace(name, name=part))
-
-            self._interfaces[name] = assemble(unit, resolve)
+            messages = self._messages_of(unit)
+            self._interfaces[name] = (
+                _service(unit, name.name, messages)
+                if name.kind == "srv"
+                else _action(unit, messages)
+            )
         return self._interfaces[name]
+
+    def _messages_of(self, unit: Unit) -> dict[str, Message]:
+        """Resolve all messages of a service or an action, by their names without the package."""
+        messages: dict[str, Message] = {}
+        diagnostics = list(unit.diagnostics)
+        for part in unit.messages:
+            try:
+                message = self._resolver.resolve(replace(unit.name, name=part))
+            except DefinitionError as error:
+                diagnostics += error.diagnostics
+            else:
+                assert message is not None
+                messages[part] = message
+        if diagnostics:
+            raise DefinitionError(_in_order(unit, diagnostics))
+        return messages
 
     def _parse(self, name: str) -> list[TypeName]:
         """List the types that a name can mean, the likeliest first."""
@@ -235,7 +260,10 @@ class Library:
         form = "package/msg/Name" if self.dialect == "ros2" else "package/Name"
         message = f"'{clip(name)}' is not the name of a type, which is '{form}'"
         similar = similar_types(self._sources, package, base)
-        raise self._error(did_you_mean(message, self._spell(similar)))
+        if not package and base in self._sources.types:
+            message = f"'{clip(name)}' is a package, and not the name of a type, which is '{form}'"
+            similar = [(base, *each) for each in self._sources.types[base]]
+        raise DefinitionError.of(did_you_mean(message, self._spell(similar)))
 
     def _unambiguous(self, name: str) -> list[TypeName]:
         """List the types that a name can mean; in ROS 2, only one of them has a definition."""
@@ -243,7 +271,7 @@ class Library:
         defined = [n for n in candidates if (n.package, n.kind, n.name) in self._sources.names]
         if self.dialect == "ros2" and len(defined) > 1:
             choice = " or ".join(f"'{each}'" for each in defined)
-            raise self._error(f"'{clip(name)}' can be {choice}; name one of them")
+            raise DefinitionError.of(f"'{clip(name)}' can be {choice}; name one of them")
         return candidates
 
     def _by_origin(self, names: list[TypeName]) -> list[TypeName]:
@@ -267,13 +295,10 @@ class Library:
         name = names[0]
         message = unknown_type(self._sources, names)
         similar = similar_types(self._sources, name.package, name.name)
-        return self._error(did_you_mean(message, self._spell(similar)))
+        return DefinitionError.of(did_you_mean(message, self._spell(similar)))
 
     def _spell(self, types: list[tuple[str, Kind, str]]) -> list[str]:
         return [str(TypeName(package, kind, name, self.dialect)) for package, kind, name in types]
-
-    def _error(self, message: str) -> DefinitionError:
-        return DefinitionError([Diagnostic(message=message)])
 
 
 def load_message(
@@ -307,3 +332,48 @@ def _folders(paths: Iterable[str | os.PathLike[str]]) -> list[FolderOrigin]:
     if wrong:
         raise DefinitionError(wrong)
     return folders
+
+
+def _in_order(unit: Unit, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Sort by position in the file; diagnostics of other files come last."""
+
+    def place(diagnostic: Diagnostic) -> tuple[bool, int]:
+        span = diagnostic.span
+        if span is None or span.source != unit.source:
+            return True, 0
+        return False, span.start
+
+    return sorted(dict.fromkeys(diagnostics), key=place)
+
+
+def _service(unit: Unit, base: str, messages: dict[str, Message]) -> Service:
+    dialect = unit.name.dialect
+    request, response = (messages[base + suffix] for suffix in PARTS[dialect, "srv"])
+    package = str(unit.name)[: -len(unit.name.name)]
+    is_whole = base == unit.name.name
+    return Service(
+        name=package + base,
+        dialect=dialect,
+        request=request,
+        response=response,
+        event=messages.get(base + EVENT),
+        comment=request.comment if is_whole else "",
+        text=unit.source.text if is_whole else "",
+    )
+
+
+def _action(unit: Unit, messages: dict[str, Message]) -> Action:
+    base, dialect = unit.name.name, unit.name.dialect
+    goal, result, feedback = (messages[base + suffix] for suffix in PARTS[dialect, "action"])
+    services = ACTION_SERVICES if dialect == "ros2" else ()
+    return Action(
+        name=str(unit.name),
+        dialect=dialect,
+        goal=goal,
+        result=result,
+        feedback=feedback,
+        services=tuple(_service(unit, base + suffix, messages) for suffix in services),
+        wrappers=tuple(messages[base + suffix] for suffix in ACTION_WRAPPERS[dialect]),
+        comment=goal.comment,
+        text=unit.source.text,
+    )

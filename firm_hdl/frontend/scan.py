@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TypeAlias
 from xml.etree import ElementTree
 
-from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.errors import DefinitionError
 from firm_hdl.files import read_file
 from firm_hdl.frontend.names import KINDS, Kind
 
@@ -93,7 +93,7 @@ class Scan:
                 names = self._names(path, seen)
             except OSError as error:
                 if path == self._root:
-                    raise _error(f"'{path}' cannot be read: {error.strerror}") from None
+                    raise DefinitionError.of(f"'{path}' cannot be read: {error.strerror}") from None
                 self.unreadable.append(path)
                 continue
             if path != self._root and not _IGNORE_MARKERS.isdisjoint(names):
@@ -166,7 +166,7 @@ class Scan:
         self._left -= 1
         if self._left < 0:
             few = "name a folder with fewer, such as that of a workspace"
-            raise _error(f"'{self._root}' has more than {MAX_FOLDERS} folders: {few}")
+            raise DefinitionError.of(f"'{self._root}' has more than {MAX_FOLDERS} folders: {few}")
         return sorted(os.listdir(path))
 
 
@@ -203,7 +203,3 @@ def package_name(folder: str, is_named: bool) -> tuple[str, str]:
         except (LookupError, ValueError):
             wrong = f"'{path}' is in an encoding that is not known"
     return (name or "").strip() or Path(folder).resolve().name, wrong
-
-
-def _error(message: str) -> DefinitionError:
-    return DefinitionError([Diagnostic(message=message)])

@@ -6,7 +6,7 @@ import os
 from collections.abc import Sequence
 from difflib import get_close_matches
 
-from firm_hdl.frontend.explain import clip
+from firm_hdl.frontend.explain import alternatives, clip
 from firm_hdl.frontend.names import KINDS, Kind, TypeName
 from firm_hdl.frontend.sources import PackagePlace, Sources
 
@@ -81,7 +81,8 @@ def similar_types(
         (other, kind, base)
         for other, types in sources.types.items()
         for kind, base in types
-        if kind in kinds and _plain(base) == _plain(name) and _plain(other) == _plain(package)
+        if kind in kinds and (other, base) != (package, name)
+        if _plain(base) == _plain(name) and _plain(other) == _plain(package)
     ]
     for kind in kinds:
         packages = sources.packages_of.get((kind, name), [])
@@ -117,10 +118,4 @@ def _close_names(
 def did_you_mean(message: str, names: list[str]) -> str:
     """Add at most three suggestions to a message."""
     quoted = [f"'{name}'" for name in names[:3]]
-    match quoted:
-        case []:
-            return message
-        case [*others, last]:
-            choice = f"{', '.join(others)} or {last}" if others else last
-            return f"{message}; did you mean {choice}?"
-    raise AssertionError
+    return f"{message}; did you mean {alternatives(quoted)}?" if quoted else message

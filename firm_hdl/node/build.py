@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import PurePath
 from typing import Any
 
@@ -85,69 +85,6 @@ def build_node(
         # Both would be one entity.
         name += "_node"
     folder = design_folder(out, name)
-    design = _designed(description, name, accelerator, stimuli)
-    facts, script = facts_of(description), design.script
-    return write_design(
-        folder,
-        inputs=inputs_of_design(
-            {
-                "node": description.node,
-                "facts": facts,
-                # The accelerator's code is part of the circuit; packets of the benches are not.
-                "frames_sha256": None if script is None else digest(script.text),
-                "accelerator_files": {**design.own.texts, **design.own.headers},
-            },
-            design.rtlil,
-        ),
-        facts={
-            **facts,
-            "records": _records(design),
-            "accelerator_files": design.own.facts(),
-            "bench": None if script is None else _bench(name, design.own.language),
-            "clock": "aclk",
-            "reset": "aresetn",
-        },
-        ports=[asdict(port) for port in design.ports],
-        make_files=lambda: _files(design),
-        force=force,
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Design:
-    """What all files are made of.
-
-    Attributes
-    ----------
-    description : Description
-    name : str
-        Name of the entity and of the folder.
-    rtlil : str
-        The circuit.
-    ports : sequence of NodePort
-    messages : sequence of MessagePort
-        The message ports with records; empty if there are none.
-    reason : str
-        Why there are none.
-    script : LinkScript or None
-        Frames of the benches, if there are some.
-    own : AcceleratorFiles
-        Files of the user's.
-    """
-
-    description: Description
-    name: str
-    rtlil: str
-    ports: Sequence[NodePort]
-    messages: Sequence[MessagePort]
-    reason: str
-    script: LinkScript | None
-    own: AcceleratorFiles
-
-
-def _designed(
-    description: Description, name: str, accelerator: Any, stimuli: Stimuli | None
-) -> _Design:
     node = Node(description, accelerator)
     try:
         ports = node_ports(node)
@@ -164,34 +101,57 @@ def _designed(
             reason = str(error)
     with conflicts_reported(description), search_put_off():
         circuit = rtlil.rtlil_of(NodeTop(node), name=name)
-    return _Design(
-        description=description,
-        name=name,
-        rtlil=circuit,
-        ports=ports,
-        messages=messages,
-        reason=reason,
-        script=link_script(description, stimuli, has_accelerator=has_accelerator),
-        own=accelerator_files(node.accelerator),
+    script = link_script(description, stimuli, has_accelerator=has_accelerator)
+    own = accelerator_files(node.accelerator)
+    facts = facts_of(description)
+    return write_design(
+        folder,
+        inputs=inputs_of_design(
+            {
+                "node": description.node,
+                "facts": facts,
+                # The accelerator's code is part of the circuit; packets of the benches are not.
+                "frames_sha256": None if script is None else digest(script.text),
+                "accelerator_files": {**own.texts, **own.headers},
+            },
+            circuit,
+        ),
+        facts={
+            **facts,
+            "records": _records(name, messages, reason),
+            "accelerator_files": own.facts(),
+            "bench": None if script is None else _bench(name, own.language),
+            "clock": "aclk",
+            "reset": "aresetn",
+        },
+        ports=[asdict(port) for port in ports],
+        make_files=lambda: _files(description, name, circuit, ports, messages, script, own),
+        force=force,
     )
 
 
-def _files(design: _Design) -> dict[str, str]:
+def _files(
+    description: Description,
+    name: str,
+    circuit: str,
+    ports: Sequence[NodePort],
+    messages: Sequence[MessagePort],
+    script: LinkScript | None,
+    own: AcceleratorFiles,
+) -> dict[str, str]:
     """Write the design and its benches in each language."""
-    description, name, ports = design.description, design.name, design.ports
-    script = design.script
     header = (
         f"{name}: a node of ROS {description.distro}, made by firm-hdl {firm_hdl.__version__}\n"
     )
     module = verilog_module(name)
-    node = convert(design.rtlil, name=name, header=header)
+    netlist = rtlil.netlist_of(circuit)
+    node = convert(netlist, name=name, header=header)
     vhdl_ports = node.entities[name].ports
     records: dict[str, str] = {}
     structs: dict[str, str] = {}
-    if design.messages:
-        records = record_files(name, ports, design.messages, vhdl_ports=vhdl_ports, header=header)
-        structs = struct_files(name, module, ports, design.messages, header=header)
-    own = design.own
+    if messages:
+        records = record_files(name, ports, messages, vhdl_ports=vhdl_ports, header=header)
+        structs = struct_files(name, module, ports, messages, header=header)
     is_vhdl = own.language == "vhdl"
     inside = {file.removeprefix("vhdl/"): text for file, text in own.texts.items()}
     vhdl = {**(inside if is_vhdl else {}), **node.files, **records}
@@ -216,7 +176,7 @@ def _files(design: _Design) -> dict[str, str]:
         owners["its accelerator"] = {f"{own.entity}.vhd": ""}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     return {
-        **verilog_file(design.rtlil, name=name, header=header),
+        **verilog_file(netlist, name=name, header=header),
         "waivers.vlt": waivers([module]) + _UNDRIVEN.format(file=f"{module}.v"),
         **{f"systemverilog/{file}": text for file, text in structs.items()},
         **({} if is_vhdl else own.texts),
@@ -235,17 +195,16 @@ def _files(design: _Design) -> dict[str, str]:
     }
 
 
-def _records(design: _Design) -> dict[str, Any]:
-    """Describe the message ports with records and structs for the manifest."""
-    if not design.messages:
-        return {"built": False, "reason": design.reason}
-    name = design.name
+def _records(name: str, messages: Sequence[MessagePort], reason: str) -> dict[str, Any]:
+    """Describe the message ports with records and structs, or why there are none."""
+    if not messages:
+        return {"built": False, "reason": reason}
     return {
         "built": True,
         "entity": f"{name}_records",
         "module": f"{name}_sv",
         "sv_files": "systemverilog/files.f",
-        "ports": [_record(each) for each in design.messages],
+        "ports": [_record(each) for each in messages],
     }
 
 

@@ -464,7 +464,7 @@ def _check_baud(link: Link, place: Entry, clock_hz: float) -> None:
 
 def with_memory(link: Link, topics: list[Topic], entry: Entry | None) -> Link:
     """Give the link's memory the size of the largest one behind it, unless one is named."""
-    stores = [store for topic in topics if (store := topic.store("in")) is not None]
+    stores = [topic.store("in") for topic in topics if topic.has("in")]
     if not stores or (entry is not None and _names_memory(entry)):
         return link
     return replace(link, memory_bytes=max(1 << 10, *(each.memory_bytes for each in stores)))

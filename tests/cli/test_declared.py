@@ -20,11 +20,11 @@ DEFAULTS = {
     "build": (
         ["a/B"],
         {**ORIGINS, **PLAN, "types": ["a/B"], "out": "vhdl_out"}
-        | {"ports": "records", "force": False, "jobs": None},
+        | {"ports": "records", "extras": frozenset(), "force": False, "jobs": None},
     ),
     "list": ([], {**ORIGINS, "only_path": False, "as_json": False}),
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
-    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B"}),
+    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B", "program": False}),
     "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"], "as_json": False}),
     "part": (
         ["gate", "a/B"],

@@ -79,6 +79,8 @@ def test_info_of_a_node(said):
     assert found["command"] == "node info"
     assert [each["type"] for each in found["topics"]] == ["std_msgs/msg/String"]
     assert any("needs a clock of" in each for each in found["warnings"])
+    members = said("node", "info", "n.yaml", "--members")["members"]
+    assert [each["member"] for each in members] == ["publish.a.data.length", "publish.a.data.items"]
     (error,) = said("node", "info", "bad.yaml", status=1)["errors"]
     assert (error["file"], error["line"]) == ("bad.yaml", 2)
 
@@ -93,6 +95,14 @@ def test_verify_has_each_test_with_its_verdict(said):
     assert (found["verdict"], found["errors"]) == ("failed", [DUPLICATE])
     (error,) = said("verify", "p/msg/No", "--systems", "ts2", status=1)["errors"]
     assert "p/msg/No" in error["message"]
+
+
+def test_wrong_arguments_have_no_object(capsys):
+    for words in (["list", "--only-path"], ["metrics"], ["verify"], ["info"]):
+        with pytest.raises(SystemExit, match="2"):
+            main([*words, "--json"])
+        out, err = capsys.readouterr()
+        assert out == "" and err.startswith(f"usage: firm-hdl {words[0]}")
 
 
 def test_errors_of_every_kind_are_there(said, monkeypatch):

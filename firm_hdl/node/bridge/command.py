@@ -4,27 +4,26 @@ from __future__ import annotations
 
 import signal
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.boards import board_of
 from firm_hdl.node.bridge.bridge import Bridge
+from firm_hdl.node.bridge.counters import BridgeCounters
 from firm_hdl.node.bridge.session import WrongBoardError
 from firm_hdl.node.capacity import rate_problems
+from firm_hdl.node.control import Register
 from firm_hdl.node.description import Description
 from firm_hdl.node.graphs import graph_of
+from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
     from firm_hdl.sim.fast import EngineName
-import time
-from typing import TextIO
-
-from firm_hdl.node.bridge.counters import BridgeCounters
-from firm_hdl.node.control import Register
 
 __all__ = ["Status", "account", "run_bridge", "status_line"]
 
@@ -103,7 +102,7 @@ def run_bridge(
     if not quiet:
         for line in account(bridge):
             status.report(line)
-    if not (bridge.was_ready or bridge.was_stopped):
+    if not (bridge.side.was_ready or bridge.was_stopped):
         within = "" if seconds is None else f" in {seconds:g} s"
         raise UserError(f"the board {board} did not answer{within}")
 
@@ -179,6 +178,8 @@ class Status:
 
     def show(self, bridge: Bridge) -> None:
         """Print the line of figures if it is due."""
+        # The start is over, and this line is in place of that of the command.
+        stage("")
         now = time.monotonic()
         if self._quiet or now < self._next:
             return
@@ -207,7 +208,7 @@ def status_line(bridge: Bridge, rates: tuple[float, ...]) -> str:
     dropped = bridge.counters.dropped.total()
     parts = [
         f"{bridge.description.node}",
-        "ready" if bridge.is_ready else "no board",
+        "ready" if bridge.side.is_ready else "no board",
         f"to board {rates[0]:.0f}/s",
         f"to graph {rates[1]:.0f}/s",
         f"dropped {dropped + sum(value for _, value in _drops(bridge))}",
@@ -227,11 +228,11 @@ def account(bridge: Bridge) -> Iterator[str]:
         yield f"dropped: {value} {name}"
     for name, value in _signs(bridge):
         yield f"seen: {value} {name}"
-    if not bridge.was_ready:
+    if not bridge.side.was_ready:
         yield "the board has never answered"
-    elif bridge.restarts:
-        yield f"the board was started again or lost {bridge.restarts} times"
-    if bridge.was_ready and not bridge.side.has_read_last:
+    elif bridge.side.restarts:
+        yield f"the board was started again or lost {bridge.side.restarts} times"
+    if bridge.side.was_ready and not bridge.side.has_read_last:
         yield "not all counters on the board could be read at the end"
 
 
@@ -260,7 +261,7 @@ def _drops(bridge: Bridge) -> Iterator[tuple[str, int]]:
     for name, value in sorted(bridge.graph.counters.items()):
         if value and name not in _GRAPH_SIGNS:
             yield f"in the graph: {name}", value
-    for register, value in bridge.last_drops:
+    for register, value in bridge.side.drops():
         if not _is_sign(register):
             yield f"on the board, {register.owner} {register.part}: {register.name}", value
 
@@ -273,13 +274,13 @@ def _signs(bridge: Bridge) -> Iterator[tuple[str, int]]:
     for name in _GRAPH_SIGNS:
         if value := bridge.graph.counters[name]:
             yield f"in the graph: {name}", value
-    for register, value in bridge.last_drops:
+    for register, value in bridge.side.drops():
         if _is_sign(register):
             yield f"on the board, {register.owner} {register.part}: {register.name}", value
 
 
 def _way(bridge: Bridge) -> list[tuple[str, int]]:
-    return sorted(bridge.on_the_way.items())
+    return sorted(bridge.side.on_the_way.items())
 
 
 def _is_sign(register: Register) -> bool:

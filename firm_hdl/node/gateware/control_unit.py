@@ -89,7 +89,10 @@ class ControlUnit(wiring.Component):
         return m
 
     def _receive(self, m: Module, waiting: SyncFIFO, layout: data.StructLayout) -> None:
-        """Collect the beats of a request."""
+        """Collect the beats of a request.
+
+        A request of another size is kept all the same: it gets an answer, which says what is wrong.
+        """
         beats = CONTROL_BYTES // self.bus_bytes
         packets, beat = self.packets_in, self.packets_in.payload
         words, number = Signal(8 * CONTROL_BYTES), Signal(range(beats + 1))
@@ -248,6 +251,7 @@ class ByteCounter(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
+        # An addition of 64 bits would be too long for a cycle: the carry waits in a register.
         adds, size, carry = Signal(), Signal.like(self.size), Signal()
         total = Signal(33)
         m.d.comb += total.eq(self.low + Mux(adds, size, 0))
@@ -291,6 +295,14 @@ class RegisterReader(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
+        # A number moves on by a group in each cycle, and a value two cycles behind it. Each group
+        # passes on the value that comes, or its own if that is meant. Of 3 groups, the second one:
+        #
+        #     cycle    0       1         2         3         4         5
+        #     number   given   number_0  number_1  number_2
+        #     own                        group_0   group_1   group_2
+        #     value                                value_0   value_1   value_2
+        #                                                    = group_1 = value_1
         values = [Value.cast(each) for each in self.values]
         bits = ceil_log2(_GROUP)
         number, value = self.number, Const(0, 32)

@@ -59,6 +59,15 @@ class Fragmenter(wiring.Component):
             }
         )
 
+    # With a room of two beats, and a header of two, a message of five beats leaves as
+    #
+    #     i        H H               b b                   b b                   b
+    #     state    TAKE  LENGTH PLAN                 PLAN                  PLAN
+    #     frames                H0 H0 b b            H1 H1 b b             H2 H2 b
+    #
+    # `rest` is subtracted from while a frame leaves, and compared in `PLAN`: a path with both would
+    # be too long for a cycle.
+
     def elaborate(self, platform: object) -> Module:
         m = Module()
         layout = data.StructLayout({"beat": packet_layout(self.bus_bytes), "size": SIZE_BITS})
@@ -222,6 +231,18 @@ class Reassembler(wiring.Component):
             }
         )
 
+    # A frame goes through these states. Each comparison of 16 or 32 bits has a cycle of its own,
+    # and its result is a register.
+    #
+    #     TAKE --> COMPARE --> DECIDE --> HEADER --> BODY --> TAKE     first fragment of a message
+    #                  |         |  \------------> BODY --> TAKE       the fragment that is next
+    #                  |         |\--> CUT --> DECIDE                  any other, while one is open
+    #                  \-> SKIP <-/                                    malformed, late, stray
+    #
+    # The output has one message at a time. So a frame that does not continue the open message ends
+    # it: `CUT` sends a last beat with `abort`, upon which the FIFO behind forgets what it has got,
+    # and the frame is decided upon again.
+
     def elaborate(self, platform: object) -> Module:
         m = Module()
         layout = data.StructLayout({"beat": packet_layout(self.bus_bytes), "abort": 1})
@@ -286,6 +307,8 @@ class Reassembler(wiring.Component):
     def _compare(self, m: Module) -> None:
         """Compare the header with the message under way, and its number with the expected one."""
         header, under_way = self._header, self._under_way
+        # The difference is taken modulo 2 ** 16, so what is late is just below that. What starts a
+        # sequence, or is the first of all, is what was expected.
         ahead, confirmed, starts = Signal(16), Signal(), header.flags[1]
         late = ahead >= (1 << 16) - LATE_MESSAGES
         m.d.comb += [
@@ -402,7 +425,10 @@ class Reassembler(wiring.Component):
                 m.next = "TAKE"
 
     def _end(self, m: Module, whole: Value, bad: Value) -> None:
-        """End a frame: with the last one of a message, or a wrong one, the message ends, too."""
+        """End a frame: with the last one of a message, or a wrong one, the message ends, too.
+
+        Only the last beat of a message has `last`, so its fragments become one packet.
+        """
         out, header = self._out.i, self._header
         is_last_frame, fails, moves = header.flags[0], Signal(), Signal()
         m.d.comb += [

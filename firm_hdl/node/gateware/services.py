@@ -148,6 +148,13 @@ class RequestGate(wiring.Component):
             packets=store.packets,
             max_message_bytes=store.max_message_bytes,
         )
+        # A gate has no place for a tag. Its verdicts and its packets leave in the order in which
+        # they came, so two FIFOs of tags keep step with it:
+        #
+        #     fifo ---> packets ------> gate ---> status ---> packets_out
+        #        \---> tag ---> judged -----------> | ok ---> good ---> tag_out
+        #                                           \ else: the tag is dropped, as the packet
+        #
         # Requests in the gate that have no status yet: at most one for each beat that waits there.
         m.submodules.judged = judged = SyncFIFO(
             width=TAG_BITS, depth=4 * ring_beats(self.bus_bytes)

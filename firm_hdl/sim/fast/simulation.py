@@ -14,11 +14,10 @@ from amaranth.lib import wiring
 from firm_hdl.gateware.limits import check_integer
 from firm_hdl.sim.bench import DeadlineError
 from firm_hdl.sim.fast import protocol
-from firm_hdl.sim.fast.arrivals import Arrivals
 from firm_hdl.sim.fast.channel import Channel
 from firm_hdl.sim.fast.compilers import COMPILER_OPTIONS, Report
 from firm_hdl.sim.fast.engines import EngineName, check_engine, start
-from firm_hdl.sim.fast.packing import Packet, Transfer, packed, packed_packets
+from firm_hdl.sim.fast.packing import Arrivals, Packet, Transfer, packed, packed_packets
 from firm_hdl.sim.fast.ports import StreamPort, ports_of
 from firm_hdl.sim.fast.protocol import Answer, Done, Order, Reason
 from firm_hdl.sim.fast.top import ClockDomainError, Top

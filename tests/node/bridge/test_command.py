@@ -19,8 +19,8 @@ from firm_hdl.node.boards.simulated import SimulatedBoard
 from firm_hdl.node.bridge import Bridge, bridge, command
 from firm_hdl.node.bridge.command import Status
 from tests.node.accelerators import echo_text
+from tests.node.boards.test_boards import UdpNode
 from tests.node.bridge.fakes import ECHO, FakeBoard, FakeGraph, FakeNode
-from tests.node.bridge.test_boards import UdpNode
 from tests.node.samples import PACKAGES, read
 
 

@@ -7,7 +7,7 @@ import pytest
 from firm_hdl.node import read_description_text
 from firm_hdl.node.frame import HEADER_BYTES
 from firm_hdl.verify.board.description import loop_text
-from firm_hdl.verify.board.talk import Talk, TalkError
+from firm_hdl.verify.board.talk import Talk
 from tests.node.bridge.fakes import FakeBoard
 from tests.verify.board.fakes import STRING, LoopNode, described
 
@@ -65,14 +65,6 @@ def test_packets_that_do_not_come_back_hold_no_others():
         assert (
             talk.exchange(ONE.loops()[0], sent, [each is PACKET for each in sent]) == [PACKET] * 2
         )
-
-
-@pytest.mark.parametrize("bit", [0, 63])
-def test_every_bit_of_a_fingerprint_counts(bit):
-    node = LoopNode(ONE)
-    node.fingerprint ^= 1 << bit
-    with Talk(FakeBoard(node), ONE, 0.3) as talk, pytest.raises(TalkError, match="is another one"):
-        talk.open()
 
 
 def test_what_the_board_lost_before_does_not_count():
