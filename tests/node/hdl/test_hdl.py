@@ -178,7 +178,6 @@ def test_a_node_of_vhdl_is_built_and_runs(written, tmp_path, ghdl):
     )
     assert "PASS node Relay_node: " in said.stdout
     # A change of the user's file makes the folder outdated.
-    assert build_node(description, tmp_path, stimuli=stimuli).was_current
     source = tmp_path / "Relay.vhd"
     source.write_text(source.read_text() + "-- changed\n")
     assert not build_node(description, tmp_path, stimuli=stimuli).was_current
