@@ -92,7 +92,7 @@ def run_verify(given: argparse.Namespace) -> int:
 
 def _facts(results: str) -> dict[str, Any]:
     """Return what is in a file of results, as values of JSON."""
-    from firm_hdl.verify.report.outcomes import count, outcomes_of
+    from firm_hdl.verify.report.summary import count, outcomes_of
     from firm_hdl.verify.results.file import read_results
 
     found = read_results(results)
