@@ -13,7 +13,7 @@ from firm_hdl.gateware.flow import Flow, exceeds, last_word
 from firm_hdl.gateware.positions import Ring, any_of, pick
 from firm_hdl.gateware.signatures import Status, StatusSignature
 from firm_hdl.gateware.words import words_layout, write_bytes
-from firm_hdl.plan import LoopEnd, Plan
+from firm_hdl.plan import Plan
 from firm_hdl.program import (
     LENGTH_BITS,
     Length,
@@ -350,13 +350,13 @@ def _last(flow: Flow[SerializerState], reader: _Reader) -> Value:
     """Return the value that `items.last` must have in a transfer."""
     part, run = reader.transfer.part, reader.transfer.run
     if part is not None:
-        if isinstance(part.end, LoopEnd):
-            return flow.levels[part.end.level].last
-        return Const(part.end is not None, 1)
+        if part.level is not None:
+            return flow.levels[part.level].last
+        return Const(part.last, 1)
     assert run is not None
     if run.counted:
         return Const(reader.transfer.is_rest, 1)
-    return flow.words.last & run.last
+    return flow.words.last & (not run.has_tail)
 
 
 def _items_align(

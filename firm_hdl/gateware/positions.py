@@ -8,8 +8,8 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data
 
 from firm_hdl.plan import Plan
-from firm_hdl.plan.geometry import ring_beats
 from firm_hdl.program import align_addend
+from firm_hdl.timing.rings import ring_beats
 
 __all__ = [
     "Ring",

@@ -18,7 +18,7 @@ from firm_hdl.node.description import SERVICE_PARTS, Description, Direction, Sto
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
 from firm_hdl.node.reading import LINK_OPTIONS
 from firm_hdl.plan import build_plan
-from firm_hdl.plan.timing import Cost, timing
+from firm_hdl.timing import Cost, timing
 from firm_hdl.wire import lay_out
 
 __all__ = ["facts_of", "summary", "warnings_of"]

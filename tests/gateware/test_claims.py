@@ -13,8 +13,8 @@ from firm_hdl import Deserializer, Parser
 from firm_hdl.gateware.parser import PlanParser
 from firm_hdl.gateware.signatures import LATENCY_CYCLES
 from firm_hdl.plan import build_plan, decode
-from firm_hdl.plan.recovery import recovery
 from firm_hdl.sim import RunOptions, Stalls
+from firm_hdl.timing.recovery import recovery
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.gateware import test_parser

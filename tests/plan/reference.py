@@ -33,8 +33,8 @@ class Reference:
         self.cdr = plan.wire == "cdr"
         self.packet = packet
         self.lanes = {str(leaf): leaf.lanes for leaf in plan.leaves}
-        self.limits = {str(plan.leaves[n]): begin.limit for n, begin in plan.begins.items()}
-        self.claims = {str(plan.leaves[n]): begin.claim for n, begin in plan.begins.items()}
+        self.limits = {str(plan.leaves[n]): length.limit for n, length in plan.lengths.items()}
+        self.claims = {str(plan.leaves[n]): length.charge for n, length in plan.lengths.items()}
         self.budget = 0
         self.position = 0
         self.status = "OK"

@@ -18,7 +18,7 @@ from firm_hdl.gateware.parser import PlanParser, parser_plan
 from firm_hdl.gateware.signatures import PacketSignature, Status, packet_layout
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
-from firm_hdl.plan.geometry import ring_beats
+from firm_hdl.timing.rings import ring_beats
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["PacketGate"]

@@ -159,8 +159,8 @@ class Lengths(wiring.Component):
                 each.at_most_one_pass: one,
                 each.two_passes: two,
             }
-            if each.claim is not None and each.charged is not None:
-                columns[each.charged] = exceeds(length, each.claim.least - 1)
+            if each.charge is not None and each.charged is not None:
+                columns[each.charged] = exceeds(length, each.charge.charged_from - 1)
         m.d.comb += [entry[name].eq(value) for name, value in columns.items()]
 
     def _next_last(
