@@ -64,7 +64,7 @@ lint: $(VENV)/.installed-dev ## ruff and mypy alone
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-HDL_EXAMPLES := vhdl_motor vhdl_two_types sv_motor cocotb_motor
+HDL_EXAMPLES := vhdl_motor vhdl_two_types sv_motor cocotb_motor nodes/wheels_vhdl nodes/wheels_sv
 examples: $(VENV)/.installed-dev ghdl verilog ## designs that act on good packets only, with their benches
 	for name in $(HDL_EXAMPLES); do \
 	  PATH="$(CURDIR)/$(BIN):$$PATH" $(MAKE) --no-print-directory -C examples/$$name || exit; \
@@ -109,7 +109,7 @@ live: $(VENV)/.installed-dev $(LIVE_PEERS) verilog ros1 ## our nodes and the bri
 VERIFY_OUT ?= build/verify
 verify: $(VENV)/.installed oracles ## every type of every distribution through TS1, TS2 and TS3 (over 15 minutes)
 	$(if $(RESUME),,rm -f $(VERIFY_OUT)/results.jsonl)
-	$(BIN)/python -m firm_hdl.verify --systems ts1,ts2,ts3 $(VERIFY_ARGS) \
+	$(BIN)/firm-hdl verify --systems ts1,ts2,ts3 $(VERIFY_ARGS) $(if $(findstring /,$(VERIFY_ARGS)),,--all) \
 	  --results $(VERIFY_OUT)/results.jsonl --report $(VERIFY_OUT)/report.html
 
 # `CORPUS=DIR` has folders `ros1/` and `ros2/` with packages, or one of them, and maybe `invalid/` with
@@ -137,7 +137,7 @@ report: $(VENV)/.installed ## one page of all results that are in build/verify
 	$(BIN)/firm-hdl report $(VERIFY_OUT)/*.jsonl --out $(VERIFY_OUT)/report.html
 
 benches: $(VENV)/.installed ghdl
-	$(BIN)/python -m firm_hdl.verify --systems bench --distro lyrical --distro noetic --jobs $(JOBS)
+	$(BIN)/firm-hdl verify --all --systems bench --distro lyrical --distro noetic --jobs $(JOBS)
 
 # Verilog of four types, in every language of Icarus and Verilator.
 languages: $(VENV)/.installed-dev verilog

@@ -93,7 +93,7 @@ class _Line:
         self._descriptor = -1
         self._process = 0
         self._width = 0
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
 
     def start(self, descriptor: int, ends: threading.Event) -> threading.Thread:
         """Show the line on a terminal from another thread, until the event is set."""

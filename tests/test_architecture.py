@@ -68,8 +68,7 @@ MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
     "cases",
     *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil", "timing"}),
-    *("arguments", "drawing", "export", "identity", "node", "recordings", "sim"),
-    "terminal",
+    *("arguments", "drawing", "export", "identity", "node", "recordings", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
     *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
@@ -90,32 +89,25 @@ MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
 
 # Allowed imports of the parts of `firm_hdl.verify`.
 VERIFY_MAY_IMPORT = {
-    "choices": set[str](),
     "results": set[str](),
     "ros2_wheels": set[str](),
     "ros_python": set[str](),
     "references": {"ros2_wheels", "ros_python"},
     "simulators": set[str](),
-    "systems": {"choices", "results"},
+    "systems": {"results"},
     "clients": {"references", "results", "systems"},
     "ts1": {"results", "ros2_wheels", "ros_python", "systems"},
     "ts2": {"results", "systems"},
-    "ts3": {
-        *("choices", "clients", "references", "results", "simulators", "systems"),
-    },
+    "ts3": {"clients", "references", "results", "simulators", "systems"},
     "bench": {"references", "results", "systems", "ts3"},
     "board": {"references", "results", "systems", "ts3"},
     "report": {"results"},
 }
-VERIFY_MAY_IMPORT["request"] = {"board", "systems", "ts3"}
 VERIFY_MAY_IMPORT["run"] = {
-    *("bench", "board", "clients", "references", "report", "request", "results"),
+    *("bench", "board", "clients", "command", "references", "report", "results"),
     *("systems", "ts1", "ts2", "ts3"),
 }
-VERIFY_MAY_IMPORT["command"] = {
-    *("board", "choices", "report", "request", "results", "run", "systems"),
-}
-VERIFY_MAY_IMPORT["__main__"] = {"command"}
+VERIFY_MAY_IMPORT["command"] = {"board", "report", "results", "run", "systems", "ts3"}
 VERIFY_MAY_IMPORT["verify"] = set()
 
 

@@ -135,7 +135,6 @@ def packets_to_simulate(
 
     Parameters
     ----------
-    plan : Plan
     packets : sequence of bytes
         At least one packet.
     taken : sequence of set of Edge

@@ -64,7 +64,6 @@ class RosbagsOracle:
 
     Attributes
     ----------
-    store : Typestore
     dialect : "ros1" or "ros2"
         The dialect of the types. In ROS 1, ``byte`` is signed, and times have ``secs`` and
         ``nsecs``.

@@ -39,8 +39,6 @@ class Judge:
 
     Attributes
     ----------
-    oracle : RosbagsOracle
-    name : str
     note : str
         A remark about the oracle; empty in most cases.
     """

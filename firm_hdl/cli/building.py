@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import os
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from firm_hdl.arguments import TYPE_HELP, add_jobs, add_json, add_options
@@ -107,14 +106,9 @@ def _build(args: argparse.Namespace) -> None:
     for built in done:
         print(built.description)
     for built in done[:1]:
-        print(f"next: {_next(built.folder)}")
-
-
-def _next(folder: Path) -> str:
-    """Say what a user may do with a folder."""
-    script = folder / "vhdl" / "run_ghdl.sh"
-    run = f"{script} runs its test bench in GHDL; " if script.is_file() else ""
-    return f"{run}{folder / '*.veo'} show how to instantiate it in Verilog"
+        script = built.folder / "vhdl" / "run_ghdl.sh"
+        run = f"{script} runs a test bench in GHDL; " if script.is_file() else ""
+        print(f"next: {run}--with all adds SystemVerilog, templates, scripts and pictures")
 
 
 def add_plan(command: argparse.ArgumentParser) -> None:
@@ -175,9 +169,7 @@ def _info(args: argparse.Namespace) -> None:
         if estimate := estimate_text(plan):
             print(estimate)
     if not args.as_json:
-        print(
-            "next: firm-hdl build, with the same arguments, writes VHDL, Verilog and SystemVerilog"
-        )
+        print("next: firm-hdl build, with the same arguments, writes them in VHDL and Verilog")
 
 
 def _planned(message: Message, args: argparse.Namespace) -> Plan:

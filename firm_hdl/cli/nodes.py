@@ -6,6 +6,8 @@ import argparse
 import sys
 import warnings
 from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from firm_hdl.arguments import add_engine, add_json, add_path, number_between, seconds
@@ -85,6 +87,9 @@ def _add_run(command: argparse.ArgumentParser) -> None:
     command.add_argument("--domain", type=_domain, help="domain of ROS 2 (ROS_DOMAIN_ID)")
     command.add_argument("--interface", help="network interface of rtps, such as lo")
     command.add_argument("--seconds", type=seconds, help="end after so long (default: at Ctrl-C)")
+    command.add_argument(
+        "--wave", metavar="FILE", type=Path, help="write the waveform of --board sim, as VCD"
+    )
     add_engine(command, "--board sim")
     command.add_argument("--quiet", action="store_true", help="print no figures")
 
@@ -174,6 +179,7 @@ def _act(args: argparse.Namespace, description: Description) -> None:
             seconds=args.seconds,
             engine=args.engine,
             quiet=args.quiet,
+            wave=args.wave,
         )
         return
     from firm_hdl.node.summary import facts_of, summary, warnings_of
@@ -181,6 +187,20 @@ def _act(args: argparse.Namespace, description: Description) -> None:
     if args.action == "info" and args.as_json:
         facts = facts_of(description)
         args.document |= {**facts, "warnings": list(warnings_of(description, facts))}
+        if args.members:
+            from firm_hdl.node.hdl.members import accelerator_streams
+
+            args.document["members"] = [
+                {
+                    "topic": each.topic.name,
+                    "message": each.message,
+                    "member": each.member,
+                    "direction": each.direction,
+                    "type": each.type,
+                    "ports": [asdict(port) for port in each.ports],
+                }
+                for each in accelerator_streams(description)
+            ]
         return
     if args.action == "build":
         from firm_hdl.node.build import build_node

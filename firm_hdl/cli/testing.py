@@ -20,7 +20,7 @@ def add_verify(command: argparse.ArgumentParser) -> None:
 
 def add_report(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl report``."""
-    from firm_hdl.verify.report.command import add_report_arguments, run_report
+    from firm_hdl.verify.report.formats import add_report_arguments, run_report
 
     add_report_arguments(command)
     command.set_defaults(run=run_report)

@@ -35,7 +35,6 @@ def branches(message: Message, plan: Plan) -> frozenset[str]:
 
     Parameters
     ----------
-    message : Message
     plan : Plan
         A plan of the message; the converters get its wire format, bus width and limit.
     """

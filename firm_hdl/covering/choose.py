@@ -34,7 +34,6 @@ class Chosen:
 
     Attributes
     ----------
-    name : str
     adds : tuple of str
         The features that no type chosen before this one has.
     """

@@ -124,8 +124,8 @@ class RecordTop(Component):
         leaves = dict(leaf_members(self.record.message, self.record.tree))
         actuals = {}
         for port in ports_of(self.plan, self.direction):
-            own = port.leaf is None
-            value = getattr(self, port.name) if own else leaves[port.leaf][port.member]
+            leaf = port.leaf
+            value = getattr(self, port.name) if leaf is None else leaves[leaf][port.member]
             actuals[f"{port.direction[0]}_{self.names.get(port.name, port.name)}"] = value
         m.submodules.core = Instance(self.entity, **actuals)
         stream = self.record.record

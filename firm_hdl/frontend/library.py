@@ -260,6 +260,9 @@ class Library:
         form = "package/msg/Name" if self.dialect == "ros2" else "package/Name"
         message = f"'{clip(name)}' is not the name of a type, which is '{form}'"
         similar = similar_types(self._sources, package, base)
+        if not package and base in self._sources.types:
+            message = f"'{clip(name)}' is a package, and not the name of a type, which is '{form}'"
+            similar = [(base, *each) for each in self._sources.types[base]]
         raise DefinitionError.of(did_you_mean(message, self._spell(similar)))
 
     def _unambiguous(self, name: str) -> list[TypeName]:

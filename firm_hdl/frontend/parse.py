@@ -24,7 +24,7 @@ from typing import NamedTuple
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput
 
-from firm_hdl.errors import MAX_DIAGNOSTICS, DefinitionError, Diagnostic, Source, Span
+from firm_hdl.errors import MAX_DIAGNOSTICS, Diagnostic, Source, Span
 from firm_hdl.frontend.explain import clip, explain
 from firm_hdl.frontend.syntax import (
     ConstantSyntax,
@@ -43,7 +43,6 @@ __all__ = [
     "is_type_name",
     "line_trees",
     "lines_of",
-    "parse_message",
     "read_message",
 ]
 
@@ -139,20 +138,6 @@ _LINE_ENDS = {
     "ros1": re.compile(r"\r\n|[\n\r]"),
     "ros2": re.compile("\r\n|[\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029]"),
 }
-
-
-def parse_message(source: Source, dialect: Dialect) -> MessageSyntax:
-    """Parse a ``.msg`` text.
-
-    Raises
-    ------
-    DefinitionError
-        With one diagnostic for each line with a syntax error.
-    """
-    syntax, diagnostics = read_message(source, dialect)
-    if diagnostics:
-        raise DefinitionError(diagnostics)
-    return syntax
 
 
 def read_message(

@@ -17,6 +17,9 @@ __all__ = ["SUFFIXES", "package_of_file", "spelled"]
 SUFFIXES = tuple(f".{kind}" for kind in (*KINDS, "idl"))
 """How the names of files of definitions end."""
 
+_PARTS = ("Request", "Response", "Event", "Goal", "Result", "Feedback")
+_HEADER = re.compile(r"(?<=\w)\.(h|hpp)$")
+
 # A structure of C.
 _OF_C = re.compile(r"(\w+?)__(msg|srv|action)__(\w+)")
 
@@ -28,13 +31,14 @@ def spelled(name: str) -> str:
     ('sensor_msgs/msg/Imu', 'sensor_msgs/msg/Imu')
 
     Also taken are the name of a file, ``sensor_msgs/msg/Imu.msg``; of a class in Python,
-    ``sensor_msgs.msg._imu.Imu``; of a type in DDS, ``sensor_msgs::msg::dds_::Imu_``; and of a
+    ``sensor_msgs.msg._imu.Imu``; of a part of a service, ``std_srvs::srv::Empty::Request``; of a
+    header, ``sensor_msgs/Imu.h``; of a type in DDS, ``sensor_msgs::msg::dds_::Imu_``; and of a
     structure in C, ``sensor_msgs__msg__Imu``. The kind may be missing, as in ROS 1.
     """
     text = name.strip()
     if found := _OF_C.fullmatch(text):
         return "/".join(found.groups())
-    parts = re.split(r"::|[./]", text)
+    parts = re.split(r"::|[./]", _HEADER.sub("", text))
     match parts:
         case [_, "msg" | "srv" | "action", _, suffix] if f".{suffix}" in SUFFIXES:
             parts = parts[:3]
@@ -42,6 +46,8 @@ def spelled(name: str) -> str:
             parts = [package, kind, base]
         case [package, kind, "dds_", base] if base.endswith("_"):
             parts = [package, kind, base.removesuffix("_")]
+        case [package, "srv" | "action" as kind, base, part] if part in _PARTS:
+            parts = [package, kind, f"{base}_{part}"]
     is_name = len(parts) in (2, 3) and all(parts) and parts[-1] not in KINDS
     return "/".join(parts) if is_name else name
 

@@ -13,6 +13,8 @@ from typing import Literal, TypeAlias
 
 from firm_hdl.errors import Span
 from firm_hdl.model import Message, Wire
+from firm_hdl.plan import Plan, build_plan
+from firm_hdl.wire import lay_out
 
 __all__ = [
     "CONTROL_TOPIC",
@@ -132,9 +134,13 @@ class Topic:
     rate_hz: float | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
 
-    def store(self, direction: Direction) -> Store | None:
-        """Return the packets of a direction; `None` if the topic has none there."""
-        return dict(self.stores).get(direction)
+    def store(self, direction: Direction) -> Store:
+        """Return the packets of a direction, in which the topic has some."""
+        return dict(self.stores)[direction]
+
+    def has(self, direction: Direction) -> bool:
+        """Whether the topic has packets in a direction."""
+        return direction in dict(self.stores)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -263,11 +269,18 @@ class Description:
                 found.append((topic, partner))
         return tuple(found)
 
+    def plan(self, store: Store) -> Plan:
+        """Return the plan of the converters and the gate of some packets."""
+        return build_plan(
+            lay_out(store.message, self.wire),
+            bus_bytes=self.bus_bytes,
+            max_message_bytes=store.max_message_bytes,
+        )
+
     def _stores(self, direction: Direction) -> Iterator[tuple[Topic, Store]]:
         for topic in self.topics:
-            store = topic.store(direction)
-            if store is not None:
-                yield topic, store
+            if topic.has(direction):
+                yield topic, topic.store(direction)
 
     @property
     def fingerprint(self) -> int:

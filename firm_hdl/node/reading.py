@@ -21,6 +21,7 @@ from firm_hdl.files import read_file
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS, Library, open_library
 from firm_hdl.metrics import metrics_of
 from firm_hdl.model import WIRE_OF, Action, Interface, Message, Service
+from firm_hdl.names.keywords import KEYWORDS
 from firm_hdl.node.description import (
     LINKS,
     Description,
@@ -202,6 +203,7 @@ class _Reader:
             if problem := _path_problem(file):
                 language.error(problem)
         if not files:
+            language.error(f"'{language.name}' has no file")
             return "", None
         entity = os.path.splitext(os.path.basename(files[-1]))[0]
         if "entity" in known:
@@ -370,6 +372,8 @@ def _class_problem(text: str) -> str:
 
 
 def _entity_problem(text: str) -> str:
+    if text.lower() in KEYWORDS:
+        return f"'{text}' is a keyword of VHDL or SystemVerilog"
     is_name = re.fullmatch("[A-Za-z][A-Za-z0-9_]*", text) and len(text) <= 255
     return "" if is_name else f"'{text}' is no name of an entity or a module"
 
@@ -460,7 +464,7 @@ def _check_baud(link: Link, place: Entry, clock_hz: float) -> None:
 
 def with_memory(link: Link, topics: list[Topic], entry: Entry | None) -> Link:
     """Give the link's memory the size of the largest one behind it, unless one is named."""
-    stores = [store for topic in topics if (store := topic.store("in")) is not None]
+    stores = [topic.store("in") for topic in topics if topic.has("in")]
     if not stores or (entry is not None and _names_memory(entry)):
         return link
     return replace(link, memory_bytes=max(1 << 10, *(each.memory_bytes for each in stores)))

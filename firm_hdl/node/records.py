@@ -27,8 +27,7 @@ from firm_hdl.model import Message
 from firm_hdl.names.identifiers import flat_names
 from firm_hdl.node.description import SERVICE_PARTS, Description, Store
 from firm_hdl.node.top import NodePort
-from firm_hdl.plan import Plan, build_plan
-from firm_hdl.wire import lay_out
+from firm_hdl.plan import Plan
 
 __all__ = ["MessagePort", "message_ports", "record_files", "struct_files"]
 
@@ -84,11 +83,7 @@ def message_ports(description: Description, ports: Sequence[NodePort]) -> list[M
     by_member = {port.member: port.name for port in ports}
     messages = []
     for path, (member, direction, store) in zip(paths, found, strict=True):
-        plan = build_plan(
-            lay_out(store.message, description.wire),
-            bus_bytes=description.bus_bytes,
-            max_message_bytes=store.max_message_bytes,
-        )
+        plan = description.plan(store)
         places = dict(member_tree(leaf.path for leaf in plan.leaves).leaves())
         own = {
             by_member[".".join((member, *places[port.leaf], port.member))]: port

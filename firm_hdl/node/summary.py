@@ -11,15 +11,12 @@ from typing import Any, TypeAlias
 
 from firm_hdl.estimates import Estimate, estimates_of
 from firm_hdl.metrics import Metrics, metrics_of
-from firm_hdl.model import Message
 from firm_hdl.node.capacity import rate_problems, size_problems
 from firm_hdl.node.control import IDENTITY, registers
 from firm_hdl.node.description import SERVICE_PARTS, Description, Direction, Store, Topic
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
 from firm_hdl.node.reading import LINK_OPTIONS
-from firm_hdl.plan import build_plan
 from firm_hdl.timing import Cost, timing
-from firm_hdl.wire import lay_out
 
 __all__ = ["facts_of", "summary", "warnings_of"]
 
@@ -39,13 +36,9 @@ def facts_of(description: Description) -> dict[str, Any]:
 
     # Many topics may have one type, and planning takes its time.
     @cache
-    def figures_of(message: Message, max_message_bytes: int) -> _Figures:
-        plan = build_plan(
-            lay_out(message, description.wire),
-            bus_bytes=description.bus_bytes,
-            max_message_bytes=max_message_bytes,
-        )
-        metrics = metrics_of(message, description.wire)
+    def figures_of(store: Store) -> _Figures:
+        plan = description.plan(store)
+        metrics = metrics_of(store.message, description.wire)
         return metrics, timing(plan).hardest, estimates_of(plan)
 
     return {
@@ -70,7 +63,7 @@ def facts_of(description: Description) -> dict[str, Any]:
     }
 
 
-def _topic(topic: Topic, figures_of: Callable[[Message, int], _Figures]) -> dict[str, Any]:
+def _topic(topic: Topic, figures_of: Callable[[Store], _Figures]) -> dict[str, Any]:
     qos = topic.qos
     return {
         "id": topic.id,
@@ -87,9 +80,7 @@ def _topic(topic: Topic, figures_of: Callable[[Message, int], _Figures]) -> dict
             "depth": qos.depth,
         },
         "packets": {
-            direction: _store(
-                topic, direction, store, figures_of(store.message, store.max_message_bytes)
-            )
+            direction: _store(topic, direction, store, figures_of(store))
             for direction, store in topic.stores
         },
     }

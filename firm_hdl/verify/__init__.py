@@ -1,6 +1,3 @@
-"""Verification: converters against oracles, on every type.
-
-``python -m firm_hdl.verify`` runs it.
-"""
+"""Verification: converters against oracles, on every type. ``firm-hdl verify`` runs it."""
 
 __all__ = []

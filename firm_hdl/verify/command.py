@@ -1,9 +1,10 @@
-"""The arguments of ``firm-hdl verify``."""
+"""``firm-hdl verify``: its arguments, the request that they make, and the types to test."""
 
 from __future__ import annotations
 
 import argparse
-from dataclasses import asdict, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -19,12 +20,15 @@ from firm_hdl.arguments import (
     positive,
     seconds,
 )
-from firm_hdl.errors import UserError
+from firm_hdl.errors import Diagnostic, UserError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
+from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
+from firm_hdl.node import Description
 from firm_hdl.plan import BUS_BYTES
 from firm_hdl.terminal import stage
-from firm_hdl.verify.choices import (
+from firm_hdl.verify.board.description import described_board
+from firm_hdl.verify.systems.options import (
     CLIENT_NAMES,
     LONGEST,
     MOST_MESSAGES,
@@ -33,19 +37,24 @@ from firm_hdl.verify.choices import (
     SIMULATOR_NAMES,
     SYSTEM_NAMES,
     WRITER_NAMES,
+    Request,
+    option_of,
 )
-from firm_hdl.verify.request import Workload, resolve
-from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.tasks import UnknownTypeError
+from firm_hdl.verify.systems.tasks import (
+    TypeUnderTest,
+    UnknownTypeError,
+    collect_own,
+    collect_tasks,
+)
 
-__all__ = ["add_verify_arguments", "run_verify"]
+__all__ = ["Workload", "add_verify_arguments", "resolve", "run_verify"]
 
 _USUAL_SYSTEMS = ("ts3",)
 
 # Arguments that cannot be combined with ``--sut``.
 _OTHERS = (
     *("bag", "bus_bytes", "executor", "golden", "mutations", "oracle", "reference"),
-    *("report", "results", "share_circuits", "simulator", "systems", "vcd"),
+    *("share_circuits", "simulator", "systems", "vcd"),
     *("board", "node", "write_node"),
 )
 
@@ -83,7 +92,7 @@ def run_verify(given: argparse.Namespace) -> int:
 
 def _facts(results: str) -> dict[str, Any]:
     """Return what is in a file of results, as values of JSON."""
-    from firm_hdl.verify.report.outcomes import count, outcomes_of
+    from firm_hdl.verify.report.summary import count, outcomes_of
     from firm_hdl.verify.results.file import read_results
 
     found = read_results(results)
@@ -106,6 +115,102 @@ def _facts(results: str) -> dict[str, Any]:
     }
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Workload:
+    """A request and its types.
+
+    Attributes
+    ----------
+    request : Request
+        Its `paths` are the folders of the workspace if the types were found there.
+    tasks : sequence of TypeUnderTest
+        The types that are tested; empty if only TS1 runs, which looks up the types itself.
+    problems : mapping of str to Diagnostic
+        Errors by their texts. Types without errors are tested nevertheless.
+    board : Description or None
+        The node of the board, if there is one.
+    """
+
+    request: Request
+    tasks: Sequence[TypeUnderTest]
+    problems: Mapping[str, Diagnostic]
+    board: Description | None = None
+
+
+def resolve(request: Request) -> Workload:
+    """Look up the types of a request.
+
+    Named types that no distribution has are looked up in the active workspace, as with ``--path``.
+
+    Raises
+    ------
+    DefinitionError
+        If a definition that is named cannot be used.
+    UnknownTypeError
+        If a type that is named does not exist.
+    UserError
+        If the board or its node cannot be used.
+    """
+    problems: dict[str, Diagnostic] = {}
+    if request.is_ts1_alone:
+        return Workload(request=request, tasks=(), problems=problems)
+    if request.node is not None:
+        # The types are those of the node.
+        node = described_board(request, ())
+        return Workload(request=request, tasks=(), problems=problems, board=node)
+    try:
+        tasks = _collect(request, problems)
+    except UnknownTypeError:
+        # With `paths`, the workspace was searched, too, and what is missing is another error.
+        if request.bags:
+            raise
+        if folders := _workspace(request):
+            request = replace(request, paths=folders)
+            tasks = _collect(request, problems)
+        else:
+            # Some of the types may exist: these are tested.
+            tasks = collect_tasks(request.distros, request.types, problems=problems)
+    board = None
+    if request.board is not None:
+        board = described_board(request, [task.name for task in tasks])
+    return Workload(request=request, tasks=tasks, problems=problems, board=board)
+
+
+def _collect(request: Request, problems: dict[str, Diagnostic]) -> list[TypeUnderTest]:
+    """Return the types from where the request says; add errors to `problems`."""
+    if request.bags:
+        from firm_hdl.verify.ts3.recording import collect_recorded
+
+        return collect_recorded(
+            next(iter(request.distros), None),
+            request.types,
+            request.bags,
+            wire=request.wire,
+            problems=problems,
+            depends=request.depends,
+        )
+    if request.paths:
+        # An invalid type does not keep the others from being tested.
+        return collect_own(
+            request.distros or [DEFAULT_DISTRO],
+            request.types,
+            request.paths,
+            depends=request.depends,
+            problems=problems,
+        )
+    return collect_tasks(request.distros, request.types)
+
+
+def _workspace(request: Request) -> tuple[str, ...]:
+    """Return the folders of the active workspace with the packages of the named types."""
+    packages = {name.partition("/")[0] for name in request.types}
+    return tuple(
+        folder
+        for distro in request.distros or [DEFAULT_DISTRO]
+        for folder in workspace_folders(distro, packages)
+    )
+
+
 def _request(given: argparse.Namespace) -> Request:
     """Check the arguments, and turn them into a request."""
     _check_replay(given)
@@ -121,40 +226,23 @@ def _request(given: argparse.Namespace) -> Request:
         given.usage_error("--report needs --results")
     if given.depends and not (given.path or given.bag):
         given.usage_error("--depends needs --path or --bag")
-    references = None
+    asked: dict[str, Any] = {
+        each.name: getattr(given, option_of(each.name), None) for each in fields(Request)
+    }
+    # An option that repeats has a list, without repetitions; what is not given has its default.
+    asked = {
+        name: tuple(dict.fromkeys(value)) if isinstance(value, list | tuple) else value
+        for name, value in asked.items()
+        if value not in (None, [])
+    }
     if given.reference:
-        references = tuple(name for name in dict.fromkeys(given.reference) if name != NO_REFERENCE)
-    return Request(
-        types=tuple(given.types),
-        distros=_distros_of(given),
-        paths=tuple(given.path),
-        depends=tuple(given.depends),
-        systems=tuple(given.systems or (("board",) if given.board else _USUAL_SYSTEMS)),
-        libraries=tuple(dict.fromkeys(given.sut)),
-        wire=given.wire,
-        widths=tuple(dict.fromkeys(given.bus_bytes or [8])),
-        seed=given.seed,
-        jobs=given.jobs,
-        executor=given.executor,
-        oracles=tuple(given.oracle),
-        mutations=given.mutations,
-        golden=given.golden,
-        simulator=given.simulator,
-        most_cases=given.cases,
-        stalled=given.stalls,
-        broken=given.broken,
-        references=references,
-        vcd=given.vcd,
-        bags=tuple(given.bag),
-        longest=given.max_message_bytes or LONGEST,
-        share_circuits=given.share_circuits,
-        board=given.board,
-        node=given.node,
-        engine=given.engine,
-        silent_seconds=given.silent_seconds,
-        results=given.results,
-        report=given.report,
-    )
+        asked["references"] = tuple(name for name in asked["references"] if name != NO_REFERENCE)
+    if given.board and not given.systems:
+        asked["systems"] = ("board",)
+    if (given.board is not None or given.write_node is not None) and not given.distro:
+        # A node has one distribution.
+        asked["distros"] = (DEFAULT_DISTRO,)
+    return Request(**asked)
 
 
 def _check_replay(given: argparse.Namespace) -> None:
@@ -364,13 +452,6 @@ def _add_board(group: argparse._ArgumentGroup) -> None:
         metavar="S",
         help="a board that says nothing for so long fails; default: 5, or 60 for sim",
     )
-
-
-def _distros_of(given: argparse.Namespace) -> tuple[str, ...]:
-    """Return the distributions; a node has one."""
-    distros = tuple(given.distro or ())
-    has_node = given.board is not None or given.write_node is not None
-    return (DEFAULT_DISTRO,) if has_node and not distros else distros
 
 
 def _check_board(given: argparse.Namespace) -> None:

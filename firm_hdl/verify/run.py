@@ -1,7 +1,8 @@
 """A run of ``firm-hdl verify``: test systems, or client libraries under test.
 
-A test system is an entry of :data:`SYSTEMS`: a function that makes the system for a workload. All
-systems write to one file of results, which lists the planned tests of all systems first.
+A test system is an entry of :data:`SYSTEMS`: a function that makes its systems for a workload. TS1
+has one for each distribution. All systems write to one file of results, which lists the planned
+tests of all systems first.
 
 A type that was asked for by name has to be judged. If all types are tested, those that no oracle
 can judge are listed and do not count. A run that judged no test fails.
@@ -18,14 +19,19 @@ from firm_hdl.export.build import BuildError
 from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.jobs.processes import unwound_when_terminated
 from firm_hdl.jobs.programs import ProgramMissingError
-from firm_hdl.verify.bench.system import Benches
+from firm_hdl.verify.bench import Benches
 from firm_hdl.verify.board.system import Boards
-from firm_hdl.verify.clients.command import run_sut
+from firm_hdl.verify.clients.system import Libraries
+from firm_hdl.verify.command import Workload
 from firm_hdl.verify.references.client import ClientMissingError
-from firm_hdl.verify.report.command import write_report
-from firm_hdl.verify.request import Workload
-from firm_hdl.verify.results.environment import code_digest, environment, inputs_digest
-from firm_hdl.verify.results.file import ResultsError, ResultsWriter
+from firm_hdl.verify.report.formats import write_report
+from firm_hdl.verify.results.file import (
+    ResultsError,
+    ResultsWriter,
+    code_digest,
+    environment,
+    inputs_digest,
+)
 from firm_hdl.verify.results.verdict import Failed, NotJudged
 from firm_hdl.verify.systems.system import Judged, Recorder, System
 from firm_hdl.verify.systems.tasks import UnknownTypeError
@@ -33,7 +39,7 @@ from firm_hdl.verify.ts1.system import Ts1, each_distro
 from firm_hdl.verify.ts2.system import Ts2
 from firm_hdl.verify.ts3.system import Ts3
 
-__all__ = ["SYSTEMS", "concluded", "failure", "run_workload"]
+__all__ = ["SYSTEMS", "failure", "run_workload"]
 
 _FAILS = ", so the run fails"
 
@@ -52,7 +58,7 @@ def run_workload(work: Workload) -> int:
     request = work.request
     try:
         with unwound_when_terminated():
-            found = run_sut(work.tasks, request) if request.libraries else _run_systems(work)
+            found = _run_systems(work)
         for line in concluded(found, is_named=request.is_named):
             print(line)
         if request.report is not None and request.results is not None:
@@ -118,7 +124,9 @@ def concluded(found: Sequence[Judged], *, is_named: bool) -> list[str]:
 def _run_systems(work: Workload) -> list[Judged]:
     """Run the test systems; return all tests with their verdicts."""
     with ExitStack() as stack:
-        systems = [SYSTEMS[name](work) for name in work.request.systems]
+        systems: Sequence[System] = [Libraries(work.tasks, work.request)]
+        if not work.request.libraries:
+            systems = [each for name in work.request.systems for each in SYSTEMS[name](work)]
         for system in systems:
             stack.enter_context(system)
         writer = None
@@ -137,15 +145,7 @@ def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWrit
     request = work.request
     files = filter(None, [request.golden, request.node])
     read = [*request.paths, *request.depends, *request.bags, *files]
-    options = {
-        "systems": [system.name for system in systems],
-        "bus_bytes": list(request.widths),
-        "wire": request.wire,
-        "paths": list(request.paths),
-        "depends": list(request.depends),
-        "code": code_digest(),
-        "inputs": inputs_digest(read),
-    }
+    options = {**request.kept, "code": code_digest(), "inputs": inputs_digest(read)}
     for system in systems:
         options |= system.options
     more = {"executor": request.executor}
@@ -160,16 +160,16 @@ def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWrit
     )
 
 
-def _boards(work: Workload) -> System:
+def _boards(work: Workload) -> Sequence[System]:
     assert work.board is not None
-    return Boards(work.board, work.request)
+    return [Boards(work.board, work.request)]
 
 
-SYSTEMS: dict[str, Callable[[Workload], System]] = {
-    "ts1": lambda work: Ts1(each_distro(work.request)),
-    "ts2": lambda work: Ts2(work.tasks, work.request),
-    "ts3": lambda work: Ts3(work.tasks, work.request),
-    "bench": lambda work: Benches(work.tasks, work.request),
+SYSTEMS: dict[str, Callable[[Workload], Sequence[System]]] = {
+    "ts1": lambda work: [Ts1(each) for each in each_distro(work.request)],
+    "ts2": lambda work: [Ts2(work.tasks, work.request)],
+    "ts3": lambda work: [Ts3(work.tasks, work.request)],
+    "bench": lambda work: [Benches(work.tasks, work.request)],
     "board": _boards,
 }
 """Test systems by the names that ``--systems`` takes."""

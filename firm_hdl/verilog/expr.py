@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import groupby
-from typing import NamedTuple
 
 from firm_hdl.rtlil.evaluate import constant
 from firm_hdl.rtlil.ir import Bits, Cell, Chunk, Slice, Spec, bits_of, spec_width
+from firm_hdl.vhdl import expr
 from firm_hdl.vhdl.expr import Declared
+from firm_hdl.vhdl.text import Expression as _Expression
 from firm_hdl.vhdl.uses import int_parameter, output, trim
 
 __all__ = ["Expression", "Values", "infix", "is_foldable", "literal", "part", "unary"]
@@ -30,13 +31,12 @@ _DIVISIONS = ("$divfloor", "$modfloor")
 _ASSOCIATIVE = frozenset("+ & | ^ && ||".split())
 
 
-class Expression(NamedTuple):
+class Expression(_Expression):
     """An expression; its outermost `operator` decides whether it needs parentheses."""
 
-    text: str
-    operator: str = ""
+    __slots__ = ()
 
-    def inside(self, operator: str = "") -> str:
+    def operand(self, operator: str = "") -> str:
         """Return the text as an operand of an operator."""
         plain = self.operator in ("", "not")
         plain |= self.operator == operator and operator in _ASSOCIATIVE
@@ -47,7 +47,7 @@ def infix(operator: str, *operands: Expression) -> Expression:
     """Apply a binary operator; an associative one to any number of operands."""
     if len(operands) == 1:
         return operands[0]
-    text = f" {operator} ".join(each.inside(operator) for each in operands)
+    text = f" {operator} ".join(each.operand(operator) for each in operands)
     return Expression(text, operator)
 
 
@@ -84,17 +84,8 @@ def is_foldable(cell: Cell, width: int) -> bool:
     return cell.kind not in _DIVISIONS
 
 
-class Values:
+class Values(expr.Values):
     """Writes the values of one module.
-
-    Parameters
-    ----------
-    declared : mapping of str to Declared
-        Signals and ports by wire.
-    folded : mapping of str to Cell
-        Wires that are written as the expression that drives them.
-    width : mapping of str to int
-        Bits of each wire.
 
     Attributes
     ----------
@@ -105,35 +96,16 @@ class Values:
     def __init__(
         self, declared: Mapping[str, Declared], folded: Mapping[str, Cell], width: Mapping[str, int]
     ) -> None:
-        self._declared, self._folded, self._width = declared, folded, width
+        super().__init__(declared, folded, width)
         self.reads: dict[str, Declared] = {}
-
-    @property
-    def cells(self) -> Values:
-        """The writer of operators."""
-        return self
-
-    def folded(self, spec: Spec) -> Cell | None:
-        """Return the operator that computes the whole value, if its result has no signal."""
-        if len(spec) == 1 and isinstance(spec[0], Slice):
-            return self._folded.get(spec[0].wire)
-        return None
-
-    def is_name(self, spec: Spec) -> bool:
-        """Return whether a value is a signal, or one slice of one."""
-        return len(spec) == 1 and isinstance(spec[0], Slice) and self.folded(spec) is None
-
-    def constant(self, spec: Spec, *, signed: bool = False) -> int | None:
-        """Return the number of a constant value, else `None`."""
-        return constant(spec, signed=signed)
 
     def edge(self, cell: Cell) -> str:
         """Write the clock edge of a cell."""
         word = "posedge" if int_parameter(cell, "CLK_POLARITY") else "negedge"
         return f"{word} {self.logic(cell.ports['CLK']).text}"
 
-    def name(self, chunk: Slice) -> str:
-        """Name the bits of a signal."""
+    def name(self, chunk: Chunk) -> str:
+        assert isinstance(chunk, Slice)
         declared = self._declared[chunk.wire]
         self.reads[declared.name] = declared
         return part(declared, chunk.low, chunk.width)
@@ -209,8 +181,8 @@ class Values:
             if width == 1 and (bit := self._chosen_bit(ports)) is not None:
                 return bit
             select = self.boolean(ports["S"])
-            b, a = (self.value(ports[port], width).inside() for port in "BA")
-            return Expression(f"{select.inside()} ? {b} : {a}", "?")
+            b, a = (self.value(ports[port], width).operand() for port in "BA")
+            return Expression(f"{select.operand()} ? {b} : {a}", "?")
         if kind == "$shl":
             operand = self.value(ports["A"], width, signed=signed)
             return infix("<<", operand, self.value(ports["B"]))
@@ -286,7 +258,7 @@ class Values:
             test = f"{rest} != {whole}'sd0 && (({sign}) < {whole}'sd0) != ({y} < {whole}'sd0)"
             text = f"({test}) ? {corrected} : {x} {operator} {y}"
             result = _unsigned(Expression(text, "?"))
-        return Expression(f"{guard.inside()} ? {zero} : {result.inside()}", "?")
+        return Expression(f"{guard.operand()} ? {zero} : {result.operand()}", "?")
 
 
 def _runs(spec: Spec) -> list[tuple[Chunk, int]]:

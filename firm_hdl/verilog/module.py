@@ -10,7 +10,8 @@ function, whose parameters are the signals that it reads.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 from firm_hdl.names.keywords import VERILOG
 from firm_hdl.rtlil.ir import (
@@ -18,7 +19,6 @@ from firm_hdl.rtlil.ir import (
     Bits,
     Case,
     Cell,
-    Module,
     Slice,
     Spec,
     Statement,
@@ -28,35 +28,29 @@ from firm_hdl.rtlil.ir import (
     spec_width,
 )
 from firm_hdl.verilog.expr import Expression, Values, infix, is_foldable, literal, part
-from firm_hdl.vhdl.declare import Role, attributes_of, declare, enumeration, remark_of
 from firm_hdl.vhdl.expr import Declared
-from firm_hdl.vhdl.memory import MemoryText, memory_id
+from firm_hdl.vhdl.memory import MemoryText
 from firm_hdl.vhdl.messages import FIELD
-from firm_hdl.vhdl.passes import graph_of
-from firm_hdl.vhdl.process import Arm, Statements, flatten
+from firm_hdl.vhdl.process import Arm, Statements
 from firm_hdl.vhdl.registers import Group, Register, Registers
 from firm_hdl.vhdl.text import wrap
-from firm_hdl.vhdl.uses import INLINE, enable_runs, int_parameter, output
+from firm_hdl.vhdl.uses import enable_runs, int_parameter
+from firm_hdl.vhdl.writer import TITLES, Writer
 
 __all__ = ["ModuleWriter"]
-
-_TITLES: Mapping[Role, str] = {
-    "register": "Registers.",
-    "logic": "Combinational signals.",
-    "alias": "Signals that no logic reads, for simulation.",
-}
 
 
 class _Statements(Statements):
     """Writes statements; in a function, they are not clocked."""
 
+    values: Values
     true = "1'b1"
     operator = "<="
 
-    def all_of(self, *tests: Expression) -> Expression:
+    def all_of(self, *tests: Any) -> Expression:
         return infix("&&", *tests)
 
-    def any_of(self, *tests: Expression) -> Expression:
+    def any_of(self, *tests: Any) -> Expression:
         return infix("||", *tests)
 
     def equal(self, spec: Spec, bits: str) -> Expression:
@@ -112,7 +106,7 @@ class _Statements(Statements):
             yield "end"
 
     def accepted(self, statement: Assign) -> str:
-        return self.values.value(statement.value).inside()
+        return self.values.value(statement.value).operand()
 
 
 class _Registers(Registers):
@@ -136,11 +130,11 @@ class _Registers(Registers):
 class _Memory(MemoryText):
     """Writes one memory; see :class:`MemoryText`. A write beyond the last word has no effect."""
 
-    def declarations(self) -> Iterator[str]:
-        yield f"reg [{self.memory.width - 1}:0] {self.name} [0:{self.memory.size - 1}];"
+    values: Values
 
-    def initial(self, counter: str) -> Iterator[str]:
-        """Yield the initial values; `counter` is a free name."""
+    def declarations(self, counter: str = "") -> Iterator[str]:
+        """Yield the declaration and the initial values; `counter` is a free name."""
+        yield f"reg [{self.memory.width - 1}:0] {self.name} [0:{self.memory.size - 1}];"
         name, size = self.name, self.memory.size
         words = {i: word for i, word in enumerate(self.words()) if "1" in word}
         yield f"integer {counter};"
@@ -224,176 +218,90 @@ def _guarded(
         yield "end"
 
 
-class ModuleWriter:
-    """Writes one module.
+class ModuleWriter(Writer):
+    """Writes one module."""
 
-    Parameters
-    ----------
-    module : Module
-    entities : mapping of str to str
-        Identifiers of all modules.
-    port_names : mapping
-        Identifiers of ports, by module and wire.
-    modules : mapping of str to Module
-    """
-
-    def __init__(
-        self,
-        module: Module,
-        *,
-        entities: Mapping[str, str],
-        port_names: Mapping[str, dict[str, str]],
-        modules: Mapping[str, Module],
-    ) -> None:
-        self._module, self._modules = module, modules
-        self._entities, self._port_names = entities, port_names
-        self._graph = graph = graph_of(module, modules, is_foldable)
-        self._names = names = declare(
-            graph,
-            entity=entities[module.name],
-            port_names=port_names[module.name],
-            child_names=port_names,
-            vectors=False,
-        )
-        self._values = Values(names.declared, graph.folded, graph.width)
-        self._targets = dict(names.declared)
-        for register, process in graph.next_state.items():
-            self._targets[graph.target(process)] = self._targets[register]
-        clocked = _Statements(self._values, self._targets, self._choice)
-        self._registers = _Registers(graph, self._values, clocked, names)
-        self._memories = [
-            _Memory(
-                memory,
-                names.memories[name],
-                [c for c in graph.cells if c.kind.startswith("$mem") and memory_id(c) == name],
-                self._values,
-                names.declared,
-            )
-            for name, memory in module.memories.items()
-            if memory.width and memory.size
-        ]
+    mark = "//"
+    value_writer = Values
+    statement_writer = _Statements
+    register_writer = _Registers
+    memory_writer = _Memory
+    is_foldable = staticmethod(is_foldable)
 
     def text(self) -> str:
         """Write the module; a line is longer than 100 columns only if unbreakable."""
         lines = [*self._head(), *self._declarations()]
-        for block in self._blocks():
+        for block in self.blocks():
             if inner := list(block):
                 lines += ["", *(f"  {line}" for line in inner)]
         lines.append("endmodule")
         return "\n".join(piece for line in lines for piece in wrap(line, "//")) + "\n"
 
-    def _choice(self, spec: Spec, bits: str) -> str:
-        (chunk,) = spec
-        assert isinstance(chunk, Slice)
-        owner = self._graph.name_of.get(chunk.wire, chunk.wire)
-        return enumeration(self._module.wires[owner], bits)
-
     def _head(self) -> Iterator[str]:
-        ports = self._names.ports
-        name = self._entities[self._module.name]
+        ports = self.names.ports
+        name = self.entities[self.module.name]
         yield f"module {name} (" if ports else f"module {name};"
         ways = [f"{port.direction} wire {_range(port.outer.width)}".rstrip() for port in ports]
         size = max(map(len, ways), default=0)
         for index, (port, way) in enumerate(zip(ports, ways, strict=True)):
             end = "" if index == len(ports) - 1 else ","
-            yield f"  {way:<{size}} {port.outer.name}{end}{self._remark(port.wire)}"
+            yield f"  {way:<{size}} {port.outer.name}{end}{self.remark(port.wire)}"
         if ports:
             yield ");"
 
-    def _remark(self, wire: str) -> str:
-        text = remark_of(self._module.wires[self._graph.name_of.get(wire, wire)])
-        return f"  // {text}" if text else ""
-
     def _declarations(self) -> Iterator[str]:
-        for role, title in _TITLES.items():
-            signals = [each for each in self._names.signals if each.role == role]
+        for role, title in TITLES.items():
+            signals = [each for each in self.names.signals if each.role == role]
             if signals:
                 yield f"\n  // {title}"
             for each in signals:
-                wire = self._module.wires[each.wire]
-                owner = self._module.wires[self._graph.name_of.get(each.wire, each.wire)]
-                for name, value in {**attributes_of(wire), **attributes_of(owner)}.items():
+                for name, value in self.attributes(each).items():
                     yield f"  (* {_name(name)} = {_constant(value)} *)"
                 size = _range(each.declared.width)
                 start = ""
                 if role == "register":
-                    init = wire.attributes.get("init")
+                    init = self.module.wires[each.wire].attributes.get("init")
                     bits = init.text if isinstance(init, Bits) else "0" * each.declared.width
                     start = f" = {literal(bits)}"
                 kind = "reg" if role == "register" else "wire"
                 text = f"{kind} {size}{each.declared.name}{start};"
-                yield f"  {text}{self._remark(each.wire)}"
-        for memory in self._memories:
+                yield f"  {text}{self.remark(each.wire)}"
+        for memory in self.memories:
             yield ""
-            yield from (f"  {line}" for line in memory.declarations())
+            counter = self.names.scope.give(f"{memory.name}_at")
+            yield from (f"  {line}" for line in memory.declarations(counter))
 
-    def _blocks(self) -> Iterator[Iterator[str]]:
-        graph = self._graph
-        for cell in graph.cells:
-            if graph.is_instance(cell):
-                yield self._instance(cell)
-        yield self._operators()
-        for process in graph.processes:
-            yield self._process(graph.target(process), process.body)
-        for memory in self._memories:
-            yield memory.initial(self._names.scope.give(f"{memory.name}_at"))
-            yield memory.processes()
-        yield self._empty_memory_reads()
-        yield from self._registers.processes()
-        yield self._connections(graph.drives)
-        yield (
-            f"assign {port.outer.name} = {port.inner.name};"
-            for port in self._names.ports
-            if port.inner is not None
-        )
-        yield self._connections(graph.aliases)
-        for cell in graph.cells:
-            if cell.kind in ("$check", "$print"):
-                yield self._message(cell)
+    def operator(self, target: Declared, cell: Cell) -> Iterator[str]:
+        yield f"assign {target.name} = {self.values.result(cell).text};"
 
-    def _operators(self) -> Iterator[str]:
-        graph = self._graph
-        for cell in graph.cells:
-            if cell.kind in INLINE and output(cell) not in graph.folded:
-                name = self._names.declared[output(cell)].name
-                yield f"assign {name} = {self._values.result(cell).text};"
-            elif cell.kind == "$tribuf":
-                for target, value in self._parts(cell.ports["Y"], cell.ports["A"]):
-                    enable = self._values.boolean(cell.ports["EN"]).inside()
-                    off = f"{spec_width(value)}'bz"
-                    on = self._values.value(value).inside()
-                    yield f"assign {target} = {enable} ? {on} : {off};"
+    def assign(self, target: Declared, chunk: Slice, value: Spec, enable: Spec) -> Iterator[str]:
+        text = self.values.value(value)
+        if enable:
+            on, off = self.values.boolean(enable).operand(), f"{chunk.width}'bz"
+            text = Expression(f"{on} ? {text.operand()} : {off}", "?")
+        yield f"assign {part(target, chunk.low, chunk.width)} = {text.text};"
 
-    def _connections(self, pairs: Sequence[tuple[Spec, Spec]]) -> Iterator[str]:
-        for target, value in pairs:
-            for name, each in self._parts(target, value):
-                yield f"assign {name} = {self._values.value(each).text};"
+    def outputs(self) -> Iterator[str]:
+        for port in self.names.ports:
+            if port.inner is not None:
+                yield f"assign {port.outer.name} = {port.inner.name};"
 
-    def _parts(self, target: Spec, value: Spec) -> Iterator[tuple[str, Spec]]:
-        position = 0
-        for chunk in target:
-            assert isinstance(chunk, Slice)
-            name = part(self._names.declared[chunk.wire], chunk.low, chunk.width)
-            yield name, cut(value, position, chunk.width)
-            position += chunk.width
-
-    def _process(self, wire: str, body: tuple[Statement, ...]) -> Iterator[str]:
+    def process(self, wire: str, statements: tuple[Statement, ...]) -> Iterator[str]:
         """Yield a choice: a conditional expression, or a function."""
-        target, statements = self._names.declared[wire], flatten(body)
-        writer = _Statements(self._values, self._targets, self._choice)
-        pairs = writer.conditional(statements)
+        target = self.names.declared[wire]
+        pairs = self.statements.conditional(statements)
         if pairs is not None:
             head = f"assign {target.name} ="
             for value, condition in pairs:
                 yield f"{head} {condition} ? {value} :" if condition else f"{head} {value};"
                 head = "   "
             return
-        function = Declared(name=self._names.scope.give(f"f_{target.name}"), width=target.width)
-        writer = _Statements(self._values, {**self._targets, wire: function}, self._choice)
+        function = Declared(name=self.names.scope.give(f"f_{target.name}"), width=target.width)
+        writer = _Statements(self.values, {**self.targets, wire: function}, self._choice)
         writer.operator = "="
-        self._values.reads = {}
+        self.values.reads = {}
         lines = list(writer.body(statements))
-        reads = list(self._values.reads.values())
+        reads = list(self.values.reads.values())
         yield f"function {_range(target.width)}{function.name};"
         yield from (f"  input {_range(each.width)}{each.name};" for each in reads)
         yield "  begin"
@@ -402,50 +310,42 @@ class ModuleWriter:
         yield "endfunction"
         yield f"assign {target.name} = {function.name}({', '.join(each.name for each in reads)});"
 
-    def _empty_memory_reads(self) -> Iterator[str]:
-        """Yield the value 0 for read ports of memories without words."""
-        for cell in self._graph.cells:
-            if cell.kind == "$memrd_v2" and not self._module.memories[memory_id(cell)].size:
-                target = self._names.declared[output(cell)]
-                yield f"assign {target.name} = {literal('0' * target.width)};"
-
-    def _instance(self, cell: Cell) -> Iterator[str]:
-        own = cell.kind in self._modules
-        kind = self._entities[cell.kind] if own else _name(cell.kind)
-        label = self._names.labels[cell.name]
+    def instance(self, cell: Cell) -> Iterator[str]:
+        own = cell.kind in self.modules
+        kind = self.entities[cell.kind] if own else _name(cell.kind)
+        label = self.names.labels[cell.name]
         settings = {} if own else cell.parameters
         generics = ", ".join(f".{_name(n)}({_constant(v)})" for n, v in settings.items())
         yield f"{kind}{f' #({generics})' if generics else ''} {label} ("
         ports = {}
         for port, spec in cell.ports.items():
-            name = self._port_names[cell.kind][port] if own and spec else _name(port)
+            name = self.port_names[cell.kind][port] if own and spec else _name(port)
             if spec:
-                ports[name] = self._values.value(spec).text
+                ports[name] = self.values.value(spec).text
         size = max(map(len, ports), default=0)
         for index, (name, text) in enumerate(ports.items()):
             yield f"  .{name:<{size}} ({text}){'' if index == len(ports) - 1 else ','}"
         yield ");"
 
-    def _message(self, cell: Cell) -> Iterator[str]:
-        """Yield what a `Print`, `Assert` or `Assume` does in a simulation."""
+    def message(self, cell: Cell) -> Iterator[str]:
         flavor = str(cell.parameters.get("FLAVOR", "print"))
         if flavor == "cover":
-            yield f"// Cover: {self._values.logic(cell.ports['A']).text}"
+            yield f"// Cover: {self.values.logic(cell.ports['A']).text}"
             return
-        text, arguments = _format(cell, self._values)
+        text, arguments = _format(cell, self.values)
         tests = []
         if flavor != "print":
-            tests.append(self._values.boolean(cell.ports["A"], inverted=True))
+            tests.append(self.values.boolean(cell.ports["A"], inverted=True))
             word = "assumption" if flavor == "assume" else "assertion"
-            text = text or f"{word} failed in {self._module.name}\n"
+            text = text or f"{word} failed in {self.module.name}\n"
         clock = cell.ports.get("TRG", ())
         edge = "posedge" if int_parameter(cell, "TRG_POLARITY") else "negedge"
-        when = f"{edge} {self._values.logic(clock).text}" if clock else "*"
+        when = f"{edge} {self.values.logic(clock).text}" if clock else "*"
         lines = [f"$write({', '.join([_quoted(text), *arguments])});"]
         if flavor != "print":
             lines.append("$stop;")
         yield f"always @({when}) begin"
-        guarded = _guarded([cell.ports["EN"]], self._values, lines, tests)
+        guarded = _guarded([cell.ports["EN"]], self.values, lines, tests)
         yield from (f"  {line}" for line in guarded)
         yield "end"
 

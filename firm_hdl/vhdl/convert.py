@@ -104,7 +104,7 @@ def convert(
             vectors=module is top and not unsigned_ports,
         )
         files[f"{entities[module.name]}.vhd"] = remark + writer.text()
-        names[module.name] = writer.names()
+        names[module.name] = writer.entity_names()
     return Vhdl(top=entities[top.name], files=files, entities=names)
 
 

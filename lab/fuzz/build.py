@@ -9,12 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from firm_hdl.jobs.processes import ToolError, made_by, run_tool
-from firm_hdl.jobs.programs import find_compiler
-from firm_hdl.verify.simulators.verilated import (
-    find_verilator,
-    runtime_of,
-    runtime_parts,
-)
+from firm_hdl.jobs.programs import find_compiler, find_verilator
+from firm_hdl.verify.simulators.programs import runtime_of, runtime_parts
 from lab.fuzz.circuits import Circuit, templates
 from lab.fuzz.table import Table
 
@@ -35,7 +31,7 @@ _MOST_SECONDS = 24 * 3600.0
 class Tools:
     """The commands of Verilator and of the compiler."""
 
-    verilator: str
+    verilator: tuple[str, ...]
     compiler: tuple[str, ...]
 
 
@@ -46,7 +42,7 @@ def find_tools() -> Tools:
     ------
     ProgramMissingError
     """
-    return Tools(verilator=find_verilator(), compiler=find_compiler("Verilator"))
+    return Tools(verilator=find_verilator("The fuzzer"), compiler=find_compiler("Verilator"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,7 +93,7 @@ def build(circuits: Sequence[Circuit], table: Table, folder: Path, tools: Tools)
             (folder / name).write_text(text, encoding="utf-8")
         model = folder / circuit.prefix
         names = ["--prefix", circuit.prefix, "--top-module", circuit.module, "--Mdir", model.name]
-        run_tool([tools.verilator, *_VERILATE, *names, *circuit.files], folder)
+        run_tool([*tools.verilator, *_VERILATE, *names, *circuit.files], folder)
         makefile = made_by("Verilator", model / f"{circuit.prefix}_classes.mk")
         parts |= dict.fromkeys(runtime_parts(makefile))
         sources += sorted(str(path.relative_to(folder)) for path in model.glob("*.cpp"))

@@ -7,7 +7,7 @@ import random
 import pytest
 
 from firm_hdl.cases import damage
-from firm_hdl.cases.damage import DAMAGES, broken_packets, stalls_for
+from firm_hdl.cases.damage import broken_packets, stalls_for
 from firm_hdl.cases.make import Case
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
@@ -33,11 +33,6 @@ def damaged(name, plan, packet):
     """All results of one kind of damage."""
     work = getattr(damage, f"_{name}")
     return {work(plan, packet, random.Random(seed)) for seed in range(SEEDS)}
-
-
-def test_these_are_all_kinds_of_damage():
-    names = "cut shorter longer trailing header change fill change_and_cut".split()
-    assert [kind.__name__ for kind in DAMAGES] == [f"_{name}" for name in names]
 
 
 @BOTH

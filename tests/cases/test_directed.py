@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.cases import directed
 from firm_hdl.cases.directed import bare_packets, more_cases
 from firm_hdl.cases.make import make_cases
 from firm_hdl.cases.oracle import distro_oracle
@@ -93,29 +92,6 @@ def test_each_further_packet_takes_a_new_decision():
             before = not_taken(made, packets)
             packets.append(packet)
             assert not_taken(made, packets) < before
-
-
-def test_the_search_ends_after_some_tries_without_a_new_decision(monkeypatch):
-    asked = []
-    decisions = {"given": {1}, "second": {1, 2}, "like it": {2}, "fourth": {3}}
-    drawn = {2: ["given", "second", "like it"], 4: ["fourth"]}
-
-    def make_cases(oracle, name, *, seed, most, **limits):
-        assert (oracle, name, most, limits) == (ORACLE, "t", 3, {"wire": "cdr", "bus_bytes": 8})
-        asked.append(seed - (7 << 32))
-        return drawn.get(asked[-1], ["given"])
-
-    monkeypatch.setattr(directed, "TRIES", 3)
-    monkeypatch.setattr(directed, "make_cases", make_cases)
-    monkeypatch.setattr(directed, "edges", lambda plan: {1, 2, 3, 4})
-    monkeypatch.setattr(directed, "_taken", lambda plan, case: decisions[case])
-    made = plan("std_msgs/msg/Bool")
-    assert more_cases(ORACLE, "t", made, ["given"], seed=7) == ["second", "fourth"]
-    # Each case that is new allows three more tries.
-    assert asked == [1, 2, 3, 4, 5, 6, 7]
-    # Nobody draws if nothing is missing.
-    monkeypatch.setattr(directed, "edges", lambda plan: {1})
-    assert more_cases(ORACLE, "t", made, ["given"]) == [] and len(asked) == 7
 
 
 def test_bare_strings_mean_the_same():

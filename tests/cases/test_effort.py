@@ -48,20 +48,6 @@ def test_cases_with_most_decisions_for_their_size_come_first(plan):
     assert effort.packets_to_simulate(plan, packets, taken, most=2 * work) == [1, 2, 3]
 
 
-def test_cases_without_new_decisions_fill_the_remaining_effort(plan):
-    packets, taken = [bytes(8), bytes(8), bytes(8)], [some_edges(1)] * 3
-    work = effort.work_of(plan, 8)
-    assert effort.packets_to_simulate(plan, packets, taken, most=2 * work) == [0, 1]
-
-
-def test_a_case_that_is_too_large_leaves_room_for_smaller_ones(plan):
-    # After the first case, the second one has the most new decisions for its work.
-    packets = [bytes(8), bytes(400), bytes(8)]
-    taken = [some_edges(*range(9)), some_edges(*range(9, 60)), some_edges(1)]
-    work = effort.work_of(plan, 8)
-    assert effort.packets_to_simulate(plan, packets, taken, most=2 * work) == [0, 2]
-
-
 def test_new_decisions_may_cost_four_times_as_much(plan):
     work = effort.work_of(plan, 8)
     # The second packet takes what the first one took, the third something else, too.
@@ -95,44 +81,6 @@ def test_limits_of_sizes_and_work(plan):
     assert effort.cases_to_disturb(plan, many) == [many[4], many[8]]
 
 
-@pytest.mark.parametrize(
-    ("most", "limit", "sizes"),
-    [
-        (None, 100, [10, 20, 30, 7]),
-        (None, 61, [10, 20, 30, 7]),
-        (None, 60, [10, 20, 30]),
-        (None, 30, [10, 20]),
-        (None, 1, [10]),
-        (3, 100, [10, 20, 30]),
-        (2, 1, [10]),
-    ],
-)
-def test_cases_are_completed_unless_there_is_a_limit(plan, monkeypatch, most, limit, sizes):
-    def cases(*sizes):
-        return [Case(what="", value=None, packet=bytes(n), transfers={}) for n in sizes]
-
-    def make_cases(*given, **settings):
-        assert given == ("oracle", HEADER)
-        assert settings == {"wire": "cdr", "bus_bytes": 8, "seed": 5, "most": most}
-        return iter(cases(10, 20, 30)[:most])
-
-    def more_cases(*given, seed):
-        assert given == ("oracle", HEADER, plan, cases(10, 20, 30)) and seed == 5
-        return cases(7)
-
-    monkeypatch.setattr(effort, "make_cases", make_cases)
-    monkeypatch.setattr(effort, "more_cases", more_cases)
-    monkeypatch.setattr(effort, "MOST_CASE_BYTES", limit)
-    made = effort.all_cases("oracle", HEADER, plan, seed=5, most=most)
-    assert [len(case.packet) for case in made] == sizes
-
-
-def test_at_least_one_case_is_simulated(plan):
-    assert effort.packets_to_simulate(
-        plan, [bytes(80), bytes(800)], [some_edges(1)] * 2, most=0
-    ) == [0]
-
-
 def test_types_are_simulated_in_part(monkeypatch, whole):
     monkeypatch.setattr(
         acceptance,
@@ -147,13 +95,6 @@ def test_types_are_simulated_in_part(monkeypatch, whole):
     assert f"of {whole.cases + 1} packets" in part.note and not whole.note
     # A given number of cases is kept.
     assert not accept("lyrical", HEADER, Options(most_cases=3)).note
-
-
-def test_without_the_largest(plan):
-    cases = [Case(what="", value=None, packet=bytes(8 * n), transfers={}) for n in (3, 1, 2, 9)]
-    assert effort.limit_work(plan, cases, effort.work_of(plan, 48)) == cases[:3]
-    assert effort.limit_work(plan, cases, effort.work_of(plan, 40)) == cases[1:3]
-    assert effort.limit_work(plan, cases, 0) == []
 
 
 def test_types_near_the_limit_are_not_stalled(monkeypatch, whole):

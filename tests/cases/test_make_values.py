@@ -85,35 +85,3 @@ def test_floats_are_kept_as_python_has_them(name):
         else:
             assert bits in FLOATS[name]
     assert math.isnan(maker("high").scalar(name))
-
-
-def test_lengths_are_each_there_once_before_any_comes_again():
-    one = maker("any")
-    found = [one.length(("a",), [0, 2, 5, 7]) for _ in range(4)]
-    assert sorted(found) == [0, 2, 5, 7]
-    assert one.length(("b",), [3]) == 3
-    assert one.budget == 1000 - 17
-    again = {one.length(("a",), [0, 2, 5, 7]) for _ in range(60)}
-    assert again == {0, 2, 5, 7}
-    one.budget = 0
-    assert {one.length(("a",), [5, 7], cost=0) for _ in range(60)} == {0, 1}
-    # Lengths that have not occurred yet are chosen, whatever their cost.
-    assert one.length(("c",), [9], cost=40) == 9 and one.budget == -360
-
-
-@pytest.mark.parametrize("mode", ["zero", "any"])
-@pytest.mark.parametrize("size", [0, 1, 2, 5, 40])
-def test_texts_have_as_many_bytes_as_asked_for(mode, size):
-    for seed in range(20):
-        text = maker(mode, seed).text(size)
-        assert len(text.encode()) == size
-        assert mode != "zero" or text.isascii()
-
-
-def test_arrays_have_their_bits_in_order():
-    found = maker("high").array("uint16", 3)
-    assert found.tolist() == [65535] * 3 and found.itemsize == 2
-    assert maker("low").array("int32", 2).tolist() == [-(1 << 31)] * 2
-    assert maker("high").array("bool", 2).tolist() == [True] * 2
-    one, other = maker("any"), maker("any")
-    assert one.array("uint8", 5).tolist() == [other.bits("uint8") for _ in range(5)]

@@ -41,11 +41,6 @@ def sizes_of(plan=PLAN):
     return [len(case.packet) for case in stimulus_cases(JUDGE, plan)]
 
 
-def test_packets_that_the_circuits_refuse_are_left_out(made):
-    made(1, 101, 100, 99, 102, 3)
-    assert sizes_of() == [1, 100, 99, 3]
-
-
 def test_packets_end_before_they_are_too_many_bytes(made, monkeypatch):
     monkeypatch.setattr(module, "MOST_BYTES", 60)
     made(10, 20, 30, 1, 1)
@@ -55,16 +50,6 @@ def test_packets_end_before_they_are_too_many_bytes(made, monkeypatch):
     # The first packet may have any size.
     made(90, 1)
     assert sizes_of() == [90]
-
-
-def test_the_reason_of_the_oracle_is_kept(made):
-    made(1, error=NotJudgedError("rosbags does not write can"))
-    with pytest.raises(NotJudgedError, match=r"^rosbags does not write can$"):
-        sizes_of()
-    assert stimuli(BOOL, PLAN) == []
-    made(1, error=KeyError("gone"))
-    with pytest.raises(NotJudgedError, match=r"^rosbags cannot write it: KeyError: 'gone'$"):
-        sizes_of()
 
 
 def test_sixteen_packets_of_a_type_are_written_for_the_bus_and_the_wire():
@@ -88,3 +73,13 @@ def test_wide_text_has_packets_too(make_message):
     packets = stimuli(message, plan)
     assert packets and all((len(packet) - 8) % 4 == 0 for packet in packets)
     assert stimuli(message, replace(plan, wire="can")) == []
+
+
+def test_the_reason_of_the_oracle_is_kept(made):
+    made(1, error=NotJudgedError("rosbags does not write can"))
+    with pytest.raises(NotJudgedError, match=r"^rosbags does not write can$"):
+        sizes_of()
+    assert stimuli(BOOL, PLAN) == []
+    made(1, error=KeyError("gone"))
+    with pytest.raises(NotJudgedError, match=r"^rosbags cannot write it: KeyError: 'gone'$"):
+        sizes_of()

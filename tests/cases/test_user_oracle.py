@@ -5,12 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from firm_hdl import load_message
 from firm_hdl.cases import NotJudgedError
-from firm_hdl.cases import user_oracle as module
-from firm_hdl.cases.oracle import RosbagsOracle, distro_oracle
+from firm_hdl.cases.oracle import distro_oracle
 from firm_hdl.cases.user_oracle import judge_of, oracle_name
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
@@ -34,11 +32,6 @@ def test_structure_is_that_of_the_distribution(distro):
         assert judge.oracle.structure(judge.name) == right.structure(judge.name)
         assert judge.note == ""
         assert judge_of(library.message(name), distro).oracle is right
-
-
-def test_names_are_those_of_rosbags(tmp_path):
-    assert oracle_name(load_message("std_msgs/Header", distro="noetic")) == "std_msgs/msg/Header"
-    assert oracle_name(load_message("std_msgs/msg/Header")) == "std_msgs/msg/Header"
 
 
 @pytest.mark.parametrize(
@@ -79,21 +72,6 @@ def test_times_of_ros1_are_those_of_ros2_to_rosbags(tmp_path):
         ]
 
 
-def test_a_type_that_is_used_and_not_there_is_named():
-    def unknown(**texts):
-        store = get_typestore(Stores.EMPTY)
-        for name, text in texts.items():
-            store.register(get_types_from_msg(text, f"p/msg/{name}"))
-        return module._unknown(RosbagsOracle(store, "ros2"), "p/msg/A")
-
-    assert unknown(A="uint8 a\nstring[2] s\n") == ""
-    assert unknown(A="B b\nB[] more\n", B="A[] a\n") == ""
-    assert unknown() == "p/A"
-    for suffix in ("", "[]", "[2]", "[<=2]"):
-        assert unknown(A=f"B b\nuint8 x\nq/C{suffix} c\n", B="uint8 x\n") == "q/C"
-        assert unknown(A=f"B{suffix} b\n", B=f"uint8 x\nC{suffix} c\n") == "p/C"
-
-
 def test_a_field_that_no_wire_has_is_not_judged(tmp_path):
     (tmp_path / "own_msgs" / "msg").mkdir(parents=True)
     text = "module own_msgs { module msg { struct Own { octet a; long double x; }; }; };"
@@ -131,11 +109,6 @@ def test_definition_that_rosbags_reads_in_another_way_is_noted(tmp_path):
     assert judge.note.endswith("and was given the fields as they were resolved")
 
 
-def test_definition_that_rosbags_reads_alike_has_no_note(tmp_path):
-    message = own(tmp_path, "uint8 B=1\nHeader head\ntime[] times\nstring s # text\n", "noetic")
-    assert judge_of(message).note == ""
-
-
 IDL = """\
 module own_msgs { module msg {
   typedef char char__3[3];
@@ -156,22 +129,3 @@ def test_chars_of_idl_are_signed(tmp_path):
     assert dict(plain.oracle.fields(plain.name))["one"][1][0] == "char" and plain.note == ""
     result = accept("lyrical", "own_msgs/msg/Chars", Options(paths=(str(tmp_path),)))
     assert_passed(result)
-
-
-@pytest.mark.parametrize(
-    ("error", "output"),
-    [
-        (KeyError("gone"), "'gone'"),
-        (ValueError("first\nsecond"), "first"),
-        (RecursionError(), "RecursionError"),
-    ],
-)
-def test_types_that_rosbags_refuses_are_not_judged(tmp_path, monkeypatch, error, output):
-    def refuse(*given: object) -> None:
-        raise error
-
-    message = own(tmp_path, "uint8 a\n")
-    monkeypatch.setattr(module, "get_types_from_msg", refuse)
-    with pytest.raises(NotJudgedError) as raised:
-        module._oracle(message, {message.name: "uint8 a\n"})
-    assert str(raised.value) == f"rosbags refuses the definition: {output}"

@@ -15,7 +15,6 @@ import pytest
 
 import firm_hdl
 from firm_hdl.cli import main
-from firm_hdl.errors import UserError
 from firm_hdl.plan import build_plan, to_yaml
 from firm_hdl.program.table import program_text
 from firm_hdl.wire import lay_out
@@ -298,15 +297,6 @@ def test_reader_that_goes_away_is_no_traceback():
     assert (done.returncode, done.stderr) == (1, b"")
 
 
-def test_interrupt_is_no_traceback(workdir, capsys, monkeypatch):
-    def interrupted(*args: object, **options: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(importlib.import_module("firm_hdl.export.build"), "build", interrupted)
-    assert main(["build", "std_msgs/msg/Bool"]) == 130
-    assert capsys.readouterr() == ("", "interrupted\n")
-
-
 @pytest.mark.parametrize(
     "calls",
     [
@@ -340,22 +330,3 @@ def test_build_that_is_interrupted_leaves_whole_folders(workdir, capsys, monkeyp
     assert not list(workdir.glob("vhdl_out/lyrical/.*"))
     # Converters that were not elaborated warn when they are collected.
     gc.collect()
-
-
-@pytest.mark.parametrize(
-    ("error", "text"),
-    [
-        (MemoryError(), "error: there is not enough memory for this\n"),
-        (RecursionError("deep"), "error: the input nests too deeply\n"),
-        (UserError("it is so"), "error: it is so\n"),
-        (OSError(28, "No space left on device", "a.v"), "error: 'a.v': No space left on device\n"),
-        (OSError("only text"), "error: only text\n"),
-    ],
-)
-def test_errors_of_any_command_are_told_in_a_line(error, text, monkeypatch, capsys):
-    def fail(*_, **__):
-        raise error
-
-    monkeypatch.setattr("firm_hdl.cli.reading.library_of", fail)
-    assert main(["list"]) == 1
-    assert capsys.readouterr() == ("", text)

@@ -20,7 +20,7 @@ DEFAULTS = {
     "build": (
         ["a/B"],
         {**ORIGINS, **PLAN, "types": ["a/B"], "out": "vhdl_out"}
-        | {"ports": "records", "force": False, "jobs": None},
+        | {"ports": "records", "extras": frozenset(), "force": False, "jobs": None},
     ),
     "list": ([], {**ORIGINS, "only_path": False, "as_json": False}),
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
@@ -35,7 +35,7 @@ DEFAULTS = {
         ["run", "n.yaml"],
         {"action": "run", "file": "n.yaml", "path": []}
         | {"board": "sim", "graph": None, "domain": None, "interface": None}
-        | {"seconds": None, "engine": "auto", "quiet": False},
+        | {"seconds": None, "engine": "auto", "quiet": False, "wave": None},
     ),
     "doctor": ([], {"as_json": False}),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),
@@ -114,7 +114,8 @@ def is_refused(*words):
 
 def test_other_actions_of_a_node_have_these_defaults():
     info = {"action": "info", "file": "n.yaml", "path": []}
-    assert parsed("node", "info", "n.yaml") == {**info, "as_json": False}
+    assert parsed("node", "info", "n.yaml") == {**info, "as_json": False, "members": False}
+    assert parsed("node", "new", "n.yaml") == {**info, "action": "new", "language": None}
     build = {**info, "action": "build", "out": "node_out", "force": False}
     assert parsed("node", "build", "n.yaml") == {**build, "sim": False, "engine": "auto"}
     assert is_refused("node", "info", "n.yaml", "--board", "sim")

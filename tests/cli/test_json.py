@@ -79,6 +79,8 @@ def test_info_of_a_node(said):
     assert found["command"] == "node info"
     assert [each["type"] for each in found["topics"]] == ["std_msgs/msg/String"]
     assert any("needs a clock of" in each for each in found["warnings"])
+    members = said("node", "info", "n.yaml", "--members")["members"]
+    assert [each["member"] for each in members] == ["publish.a.data.length", "publish.a.data.items"]
     (error,) = said("node", "info", "bad.yaml", status=1)["errors"]
     assert (error["file"], error["line"]) == ("bad.yaml", 2)
 

@@ -28,7 +28,7 @@ RUN = {
     "verify": "firm_hdl.verify.command",
     "golden": "firm_hdl.verify.ts2.golden_command",
     "cover": "firm_hdl.covering.command",
-    "report": "firm_hdl.verify.report.command",
+    "report": "firm_hdl.verify.report.formats",
     "prove": "firm_hdl.equivalence.command",
     "bench": "firm_hdl.bench.command",
 }
@@ -189,6 +189,8 @@ def test_sums_are_of_noetic_unless_a_recording_says_otherwise(workdir, capsys):
         (OSError(28, "No space left on device"), 1, "error: No space left on device\n"),
         (PermissionError(13, "Permission denied", "y"), 1, "error: 'y': Permission denied\n"),
         (OSError("odd"), 1, "error: odd\n"),
+        (MemoryError(), 1, "error: there is not enough memory for this\n"),
+        (RecursionError("deep"), 1, "error: the input nests too deeply\n"),
         (KeyboardInterrupt(), 130, "interrupted\n"),
     ],
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from firm_hdl.covering.choose import FAMILIES, all_features, choose, features
+from firm_hdl.covering.choose import all_features, choose, features
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
@@ -59,21 +59,6 @@ def test_features_are_found_in_nested_types():
 def every_feature(library, name, **options):
     message = library.message(name)
     return all_features(library, message, build_plan(lay_out(message)), **options)
-
-
-def test_families_are_distinguished_and_branches_are_optional():
-    library = Library("lyrical")
-    few = every_feature(library, "geometry_msgs/msg/PolygonStamped")
-    assert {
-        "grammar: ros2 array: OPEN CLOSE",
-        "definition: sequence of message",
-        "layout: loop, length: gap to a multiple of 4, by packet",
-        "layout: run of 1 bytes, length: gap of 0, items: gap of 0, NUL",
-        "plan: wire cdr",
-    } <= few
-    assert {feature.partition(": ")[0] for feature in few} == {*FAMILIES} - {"branch"}
-    all_ = every_feature(library, "geometry_msgs/msg/PolygonStamped", with_branches=True)
-    assert {feature.partition(": ")[0] for feature in all_ - few} == {"branch"}
 
 
 def test_padding_and_bounds_make_layouts_differ():

@@ -85,27 +85,6 @@ def test_a_wrong_file_is_explained(tmp_path, capsys, text, message):
     assert capsys.readouterr().err == message.format(path=path) + "\n"
 
 
-def test_blanks_and_comments_in_a_file_are_ignored(tmp_path):
-    path = tmp_path / "chosen.txt"
-    path.write_bytes(b"# of /a/b\r\n\r\n  a/msg/B \r\nc/msg/D\t\n   \n#e/msg/F\n")
-    assert read_chosen(path) == ["a/msg/B", "c/msg/D"]
-
-
-def test_a_name_that_is_there_twice_is_one_type(tmp_path, capsys):
-    path = tmp_path / "chosen.txt"
-    path.write_text(f"{NAMES[0]}\n{NAMES[2]}\n{NAMES[0]}\n")
-    assert read_chosen(path) == [NAMES[0], NAMES[2]]
-    assert main(["cover", *NAMES, "--check", str(path)]) == 0
-    assert capsys.readouterr().err.startswith("2 of 3 types have 100 % of the ")
-
-
-def test_out_and_check_exclude_each_other(capsys):
-    with pytest.raises(SystemExit) as stopped:
-        main(["cover", "--out", "a", "--check", "b"])
-    assert stopped.value.code == 2
-    assert "not allowed with argument" in capsys.readouterr().err
-
-
 def test_a_type_that_cannot_be_used_does_not_keep_the_others_out(tmp_path, capsys):
     folder = tmp_path / "own_msgs" / "msg"
     folder.mkdir(parents=True)
@@ -172,14 +151,6 @@ def test_types_on_which_others_depend_are_found_and_not_chosen_from(tmp_path, ca
     assert err.startswith("1 of 1 types ")
 
 
-def test_types_on_which_others_depend_are_not_chosen_from_beside_a_recording(tmp_path, capsys):
-    make_files(tmp_path, {"q/msg/B.msg": "int16 c\n"})
-    bag = str(make_recording(tmp_path, "bag"))
-    assert main(["cover", "--bag", bag, "--depends", str(tmp_path)]) == 0
-    out, err = capsys.readouterr()
-    assert "q/msg/B" not in out and " of 4 types " in err
-
-
 @pytest.mark.parametrize("option", ["--out", "--check"])
 def test_nothing_is_no_covering_set(tmp_path, capsys, option):
     make_files(tmp_path / "src", {"p/msg/Bad.msg": "int33 a\n"})
@@ -200,32 +171,8 @@ def test_types_of_a_recording_are_chosen_from(tmp_path, capsys):
     assert "my_msgs/Wheel: " in out and " of 4 types " in err
 
 
-@pytest.mark.parametrize(
-    ("origin", "where"),
-    [
-        ("--path", "any of the folders has;"),
-        ("--bag", "any of the recordings has;"),
-        (None, "any of lyrical has;"),
-    ],
-)
-def test_the_file_tells_where_its_types_are_from(tmp_path, origin, where):
-    folder = make_files(tmp_path, {"src/p/msg/A.msg": "int16 a\n"}) / "src"
-    path = tmp_path / "chosen.txt"
-    words = ["std_msgs/msg/Bool"]
-    if origin is not None:
-        words = [origin, str(folder if origin == "--path" else make_recording(tmp_path, "bag"))]
-    assert main(["cover", *words, "--out", str(path)]) == 0
-    assert where in path.read_text().splitlines()[0]
-
-
 def test_a_share_is_rounded_down_so_that_only_all_is_100_percent():
     few = frozenset(f"plan: {number}" for number in range(299))
     types = {"a": few, "b": frozenset({"plan: 299"})}
     assert " have 99 % of the 300 features (plan 299 of 300)" in _share(types, ["a"])
     assert " have 100 % of the 300 features (plan 300 of 300)" in _share(types, ["a", "b"])
-
-
-def test_a_family_of_which_no_type_has_a_feature_is_counted_too():
-    types = {"a": frozenset({"plan: 1"}), "b": frozenset({"plan: 2", "layout: 1"})}
-    told = _share(types, ["a"])
-    assert told == "1 of 2 types have 33 % of the 3 features (layout 0 of 1, plan 1 of 2)"

@@ -196,7 +196,7 @@ def test_no_module_has_the_name_of_an_entity_in_another_case(folders):
         assert not {name.lower() for name in modules} & {name.lower() for name in entities}
 
 
-_OF_VERILOG = r"^ *(?:input|output|wire|reg|function)\b(?: signed)?(?: \[\d+:\d+\])? (\w+) ?[;=\[]"
+_OF_VERILOG = r"^ *(?:input|output|wire|reg|function)\b(?: wire)?(?: \[\d+:\d+\])? (\w+) ?[;=,\[]"
 
 
 def declared(folder: Path) -> set[str]:

@@ -16,7 +16,7 @@ from firm_hdl.errors import UserError
 from firm_hdl.export.parts import build_part, make_part, part_ports
 from firm_hdl.vhdl.convert import Vhdl
 from tests.export.strikes import left_when_outdated
-from tests.export.verilog.test_verilog import WAIVED
+from tests.export.verilog.test_verilog import PORT
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL, analyse
 
@@ -55,9 +55,9 @@ def run(command, folder):
 
 def verilator_finds(folder, file, top):
     verilator = need("verilator", shutil.which("verilator"))
-    # Yosys leaves what nobody reads in the text, without its driver, as counters of a gate's FIFO.
     # Some comparisons of a FIFO are constant for its number of packets.
-    waivers = [f"-Wno-{name}" for name in (*WAIVED, "UNDRIVEN", "UNSIGNED")]
+    waived = ("WIDTH", "UNUSEDSIGNAL", "VARHIDDEN", "DECLFILENAME", "UNDRIVEN", "UNSIGNED")
+    waivers = [f"-Wno-{name}" for name in waived]
     return run([verilator, "--lint-only", "-Wall", *waivers, "--top-module", top, file], folder)
 
 
@@ -99,8 +99,8 @@ def test_the_vhdl_compiles_in_the_order_of_its_list(built, tmp_path):
 def test_the_manifest_lists_the_ports_of_the_verilog(built):
     manifest = json.loads((built / "manifest.json").read_text())
     text = (built / manifest["verilog"]["file"]).read_text()
-    top = text.partition(f"module {manifest['verilog']['module']}(")[2].partition("endmodule")[0]
-    found = re.findall(r"^  (in|out)put (?:\[(\d+):0\] )?(\w+);", top, re.MULTILINE)
+    top = text.partition(f"module {manifest['verilog']['module']} (")[2]
+    found = re.findall(PORT, top, re.MULTILINE)
     ports = {name: (flow, int(high or 0) + 1) for flow, high, name in found}
     assert ports == {port["name"]: (port["direction"], port["width"]) for port in manifest["ports"]}
     assert all(port["meaning"] not in ("", port["name"]) for port in manifest["ports"])

@@ -7,7 +7,7 @@ from typing import ClassVar
 import pytest
 
 from firm_hdl.errors import DefinitionError, Source
-from firm_hdl.frontend import DISTROS, Library, load_message
+from firm_hdl.frontend import DISTROS, Library
 from firm_hdl.frontend.sources import Definition
 from firm_hdl.model import Action, Message, Service
 
@@ -34,14 +34,6 @@ def test_names_are_canonical_and_sorted(tmp_path):
 
 def test_builtin_types_of_ros1_are_not_listed():
     assert not any("builtin_interfaces" in name for name in Library("noetic").names())
-
-
-@pytest.mark.parametrize("name", ["sensor_msgs/Imu", "sensor_msgs/msg/Imu"])
-def test_both_forms_of_a_name_are_taken(name):
-    assert Library("noetic").message(name).name == "sensor_msgs/Imu"
-    assert Library("humble").message(name).name == "sensor_msgs/msg/Imu"
-    assert load_message(name).name == "sensor_msgs/msg/Imu"
-    assert load_message(name, distro="noetic").name == "sensor_msgs/Imu"
 
 
 @pytest.mark.parametrize(
@@ -147,26 +139,6 @@ def test_a_service_is_no_message(tmp_path, name):
     assert refused(Library("noetic", [tmp_path]).message, name) == (
         "error: 'p/B' is a service, not a message; did you mean 'p/BRequest' or 'p/BResponse'?"
     )
-
-
-def test_an_action_is_no_message(tmp_path):
-    make_files(tmp_path, {"p/action/C.action": "---\n---"})
-    assert refused(Library("lyrical", [tmp_path]).message, "p/C") == (
-        "error: 'p/action/C' is an action, not a message; "
-        "did you mean 'p/action/C_Goal', 'p/action/C_Result' or 'p/action/C_Feedback'?"
-    )
-
-
-def test_services_and_actions_are_suggested(tmp_path):
-    lib = Library("lyrical", [make_files(tmp_path, {"p/srv/Begin.srv": "---"})])
-    assert refused(lib.interface, "p/Begni") == (
-        "error: type 'Begni' is not defined in package 'p'; did you mean 'p/srv/Begin'?"
-    )
-    # A field cannot be a service or an action.
-    make_files(tmp_path, {"p/msg/A.msg": "Begni a"})
-    with pytest.raises(DefinitionError) as error:
-        Library("lyrical", [tmp_path]).message("p/A")
-    assert error.value.diagnostics[0].message == "type 'Begni' is not defined in package 'p'"
 
 
 def test_messages_of_services_are_the_same_objects_however_asked_for(tmp_path):

@@ -7,16 +7,7 @@ import pytest
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend.parse import is_type_name
 
-from .reading import constant, field, member, parse, refused, spelled
-
-
-@pytest.mark.parametrize(
-    "type_",
-    ["wstring", "string<=5", "wstring<=5[2]", "string<=3[<=2]", "int8[<=4]", "p/Foo[<=1]"],
-)
-def test_bounds_are_ros2_only(type_):
-    assert spelled(f"{type_} x") == type_
-    refused(f"{type_} x", "ros1") if type_ != "wstring" else None
+from .reading import field, member, parse, refused
 
 
 def test_time_and_duration_are_builtin_in_ros1_only():
@@ -27,36 +18,6 @@ def test_time_and_duration_are_builtin_in_ros1_only():
     )
 
 
-@pytest.mark.parametrize("word", ["int8", "byte", "float32", "bool", "string", "wstring", "time"])
-@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
-def test_packages_may_have_the_names_of_builtin_types(dialect, word):
-    found = field(f"{word}/Foo[3] x", dialect).type
-    assert (found.package, found.name, found.is_builtin) == (word, "Foo", False)
-
-
-@pytest.mark.parametrize("name", ["_a", "1a", "a-b", "a.b", "é", "aé"])
-def test_ros1_refuses_field_names(name):
-    assert refused(f"int32 {name}", "ros1").startswith(f"'{name}' is not a legal name: ")
-
-
-@pytest.mark.parametrize("name", ["a__b", "a_", "A", "aB", "_a", "1a", "a-b", "é", "aé"])
-def test_ros2_refuses_field_names(name):
-    assert refused(f"int32 {name}", "ros2").startswith(f"'{name}' is not a legal field name: ")
-
-
-@pytest.mark.parametrize("name", ["a", "Ab", "A__B", "A_", "_A", "1A", "aB"])
-def test_ros2_refuses_constant_names(name):
-    assert refused(f"int32 {name} = 1", "ros2").startswith(
-        f"'{name}' is not a legal constant name: "
-    )
-
-
-@pytest.mark.parametrize("name", ["a", "Ab", "A__B", "A_", "_a", "_A", "__", "_1"])
-def test_ros1_constant_names(name):
-    for line in (f"int32 {name}=1", f"  int32 {name} = 1 # c", f"string {name}=x"):
-        assert constant(line, "ros1").name.text == name
-
-
 def test_ros1_names_with_an_underscore_first_are_those_of_constants_alone():
     rule = "letters, digits and underscores"
     refusal = f"'_a' is not a legal name: {rule}, a letter first"
@@ -65,13 +26,6 @@ def test_ros1_names_with_an_underscore_first_are_those_of_constants_alone():
     assert refused("int32 1a=1", "ros1") == f"'1a' is not a legal name: {rule}, no digit first"
     for line in ("time _a=1", "int32[] _a=1", "foo/Bar _a = 1"):
         assert refused(line, "ros1").startswith("a constant must have a builtin type")
-
-
-@pytest.mark.parametrize("separator", [" ", "   ", " \t", "\t ", "\t \t"])
-@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
-def test_blanks_between_type_and_name(dialect, separator):
-    assert field(f"int32{separator}x", dialect).name.text == "x"
-    assert field(f"int32{separator}x{separator}# c", dialect).name.text == "x"
 
 
 def test_tabs_alone_separate_in_ros2_only():
@@ -109,14 +63,6 @@ def test_malformed_types_are_refused(dialect, type_):
 )  # fmt: skip
 def test_malformed_types_of_ros2_are_refused(type_):
     refused(f"{type_} x", "ros2")
-
-
-@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
-@pytest.mark.parametrize("tail", ["b/C", "B/C", "B/"])
-def test_error_marks_the_whole_name_of_a_type(dialect, tail):
-    for package in ("a", "int8"):
-        complaint = refused(f"{package}/{tail} x", dialect)
-        assert complaint.startswith(f"'{tail}' is not a legal message name: ")
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])

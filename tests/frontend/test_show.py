@@ -190,19 +190,6 @@ def test_a_nested_idl_without_fields_is_shown_by_its_constants(tmp_path):
     assert show(ours, "q/U") == "int16 LIMIT=3\n"
 
 
-def test_values_of_an_idl_are_spelled_as_in_a_msg(tmp_path):
-    idl = """module p { module msg {
-      module T_Constants { const boolean B = TRUE; const octet O = 0x1F; const double D = 1e3; };
-      struct T { @default(value=FALSE) boolean b; @default(value="(True, False)") boolean c[2];
-                 @default(value="()") sequence<long> d; @default(value="[1.5]") double e[1]; };
-    }; };"""
-    ours = Library("lyrical", [make_files(tmp_path, {"p/msg/T.idl": idl})])
-    assert show(ours, "p/T") == (
-        "bool B=true\nbyte O=31\nfloat64 D=1000.0\n"
-        "bool b false\nbool[2] c [true, false]\nint32[] d []\nfloat64[1] e [1.5]\n"
-    )
-
-
 def test_a_text_in_an_idl_stays_in_its_line_and_is_shown_to_its_end(tmp_path):
     idl = r"""module p { module msg {
       module T_Constants { @unit("a\nb") const string S = "one\ntwo\r# three"; };

@@ -278,12 +278,6 @@ def test_source_is_named_as_the_user_wrote_the_path(tmp_path, monkeypatch):
     assert sources("ws").find("pkg", "msg", "A").source.name == "ws/src/pkg/msg/A.msg"
 
 
-def test_text_is_kept_as_it_is(tmp_path):
-    text = "# größe\r\nint32 a\rint32 b\n"
-    make_files(tmp_path, {"pkg/msg/A.msg": text})
-    assert sources(tmp_path).find("pkg", "msg", "A").source.text == text
-
-
 @pytest.mark.parametrize("name", ["file", "none"])
 def test_paths_that_are_no_folders_are_refused(tmp_path, name):
     make_files(tmp_path, {"file": ""})
@@ -375,11 +369,6 @@ def test_services_actions_and_idl_are_found(tmp_path):
         ("pkg", "srv", "B"): "srv",
     }
     assert origin.find("pkg", "srv", "A") is None
-
-
-def test_folder_called_like_a_kind_may_contain_packages(tmp_path):
-    make_files(tmp_path, {"action/pkg/msg/A.msg": "", "msg/other/msg/B.msg": ""})
-    assert found(tmp_path) == [("other", "B"), ("pkg", "A")]
 
 
 def test_ros_form_of_a_type_wins_over_the_idl_made_of_it(tmp_path):

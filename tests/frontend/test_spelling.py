@@ -38,6 +38,7 @@ def workdir(tmp_path, monkeypatch):
         "sensor_msgs::msg::Imu",
         "sensor_msgs/Imu",
         "sensor_msgs/msg/Imu.msg",
+        "sensor_msgs/Imu.h",
         "sensor_msgs.msg._imu.Imu",
         "sensor_msgs::msg::dds_::Imu_",
         "sensor_msgs__msg__Imu",
@@ -62,9 +63,23 @@ def test_mistakes_of_case_are_answered_with_the_right_name(name):
         Library("lyrical").message(name)
 
 
+def test_parts_of_services_are_taken_as_in_programs(workdir):
+    for name in ("plain.srv.S.Request", "plain::srv::S::Request"):
+        assert Library("lyrical", ["ws"]).message(name).name == "plain/srv/S_Request"
+
+
+def test_the_name_of_a_package_is_answered_with_its_types():
+    with pytest.raises(DefinitionError) as caught:
+        Library("lyrical").message("std_msgs")
+    assert str(caught.value) == (
+        "error: 'std_msgs' is a package, and not the name of a type, which is 'package/msg/Name'; "
+        "did you mean 'std_msgs/msg/Bool', 'std_msgs/msg/Byte' or 'std_msgs/msg/ByteMultiArray'?"
+    )
+
+
 def test_names_of_python_modules_are_answered_with_those_of_types():
     with pytest.raises(DefinitionError, match="did you mean 'sensor_msgs/msg/PointCloud2'"):
-        Library("lyrical").message("sensor_msgs/msg/point_cloud2")
+        Library("lyrical").message("sensor_msgs/msg/point_cloud2.hpp")
 
 
 def test_a_name_that_two_types_have_is_refused_in_ros_2(workdir):

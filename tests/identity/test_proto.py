@@ -110,27 +110,6 @@ def test_long_texts_stay_on_their_line_and_floats_of_lists_have_32_bits(tmp_path
     )
 
 
-def test_parts_are_indented_and_arrays_written_out(tmp_path):
-    texts = {
-        "p/Top": "Part part\nPart[2] parts\nPart[] more\nNone none\nNone[2] nones\n",
-        "p/Part": 'Leaf leaf\nint8[2] two\nstring s "a\\n\\nb"\n',
-        "p/Leaf": "float32 x\nLeast[1] least\n",
-        "p/Least": "int8 y 1\nint8 z 2\n",
-        "p/None": "",
-    }
-    ours = library(tmp_path, texts)
-    message = ours.message("p/Top")
-    part = {
-        "leaf": {"x": 0.0, "least": [{"y": 1, "z": 2}]},
-        "two": [0, 0],
-        "s": ours.message("p/Part").fields[2].default,
-    }
-    one, two, three = json.loads(json.dumps([part] * 3))
-    value = {"part": one, "parts": [two, three], "more": [], "none": {}, "nones": [{}, {}]}
-    want = yaml.dump(value, width=sys.maxsize, default_flow_style=False, sort_keys=False)
-    assert proto(message, quotes=False) == want
-
-
 def test_names_that_yaml_takes_for_values_are_quoted(tmp_path):
     text = "Part on\nPart[2] off\nNone no\nNone[1] yes\nint8[2] null\nstring true 'false'\n"
     ours = library(tmp_path, {"p/A": text, "p/Part": "int8[1] true\nint8 n\n", "p/None": ""})
@@ -181,12 +160,6 @@ def test_defaults_of_idl_that_are_characters_are_shown_as_such(tmp_path, kind, v
     idl = f"module p {{ module msg {{ struct A {{ @default(value={value}) {kind} c; }}; }}; }};"
     ours = Library("lyrical", [make_files(tmp_path, {"p/msg/A.idl": idl})])
     assert proto(ours.message("p/A"), quotes=False) == f"c: {text}\n"
-
-
-def test_wide_strings_are_empty_at_first(tmp_path):
-    ours = library(tmp_path, {"p/A": "wstring a\nwstring<=3 b\nwstring[2] c\nwstring[] d\n"})
-    want = "a: ''\nb: ''\nc:\n- ''\n- ''\nd: []\n"
-    assert proto(ours.message("p/A"), quotes=False) == want
 
 
 def test_service_is_shown_by_its_request_and_action_by_its_goal(tmp_path):

@@ -332,7 +332,7 @@ def test_memory_of_a_link_is_that_of_the_largest_topic_behind_it(link, topic, me
 
 def test_a_topic_has_packets_in_its_own_direction_alone():
     node = read()
-    has = {t.kind: [t.store(way) is not None for way in ("in", "out")] for t in node.topics}
+    has = {t.kind: [t.has(way) for way in ("in", "out")] for t in node.topics}
     assert has == {"subscribe": [True, False], "publish": [False, True], "serve": [True, True]}
     # So a node that only publishes has no memory to hold what comes.
     published = "node: n\nlink: udp\npublish: {a: {type: std_msgs/msg/Bool}}"

@@ -13,7 +13,6 @@ from firm_hdl.cli import main
 from firm_hdl.verify import ros2_wheels
 from firm_hdl.verify.ros2_wheels import RELEASES
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.tasks import UnknownTypeError
 
 
 @pytest.fixture
@@ -129,6 +128,13 @@ BAG = ["--bag", "x.mcap"]
         (["--all", "--systems", "ts1,ts4"], "no test system 'ts4'"),
         (["--all", "--systems", ""], "no test system ''"),
         (["--all", "--executor", "cluster"], "'cluster'"),
+        ([], "name types, or all of them with --all"),
+        (["--all", "std_msgs/msg/Bool"], "name types, or all of them with --all"),
+        (["--all", "--jobs", "0"], "must be at least 1, not 0"),
+        (["--all", "--cases", "few"], "'few' is not a number"),
+        (["--all", "--simulator", "abacus"], "invalid choice: 'abacus'"),
+        (["--all", "--sut", "abacus"], "invalid choice: 'abacus'"),
+        (["--sut", "rosbags"], "name types, or all of them with --all"),
     ],
 )
 def test_wrong_combinations_are_refused(capsys, arguments, reason):
@@ -148,8 +154,6 @@ OTHERS = {
     "oracle": "genmsg",
     "node": "x",
     "reference": "none",
-    "report": "x.md",
-    "results": "x",
     "simulator": "ghdl",
     "systems": "ts1",
     "vcd": "x",
@@ -165,40 +169,6 @@ def test_options_of_test_systems_are_refused_beside_libraries(capsys, name):
     assert "--sut" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    "option", ["--share-circuits", "--no-share-circuits", "--no-stalls", "--no-broken"]
-)
-def test_options_without_a_value_are_refused_beside_libraries(capsys, option):
-    with pytest.raises(SystemExit) as left:
-        main(["verify", "--sut", "rosbags", "p/A", option])
-    assert left.value.code == 2
-    assert "go with --sut" in capsys.readouterr().err
-
-
-def test_a_recording_may_be_of_a_distribution(request_of):
-    found = request_of("--bag", "x.mcap", "--distro", "humble")
-    assert found == Request(bags=("x.mcap",), distros=("humble",))
-
-
-def test_a_node_is_written_instead_of_a_run(tmp_path, monkeypatch, capsys):
-    def never(work):
-        raise AssertionError("nothing is to be tested")
-
-    monkeypatch.setattr(run, "run_workload", never)
-    path = tmp_path / "node.yaml"
-    assert main(["verify", "std_msgs/msg/Bool", "--write-node", str(path)]) == 0
-    assert path.exists() and capsys.readouterr().out == f"wrote   {path}\n"
-
-
-def test_a_type_that_nobody_has_fails_the_call(monkeypatch, capsys):
-    def unknown(request):
-        raise UnknownTypeError("nobody has it")
-
-    monkeypatch.setattr(command, "resolve", unknown)
-    assert main(["verify", "p/A"]) == 1
-    assert capsys.readouterr().err == "error: nobody has it\n"
-
-
 def test_releases_have_the_versions_of_their_packages(monkeypatch, tmp_path):
     """The lists beside the module pin them."""
     assert [release.name for release in RELEASES] == ["jazzy", "kilted"]
@@ -211,3 +181,9 @@ def test_releases_have_the_versions_of_their_packages(monkeypatch, tmp_path):
     assert RELEASES[0].python == tmp_path / "jazzy" / "bin" / "python"
     monkeypatch.setenv("FIRM_HDL_ROS2_WHEELS", "")
     assert RELEASES[1].folder.parts[-2:] == ("ros2", "kilted")
+
+
+def test_a_node_is_written_instead_of_a_run(tmp_path, capsys):
+    path = tmp_path / "node.yaml"
+    assert main(["verify", "std_msgs/msg/Bool", "--write-node", str(path)]) == 0
+    assert path.exists() and capsys.readouterr().out == f"wrote   {path}\n"

@@ -5,10 +5,10 @@ from __future__ import annotations
 import subprocess
 import sys
 
-from firm_hdl.verify import choices
 from firm_hdl.verify.references.clients import CLIENTS, WRITERS
 from firm_hdl.verify.run import SYSTEMS
 from firm_hdl.verify.simulators.programs import SIMULATORS
+from firm_hdl.verify.systems import options as choices
 from firm_hdl.verify.ts1.oracles import ORACLES
 
 

@@ -42,9 +42,9 @@ module wheels (
     exponent = number[62:52];
     value    = {1'b1, number[51:0]};
     // The highest bit goes to bit 30 of the result, and down by what its exponent is below TOP.
-    value  = exponent + 63 < TOP ? 53'd0 : value >> (TOP - exponent);
+    value  = int'(exponent) + 63 < TOP ? 53'd0 : value >> (TOP - int'(exponent));
     result = {1'b0, value[52:22]};
-    if (exponent > TOP) return number[63] ? 32'sh80000000 : 32'sh7fffffff;
+    if (int'(exponent) > TOP) return number[63] ? 32'sh80000000 : 32'sh7fffffff;
     return number[63] ? -result : result;
   endfunction
 

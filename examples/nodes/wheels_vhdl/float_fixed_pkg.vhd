@@ -54,13 +54,14 @@ package body float_fixed_pkg is
   end function;
 
   function to_float(fixed : signed) return std_logic_vector is
+    constant VALUE     : signed(fixed'length - 1 downto 0) := fixed;
     variable magnitude : unsigned(fixed'length - 1 downto 0);
     variable exponent  : unsigned(10 downto 0);
     variable mantissa  : unsigned(51 downto 0);
   begin
-    magnitude := unsigned(fixed);
-    if fixed(fixed'high) = '1' then
-      magnitude := unsigned(-fixed);
+    magnitude := unsigned(VALUE);
+    if VALUE(VALUE'high) = '1' then
+      magnitude := unsigned(-VALUE);
     end if;
     exponent := (others => '0');
     mantissa := (others => '0');
@@ -74,7 +75,7 @@ package body float_fixed_pkg is
         end loop;
       end if;
     end loop;
-    return fixed(fixed'high) & std_logic_vector(exponent) & std_logic_vector(mantissa);
+    return VALUE(VALUE'high) & std_logic_vector(exponent) & std_logic_vector(mantissa);
   end function;
 
 end package body;

@@ -19,6 +19,7 @@ _WAIVERS = "waivers.vlt"
 _WAIVED = {
     "WIDTH": "An assignment cuts the result of a shift.",
     "UNUSEDSIGNAL": "Amaranth names every field of a structure, used or not.",
+    "VARHIDDEN": "A parameter of a function has the name of the signal that it takes.",
     "DECLFILENAME": "A file has a module and its submodules.",
 }
 

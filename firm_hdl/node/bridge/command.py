@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TextIO
 
@@ -40,6 +41,7 @@ def run_bridge(
     seconds: float | None = None,
     engine: EngineName = "auto",
     quiet: bool = False,
+    wave: Path | None = None,
 ) -> None:
     """Run a bridge until Ctrl-C (SIGINT) or SIGTERM; print to standard error.
 
@@ -55,6 +57,8 @@ def run_bridge(
         Of a simulated board; see :class:`.SimulatedBoard`.
     quiet : bool
         Print no figures, only what happens.
+    wave : Path or None
+        Of a simulated board; see :class:`.SimulatedBoard`.
 
     Raises
     ------
@@ -65,7 +69,10 @@ def run_bridge(
     joined = graph_of(graph, description, domain=domain, interface=interface)
     status = Status(sys.stderr, quiet=quiet)
     simulation: dict[str, Any] = {"engine": engine}
+    if wave is not None and board != "sim":
+        raise UserError(f"the board {board} has no waveform; '--wave' goes with --board sim")
     if board == "sim":
+        simulation["wave"] = wave
         status.report(f"board sim: starts; {_engine(engine)}")
         simulation["report"] = lambda stage: status.report(f"board sim: {stage}")
     way = board_of(board, description, **simulation)

@@ -85,6 +85,8 @@ class Session:
     ----------
     is_ready : bool
         The board is the right one; messages may pass.
+    answered_at : float
+        When a request was answered last as it should be.
     restarts : int
         How often the board has started again.
     held_back : int
@@ -115,7 +117,7 @@ class Session:
         self._requests_register = number["node", "control"]
         self._keeper = ClockKeeper(nominal_rate(description.clock_hz))
         self._sender = MessageSender(frame_bytes)
-        self._arrivals = Arrivals(before._arrivals.receiver if before else None)
+        self._arrivals: Arrivals = Arrivals(before._arrivals.receiver if before else None)
         self._control: LostRequests = before._control if before else LostRequests()
         # Answers that were lost before the board started again.
         self._past_back: int = before._past_back if before else 0
@@ -126,7 +128,7 @@ class Session:
         self._asked: dict[int, Asked] = {}
         self._held: deque[NodeMessage] = deque()
         self._latencies: deque[float] = deque(maxlen=_LATENCIES)
-        self._heard = self._waits_until = now
+        self._heard = self._waits_until = self.answered_at = now
         self._is_set: bool = before is not None and before._is_set
         self._is_unanswered = self._is_finishing = self._is_settled = False
         # Until when the last messages may still be in the node.
@@ -250,12 +252,11 @@ class Session:
     def read(self, numbers: Iterable[int], now: float) -> None:
         """Let the next requests read some registers, in place of all counters in turn.
 
-        No answer to a request of before counts, and a board that was not asked for a while is not
-        silent yet. :attr:`has_read` tells when the values are there.
+        No answer to a request of before counts. :attr:`has_read` tells when the values are there.
         """
         self._todo = deque(map(_read, numbers))
         self._asks_from = self._control.asked
-        self._heard = self._waits_until = now
+        self._waits_until = now
 
     @property
     def has_read(self) -> bool:
@@ -361,6 +362,7 @@ class Session:
             return
         if response.operation != asked.request.operation:
             return
+        self.answered_at = now
         self._waits_until = max(now, self._passes_until)
         self._latencies.append(now - asked.at)
         self.unconfirmed.answered(asked.at, now)

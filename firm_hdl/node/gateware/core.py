@@ -153,7 +153,6 @@ class NodeCore(wiring.Component):
 
     def _subscribe(self, m: Module, topic: Topic) -> None:
         store = topic.store("in")
-        assert store is not None
         m.submodules[f"gate_{topic.port}"] = gate = PacketGate(
             store.message,
             wire=self.description.wire,
@@ -171,7 +170,6 @@ class NodeCore(wiring.Component):
 
     def _publish(self, m: Module, topic: Topic) -> None:
         store = topic.store("out")
-        assert store is not None
         m.submodules[f"fifo_{topic.port}"] = fifo = PacketFifo(
             self.description.bus_bytes,
             store.memory_bytes,
@@ -186,7 +184,6 @@ class NodeCore(wiring.Component):
     def _serve(self, m: Module, topic: Topic) -> None:
         bus = self.description.bus_bytes
         asked, answered = topic.store("in"), topic.store("out")
-        assert asked is not None and answered is not None
         gate = RequestGate(bus, asked, self.description.wire)
         fifo = TaggedFifo(bus, answered)
         m.submodules[f"gate_{topic.port}"] = gate

@@ -1,13 +1,16 @@
-"""A flat netlist as a module of Verilog, for Verilator: it has two values, and no names inside."""
+"""A flat netlist as a module of Verilog, for Verilator, which has two values."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from itertools import count
 
 from firm_hdl.equivalence.circuit import Bits, Cell, Circuit, Flop, ProofError
 
 __all__ = ["verilog_of"]
+
+_NUMBERED = re.compile(r"n\d+")
 
 _BINARY = {
     "$and": "&",
@@ -118,6 +121,11 @@ class _Writer:
             yield from self._register(register, group)
         for port, bits in outputs:
             yield f"  assign {port} = {self._value(bits)};"
+        # Names for a waveform.
+        named = {"_".join(path): bits for path, bits in circuit.signals.items()}
+        for signal, bits in named.items():
+            if bits and signal not in taken and not _NUMBERED.fullmatch(signal):
+                yield f"  wire [{len(bits) - 1}:0] \\{signal}  = {self._value(bits)};"
         yield "endmodule"
 
     def _expression(self, cell: Cell) -> str:

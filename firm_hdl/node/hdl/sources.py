@@ -76,7 +76,7 @@ def problems_of(
     problems: list[Diagnostic] = []
     for line in said.splitlines():
         found = _PLACE.match(line)
-        if not found or "%Warning" in line or ": warning:" in line or ": note:" in line:
+        if not found or "%Warning" in line or found[4].startswith(("warning:", "note:")):
             continue
         file = by_path.get(os.path.abspath(found[1]))
         if file is None:
@@ -136,7 +136,7 @@ def check_ports(
         if want is None:
             continue
         if port.direction != want.direction:
-            problems.append(f"port '{port.name}' of '{entity}' must be {want.direction}put")
+            problems.append(f"port '{port.name}' of '{entity}' must be an {want.direction}put")
         elif port.width != want.width:
             problems.append(
                 f"port '{port.name}' of '{entity}' must have {_bits(want.width)}, not {port.width}"

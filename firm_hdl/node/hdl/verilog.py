@@ -26,7 +26,7 @@ _MISSING = re.compile(r"PINMISSING:.*(?:missing pin|unconnected pin|Missing pin)
 _WIDTH = re.compile(r"(Input|Output) port connection '([^']+)' expects (\d+) bits")
 _ASSIGNED = re.compile(r"Assign.*to input.*'([^']+)'")
 _UNDRIVEN = re.compile(r"UNDRIVEN:.*Signal is not driven: '([^']+)'")
-_NO_MODULE = re.compile(r"Cannot find file containing module: '([^']+)'|MODMISSING")
+_NO_MODULE = re.compile(r"(?:containing module|module reference): '([^']+)'")
 
 
 def checked_verilog(
@@ -140,7 +140,7 @@ def _lint(
             for line in said.splitlines()
             if "%Error" in line or str(file) in line or not line.startswith("%")
         ]
-    if not is_right and _NO_MODULE.search(said) and f"'{entity}'" in said:
+    if not is_right and entity in _NO_MODULE.findall(said):
         names = ", ".join(map(repr, sources))
         raise refused(description, f"there is no module '{entity}' in {names}")
     return "\n".join(line for line in lines if line.startswith("%")), is_right

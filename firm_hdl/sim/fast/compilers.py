@@ -56,6 +56,9 @@ _MOST_CHARACTERS = 2000
 SERVER = Path(__file__).parent / "server.h"
 """The part of the program that is the same for all designs."""
 
+MOST_WAVE_BYTES = 1 << 30
+"""Where a waveform ends: a live simulation has no end."""
+
 _MODULE, _PREFIX = "firm_hdl_design", "Vdesign"
 _OPTIONS = (
     *("--cc", "-Wno-lint", "-Wno-style", "-Wno-fatal", "--no-timing"),
@@ -236,15 +239,20 @@ class VerilatedSource:
         C++ with the table of the ports.
     modules : mapping of str to str
         More Verilog by file name: modules that the design has instances of.
+    traced : bool
+        The program writes a waveform.
     """
 
     verilog: str
     main: str
     modules: Mapping[str, str]
+    traced: bool = False
 
 
 @search_put_off()
-def verilated_source(top: Top, modules: Mapping[str, str]) -> VerilatedSource:
+def verilated_source(
+    top: Top, modules: Mapping[str, str] | None = None, *, traced: bool = False
+) -> VerilatedSource:
     """Elaborate a design.
 
     Raises
@@ -257,8 +265,10 @@ def verilated_source(top: Top, modules: Mapping[str, str]) -> VerilatedSource:
         streams=[*zip(top.ports.streams, top.clock_of, strict=True)],
         plain=top.ports.plain,
         clocks=top.clocks,
+        traced=traced,
+        most_bytes=MOST_WAVE_BYTES,
     )
-    return VerilatedSource(convert(netlist, name=_MODULE), main, modules)
+    return VerilatedSource(convert(netlist, name=_MODULE), main, modules or {}, traced)
 
 
 def translate(
@@ -281,7 +291,8 @@ def translate(
     (folder / SERVER.name).write_bytes(SERVER.read_bytes())
     for name, text in source.modules.items():
         (folder / name).write_text(text, encoding="utf-8")
-    run_tool([*verilator, *_OPTIONS, "design.v", *source.modules], folder)
+    options = [*_OPTIONS, *(["--trace"] if source.traced else [])]
+    run_tool([*verilator, *options, "design.v", *source.modules], folder)
     makefile = made_by("Verilator", folder / f"{_PREFIX}_classes.mk").read_text(encoding="utf-8")
     # Which parts of the runtime a model needs depends on the version.
     parts = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", makefile, re.MULTILINE)

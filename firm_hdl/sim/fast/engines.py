@@ -36,6 +36,8 @@ class VerilatorEngine(Channel):
     ----------
     program : Path
         From :func:`.program_of`.
+    wave : Path or None
+        The file of the waveform, if the program writes one.
 
     Attributes
     ----------
@@ -49,10 +51,10 @@ class VerilatorEngine(Channel):
 
     engine = "verilator"
 
-    def __init__(self, program: Path):
-        self._program = program
+    def __init__(self, program: Path, wave: Path | None = None):
+        self._program, self._wave = program, wave
         own, other = socket.socketpair()
-        command = [str(program), str(os.getpid())]
+        command = [str(program), str(os.getpid()), *([str(wave.absolute())] if wave else [])]
         try:
             # Texts of `Print` and `Assert` go where those of this process go.
             self.process = start_program(command, stdin=other.fileno(), stdout=None, stderr=None)
@@ -66,7 +68,7 @@ class VerilatorEngine(Channel):
         self._finalizer = weakref.finalize(self, _end, own, self.process)
 
     def again(self) -> VerilatorEngine:
-        return VerilatorEngine(self._program)
+        return VerilatorEngine(self._program, self._wave)
 
     def close(self) -> None:
         self._finalizer()
@@ -126,13 +128,17 @@ def start(
     cache: Path | None,
     report: Report | None = None,
     modules: Mapping[str, str] | None = None,
+    wave: Path | None = None,
 ) -> VerilatorEngine | AmaranthEngine:
     """Start an engine. Parameters and errors are those of :class:`.FastSimulation`."""
     found, why = expected_engine(engine)
     if found == "amaranth":
+        reason = f": {why}" if why else ""
         if modules:
-            reason = f": {why}" if why else ""
             raise BuildError(f"Amaranth's simulator takes no modules of Verilog{reason}")
+        if wave:
+            raise BuildError(f"Amaranth's simulator writes no waveform while it is live{reason}")
         return AmaranthEngine(top)
-    source = partial(verilated_source, top, modules or {})
-    return VerilatorEngine(program_of(source, options=options, cache=cache, report=report))
+    source = partial(verilated_source, top, modules, traced=wave is not None)
+    program = program_of(source, options=options, cache=cache, report=report)
+    return VerilatorEngine(program, wave)

@@ -78,6 +78,8 @@ class FastSimulation:
     modules : mapping of str to str, or None
         Verilog by file name, ``.v`` or ``.sv``: modules of which the design has an
         `amaranth.hdl.Instance`. Only for Verilator.
+    wave : Path or None
+        A file of VCD that is written, up to 1 GiB. Only for Verilator.
 
     Attributes
     ----------
@@ -115,6 +117,7 @@ class FastSimulation:
         ignored: Collection[str] = (),
         report: Report | None = None,
         modules: Mapping[str, str] | None = None,
+        wave: Path | None = None,
     ):
         self.ports = ports_of(design)
         top = Top(design, self.ports)
@@ -131,7 +134,13 @@ class FastSimulation:
         self._clear()
         self._stalls = stalls
         self._channel: Channel = start(
-            top, engine, options=options, cache=cache, report=report, modules=modules
+            top,
+            engine,
+            options=options,
+            cache=cache,
+            report=report,
+            modules=modules,
+            wave=wave,
         )
         self.engine: Literal["verilator", "amaranth"] = self._channel.engine
         self._open = top.open

@@ -189,7 +189,5 @@ class Boards(System):
     def _lines(self, record: Record) -> Iterator[str]:
         """Yield the failures and the note of a type."""
         yield from failure_of(f"{record.test.type} ({record.test.distro})", record)
-        if isinstance(record.verdict, Failed):
-            yield f"    again: {record.command}"
         if record.note:
             yield f"note: {record.test.type} ({record.test.distro}): {record.note}"

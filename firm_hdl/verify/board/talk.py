@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from firm_hdl.node import Description, Topic
 from firm_hdl.node.boards import Board, BoardError
-from firm_hdl.node.bridge.session import Session, SilentBoardError, WrongBoardError
+from firm_hdl.node.bridge.session import Session, WrongBoardError
 from firm_hdl.node.capacity import link_bytes_per_second
 from firm_hdl.node.frame import HEADER_BYTES
 from firm_hdl.node.messages import NodeMessage
@@ -71,7 +71,8 @@ class Talk:
             time.monotonic(),
             # The clock is set, which shows a restart. Nobody reads it.
             sample_seconds=float("inf"),
-            silent_seconds=self._silent_seconds,
+            # What it says besides answers is no sign of life here.
+            silent_seconds=float("inf"),
             repeat_seconds=self._board.repeat_seconds,
         )
         self._ask(lambda: self._session.is_ready)
@@ -140,19 +141,20 @@ class Talk:
 
     def _ask(self, is_done: Callable[[], bool]) -> None:
         """Send the requests that are due, until something is known."""
+        begin = time.monotonic()
         while not is_done():
-            try:
-                frames = self._session.due(time.monotonic(), time.time_ns())
-            except SilentBoardError:
+            now = time.monotonic()
+            end = max(begin, self._session.answered_at) + self._silent_seconds
+            if now > end:
                 causes = ", ".join(f"{count} {cause}" for cause, count in self.losses().items())
                 more = f" (frames: {causes})" if causes else ""
                 raise TalkError(
                     f"{self._board.name}: the board does not answer for "
                     f"{self._silent_seconds:g} s{more}"
-                ) from None
-            if frames:
+                )
+            if frames := self._session.due(now, time.time_ns()):
                 self._send(frames)
-            self._wait(self._session.next_due())
+            self._wait(min(end, self._session.next_due()))
 
     def _send(self, frames: Sequence[bytes]) -> None:
         try:

@@ -1,17 +1,121 @@
 """The known differences between client libraries and ROS's own serializers.
 
-docs/reference/divergences.md explains each, by its key.
+docs/reference/divergences.md explains each, by its key. A difference in values is explained if the
+values are equal without the parts that known divergences are about. So a known divergence hides no
+other difference. If one library takes an unusual packet and the other refuses it, the case and the
+library explain the difference. A difference that no entry explains is new.
 """
 
 from __future__ import annotations
 
-from typing import Any, TypeGuard
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeGuard
 
-from firm_hdl.cases.values import Change, Plain, is_nan
+from firm_hdl.cases.values import Change, Plain, changed, is_nan, packed
 from firm_hdl.model import FieldType, Message, Primitive, String
-from firm_hdl.verify.clients.finding import KnownDivergence
+from firm_hdl.verify.references.client import Codec, Refusal, UnsupportedError
+from firm_hdl.verify.references.clients import client
+from firm_hdl.wire import Wire
 
-__all__ = ["KNOWN"]
+__all__ = ["KNOWN", "Finding", "KnownDivergence", "known_keys", "known_writing"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """One difference.
+
+    Attributes
+    ----------
+    what : str
+        ``encode``, ``decode``, the name of an unusual case of a packet, or ``encode`` and that of
+        a value.
+    value : Plain
+        The value to write, or the value of the packet.
+    packet : bytes
+        The packet to read.
+    expected, got : bytes, Plain or Refusal
+        The answers of the reference and of the library.
+    """
+
+    library: str
+    reference: str
+    wire: Wire
+    what: str
+    message: Message
+    value: Plain = field(repr=False)
+    packet: bytes = field(repr=False)
+    expected: Any = field(repr=False)
+    got: Any = field(repr=False)
+
+    @property
+    def size(self) -> int:
+        """The size of the value in bytes."""
+        return len(packed(self.message, self.value))
+
+    def answers(self, library: str) -> tuple[Any, Any]:
+        """Return the answer of one of the two libraries, and the answer of the other."""
+        if library == self.library:
+            return self.got, self.expected
+        return self.expected, self.got
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownDivergence:
+    """One known difference.
+
+    Attributes
+    ----------
+    key : str
+        The name of the difference, here and in docs/reference/divergences.md.
+    libraries : tuple of str
+        Libraries that differ from ROS.
+    wires : str
+        ``ros1``, ``cdr``, or both.
+    text : str
+        What the libraries do, in one sentence.
+    take_out : callable or None
+        Removes the difference from a value to write.
+    same : callable or None
+        Removes the difference from a value that was read.
+    case_names : tuple of str
+        Unusual cases that this divergence is about.
+    answer : "takes", "refuses" or None
+        What the libraries do with these cases while the other side does the opposite. `None`:
+        both sides take them.
+    """
+
+    key: str
+    libraries: tuple[str, ...]
+    wires: str
+    text: str
+    take_out: Change | None = None
+    same: Change | None = None
+    case_names: tuple[str, ...] = ()
+    answer: Literal["takes", "refuses"] | None = None
+
+    def is_about(self, finding: Finding) -> str | None:
+        """Return the library of a finding that this difference is about; `None` if neither is."""
+        return self.affected_library(finding.wire, finding.library, finding.reference)
+
+    def affected_library(self, wire: Wire, *libraries: str) -> str | None:
+        """Return the first library that this difference is about on a wire; `None` if none is."""
+        if wire not in self.wires.split():
+            return None
+        return next((name for name in libraries if name in self.libraries), None)
+
+    def explains_answer(self, finding: Finding) -> bool:
+        """Whether this difference explains which side takes an unusual packet or value."""
+        name = self.is_about(finding)
+        if name is None or finding.what not in self.case_names:
+            return False
+        mine, other = (isinstance(each, Refusal) for each in finding.answers(name))
+        return (mine, other) == {
+            "takes": (False, True),
+            "refuses": (True, False),
+            None: (False, False),
+        }[self.answer]
+
 
 # Changes of values, for `KnownDivergence.take_out` and `KnownDivergence.same`.
 
@@ -225,3 +329,73 @@ _FIRM_HDL.refuses(
     "bound-text",
     "encode bound-text",
 )
+
+
+_WRITER = "rosbags"
+
+
+def known_keys(finding: Finding, library_codec: Codec, reference_codec: Codec) -> Sequence[str]:
+    """Return the keys of the divergences that explain a difference; none if it is new."""
+    entries = [entry for entry in KNOWN if entry.is_about(finding)]
+    for entry in entries:
+        if entry.explains_answer(finding):
+            return [entry.key]
+    if finding.what.startswith("encode"):
+        return _explained_writing(
+            finding.message, finding.value, entries, library_codec, reference_codec
+        )
+    if isinstance(finding.expected, Refusal) or isinstance(finding.got, Refusal):
+        return ()
+    found, expected, got = [], finding.expected, finding.got
+    for entry in entries:
+        if entry.same is not None:
+            one, other = (changed(finding.message, each, entry.same) for each in (expected, got))
+            if (one, other) != (expected, got):
+                found.append(entry.key)
+            expected, got = one, other
+    return found if expected == got else ()
+
+
+def _explained_writing(
+    message: Message,
+    value: Plain,
+    entries: Sequence[KnownDivergence],
+    library_codec: Codec,
+    reference_codec: Codec,
+) -> Sequence[str]:
+    found = []
+    for entry in entries:
+        if entry.take_out is not None:
+            left = changed(message, value, entry.take_out)
+            if left != value:
+                found.append(entry.key)
+            value = left
+    if not found:
+        return ()
+    one, other = reference_codec.encode_all([value])[0], library_codec.encode_all([value])[0]
+    return found if one == other and not isinstance(one, Refusal) else ()
+
+
+def known_writing(
+    message: Message, wire: Wire, value: Plain, library: str, codec: Codec
+) -> Sequence[str]:
+    """Return the keys of divergences that explain why a library and rosbags write different bytes.
+
+    The divergences explain it if both libraries write the same packet once the parts that the
+    divergences are about are taken out of the value. There are no divergences of a type that
+    rosbags does not have.
+
+    Parameters
+    ----------
+    codec : Codec
+        The codec of `library`. That of rosbags is opened here.
+    """
+    try:
+        reference_codec = client(_WRITER).open(message, wire)
+    except UnsupportedError:
+        # Without the type, rosbags writes nothing to compare.
+        return ()
+    entries = [
+        entry for entry in KNOWN if entry.affected_library(wire, library, _WRITER) is not None
+    ]
+    return _explained_writing(message, value, entries, codec, reference_codec)

@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from firm_hdl.cases.values import Plain
+from firm_hdl.cases.values import Plain, shown
 from firm_hdl.model import Message
-from firm_hdl.verify.clients.finding import Finding
-from firm_hdl.verify.clients.known import known_keys
+from firm_hdl.verify.clients.divergences import Finding, known_keys
 from firm_hdl.verify.clients.unusual import (
     plain_packet,
     unusual_packet,
@@ -26,10 +25,22 @@ from firm_hdl.verify.references.client import (
     UnsupportedError,
     each_answered,
 )
-from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
+from firm_hdl.verify.references.objects import full_text
+from firm_hdl.verify.results.verdict import (
+    Failed,
+    KnownDifference,
+    NotJudged,
+    Passed,
+    Verdict,
+    clipped,
+)
 from firm_hdl.wire import Wire
 
-__all__ = ["LibraryComparison", "LibraryResult"]
+__all__ = ["LibraryComparison", "LibraryResult", "described"]
+
+
+MOST_CHARACTERS = 400
+"""A definition, a value or an answer is shown with so many characters at most."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -38,8 +49,6 @@ class LibraryResult:
 
     Attributes
     ----------
-    library, reference : str
-    type : str
     comparisons : int
         Number of questions that both libraries were asked.
     answers : int
@@ -47,14 +56,11 @@ class LibraryResult:
     known : counter of str
         Keys of known differences.
     findings : list of Finding
-        The first unknown difference of each kind.
+        The unknown difference of each kind whose value is the smallest.
     unknown : int
         Number of unknown differences.
     obstacle : NotJudged, Failed or None
         Why there is no result: a library lacks the type, or died.
-    is_asked : bool
-        Whether the result counts. It does not if the library does not speak the wire of the type,
-        and the user named neither wires nor distributions.
     """
 
     library: str
@@ -66,14 +72,12 @@ class LibraryResult:
     findings: list[Finding] = field(default_factory=list)
     unknown: int = 0
     obstacle: NotJudged | Failed | None = None
-    is_asked: bool = True
 
     @property
     def verdict(self) -> Verdict:
         """The verdict; its cases are comparisons."""
         if self.unknown:
-            kinds = [f"{each.what} differs from {self.reference}" for each in self.findings]
-            return Failed(tuple(kinds) or (f"{self.unknown} differences",))
+            return Failed(tuple(map(described, self.findings)) or (f"{self.unknown} differences",))
         if self.obstacle is not None:
             return self.obstacle
         if not self.answers:
@@ -88,18 +92,13 @@ class LibraryResult:
             self.known.update(keys)
             return
         self.unknown += 1
-        if all(each.what != finding.what for each in self.findings):
-            self.findings.append(finding)
+        same = [each for each in self.findings if each.what == finding.what]
+        if not same or finding.size < same[0].size:
+            self.findings = [each for each in self.findings if each not in same] + [finding]
 
 
 class LibraryComparison:
-    """A library and its reference.
-
-    Parameters
-    ----------
-    library, reference : Client
-    wire : Wire
-    """
+    """A library and its reference."""
 
     def __init__(self, library: Client, reference: Client, wire: Wire):
         self.library, self.reference, self.wire = library, reference, wire
@@ -200,11 +199,6 @@ class LibraryComparison:
             else (finding, known_keys(finding, library_codec, reference_codec))
         )
 
-    def again(self, message: Message, what: str, value: Plain) -> Finding | None:
-        """Ask one question; return the difference if no known divergence explains it."""
-        found = self.ask(message, what, value)
-        return None if found is None or found[1] else found[0]
-
     def _asked(
         self, message: Message, what: str, value: Plain, reference_codec: Codec
     ) -> _Asked | None:
@@ -239,3 +233,27 @@ def _answers(name: str, codec: Codec, asked: Sequence[_Asked]) -> list[Any]:
     written = iter(each_answered(name, values, codec.encode_all(values)) if values else ())
     read = iter(each_answered(name, packets, codec.decode_all(packets)) if packets else ())
     return [next(written) if each.packet is None else next(read) for each in asked]
+
+
+def described(finding: Finding) -> str:
+    """Describe a difference: definition, value, packet, and both answers."""
+    answers = {finding.reference: finding.expected, finding.library: finding.got}
+    lines = {"value": shown(finding.message, finding.value)}
+    if not finding.what.startswith("encode"):
+        lines["packet"] = finding.packet.hex() or "no bytes"
+    lines |= {name: _answer(finding, answer) for name, answer in answers.items()}
+    shortened = [f"{name}: {clipped(text, MOST_CHARACTERS)}" for name, text in lines.items()]
+    definition = clipped(full_text(finding.message).rstrip(), MOST_CHARACTERS)
+    return "\n".join([f"{finding.what} differs from {finding.reference}", definition, *shortened])
+
+
+def _answer(finding: Finding, answer: Any) -> str:
+    if isinstance(answer, Refusal):
+        return f"refuses: {answer}"
+    if isinstance(answer, bytes):
+        return answer.hex() or "no bytes"
+    try:
+        return shown(finding.message, answer) or "a message without fields"
+    # A library may give values that do not fit the type, such as a text in place of a float.
+    except Exception:
+        return repr(answer)

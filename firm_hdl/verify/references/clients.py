@@ -12,8 +12,7 @@ from firm_hdl.model import Message, closure
 from firm_hdl.verify.references.client import Client, ClientMissingError
 from firm_hdl.verify.references.fastcdr import NEWER, FastCdr
 from firm_hdl.verify.references.genpy import Genpy
-from firm_hdl.verify.references.libraries import CycloneDds, McapRos1, McapRos2, Rosbags
-from firm_hdl.verify.references.own import FirmHdl
+from firm_hdl.verify.references.libraries import CycloneDds, FirmHdl, McapRos1, McapRos2, Rosbags
 from firm_hdl.wire import Wire
 
 __all__ = [

@@ -17,8 +17,8 @@ from firm_hdl.verify.references.client import (
     Refusal,
     UnsupportedError,
 )
-from firm_hdl.verify.references.genpy_objects import to_json
 from firm_hdl.verify.references.objects import full_text
+from firm_hdl.verify.references.worker_genpy import to_json
 from firm_hdl.verify.ros_python import worker
 from firm_hdl.wire import Wire
 
@@ -26,7 +26,7 @@ __all__ = ["Genpy", "field_table"]
 
 
 def field_table(message: Message) -> dict[str, list[tuple[str, bool, str]]]:
-    """List the fields of a type and of its nested types, as `genpy_objects` takes them."""
+    """List the fields of a type and of its nested types, as `worker_genpy` takes them."""
     return {
         kind.name: [
             (item.name, isinstance(item.type, Array | SequenceType), _base(item.type))

@@ -37,12 +37,7 @@ __all__ = [
 
 
 class ObjectCodec(Codec):
-    """A codec of one type that converts plain values to and from objects of the library.
-
-    Parameters
-    ----------
-    message : Message
-    """
+    """A codec of one type that converts plain values to and from objects of the library."""
 
     def __init__(self, message: Message):
         self.message = message

@@ -1,4 +1,4 @@
-"""A report in its formats: one page of HTML, Markdown, and JSON.
+"""``firm-hdl report``, and a report in its formats: one page of HTML, Markdown, and JSON.
 
 The page needs no server, no network and no other file. Markdown is for a terminal or a merge
 request, and JSON for other programs.
@@ -6,25 +6,42 @@ request, and JSON for other programs.
 
 from __future__ import annotations
 
+import argparse
 import json
+import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, replace
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
-from firm_hdl.verify.report import charts, prose, tables
+from firm_hdl.export.build import BuildError
+from firm_hdl.files import write_file
+from firm_hdl.verify.report import charts, tables
+from firm_hdl.verify.report import tables as prose
 from firm_hdl.verify.report.charts import counts_bar
-from firm_hdl.verify.report.outcomes import NotRun, Outcome, failures_of
-from firm_hdl.verify.report.summary import Summary
+from firm_hdl.verify.report.summary import (
+    NotRun,
+    Outcome,
+    Summary,
+    failures_of,
+    reason_groups,
+    summarise,
+)
 from firm_hdl.verify.report.tables import Table, TableCell
-from firm_hdl.verify.report.verdicts import reason_groups
+from firm_hdl.verify.results.file import ResultsError, read_results
 from firm_hdl.verify.results.records import to_json as record_to_json
 
-__all__ = ["FORMATS", "to_html", "to_json", "to_markdown"]
+__all__ = [
+    "FORMATS",
+    "add_report_arguments",
+    "run_report",
+    "write_report",
+]
 
 _MOST_CHARTS = 6
 _MOST_OPEN_ROWS = 40
@@ -177,3 +194,69 @@ def _environment(*, is_html: bool, **filters: Any) -> Environment:
     )
     found.filters.update(filters)
     return found
+
+
+def add_report_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``firm-hdl report``."""
+    parser.add_argument(
+        "results", nargs="+", metavar="RESULTS", help="files that firm-hdl verify --results wrote"
+    )
+    parser.add_argument("--out", metavar="FILE", help="file to write; default: standard output")
+    parser.add_argument(
+        "--format", choices=list(FORMATS), help="default: that of the file's name, or md"
+    )
+    parser.add_argument("--title", default="Verification of firm-hdl", help="default: %(default)s")
+
+
+def run_report(given: argparse.Namespace) -> None:
+    """Run ``firm-hdl report``.
+
+    Raises
+    ------
+    BuildError
+        If a file is not one of results.
+    """
+    form = given.format
+    if given.out is None:
+        print(_made(given.results, form or "md", given.title), end="")
+        return
+    write_report(given.results, given.out, form, given.title)
+    print(f"wrote   {given.out}")
+
+
+def write_report(
+    results: Sequence[str | os.PathLike[str]],
+    out: str | os.PathLike[str],
+    form: str | None = None,
+    title: str = "Verification of firm-hdl",
+) -> None:
+    """Write a report of files of results.
+
+    Parameters
+    ----------
+    form : str or None
+        A key of `FORMATS`; `None`: the suffix of `out`.
+
+    Raises
+    ------
+    BuildError
+        If a file is not one of results, or if the suffix of `out` is not a key of `FORMATS`.
+    """
+    path = Path(out)
+    form = form or path.suffix.lstrip(".").lower()
+    if form not in FORMATS:
+        ends = ", ".join(f".{name}" for name in FORMATS)
+        raise BuildError(f"'{out}': the name of a report must end in {ends}, or give --format")
+    for each in results:
+        if path.exists() and path.samefile(each):
+            raise BuildError(f"'{out}' is one of the results; the report needs another name")
+    text = _made(results, form, title)
+    write_file(path, text)
+
+
+def _made(results: Sequence[str | os.PathLike[str]], form: str, title: str) -> str:
+    try:
+        found = {str(path): read_results(path) for path in results}
+    except ResultsError as error:
+        raise BuildError(str(error)) from None
+    return FORMATS[form](summarise(found, title))

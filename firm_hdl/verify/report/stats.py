@@ -26,10 +26,8 @@ class Box:
 
     Attributes
     ----------
-    count : int
     least, q1, median, q3, p95, most : float
         Quartiles and the 95th percentile between the smallest value and the largest.
-    total : float
     """
 
     count: int

@@ -1,22 +1,139 @@
-"""The content of a report as data, which is written as HTML, Markdown or JSON."""
+"""The content of a report as data, which is written as HTML, Markdown or JSON.
+
+The input is the outcome of every planned test. A test counts as passed only if a record says so. A
+test without a record was not run. A test that relies on the circuit of another type passes only if
+the test of that type has passed, too.
+"""
 
 from __future__ import annotations
 
+import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from firm_hdl.verify.report.outcomes import Counts, NotRun, Outcome, count, outcomes_of
 from firm_hdl.verify.report.stats import Box, Correlation, box_of, correlate, curve_of, share_within
-from firm_hdl.verify.report.verdicts import OracleSum, Remark, oracle_sums, remarks_of
 from firm_hdl.verify.results.file import Results
-from firm_hdl.verify.results.records import STAGES, Record
-from firm_hdl.verify.results.verdict import Failed, NotJudged
+from firm_hdl.verify.results.records import STAGES, Record, Test, settled
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
 
-__all__ = ["LIMITS", "Curve", "Group", "Summary", "Trend", "summarise"]
+__all__ = [
+    "LIMITS",
+    "Counts",
+    "Curve",
+    "Group",
+    "NotRun",
+    "Outcome",
+    "Summary",
+    "Trend",
+    "count",
+    "failures_of",
+    "outcomes_of",
+    "reason_groups",
+    "summarise",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class NotRun:
+    """A test has no result."""
+
+    name: ClassVar[str] = "not run"
+
+    reason: str = "there is no result of it"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """The outcome of a test.
+
+    Attributes
+    ----------
+    circuit_of : str
+        Name of the type whose equal circuit was simulated instead of the circuit of this type.
+    """
+
+    test: Test
+    verdict: Verdict | NotRun
+    record: Record | None
+    circuit_of: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Counts:
+    """The number of tests of each outcome. Tests with a known difference do not count as passed."""
+
+    passed: int = 0
+    known: int = 0
+    failed: int = 0
+    not_judged: int = 0
+    not_run: int = 0
+
+    @property
+    def total(self) -> int:
+        """The number of all tests."""
+        return self.passed + self.known + self.failed + self.not_judged + self.not_run
+
+    @property
+    def verdict(self) -> str:
+        """The name of the worst outcome; ``not judged`` only if nothing was judged."""
+        if self.failed:
+            return Failed.name
+        if self.not_run or not self.total:
+            return NotRun.name
+        if self.passed:
+            return Passed.name
+        return KnownDifference.name if self.known else NotJudged.name
+
+
+def count(outcomes: Iterable[Outcome]) -> Counts:
+    """Count outcomes."""
+    found = Counter(outcome.verdict.name for outcome in outcomes)
+    return Counts(
+        passed=found[Passed.name],
+        known=found[KnownDifference.name],
+        failed=found[Failed.name],
+        not_judged=found[NotJudged.name],
+        not_run=found[NotRun.name],
+    )
+
+
+def failures_of(outcome: Outcome) -> tuple[str, ...]:
+    """Return the failures of a test; none if it did not fail."""
+    return outcome.verdict.failures if isinstance(outcome.verdict, Failed) else ()
+
+
+def outcomes_of(files: Sequence[Results]) -> list[Outcome]:
+    """Return the outcome of every test of some files, sorted by key.
+
+    A test that is in several files counts as failed if it failed in one of them.
+    """
+    tests: dict[str, Test] = {}
+    records: dict[str, Record] = {}
+    for file in files:
+        tests.update((test.key, test) for test in file.planned)
+        for key, record in file.records.items():
+            tests.setdefault(key, record.test)
+            if key not in records or not isinstance(records[key].verdict, Failed):
+                records[key] = record
+    return [_outcome(tests[key], records.get(key), records) for key in sorted(tests)]
+
+
+def _outcome(test: Test, record: Record | None, records: Mapping[str, Record]) -> Outcome:
+    if record is None:
+        return Outcome(test=test, verdict=NotRun(), record=None)
+    verdict: Verdict | NotRun = settled(record, records)
+    if isinstance(record.verdict, Failed | NotJudged) or not record.same_as:
+        return Outcome(test=test, verdict=verdict, record=record)
+    other = records.get(record.same_as)
+    circuit_of = record.same_as if other is None else other.test.type
+    if other is None:
+        verdict = NotRun(f"has the circuit of {circuit_of}, which was not run")
+    return Outcome(test=test, verdict=verdict, record=record, circuit_of=circuit_of)
+
 
 LIMITS = (0.01, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 60)
 """Times in seconds. The report has the share of tests that took at most each of these times."""
@@ -36,8 +153,6 @@ class Group:
     ----------
     labels : tuple of str
         What the tests have in common, such as the suite and the distribution.
-    counts : Counts
-    cpu_seconds : float
     """
 
     labels: tuple[str, ...]
@@ -51,7 +166,6 @@ class Curve:
 
     Attributes
     ----------
-    suite : str
     points : tuple of (float, float)
         Times in seconds, and the share of tests that took at most this time.
     within : mapping of float to float
@@ -81,7 +195,6 @@ class Trend:
     ----------
     suite, metric, time : str
         `time` is the name of a stage, or ``total``.
-    correlation : Correlation
     points : tuple of (float, float)
         Pairs of figure and seconds, at most `MOST_POINTS` of them; only if `time` is ``total``.
     """
@@ -99,7 +212,6 @@ class CoverageSum:
 
     Attributes
     ----------
-    suite : str
     types, full : int
         The number of tests with plan coverage, and the number of those with every decision taken.
     taken, possible : int
@@ -119,10 +231,6 @@ class RunSummary:
 
     Attributes
     ----------
-    name : str
-    options : mapping of str to object
-    sessions : tuple of mapping of str to str
-    planned, recorded : int
     failure : str or None
         Why the run failed; empty if it did not, `None` if it has not ended.
     """
@@ -141,23 +249,16 @@ class Summary:
 
     Attributes
     ----------
-    title : str
-    counts : Counts
     by_suite, by_distro, by_package : tuple of Group
         A test counts once in `by_suite`, and once for each of its distributions in the others.
-    outcomes : tuple of Outcome
     circuits : mapping of str to (int, int)
         By suite: different circuits, and tests that rely on the circuit of another type.
     writers : mapping of str to (mapping of str to int)
         By suite: libraries that wrote packets, and the number of tests for which they did.
-    curves : tuple of Curve
-    trends : tuple of Trend
-    coverage : tuple of CoverageSum
     oracles : tuple of OracleSum
         The verdicts of the oracles of definitions.
     said : tuple of Remark
         Known differences from these oracles, and reasons why they did not judge.
-    runs : tuple of RunSummary
     """
 
     title: str
@@ -390,3 +491,136 @@ def _run(name: str, results: Results) -> RunSummary:
         recorded=len(results.records),
         failure=results.failure,
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OracleSum:
+    """The verdicts of an oracle on the definitions of a distribution.
+
+    Attributes
+    ----------
+    agree, refused, known, differ, not_judged : int
+        Numbers of definitions. `refused` are those among `agree` that firm-hdl and the oracle
+        refuse.
+    """
+
+    distro: str
+    oracle: str
+    agree: int = 0
+    refused: int = 0
+    known: int = 0
+    differ: int = 0
+    not_judged: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Remark:
+    """A known difference from an oracle, or a reason why the oracle did not judge.
+
+    Attributes
+    ----------
+    verdict : str
+        ``known difference`` or ``not judged``.
+    what : str
+        Key of a known difference, or a reason.
+    count : int
+        The number of definitions.
+    example : str
+        Name of one of these definitions.
+    """
+
+    oracle: str
+    verdict: str
+    what: str
+    count: int
+    example: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reason:
+    """Tests with the same text, apart from names and numbers.
+
+    Attributes
+    ----------
+    text : str
+        The text of the first of these tests.
+    """
+
+    text: str
+    outcomes: tuple[Outcome, ...]
+
+
+def oracle_sums(outcomes: Iterable[Outcome]) -> tuple[OracleSum, ...]:
+    """Count verdicts by distribution and oracle."""
+    counts: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
+    for outcome in outcomes:
+        for each in outcome.record.verdicts if outcome.record is not None else ():
+            found = counts[outcome.test.distro, each.oracle]
+            found[each.verdict.name] += 1
+            found["refused"] += each.is_refused
+    return tuple(
+        OracleSum(
+            distro=distro,
+            oracle=oracle,
+            agree=found[Passed.name],
+            refused=found["refused"],
+            known=found[KnownDifference.name],
+            differ=found[Failed.name],
+            not_judged=found[NotJudged.name],
+        )
+        for (distro, oracle), found in sorted(counts.items())
+    )
+
+
+def remarks_of(outcomes: Iterable[Outcome]) -> tuple[Remark, ...]:
+    """List known differences and reasons not to judge, the most frequent of an oracle first."""
+    names: dict[tuple[str, str, str], list[str]] = defaultdict(list)
+    texts: dict[tuple[str, str, str], str] = {}
+    for outcome in outcomes:
+        for each in outcome.record.verdicts if outcome.record is not None else ():
+            for detail in () if isinstance(each.verdict, Failed) else each.verdict.details:
+                key = (each.oracle, each.verdict.name, _without_names(detail))
+                texts.setdefault(key, detail)
+                names[key].append(outcome.test.type)
+    ordered = sorted(names, key=lambda key: (key[0], key[1], -len(names[key]), key[2]))
+    return tuple(
+        Remark(
+            oracle=key[0],
+            verdict=key[1],
+            what=texts[key],
+            count=len(names[key]),
+            example=names[key][0],
+        )
+        for key in ordered
+    )
+
+
+def reason_groups(
+    outcomes: Iterable[Outcome], text_of: Callable[[Outcome], str] | None = None
+) -> list[Reason]:
+    """Group tests that were not judged for the same reason, the largest group first.
+
+    Parameters
+    ----------
+    text_of : callable or None
+        Returns the text to group a test by; `None`: why a test was not judged or not run.
+    """
+    groups: dict[str, list[Outcome]] = defaultdict(list)
+    texts: dict[str, str] = {}
+    for outcome in outcomes:
+        text = (text_of or _reason_of)(outcome)
+        key = _without_names(text)
+        texts.setdefault(key, text)
+        groups[key].append(outcome)
+    found = [Reason(text=texts[key], outcomes=tuple(own)) for key, own in groups.items()]
+    return sorted(found, key=lambda reason: -len(reason.outcomes))
+
+
+def _reason_of(outcome: Outcome) -> str:
+    """Return why a test was not judged or not run; empty if it was judged."""
+    return outcome.verdict.reason if isinstance(outcome.verdict, NotJudged | NotRun) else ""
+
+
+def _without_names(text: str) -> str:
+    """Return a text without the parts that differ between types: names with ``/``, and numbers."""
+    return re.sub(r"\d[\d,.]*", "0", re.sub(r"[^\s'\"]*/[^\s'\",;:]*", "...", text))

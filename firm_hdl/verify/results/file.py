@@ -10,21 +10,34 @@ the same tests can continue a file. Otherwise, the figures of the file would mea
 from __future__ import annotations
 
 import fcntl
+import hashlib
 import json
 import math
 import os
-from collections.abc import Collection, Iterator, Mapping, Sequence
+import platform
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from datetime import datetime, timezone
+from importlib.metadata import PackageNotFoundError, version
 from io import FileIO
 from pathlib import Path
 from typing import Any
 
+import firm_hdl
 from firm_hdl.files import read_file
 from firm_hdl.verify.results.records import Record, Test, from_json, to_json
-from firm_hdl.verify.results.texts import clipped
 
-__all__ = ["FORMAT", "Results", "ResultsError", "ResultsWriter", "read_results"]
+__all__ = [
+    "FORMAT",
+    "Results",
+    "ResultsError",
+    "ResultsWriter",
+    "code_digest",
+    "environment",
+    "inputs_digest",
+    "read_results",
+]
 
 FORMAT = "firm-hdl results 2"
 
@@ -33,7 +46,6 @@ FORMAT = "firm-hdl results 2"
 _MOST_BYTES = 1 << 28
 # The first line has all tests. Each line is read as a whole, and takes up to thirty times its size.
 _MOST_LINE_BYTES = 1 << 25
-_MOST_DIGITS = 1000
 
 
 class ResultsError(ValueError):
@@ -99,15 +111,15 @@ def _read(path: Path) -> tuple[Results, int]:
         try:
             given = _value(line)
             if "session" in given:
-                sessions.append(_session(given["session"]))
+                sessions.append(_texts(given["session"]))
                 failure = None
             elif "failure" in given:
-                failure = _failure(given["failure"])
+                failure = _texts(given)["failure"]
             else:
                 record = from_json(Record, given["record"])
                 records[record.test.key] = record
-        except _DAMAGE as error:
-            raise _damaged(path, number, error) from None
+        except _DAMAGE:
+            raise ResultsError(f"'{path}', line {number}: it is damaged") from None
     found = Results(
         options=options,
         planned=planned,
@@ -121,55 +133,36 @@ def _read(path: Path) -> tuple[Results, int]:
 _DAMAGE = (ValueError, KeyError, TypeError, AttributeError, RecursionError)
 
 
-def _damaged(path: Path, number: int, error: Exception) -> ResultsError:
-    # Only our own messages about wrong values are shown. Python's start in lower case.
-    is_ours = isinstance(error, ValueError | TypeError) and " must " in str(error)
-    reason = str(error) if is_ours and str(error)[0].isupper() else "it is damaged"
-    return ResultsError(f"'{path}', line {number}: {reason}")
-
-
 def _header(path: Path, line: bytes) -> tuple[Mapping[str, Any], tuple[Test, ...]]:
     is_ours = line.startswith(f'{{"format": "{FORMAT}"'.encode())
     try:
         given = _value(line)
         is_ours = given["format"] == FORMAT
         if not is_ours or not isinstance(given["options"], dict):
-            raise ValueError("The options must be an object")
+            raise ValueError("no options")
         return given["options"], tuple(from_json(Test, test) for test in given["planned"])
-    except _DAMAGE as error:
+    except _DAMAGE:
         if not is_ours:
             raise ResultsError(f"'{path}' has no results of firm-hdl verify") from None
-        raise _damaged(path, 1, error) from None
+        raise ResultsError(f"'{path}', line 1: it is damaged") from None
 
 
 def _value(line: bytes) -> Any:
     """Read a line. Refuse numbers that Python reads, but that reports cannot write."""
 
-    def integer(text: str) -> int:
-        if len(text) > _MOST_DIGITS:
-            raise ValueError(f"A number must have at most {_MOST_DIGITS} digits, not {len(text)}")
-        return int(text)
-
-    def number(text: str) -> float:
-        value = float(text)
-        if not math.isfinite(value):
-            raise ValueError(f"A number must be finite, not {clipped(text, 20)}")
+    def finite(text: str) -> float:
+        if not math.isfinite(value := float(text)):
+            raise ValueError(text)
         return value
 
     if len(line) > _MOST_LINE_BYTES:
-        raise ValueError(f"A line must have at most {_MOST_LINE_BYTES} bytes, not {len(line)}")
-    return json.loads(line, parse_int=integer, parse_float=number, parse_constant=number)
+        raise ValueError("too long")
+    return json.loads(line, parse_float=finite, parse_constant=finite)
 
 
-def _session(given: object) -> Mapping[str, str]:
+def _texts(given: object) -> Mapping[str, str]:
     if not isinstance(given, dict) or not all(isinstance(each, str) for each in given.values()):
-        raise ValueError("A session must be an object of texts")
-    return given
-
-
-def _failure(given: object) -> str:
-    if not isinstance(given, str):
-        raise ValueError("A failure must be a text")
+        raise ValueError("not an object of texts")
     return given
 
 
@@ -291,3 +284,97 @@ def _differences(
 
 def _option_text(options: Mapping[str, Any], name: str) -> str:
     return json.dumps(options[name]) if name in options else "not given"
+
+
+PACKAGES = (
+    "amaranth",
+    "rosbags",
+    "cyclonedds",
+    "mcap-ros1-support",
+    "mcap-ros2-support",
+    "numpy",
+    "lark",
+    "distributed",
+)
+
+_INPUTS = (".msg", ".srv", ".action", ".idl", ".xml", ".yaml")
+"""Suffixes of the files that definitions, packages and golden plans are read from."""
+
+_MOST_INPUT_BYTES = 1 << 22
+"""No definition is larger (`firm_hdl.frontend.sources`). Of a larger file, only the size counts."""
+
+
+def environment(**more: str) -> dict[str, str]:
+    """Return names and versions, none of which identifies a user or a machine.
+
+    Parameters
+    ----------
+    **more
+        Further entries.
+    """
+    found = {
+        "started": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        "firm-hdl": firm_hdl.__version__,
+        "Python": platform.python_version(),
+        "system": f"{platform.system()} {platform.machine()}",
+        "processors": str(os.cpu_count()),
+    }
+    for name in PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return {**found, **more}
+
+
+def code_digest() -> str:
+    """Return a digest of the package's own files. Results of other code cannot be continued."""
+    root = Path(firm_hdl.__file__).parent
+    digest = hashlib.sha256()
+    for path in sorted(root.rglob("*")):
+        if path.suffix in (".py", ".lark", ".cpp", ".h", ".j2", ".vhd"):
+            digest.update(f"{path.relative_to(root).as_posix()}\0".encode())
+            digest.update(path.read_bytes() + b"\0")
+    return digest.hexdigest()[:12]
+
+
+def inputs_digest(paths: Iterable[str]) -> str:
+    """Return a digest of the files that a run reads. Results of other inputs cannot be continued.
+
+    In folders, the names and texts of definitions, ``package.xml`` and golden plans count. Of any
+    other file, such as a recording, the size and the time of the last change count.
+    """
+    digest = hashlib.sha256()
+    for path in paths:
+        for name in _files(path):
+            digest.update(f"{os.path.relpath(name, path)}\0".encode(errors="surrogateescape"))
+            digest.update(_content(name) + b"\0")
+    return digest.hexdigest()[:12]
+
+
+def _files(path: str) -> Iterator[str]:
+    """Yield a file itself, or the relevant files of a folder in order; links are followed."""
+    if not os.path.isdir(path):
+        yield path
+    seen: set[str] = set()
+    for folder, folders, names in os.walk(path, followlinks=True):
+        real = os.path.realpath(folder)
+        if real in seen:
+            folders.clear()
+            continue
+        seen.add(real)
+        folders.sort()
+        is_bag = "metadata.yaml" in names
+        yield from (
+            os.path.join(folder, name) for name in sorted(names) if is_bag or name.endswith(_INPUTS)
+        )
+
+
+def _content(path: str) -> bytes:
+    try:
+        if path.endswith(_INPUTS):
+            return read_file(path, _MOST_INPUT_BYTES)
+        status = os.stat(path)
+    except OSError as error:
+        return str(error.strerror).encode()
+    return f"{status.st_size} {status.st_mtime_ns}".encode()

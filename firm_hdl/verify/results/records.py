@@ -7,12 +7,16 @@ result of a test. :mod:`firm_hdl.verify.results.file` writes both as JSON and re
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from dataclasses import MISSING, dataclass, field, fields
 from types import NoneType, UnionType
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
-from firm_hdl.verify.results.texts import clipped
-from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
+from firm_hdl.verify.results.verdict import (
+    Failed,
+    NotJudged,
+    Verdict,
+    clipped,
+)
 
 __all__ = [
     "STAGES",
@@ -107,7 +111,6 @@ class Seconds:
     generation : float
         From the definition to the object under test: the model, the plan, or a circuit that is
         ready to run, with its cases.
-    simulation : float
     testing : float
         Asking oracles and comparing. TS3 compares the output with the oracle and the golden model,
         TS2 the plan with its layout, and TS1 the model with the readings of oracles.
@@ -129,7 +132,6 @@ class PlanCoverage:
 
     Attributes
     ----------
-    taken, possible : int
     missing : tuple of str
         Names of the decisions that were not taken.
     """
@@ -145,7 +147,6 @@ class OracleVerdict:
 
     Attributes
     ----------
-    oracle : str
     verdict : Verdict
         Its cases are the facts that were compared.
     is_refused : bool
@@ -170,10 +171,8 @@ class Record:
         A remark about the oracle.
     seconds : Seconds
         Wall-clock time.
-    cpu_seconds : float
     cases, packets, cycles, beats : int
         Cases of the type; packets and cycles of all runs; beats of one run of all cases.
-    coverage : PlanCoverage or None
     metrics : dict of str to float
         Figures of the type and of its plan.
     shape : str
@@ -219,7 +218,7 @@ class Record:
         self.note = "; ".join(filter(None, [self.note, what]))
 
     def __post_init__(self) -> None:
-        if not isinstance(self.verdict, Passed | Failed | NotJudged | KnownDifference):
+        if not isinstance(self.verdict, Verdict):
             raise ValueError(f"What became of a test must be a verdict, not {self.verdict!r}")
 
 
@@ -278,13 +277,12 @@ def to_json(value: Any) -> Any:
         case Mapping():
             found = {name: to_json(each) for name, each in value.items()}
             return {name: each for name, each in found.items() if each}
-        case Passed() | Failed() | NotJudged() | KnownDifference():
-            found = {each.name: to_json(getattr(value, each.name)) for each in fields(value)}
-            return {"verdict": value.name, **found}
-        case Test() | Seconds() | PlanCoverage() | OracleVerdict() | Record():
+        case _ if type(value) in _HINTS:
             found = {each.name: to_json(getattr(value, each.name)) for each in fields(value)}
             required = _REQUIRED[type(value)]
             found = {name: each for name, each in found.items() if each or name in required}
+            if isinstance(value, Verdict):
+                return {"verdict": value.name, **found}
             # The object of an `OracleVerdict` has the names of its verdict beside its own.
             verdict = found.pop("verdict") if isinstance(value, OracleVerdict) else {}
             return found | verdict
@@ -292,86 +290,52 @@ def to_json(value: Any) -> Any:
             return value
 
 
-def from_json(kind: type[T], given: object) -> T:
+def from_json(kind: type[T], given: Any) -> T:
     """Return a record, or a part of one, from an object that `to_json` wrote.
 
     Raises
     ------
-    ValueError
+    ValueError, TypeError
         If the object has unknown names, or lacks one, or has a value of another type, or a number
         that nothing that is counted or measured can have.
     """
-    values = _object(given, _CALLED.get(kind, kind.__name__))
+    hints = _HINTS[kind]
     if kind is OracleVerdict:
-        own: dict[str, Any] = {n: values.pop(n) for n in ("oracle", "is_refused") if n in values}
-        values = {**own, "verdict": values}
-    found = {}
-    for name, hint in _HINTS[kind].items():
-        is_part = hint == _VERDICT or is_dataclass(hint)
-        if name in values or (is_part and name in _REQUIRED[kind]):
-            try:
-                found[name] = _read(hint, values.get(name))
-            except TypeError:
-                raise ValueError(f"{kind.__name__}: {name} must be of another type") from None
-    if unknown := sorted(values.keys() - found.keys()):
-        raise ValueError(f"{kind.__name__} has no {', '.join(unknown)}")
-    try:
-        return kind(**found)
-    except TypeError as error:
-        raise ValueError(f"{kind.__name__}: {error}") from None
+        own = {name: given[name] for name in ("oracle", "is_refused") if name in given}
+        given = {**own, "verdict": {n: each for n, each in given.items() if n not in own}}
+    if not isinstance(given, dict) or not given.keys() <= hints.keys():
+        raise ValueError(f"{kind.__name__} has other attributes")
+    return kind(**{name: _read(hints[name], each) for name, each in given.items()})
 
 
 def _read(hint: Any, given: Any) -> Any:
-    """Return the value of an attribute; `TypeError` if it is of another type."""
+    """Return the value of an attribute. One that is `None` is not in the JSON."""
+    if hint == Verdict:
+        name = given["verdict"]
+        return from_json(_VERDICTS[name], {n: each for n, each in given.items() if n != "verdict"})
     kinds = [each for each in get_args(hint) if each not in (NoneType, Ellipsis)]
-    if hint == _VERDICT:
-        return _verdict(given)
-    if get_origin(hint) is tuple and isinstance(given, list | tuple):
+    if get_origin(hint) is tuple and type(given) is list:
         return tuple(_read(kinds[0], each) for each in given)
-    if get_origin(hint) is dict and isinstance(given, dict):
+    if get_origin(hint) is dict and type(given) is dict:
         return {name: _read(kinds[1], each) for name, each in given.items()}
-    # A value that is `None` is not in the JSON, so the other type of the union applies.
     hint = kinds[0] if get_origin(hint) is UnionType else hint
-    if is_dataclass(hint):
-        part: Any = from_json(hint, given)  # type: ignore[arg-type]
-        return part
+    if hint in _HINTS:
+        return from_json(hint, given)
     # Compare types exactly, because a bool of Python is an int as well.
-    if type(given) is hint or (hint is float and type(given) is int):
-        if isinstance(given, int | float) and not 0 <= given <= MOST_COUNTED:
-            most = f"{MOST_COUNTED:.0e}"
-            raise ValueError(f"A number must be from 0 to {most}, not {clipped(str(given), 20)}")
-        # As it would have been written: a logarithmic axis has no room for the smallest floats.
-        return to_json(given)
-    raise TypeError
+    if type(given) is not hint and (hint, type(given)) != (float, int):
+        raise TypeError(f"{given!r} is no {hint}")
+    if isinstance(given, int | float) and not 0 <= given <= MOST_COUNTED:
+        raise ValueError(f"{given!r} is out of range")
+    # As it would have been written: a logarithmic axis has no room for the smallest floats.
+    return to_json(given)
 
 
-def _verdict(given: object) -> Verdict:
-    if not isinstance(given, dict) or given.get("verdict") not in _VERDICTS:
-        shown = clipped(repr(given), 200)
-        raise ValueError(f"A verdict must be one of {', '.join(_VERDICTS)}, not {shown}")
-    values = {name: value for name, value in given.items() if name != "verdict"}
-    verdict: Verdict = from_json(_VERDICTS[given["verdict"]], values)
-    return verdict
-
-
-_VERDICTS: dict[str, Any] = {
-    kind.name: kind for kind in (Failed, NotJudged, KnownDifference, Passed)
-}
+_VERDICTS: dict[str, Any] = {each.name: each for each in get_args(Verdict)}
 _KINDS = (Test, Seconds, PlanCoverage, OracleVerdict, Record, *_VERDICTS.values())
-_HINTS: dict[Any, dict[str, Any]] = {kind: get_type_hints(kind) for kind in _KINDS}
+_HINTS: dict[Any, dict[str, Any]] = {
+    kind: {f.name: get_type_hints(kind)[f.name] for f in fields(kind)} for kind in _KINDS
+}
 _REQUIRED: dict[Any, set[str]] = {
     kind: {f.name for f in fields(kind) if f.default is MISSING and f.default_factory is MISSING}
     for kind in _KINDS
 }
-_VERDICT = _HINTS[Record]["verdict"]
-_CALLED: dict[type, str] = {Record: "A record", OracleVerdict: "What an oracle says"}
-
-_JSON = {dict: "an object", list: "a list", str: "a text", bool: "a truth value"}
-"""Names of the types of JSON values. All other values except null are numbers."""
-
-
-def _object(given: object, what: str) -> dict[str, Any]:
-    if not isinstance(given, dict):
-        kind = "nothing" if given is None else _JSON.get(type(given), "a number")
-        raise ValueError(f"{what} must be an object, not {kind}")
-    return dict(given)

@@ -1,4 +1,4 @@
-"""The four possible verdicts of a test system.
+"""The four possible verdicts of a test system, and texts of them.
 
 Only `Passed` is a pass. Each verdict needs its evidence, and cannot be made without it. A pass
 counts what was judged. A failure has a text. A missing judgement has a reason. A known difference
@@ -7,10 +7,19 @@ has a key, and counts what was compared without the known difference.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, TypeAlias
 
-__all__ = ["Failed", "KnownDifference", "NotJudged", "Passed", "Verdict"]
+__all__ = [
+    "Failed",
+    "KnownDifference",
+    "NotJudged",
+    "Passed",
+    "Verdict",
+    "clipped",
+    "first_difference",
+]
 
 SILENT = "failed without saying why"
 """The text of a failure whose own text is blank."""
@@ -76,10 +85,6 @@ class Failed:
 class NotJudged:
     """No oracle could judge the test.
 
-    Attributes
-    ----------
-    reason : str
-
     Raises
     ------
     ValueError
@@ -133,9 +138,20 @@ class KnownDifference:
         return self.keys
 
 
-Verdict: TypeAlias = "Passed | Failed | NotJudged | KnownDifference"
+Verdict: TypeAlias = Passed | Failed | NotJudged | KnownDifference
 
 
 def _check_cases(cases: int) -> None:
     if type(cases) is not int or cases < 1:
         raise ValueError(f"A verdict must rest on at least 1 case, not {cases!r}")
+
+
+def clipped(text: str, most: int) -> str:
+    """Return at most `most` characters of a text, and its length if it is longer."""
+    return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
+
+
+def first_difference(received: Sequence[object], expected: Sequence[object]) -> int:
+    """Return the index of the first item that differs; their common length if none does."""
+    pairs = enumerate(zip(received, expected, strict=False))
+    return next((n for n, (a, b) in pairs if a != b), min(len(received), len(expected)))

@@ -2,11 +2,15 @@
 
 A bench is a template beside this file, and knows nothing of the devices but their ports.
 :mod:`firm_hdl.verify.simulators.trace` describes the rows that it reads and writes. To add a
-simulator, write a class with the members of `TextSimulator`, and name it in `SIMULATORS`.
+simulator, write a class with the members of `TextSimulator`, and name it in `SIMULATORS`. A program
+around a model of Verilator also needs Verilator's runtime, as objects.
 """
 
 from __future__ import annotations
 
+import functools
+import re
+import tempfile
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
@@ -16,22 +20,96 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from firm_hdl.export.top import Top
 from firm_hdl.export.verilog import module_name
-from firm_hdl.jobs.processes import made_by, run_tool
+from firm_hdl.jobs.processes import ToolError, made_by, run_tool
 from firm_hdl.jobs.programs import (
     ProgramMissingError,
     find_compiler,
     find_ghdl,
     find_program,
+    find_verilator,
     version_of,
     which,
 )
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.verify.simulators.trace import ARESETN, Trace
-from firm_hdl.verify.simulators.verilated import find_verilator, runtime_of, runtime_parts
 from firm_hdl.verilog import convert as convert_to_verilog
 from firm_hdl.vhdl.convert import convert as convert_to_vhdl
 
-__all__ = ["SIMULATORS", "Ghdl", "Icarus", "TextSimulator", "Verilator", "simulator"]
+__all__ = [
+    "SIMULATORS",
+    "Ghdl",
+    "Icarus",
+    "TextSimulator",
+    "Verilator",
+    "runtime_of",
+    "runtime_parts",
+    "simulator",
+]
+
+
+class Runtime:
+    """Verilator's runtime and sources of our own, as objects that programs are linked with.
+
+    Parameters
+    ----------
+    options : sequence of str
+        Options of the compiler.
+    own : sequence of Path
+        Our sources. Their folders are searched for headers.
+    parts : sequence of str
+        Sources of Verilator, from :func:`runtime_parts`.
+
+    Attributes
+    ----------
+    includes : list of str
+        Compiler options with the folders of the headers.
+    """
+
+    def __init__(
+        self,
+        verilator: Sequence[str],
+        compiler: Sequence[str],
+        options: Sequence[str],
+        own: Sequence[Path],
+        parts: Sequence[str],
+    ):
+        # Removed with this object, at the end of the process.
+        self._folder = tempfile.TemporaryDirectory(prefix="firm-hdl-")
+        folder = Path(self._folder.name)
+        root = run_tool([*verilator, "--getenv", "VERILATOR_ROOT"], folder).strip()
+        if not root:
+            raise ToolError("Verilator did not say where its runtime is")
+        library = Path(root, "include")
+        folders = dict.fromkeys([library, *(source.parent for source in own)])
+        self.includes = [f"-I{each}" for each in folders]
+        self.objects = []
+        for source in [*own, *(library / f"{part}.cpp" for part in parts)]:
+            self.objects.append(str(folder / f"{source.stem}.o"))
+            command = [*compiler, *options, *self.includes, "-c", str(source)]
+            run_tool([*command, "-o", self.objects[-1]], folder)
+
+
+@functools.cache
+def runtime_of(
+    verilator: tuple[str, ...],
+    compiler: tuple[str, ...],
+    options: tuple[str, ...],
+    own: tuple[Path, ...],
+    parts: tuple[str, ...],
+) -> Runtime:
+    """Return a runtime, compiled once in a process."""
+    return Runtime(verilator, compiler, options, own, parts)
+
+
+def runtime_parts(makefile: Path) -> tuple[str, ...]:
+    """Return the sources that Verilator's makefile names for its runtime; versions differ."""
+    text = makefile.read_text(encoding="utf-8")
+    found = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", text, re.MULTILINE)
+    parts = found[1].replace("\\", " ").split() if found else []
+    if not parts:
+        raise ToolError("Verilator did not say which parts of its runtime are to be compiled")
+    return tuple(parts)
+
 
 _HERE = Path(__file__).parent
 _STIMULI, _RESULTS = "stimuli.txt", "results.txt"
@@ -152,16 +230,16 @@ class Verilator:
     title = "Verilator"
 
     def __init__(self) -> None:
-        self.path = find_verilator()
+        self.command = find_verilator("--simulator verilator")
         self.compiler = find_compiler("Verilator")
 
     @property
     def version(self) -> str:
-        return version_of(self.path)
+        return version_of(self.command[-1])
 
     def replay(self, trace: Trace, tops: Sequence[Top], folder: Path) -> list[str]:
         files = _write_verilog("replay_verilator.v", trace, tops, folder)
-        run_tool([self.path, *_VERILATE, *files], folder)
+        run_tool([*self.command, *_VERILATE, *files], folder)
         models = folder / "model"
         makefile = made_by(self.title, models / "Vreplay_classes.mk")
         # Compile all sources as one file, because the compiler mostly reads Verilator's headers.
@@ -169,7 +247,7 @@ class Verilator:
         text = _bench("replay_main.cc", trace, sources=sources)
         (models / "main.cc").write_text(text, encoding="utf-8")
         own, parts = (_HERE / "replay.cpp",), runtime_parts(makefile)
-        runtime = runtime_of(self.path, self.compiler, _COMPILE, own, parts)
+        runtime = runtime_of(self.command, self.compiler, _COMPILE, own, parts)
         command = [*self.compiler, *_COMPILE, *runtime.includes, "model/main.cc"]
         run_tool([*command, *runtime.objects, "-pthread", "-o", "replay"], folder)
         run_tool([str(made_by(self.compiler[0], folder / "replay"))], folder)

@@ -40,10 +40,8 @@ class Device:
 
     Attributes
     ----------
-    direction : "deserializer" or "serializer"
     name : str
         Name of its outermost entity, as ``firm-hdl build`` names it.
-    plan : Plan
     """
 
     direction: Direction
@@ -64,8 +62,6 @@ class Pin:
 
     Attributes
     ----------
-    device : int
-    port : Port
     number : int
         The number of the port in rows. Inputs and outputs are numbered separately, over all
         devices.
@@ -88,7 +84,6 @@ class Trace:
 
     Attributes
     ----------
-    devices : list of Device
     inputs, outputs : list of Pin
         All ports except `aclk` and `aresetn`.
     stimuli, expected : list of str

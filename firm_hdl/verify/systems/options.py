@@ -1,15 +1,78 @@
-"""Options of test systems, the whole request of a user, and the command that repeats a test."""
+"""The request of a user and the options of test systems: names, defaults, and commands.
+
+This module imports next to nothing. So a call with a wrong argument or an unusable type fails
+without waiting for slow imports. A test compares the names with the objects that they stand for.
+"""
 
 from __future__ import annotations
 
 import shlex
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 from firm_hdl.jobs.executors import PROCESSES
-from firm_hdl.verify.choices import LONGEST
 from firm_hdl.wire import Wire
 
-__all__ = ["Options", "Request", "command_again"]
+__all__ = [
+    "CLIENT_NAMES",
+    "LONGEST",
+    "MOST_MESSAGES",
+    "NO_REFERENCE",
+    "ORACLE_NAMES",
+    "SIMULATOR_NAMES",
+    "SYSTEM_NAMES",
+    "WRITER_NAMES",
+    "Options",
+    "Request",
+    "command_again",
+    "option_of",
+]
+
+SYSTEM_NAMES = ("ts1", "ts2", "ts3", "bench", "board")
+"""Test systems: :data:`firm_hdl.verify.run.SYSTEMS`."""
+
+ORACLE_NAMES = (
+    "genmsg",
+    "rosidl_adapter",
+    "rosidl_parser",
+    "rosidl_adapter-4.6",
+    "rosidl_parser-4.6",
+    "rosidl_adapter-4.9",
+    "rosidl_parser-4.9",
+    "rosbags",
+    "ros2",
+)
+"""Oracles of TS1: :data:`firm_hdl.verify.ts1.oracles.ORACLES`."""
+
+SIMULATOR_NAMES = ("ghdl", "iverilog", "verilator")
+"""Simulators of exported text: :data:`firm_hdl.verify.simulators.programs.SIMULATORS`."""
+
+CLIENT_NAMES = (
+    "firm-hdl",
+    "rosbags",
+    "genpy",
+    "fastcdr",
+    "fastcdr-2.2",
+    "fastcdr-2.3",
+    "cyclonedds",
+    "mcap-ros1",
+    "mcap-ros2",
+)
+"""Client libraries: :data:`firm_hdl.verify.references.clients.CLIENTS`."""
+
+WRITER_NAMES = ("genpy", "fastcdr", "fastcdr-2.2", "fastcdr-2.3", "cyclonedds")
+"""Client libraries that can be references of TS3.
+
+They are the keys of :data:`firm_hdl.verify.references.clients.WRITERS`.
+"""
+
+NO_REFERENCE = "none"
+"""The value of ``--reference`` for which no library has to confirm rosbags' bytes."""
+
+MOST_MESSAGES = 100
+"""Default limit for the messages of each type that are replayed from recordings."""
+
+LONGEST = 1 << 18
+"""Default size in bytes of the longest recorded message to replay, which takes about a minute."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,13 +81,10 @@ class Options:
 
     Attributes
     ----------
-    bus_bytes : int
     wire : "ros1", "cdr" or None
         `None`: that of the distribution.
-    seed : int
     stalled, broken : bool
         Whether to run with stalls, and with broken packets, as well.
-    most_cases : int or None
     simulator : str
         ``python``, or the simulator of exported text in which every run is replayed: a key of
         :data:`firm_hdl.verify.simulators.programs.SIMULATORS`.
@@ -152,9 +212,38 @@ class Request(Options):
         return not self.types and not self.bags
 
     @property
+    def kept(self) -> dict[str, object]:
+        """The options that results depend on, as JSON values. Types are in the tests."""
+        free = {"types", "jobs", "executor", "results", "report", "vcd", "silent_seconds"}
+        names = [each.name for each in fields(self) if each.name not in free | {"simulated"}]
+        found = {option_of(name): getattr(self, name) for name in names if option_of(name)}
+        found["share_circuits"] = self.shares_circuits
+        return {n: list(v) if isinstance(v, tuple) else v for n, v in found.items()}
+
+    @property
     def each_width(self) -> list[Options]:
         """The options for each of the buses."""
         return [replace(self, bus_bytes=width) for width in self.widths]
+
+
+_CALLED = {
+    "distros": "distro",
+    "paths": "path",
+    "bags": "bag",
+    "libraries": "sut",
+    "widths": "bus_bytes",
+    "oracles": "oracle",
+    "references": "reference",
+    "most_cases": "cases",
+    "stalled": "stalls",
+    "longest": "max_message_bytes",
+}
+
+
+def option_of(name: str) -> str:
+    """Return the option of an attribute of `Request`, with underscores for dashes."""
+    # `bus_bytes` is one of `widths`, which `each_width` sets.
+    return "" if name == "bus_bytes" else _CALLED.get(name, name)
 
 
 def command_again(*names: str, **options: object) -> str:

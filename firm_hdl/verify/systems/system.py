@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -24,7 +24,14 @@ from firm_hdl.model import WIRE_OF
 from firm_hdl.terminal import stage
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import STAGES, Record, Seconds, Test, clipped_verdict, settled
-from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
+from firm_hdl.verify.results.verdict import (
+    Failed,
+    KnownDifference,
+    NotJudged,
+    Passed,
+    Verdict,
+    clipped,
+)
 from firm_hdl.verify.systems.options import Request, command_again
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 
@@ -39,12 +46,17 @@ __all__ = [
     "failure_of",
     "judged",
     "kept",
+    "print_passes",
     "recorded",
     "run_shares",
     "run_tests",
     "shares_of",
     "wire_of",
 ]
+
+MOST_SHOWN = 8
+MOST_CHARACTERS = 1000
+"""So many failures of a test are printed, each of at most so many characters."""
 
 K = TypeVar("K")
 R = TypeVar("R")
@@ -60,7 +72,6 @@ class Judged:
     ----------
     what : str
         The name of the test for people: the type, its distributions, and how it was tested.
-    verdict : Verdict
     has_name : bool
         False for a mutation: the user named the definition that it was made of.
     """
@@ -137,9 +148,9 @@ class System(ABC):
         """All tests, in the order in which they start."""
 
     @property
-    @abstractmethod
     def options(self) -> Mapping[str, Any]:
-        """Options that results depend on, as JSON values; a name means the same in all systems."""
+        """What results depend on besides the request, such as versions, as JSON values."""
+        return {}
 
     @abstractmethod
     def run(self, recorder: Recorder) -> list[Judged]:
@@ -147,13 +158,7 @@ class System(ABC):
 
 
 class TypesSystem(System):
-    """A test system whose tests are types, each on each bus.
-
-    Parameters
-    ----------
-    tasks : sequence of TypeUnderTest
-    request : Request
-    """
+    """A test system whose tests are types, each on each bus."""
 
     def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
         self._tasks, self._request = tasks, request
@@ -226,7 +231,6 @@ class Trial:
         Keys of the known differences that were found.
     obstacle : NotJudged or None
         Why the test cannot be judged.
-    watch : Stopwatch
     """
 
     record: Record
@@ -279,9 +283,37 @@ def recorded(test: Test, run: Callable[[Trial], None]) -> Record:
 
 
 def failure_of(what: str, record: Record) -> Iterator[str]:
-    """Yield the text to print if a test failed: what it tests, and its failures."""
-    if record.failures:
-        yield "\n".join([f"FAIL {what}", *(f"    {line}" for line in record.failures)])
+    """Yield the text to print if a test failed: what it tests, its failures, and its command."""
+    if not record.failures:
+        return
+    shown = [clipped(text, MOST_CHARACTERS) for text in record.failures[:MOST_SHOWN]]
+    if (left := len(record.failures) - MOST_SHOWN) > 0:
+        shown.append(f"and {left} more")
+    if record.command:
+        shown.append(f"again: {record.command}")
+    lines = [line for text in shown for line in text.splitlines()]
+    yield "\n".join([f"FAIL {what}", *(f"    {line}" for line in lines)])
+
+
+def print_passes(records: Iterable[Record], what: str) -> None:
+    """Print how many tests of each distribution and bus pass, and how many are not judged."""
+    records = list(records)
+    verdicts = [each.verdict for each in judged(records)]
+    passed: Counter[tuple[int, str]] = Counter()
+    total: Counter[tuple[int, str]] = Counter()
+    for record, verdict in zip(records, verdicts, strict=True):
+        keys = [(record.test.bus_bytes, distro) for distro in record.test.distros]
+        total.update([] if isinstance(verdict, NotJudged) else keys)
+        passed.update(keys if isinstance(verdict, Passed | KnownDifference) else [])
+    for key in sorted(total, key=lambda key: (key[0], [*DISTROS].index(key[1]))):
+        bus = f" ({key[0]}-byte bus)" if key[0] else ""
+        print(f"{key[1]:8} {passed[key]:4} of {total[key]:4} {what}{bus}")
+    known = [verdict for verdict in verdicts if isinstance(verdict, KnownDifference)]
+    if known:
+        names = ", ".join(sorted({key for verdict in known for key in verdict.keys}))
+        print(f"{len(known)} of them with a known difference between libraries: {names}")
+    if not_judged := sum(isinstance(verdict, NotJudged) for verdict in verdicts):
+        print(f"{not_judged} of {len(records)} {what.split()[0]} not judged")
 
 
 def kept(

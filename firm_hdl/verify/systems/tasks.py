@@ -30,7 +30,6 @@ class TypeUnderTest:
 
     Attributes
     ----------
-    distro, name : str
     same : tuple of str
         All distributions with an equal type, `distro` included.
     """
@@ -122,7 +121,6 @@ def collect_own(
     names : sequence of str
         Types, services or actions; empty: all that are in `paths`. Types that are named must
         not be too large to be laid out (:func:`firm_hdl.wire.too_large`).
-    paths : sequence of str
     depends : sequence of str
         Folders with packages that others depend on.
     problems : dict or None

@@ -86,7 +86,6 @@ def facts_of(
 
     Parameters
     ----------
-    interface : Message, Service or Action
     wanted : iterable of str
         Names of the facts. The text of an error that occurs stands for its fact.
     alike : mapping of str to str

@@ -204,12 +204,6 @@ def _compare_facts(
     universe: Universe, oracle: Oracle, case: DefinitionCase, ours: Interface, theirs: Facts
 ) -> Verdict:
     keys: dict[str, None] = {}
-    for rule in KNOWN:
-        if rule.mend is not None and rule.is_about(oracle.name, case):
-            mended = rule.mended(theirs)
-            if repr(mended) != repr(theirs):
-                keys[rule.key] = None
-            theirs = mended
     read = facts_of(ours, theirs, oracle.alike(case), lambda: universe.show(case))
     found = list(differences(read, theirs))
     left = []

@@ -18,7 +18,7 @@ from typing import Any
 from firm_hdl.errors import Diagnostic
 from firm_hdl.frontend.sources import Language
 from firm_hdl.model import Dialect
-from firm_hdl.verify.ts1.facts import Difference, Facts
+from firm_hdl.verify.ts1.facts import Difference
 from firm_hdl.verify.ts1.universe import DefinitionCase
 
 __all__ = ["KNOWN", "Known"]
@@ -36,21 +36,17 @@ class Known:
         Names of the oracles that differ from us, separated by blanks.
     why : str
         What differs, in one sentence.
-    dialect : "ros1", "ros2" or None
     language : Language or None
         Those of the definitions; `None`: any.
     where : str
         A pattern that the code of the definition, or of one that it needs, contains. Comments are
-        no code, and neither are string literals of IDL. It does not limit `ours` and `mend`.
+        no code, and neither are string literals of IDL. It does not limit `ours`.
     ours : tuple of str
         Patterns for a mistake that we refuse and the oracle accepts: the first finds something in
         our message, the second matches all words that the message is about.
     theirs : str
         A pattern that finds something in the message of the oracle, if it refuses a text that is
         none of the mistakes of ROS.
-    mend : callable or None
-        Takes the type of a constant or of a field, and its value or default as the oracle has read
-        it. Returns the right one.
     facts : str
         A pattern that finds something in the path of a fact that may differ; empty: none may.
     like : callable or None
@@ -65,7 +61,6 @@ class Known:
     where: str = ""
     ours: tuple[str, str] | None = None
     theirs: str = ""
-    mend: Callable[[str, Any], Any] | None = None
     facts: str = ""
     like: Callable[[Any, Any], bool] | None = None
 
@@ -113,25 +108,6 @@ class Known:
         is_one = re.search(message, problem.message) and re.fullmatch(words, text, re.DOTALL)
         return bool(is_one) and _is_true(problem.message, text, span.source.text)
 
-    def mended(self, facts: Facts) -> Facts:
-        """Return facts with all values and defaults mended."""
-        mend = self.mend
-        if mend is None or "structure" not in facts:
-            return facts
-
-        def member(each: dict[str, Any], part: str) -> dict[str, Any]:
-            return {**each, part: mend(each["type"], each[part])} if part in each else each
-
-        structure = {
-            name: {
-                **message,
-                "fields": [member(each, "default") for each in message.get("fields", ())],
-                "constants": [member(each, "value") for each in message.get("constants", ())],
-            }
-            for name, message in facts["structure"].items()
-        }
-        return {**facts, "structure": structure}
-
 
 _QUIET = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 
@@ -156,31 +132,6 @@ def _is_true(message: str, words: str, text: str) -> bool:
     return True
 
 
-# Mends of values.
-
-
-def _float(kind: str, value: Any) -> Any:
-    """Convert what is given for a floating-point number to one."""
-    if re.split(r"[\[<]", kind, maxsplit=1)[0] not in ("float32", "float64", "long double"):
-        return value
-    if isinstance(value, list):
-        return [_float(kind.partition("[")[0], each) for each in value]
-    try:
-        text = value.partition("#")[0] if isinstance(value, str) else value
-        return value if isinstance(value, bool | None) else float(text)
-    except ValueError:
-        return value
-
-
-def _whole_float(kind: str, value: Any) -> Any:
-    items = value if isinstance(value, list) else [value]
-    return _float(kind, value) if all(type(each) is int for each in items) else value
-
-
-def _bool(kind: str, value: Any) -> Any:
-    return bool(value) if kind == "bool" and type(value) is int else value
-
-
 # Our fact and the oracle's.
 
 
@@ -195,6 +146,26 @@ def _is_same_text(ours: Any, theirs: Any) -> bool:
         return str(float(text)) if re.fullmatch(r"[-+]?\d+(\.\d*)?", text) else text
 
     return isinstance(ours, list) or (isinstance(ours, str) and plain(ours) == plain(theirs))
+
+
+def _is_same_number(ours: Any, theirs: Any) -> bool:
+    """Whether what is given for a floating-point number, or for several, is ours."""
+    if isinstance(ours, list) and isinstance(theirs, list):
+        return len(ours) == len(theirs) and all(map(_is_same_number, ours, theirs))
+    text = theirs.partition("#")[0] if isinstance(theirs, str) else theirs
+    try:
+        return type(ours) is float and type(text) is not bool and repr(float(text)) == repr(ours)
+    except (TypeError, ValueError):
+        return False
+
+
+def _is_whole_number(ours: Any, theirs: Any) -> bool:
+    items = theirs if isinstance(theirs, list) else [theirs]
+    return all(type(each) is int for each in items) and _is_same_number(ours, theirs)
+
+
+def _is_truth_value(ours: Any, theirs: Any) -> bool:
+    return type(ours) is bool and type(theirs) is int and bool(theirs) is ours
 
 
 def _is_octal(ours: Any, theirs: Any) -> bool:
@@ -316,12 +287,13 @@ KNOWN: tuple[Known, ...] = (
     _rosbags(
         "rosbags-constant-bool",
         "rosbags keeps a bool constant that is written as a number as a number.",
-        mend=_bool,
+        facts=_VALUES,
+        like=_is_truth_value,
     ),
     _rosbags(
         "rosbags-integers",
         "rosbags reads 010 as 8, and does not know 1_000 and 0o17.",
-        where=rf"{_CONSTANT}\w+\s*=\s*[-+]?(0\d|0[oObB]|[\w]+_)|int\d+ \w+ +[-+]?(0\d|\d+_)",
+        where=rf"{_CONSTANT}\w+\s*=\s*[-+]?(0\d|0[oObB]|[\w.]+_)|int\d+ \w+ +[-+]?(0\d|\d+_)",
         theirs=r"Could not parse|ValueError",
         facts=_VALUES,
         like=_is_octal,
@@ -329,9 +301,8 @@ KNOWN: tuple[Known, ...] = (
     _rosbags(
         "rosbags-floats",
         "rosbags takes floating-point numbers for such only if they have digits and a point.",
-        where=r"^\s*float\d+\s+\w+\s*=\s*[-+\w.]*_",
-        theirs=r"Could not parse",
-        mend=_float,
+        facts=_VALUES,
+        like=_is_same_number,
     ),
     _rosbags(
         "rosbags-char-hash",
@@ -479,12 +450,14 @@ KNOWN: tuple[Known, ...] = (
     _idl(
         "idl-whole-numbers",
         "rosidl_parser keeps an integer that is given for a floating-point number an integer.",
-        mend=_whole_float,
+        facts=_VALUES,
+        like=_is_whole_number,
     ),
     _idl(
         "idl-booleans",
         "rosidl_parser keeps a boolean constant that is written as a number a number.",
-        mend=_bool,
+        facts=_VALUES,
+        like=_is_truth_value,
     ),
     _rosidl(
         "idl-long-double-hash",

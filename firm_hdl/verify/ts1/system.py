@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 from firm_hdl.errors import DefinitionError
@@ -34,7 +33,7 @@ from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.oracles.oracle import Oracle
 from firm_hdl.verify.ts1.universe import DefinitionCase, Universe, write_definitions
 
-__all__ = ["Ts1", "Ts1Run", "each_distro"]
+__all__ = ["Ts1", "each_distro"]
 
 _MOST_IN_A_SHARE = 32
 _MOST_DETAILS = 8
@@ -96,15 +95,17 @@ class _Context:
     oracles: tuple[str, ...]
 
 
-class Ts1Run:
-    """The definitions of one distribution; a context manager, because they are in a folder.
+class Ts1(System):
+    """The test system of TS1: a test gives one definition, or one mutation, to all oracles.
+
+    Processes are always on this machine, because oracles read files.
 
     Parameters
     ----------
     request : Request
         A request for one distribution. `distros`, `paths`, `depends`, `types`, `mutations`, `seed`,
         `oracles` and `jobs` are used. Mutations are made from the definitions of the types. `seed`
-        is the number of the first mutation.
+        is the number of the first mutation. The oracles that are named all have to be installed.
 
     Attributes
     ----------
@@ -120,14 +121,19 @@ class Ts1Run:
     Raises
     ------
     DefinitionError
-        If a path is not a folder, or a type does not exist.
+        When the system is entered, if a path is not a folder, or a type does not exist.
     """
+
+    name = "ts1"
 
     def __init__(self, request: Request) -> None:
         self.request = request
         (self.distro,) = request.distros
         self.versions: dict[str, str] = {}
         self.missing: dict[str, str] = {}
+
+    def __enter__(self) -> Ts1:
+        request = self.request
         with ExitStack() as stack:
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="firm-hdl-ts1-"))
             universe = _universe(request, folder)
@@ -140,6 +146,7 @@ class Ts1Run:
                     self._find(ORACLES[name](universe))
             self._stack = stack.pop_all()
         self.context = _Context(request, folder, tuple(self.versions))
+        return self
 
     def _find(self, oracle: Oracle) -> None:
         try:
@@ -150,14 +157,46 @@ class Ts1Run:
         finally:
             oracle.close()
 
-    def __enter__(self) -> Ts1Run:
-        return self
-
     def __exit__(self, *error: object) -> None:
         # The sessions of other processes end with the processes.
         if session := _sessions.pop(self.context, None):
             session.close()
         self._stack.close()
+
+    @property
+    def tests(self) -> Sequence[Test]:
+        """The tests of all definitions, or of their mutations."""
+        return list(self.cases)
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """The oracles with their versions, and a digest of the definitions to mutate."""
+        oracles = [f"{name} {version}".strip() for name, version in self.versions.items()]
+        mutated = {f"mutated {self.distro}": self.digest} if self.request.mutations else {}
+        return {f"oracles of {self.distro}": sorted(oracles), **mutated}
+
+    def run(self, recorder: Recorder) -> list[Judged]:
+        """Judge everything. A named oracle that is not installed is a failure."""
+        began = time.perf_counter()
+        what = "mutation" if self.request.mutations else "definition"
+        tests = {test: test for test in self.cases}
+        records = kept(tests, recorder, self.judged, label=f"ts1 {self.distro}", unit=what).values()
+        print(*self.summary(records), sep="\n")
+        differing = sum(
+            max(1, sum(isinstance(each.verdict, Failed) for each in record.verdicts))
+            for record in records
+            if isinstance(record.verdict, Failed)
+        )
+        count = f"{len(records)} {what}{'s' * (len(records) != 1)}"
+        print(f"{count}, {time.perf_counter() - began:.0f} s, {differing} differences")
+        found = [
+            Judged(what=each.test.title, verdict=each.verdict, has_name=what == "definition")
+            for each in records
+        ]
+        for name, why in self.missing.items() if self.request.oracles else ():
+            verdict = Failed((f"is not available: {why}",))
+            found.append(Judged(what=f"oracle {name}", verdict=verdict))
+        return found
 
     def judged(self, tests: Sequence[Test]) -> Made[Test]:
         """Judge definitions; yield their tests, records and lines to print, in shares."""
@@ -288,73 +327,3 @@ def _judge(context: _Context, test: Test) -> Record:
         _sessions[context] = _Session(context)
     session = _sessions[context]
     return judge_case(session.universe, session.oracles, session.cases[test], test)
-
-
-class Ts1(System):
-    """The test system of TS1. A test gives one definition, or one mutation, to all oracles.
-
-    Parameters
-    ----------
-    requests : sequence of Request
-        One for each distribution, as for `Ts1Run`. Processes are always on this machine, because
-        oracles read files. The oracles that are named all have to be installed.
-
-    Raises
-    ------
-    DefinitionError
-        When the system is entered, as from `Ts1Run`.
-    """
-
-    name = "ts1"
-
-    def __init__(self, requests: Sequence[Request]):
-        self._requests = requests
-        self._stack = ExitStack()
-        self._runs: list[Ts1Run] = []
-
-    def __enter__(self) -> Ts1:
-        with ExitStack() as stack:
-            self._runs += [stack.enter_context(Ts1Run(each)) for each in self._requests]
-            self._stack = stack.pop_all()
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self._stack.close()
-
-    @cached_property
-    def tests(self) -> Sequence[Test]:
-        """The tests of all definitions of all distributions, or of their mutations."""
-        return [test for run in self._runs for test in run.cases]
-
-    @property
-    def options(self) -> Mapping[str, Any]:
-        """The oracles with their versions, and a digest of the definitions to mutate."""
-        oracles = {f"{name} {v}".strip() for run in self._runs for name, v in run.versions.items()}
-        mutated = {run.distro: run.digest for run in self._runs if run.request.mutations}
-        return {"oracles": sorted(oracles), **({"mutated": mutated} if mutated else {})}
-
-    def run(self, recorder: Recorder) -> list[Judged]:
-        """Judge everything. A named oracle that is not installed is a failure."""
-        found = []
-        for run in self._runs:
-            began = time.perf_counter()
-            what = "mutation" if run.request.mutations else "definition"
-            tests = {test: test for test in run.cases}
-            label = f"ts1 {run.distro}"
-            records = kept(tests, recorder, run.judged, label=label, unit=what).values()
-            print(*run.summary(records), sep="\n")
-            differing = sum(
-                max(1, sum(isinstance(each.verdict, Failed) for each in record.verdicts))
-                for record in records
-                if isinstance(record.verdict, Failed)
-            )
-            count = f"{len(records)} {what}{'s' * (len(records) != 1)}"
-            print(f"{count}, {time.perf_counter() - began:.0f} s, {differing} differences")
-            found += [
-                Judged(what=each.test.title, verdict=each.verdict, has_name=what == "definition")
-                for each in records
-            ]
-            for name, why in run.missing.items() if run.request.oracles else ():
-                verdict = Failed((f"is not available: {why}",))
-                found.append(Judged(what=f"oracle {name}", verdict=verdict))
-        return found

@@ -91,7 +91,6 @@ class Universe:
 
     Parameters
     ----------
-    distro : str
     paths, depends : sequence of str
         As for `open_library`. The folders that the environment names are searched, too.
     folder : str

@@ -6,7 +6,6 @@ golden plans are given, those of the types that were asked for must mean the sam
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
@@ -29,6 +28,7 @@ from firm_hdl.verify.systems.system import (
     failure_of,
     judged,
     kept,
+    print_passes,
     recorded,
     run_tests,
 )
@@ -97,7 +97,9 @@ class Ts2(TypesSystem):
         goldens = self._goldens
         tests = {test: test for test in self._plans}
         records = kept(tests, recorder, self._records, label="TS2", unit="plan")
-        _count(list(records.values()))
+        print_passes(records.values(), "plans are sound")
+        shapes = {each.shape for each in records.values() if isinstance(each.verdict, Passed)}
+        print(f"{len(shapes)} different circuits")
         found = judged(records.values())
         if self._request.golden is not None:
             found += self._compare(goldens, recorder)
@@ -174,23 +176,6 @@ def _checked(options: Options, test: Test) -> Record:
 def _lines_of(record: Record) -> Iterable[str]:
     test = record.test
     return failure_of(f"{test.type} ({test.distro}), {test.bus_bytes}-byte bus", record)
-
-
-def _count(records: Sequence[Record]) -> None:
-    good: Counter[tuple[str, int]] = Counter()
-    total: Counter[tuple[str, int]] = Counter()
-    for record in records:
-        keys = [(distro, record.test.bus_bytes) for distro in record.test.distros]
-        if not isinstance(record.verdict, NotJudged):
-            total.update(keys)
-        if isinstance(record.verdict, Passed):
-            good.update(keys)
-    for key in total:
-        print(f"{key[0]:8} {good[key]:4} of {total[key]:4} plans are sound ({key[1]}-byte bus)")
-    shapes = {each.shape for each in records if isinstance(each.verdict, Passed)}
-    if not_judged := sum(isinstance(each.verdict, NotJudged) for each in records):
-        print(f"{not_judged} of {len(records)} plans not judged")
-    print(f"{len(shapes)} different circuits")
 
 
 def _plain(name: str) -> str:

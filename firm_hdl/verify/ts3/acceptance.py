@@ -6,7 +6,7 @@ must be ``OK``. Cases run once without stalls and with all packets back to back,
 stream stalled. The golden model (:mod:`firm_hdl.plan.interpret`) must agree in both directions.
 Then broken packets are sent, each followed by a good one. Hardware and golden model must agree on
 the results. If a simulator of exported text is asked for, it replays all runs, cycle by cycle
-(:mod:`firm_hdl.verify.simulators.crosscheck`).
+(:mod:`firm_hdl.verify.ts3.circuit`).
 """
 
 from __future__ import annotations
@@ -168,9 +168,6 @@ class Acceptance:
 
     Parameters
     ----------
-    message : Message
-    wire : Wire
-    options : Options
     trial : Trial
         Receives failures and figures.
     max_message_bytes : int or None
@@ -178,7 +175,6 @@ class Acceptance:
 
     Attributes
     ----------
-    plan : Plan
     circuit : Circuit
         Only if the circuit is to be simulated.
 

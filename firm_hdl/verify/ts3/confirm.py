@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from firm_hdl.cases.make import Case
 from firm_hdl.cases.values import Plain, from_objects
 from firm_hdl.model import Message
-from firm_hdl.verify.clients.known import known_writing
+from firm_hdl.verify.clients.divergences import known_writing
 from firm_hdl.verify.references.client import (
     ClientDiedError,
     Refusal,

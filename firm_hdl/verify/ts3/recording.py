@@ -18,38 +18,18 @@ from typing import TypeAlias
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import open_library
 from firm_hdl.model import WIRE_OF
-from firm_hdl.recordings import Recording
-from firm_hdl.recordings import Topic as RecordedTopic
+from firm_hdl.recordings import Recording, Topic
 from firm_hdl.verify.systems.tasks import TypeUnderTest, UnknownTypeError
 from firm_hdl.wire import Wire, too_large
 
-__all__ = ["RecordedMessage", "Selection", "Topic", "collect_recorded", "select", "topics_of"]
+__all__ = ["Place", "RecordedMessage", "Selection", "collect_recorded", "select", "topics_of"]
 
-_Place: TypeAlias = "tuple[str, str, int]"
+_Message: TypeAlias = "tuple[str, str, int]"
 """Recording, topic, and number of the message in the topic."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Topic:
-    """A topic of a recording. A topic with several types or digests counts several times.
-
-    Attributes
-    ----------
-    bag : str
-    name : str
-    type : str
-        As it was recorded.
-    encoding : str
-        The wire format of the messages: ``ros1``, ``cdr`` or any other word.
-    digest : str
-        The recorded md5 sum or type hash; empty if there is none.
-    """
-
-    bag: str
-    name: str
-    type: str
-    encoding: str
-    digest: str
+Place: TypeAlias = "tuple[str, Topic]"
+"""A topic of a recording, with the recording."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,13 +38,10 @@ class RecordedMessage:
 
     Attributes
     ----------
-    bag : str
-    topic : str
     number : int
         The index of the message in its topic, from 0, in the order of times.
     nanoseconds : int
         The time of the recording.
-    data : bytes
     """
 
     bag: str
@@ -103,28 +80,25 @@ class Selection:
     sparse: bool
 
 
-def topics_of(bag: str) -> list[Topic]:
-    """List the topics of a recording.
+def topics_of(bag: str) -> list[Place]:
+    """List the topics of a recording. One with several types or digests counts several times.
 
     Raises
     ------
     DefinitionError
         If the recording cannot be read.
     """
-    return [
-        Topic(bag=bag, name=each.name, type=each.type, encoding=each.encoding, digest=each.digest)
-        for each in Recording(bag).topics
-    ]
+    return [(bag, topic) for topic in Recording(bag).topics]
 
 
 def select(
-    topics: Sequence[Topic], *, most: int, longest: int, most_bytes: int | None = None
+    topics: Sequence[Place], *, most: int, longest: int, most_bytes: int | None = None
 ) -> Selection:
     """Select messages that are spread evenly over each topic, and if possible over the topics.
 
     Parameters
     ----------
-    topics : sequence of Topic
+    topics : sequence of (str, Topic)
         Topics, all of the same type.
     most : int
         The maximum number of messages.
@@ -141,7 +115,7 @@ def select(
     sizes: dict[tuple[str, str], Sequence[int]] = {}
     # Where the messages of a topic are in the file, in the order of their times.
     orders: dict[tuple[str, str], Sequence[int]] = {}
-    for bag in dict.fromkeys(topic.bag for topic in topics):
+    for bag in dict.fromkeys(bag for bag, _ in topics):
         for name, times, each in _sizes(bag, topics):
             orders[bag, name] = order = _sorted(times)
             sizes[bag, name] = array("Q", [each[place] for place in order])
@@ -155,18 +129,14 @@ def select(
     )
 
 
-def _messages(bag: str, topics: Iterable[Topic]) -> Iterator[tuple[str, int, bytes]]:
+def _messages(bag: str, topics: Iterable[Place]) -> Iterator[tuple[str, int, bytes]]:
     """Yield topic, time and bytes of each message of some topics, in the order of the file."""
-    wanted = {
-        RecordedTopic(name=each.name, type=each.type, encoding=each.encoding, digest=each.digest)
-        for each in topics
-        if each.bag == bag
-    }
+    wanted = {topic for where, topic in topics if where == bag}
     for topic, nanoseconds, data in Recording(bag).messages(wanted):
         yield topic.name, nanoseconds, data
 
 
-def _sizes(bag: str, topics: Sequence[Topic]) -> Iterator[tuple[str, array[int], array[int]]]:
+def _sizes(bag: str, topics: Sequence[Place]) -> Iterator[tuple[str, array[int], array[int]]]:
     """Yield the name of each topic, and the times and sizes of its messages."""
     found: dict[str, tuple[array[int], array[int]]] = {}
     for topic, nanoseconds, data in _messages(bag, topics):
@@ -186,7 +156,7 @@ def _sorted(times: Sequence[int]) -> Sequence[int]:
 
 def _choose(
     sizes: Mapping[tuple[str, str], Sequence[int]], most: int, longest: int, most_bytes: int | None
-) -> tuple[list[_Place], bool]:
+) -> tuple[list[_Message], bool]:
     """Return the places of the selected messages, and whether `most_bytes` limited their number."""
     short = {
         topic: [number for number, size in enumerate(each) if size <= longest]
@@ -229,9 +199,9 @@ def _spread(numbers: Sequence[int], count: int) -> list[int]:
 
 
 def _fetch(
-    places: Iterable[_Place],
+    places: Iterable[_Message],
     orders: Mapping[tuple[str, str], Sequence[int]],
-    topics: Sequence[Topic],
+    topics: Sequence[Place],
 ) -> Iterator[RecordedMessage]:
     """Yield messages, recording by recording, in the order of their times."""
     wanted: dict[str, dict[tuple[str, int], int]] = {}
@@ -297,7 +267,7 @@ def collect_recorded(
             print(f"note: {sentence}")
     found: dict[str, None] = {}
     wrong: dict[str, Diagnostic] = {} if names else problems
-    for kind in dict.fromkeys(topic.type for bag in bags for topic in topics_of(bag)):
+    for kind in dict.fromkeys(topic.type for bag in bags for _, topic in topics_of(bag)):
         try:
             found[library.message(kind).name] = None
         except DefinitionError as error:

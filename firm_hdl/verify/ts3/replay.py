@@ -17,13 +17,7 @@ import numpy as np
 
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases.damage import stalls_for
-from firm_hdl.cases.effort import (
-    LARGE_STRIDE,
-    MAX_MESSAGE_BYTES,
-    MOST_WORK,
-    is_large,
-    work_of,
-)
+from firm_hdl.cases.effort import LARGE_STRIDE, MAX_MESSAGE_BYTES, MOST_WORK, is_large, work_of
 from firm_hdl.cases.figures import figures
 from firm_hdl.cases.make import Case
 from firm_hdl.cases.oracle import Transfers
@@ -34,13 +28,12 @@ from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.plan import Leaf, Payload, Plan, build_plan
 from firm_hdl.plan.interpret import Decoded, decode, encode
-from firm_hdl.verify.choices import MOST_MESSAGES
 from firm_hdl.verify.results.records import Record, Test
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import MOST_MESSAGES, Options
 from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.acceptance import Acceptance, measured
-from firm_hdl.verify.ts3.recording import RecordedMessage, Selection, Topic, select, topics_of
+from firm_hdl.verify.ts3.recording import Place, RecordedMessage, Selection, select, topics_of
 from firm_hdl.wire import lay_out
 
 __all__ = ["replay"]
@@ -107,39 +100,37 @@ def _room(longest: int) -> int:
 
 def _topics(
     message: Message, library: Library, bags: Sequence[str]
-) -> tuple[list[Topic], list[str]]:
+) -> tuple[list[Place], list[str]]:
     """Return the topics of a type, and lines about topics that are left out.
 
     A topic is left out if its messages are in another wire format, or if its digest differs from
     the first digest of the type's topics.
     """
-
-    def is_meant(topic: Topic) -> bool:
+    kept: list[Place] = []
+    foreign, others = [], []
+    digest = ""
+    for place in [each for bag in bags for each in topics_of(bag)]:
+        topic = place[1]
         try:
-            return library.message(topic.type).name == message.name
+            is_meant = library.message(topic.type).name == message.name
         except DefinitionError:
             # A definition that cannot be used belongs to another type.
-            return False
-
-    found = [topic for bag in bags for topic in topics_of(bag) if is_meant(topic)]
-    mine = [topic for topic in found if topic.encoding == message.wire]
-    foreign = [
-        f"{topic.name} left out: its messages are in '{topic.encoding}', not in {message.wire}"
-        for topic in found
-        if topic not in mine
-    ]
-    digest = next((topic.digest for topic in mine if topic.digest), "")
-    others = [topic for topic in mine if topic.digest not in ("", digest)]
-    return [topic for topic in mine if topic not in others], [
-        *foreign,
-        *(
-            f"{each.name} left out: its definition is another one ({each.digest})"
-            for each in others
-        ),
-    ]
+            is_meant = False
+        if not is_meant:
+            continue
+        out = f"{topic.name} left out: its"
+        if topic.encoding != message.wire:
+            foreign.append(f"{out} messages are in '{topic.encoding}', not in {message.wire}")
+            continue
+        digest = digest or topic.digest
+        if topic.digest in ("", digest):
+            kept.append(place)
+        else:
+            others.append(f"{out} definition is another one ({topic.digest})")
+    return kept, foreign + others
 
 
-def _select(message: Message, topics: Sequence[Topic], options: Options) -> Selection:
+def _select(message: Message, topics: Sequence[Place], options: Options) -> Selection:
     """Select messages; raise `NotJudgedError` if there are none."""
     most_bytes = None
     if options.most_cases is None:
@@ -171,7 +162,6 @@ class _Judged:
 
     Attributes
     ----------
-    case : Case
     kind : str
         How the packet differs from the one that rosbags writes; empty if it does not.
     finding : str

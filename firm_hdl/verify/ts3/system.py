@@ -8,11 +8,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.references.clients import find_references
-from firm_hdl.verify.results.records import Record, Test, settled
-from firm_hdl.verify.results.texts import clipped
-from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.results.records import Record, Test
+from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.simulators.programs import simulator
 from firm_hdl.verify.systems.options import Options, Request
 from firm_hdl.verify.systems.system import (
@@ -20,8 +18,10 @@ from firm_hdl.verify.systems.system import (
     Made,
     Recorder,
     System,
+    failure_of,
     judged,
     kept,
+    print_passes,
     run_tests,
     wire_of,
 )
@@ -32,17 +32,9 @@ from firm_hdl.verify.ts3.task import command_of, same_circuits, test_of
 
 __all__ = ["Ts3"]
 
-MOST_CHARACTERS = 600
-"""The most characters of a failure that are printed."""
-
 
 class Ts3(System):
     """The test system of TS3. A test is one type with one set of options.
-
-    Parameters
-    ----------
-    tasks : sequence of TypeUnderTest
-    request : Request
 
     Raises
     ------
@@ -74,19 +66,8 @@ class Ts3(System):
 
     @property
     def options(self) -> Mapping[str, Any]:
-        """The options that determine the cases, and how the cases are tested."""
-        request = self._request
-        return {
-            "simulator": f"{request.simulator} {self._version}".strip(),
-            "seed": request.seed,
-            "cases": request.most_cases,
-            "stalls": request.stalled,
-            "broken": request.broken,
-            "share_circuits": request.shares_circuits,
-            "bags": list(request.bags),
-            "longest": request.longest,
-            "references": None if request.references is None else list(request.references),
-        }
+        """The simulator and its version."""
+        return {"simulator": f"{self._request.simulator} {self._version}".strip()}
 
     def run(self, recorder: Recorder) -> list[Judged]:
         """Run all tasks with each of the options.
@@ -112,7 +93,7 @@ class Ts3(System):
 
         def lines_of(record: Record) -> Iterator[str]:
             notes[record.note] += 1
-            yield from _failure_of(record)
+            yield from failure_of(f"{record.test.type} ({', '.join(record.test.distros)})", record)
             # The note of a replay has the number of messages, so it is always printed.
             if record.note and (notes[record.note] == 1 or options.bags):
                 yield f"note: {record.test.type} ({record.test.distro}): {record.note}"
@@ -138,20 +119,13 @@ class Ts3(System):
         records = kept(each, recorder, run, label=label).values()
         if not options.bags:
             _repeat(notes)
-        _count(list(records), options)
+        print_passes(records, "types pass")
+        if shared := sum(bool(record.same_as) for record in records):
+            print(
+                f"{shared} of {len(records)} types have the circuit of another, which was simulated"
+            )
         _summarize([record for record in records if record.cycles], options)
         return judged(records)
-
-
-def _failure_of(record: Record) -> Iterator[str]:
-    """Yield the text to print about a type that failed."""
-    if not record.failures:
-        return
-    lines = [f"FAIL {record.test.type} ({', '.join(record.test.distros)})"]
-    lines += [f"    {clipped(failure, MOST_CHARACTERS)}" for failure in record.failures[:8]]
-    if len(record.failures) > 8:
-        lines.append(f"    and {len(record.failures) - 8} more")
-    yield "\n".join([*lines, f"    again: {record.command}"])
 
 
 def _repeat(notes: Mapping[str, int]) -> None:
@@ -159,31 +133,6 @@ def _repeat(notes: Mapping[str, int]) -> None:
     for note, count in notes.items():
         if note and count > 1:
             print(f"note: {count - 1} more types: {note}")
-
-
-def _count(records: Sequence[Record], options: Options) -> None:
-    """Print how many types of each distribution pass."""
-    by_key = {record.test.key: record for record in records}
-    verdicts = [(record, settled(record, by_key)) for record in records]
-    passed: Counter[str] = Counter()
-    total: Counter[str] = Counter()
-    for record, verdict in verdicts:
-        if not isinstance(verdict, NotJudged):
-            total.update(record.test.distros)
-        if isinstance(verdict, Passed | KnownDifference):
-            passed.update(record.test.distros)
-    for distro in DISTROS:
-        if distro in total:
-            print(f"{distro:8} {passed[distro]:4} of {total[distro]:4} types pass", end="")
-            print(f" ({options.bus_bytes}-byte bus)")
-    known = [verdict for _, verdict in verdicts if isinstance(verdict, KnownDifference)]
-    if known:
-        keys = ", ".join(sorted({key for verdict in known for key in verdict.keys}))
-        print(f"{len(known)} of them with a known difference between libraries: {keys}")
-    if not_judged := sum(isinstance(verdict, NotJudged) for _, verdict in verdicts):
-        print(f"{not_judged} of {len(records)} types not judged")
-    if shared := sum(bool(record.same_as) for record in records):
-        print(f"{shared} of {len(records)} types have the circuit of another, which was simulated")
 
 
 def _summarize(records: Sequence[Record], options: Options) -> None:

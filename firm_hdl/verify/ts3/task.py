@@ -9,9 +9,8 @@ from firm_hdl.cases.effort import message_limit
 from firm_hdl.cases.figures import digest
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
-from firm_hdl.verify.choices import LONGEST
 from firm_hdl.verify.results.records import Test
-from firm_hdl.verify.systems.options import Options, command_again
+from firm_hdl.verify.systems.options import LONGEST, Options, command_again
 from firm_hdl.verify.systems.system import wire_of
 from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.wire import lay_out

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.verify.simulators.verilated import Runtime
+from firm_hdl.verify.simulators.programs import Runtime
 from lab.fuzz import build
 from tests.depth import THOROUGH
 

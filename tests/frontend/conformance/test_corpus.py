@@ -14,10 +14,10 @@ from functools import cache
 import pytest
 from rosbags.typesys import TypesysError, get_types_from_msg
 
-from firm_hdl.errors import DefinitionError, Source
+from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
-from firm_hdl.frontend.parse import parse_message
 from tests.depth import by_depth
+from tests.frontend.reading import parse
 from tests.frontend.structure import field_descriptions
 
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
@@ -99,7 +99,7 @@ def test_comments_are_those_that_rosidl_adapter_finds(corpus):
     folder = corpus / "rosidl_adapter_pairs" / "msg"
     text = (folder / "Test.msg").read_text(encoding="utf-8")
     idl = (folder / "Test.expected.idl").read_text(encoding="utf-8")
-    syntax = parse_message(Source(name="Test.msg", text=text), "ros2")
+    syntax = parse(text, "ros2")
     ours = [syntax.comment] + [m.comment for m in syntax.members if m.comment]
     verbatim = re.findall(r'text=\s*((?:"(?:[^"\\]|\\.)*"\s*)+)\)', idl)
     parts = [re.findall(r'"((?:[^"\\]|\\.)*)"', block) for block in verbatim]

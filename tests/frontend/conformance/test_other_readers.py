@@ -106,14 +106,6 @@ def test_a_section_in_idl_may_declare_several_messages_in_recordings(tmp_path):
     }
 
 
-def test_names_of_structs_in_other_modules_keep_their_meaning_in_recordings(tmp_path):
-    text = """module q { module msg { struct B { long x; }; }; };
-      module p { module msg { typedef short B; struct A { B b; q::msg::B c; }; }; };"""
-    heading = f"{'=' * 80}\nIDL: p/msg/A\n"
-    ours = open_library(bags=[recorded(tmp_path / "r", heading + text)])
-    assert [str(f.type) for f in ours.message("p/A").fields] == ["int16", "q/msg/B"]
-
-
 def test_mistakes_in_one_of_several_messages_are_shown_where_they_are(tmp_path):
     heading = f"{'=' * 80}\nIDL: p/msg/A\n"
     text = SEVERAL.replace("long B_last", "lang B_last")

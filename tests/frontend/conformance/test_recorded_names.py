@@ -7,7 +7,7 @@ from rosbags.rosbag1 import Writer
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import RecordingOrigin, open_library
-from tests.frontend.recordings import make_old_db3, record
+from tests.frontend.recordings import record
 
 LINE = "=" * 80
 
@@ -24,15 +24,6 @@ def record_in_ros1(path, *topics):
         for number, (name, text) in enumerate(topics):
             writer.add_connection(f"/t{number}", name, msgdef=text, md5sum="0" * 32)
     return path
-
-
-def test_all_reasons_are_listed_if_no_type_can_be_used(tmp_path):
-    both = make_old_db3(tmp_path / "both.db3", ["no name of ros", "std_msgs/msg/String"])
-    assert refused(both) == (
-        f"error: '{both}' has a topic of type 'no name of ros', which is not the name of a type\n"
-        f"error: '{both}' has a topic of type 'std_msgs/msg/String', but not its definition: none "
-        "was recorded; name a folder that has it with --depends, or a distribution with --distro"
-    )
 
 
 @pytest.mark.parametrize(
@@ -68,17 +59,6 @@ def test_constants_of_an_included_section_are_known(tmp_path):
     assert [str(f.type) for f in ours.message("p/A").fields] == [
         "p/msg/B", "int32[<=7]", "int32[3]"
     ]  # fmt: skip
-
-
-@pytest.mark.parametrize("ending", ["", "\n", "\n\n"])
-def test_every_text_ends_with_one_line_end_at_least(tmp_path, ending):
-    text = f"B b{ending}{LINE}\nMSG: p/B\nint8 x{ending}" if ending else "int8 x"
-    ours = open_library(bags=[record(tmp_path / "r", "p/msg/A", text)])
-    if not ending:
-        assert ours.source("p/A").text == "int8 x\n"
-        return
-    assert ours.source("p/A").text == "B b\n"
-    assert ours.source("p/B").text == f"int8 x{ending}"
 
 
 @pytest.mark.parametrize(

@@ -144,27 +144,6 @@ def test_definitions_in_idl(tmp_path):
     assert [(f.name, f.type.signed) for f in b.type.fields] == [("c", True)]
 
 
-def test_messages_of_services_and_actions(tmp_path):
-    uuid = f"{SEPARATOR}\nMSG: unique_identifier_msgs/msg/UUID\nuint8[16] uuid\n"
-    path = record(
-        tmp_path / "r",
-        "p/srv/S",
-        f"A a\n---\nint8 b\n{SEPARATOR}\nMSG: p/msg/A\nint8 x\n",
-        (
-            "p/action/Go_FeedbackMessage",
-            "unique_identifier_msgs/UUID goal_id\nint8 rest\n" + uuid,
-        ),
-    )
-    ours = open_library("humble", bags=[path])
-    assert [m.name for m in ours.interface("p/srv/S").messages] == [
-        "p/srv/S_Request",
-        "p/srv/S_Response",
-    ]
-    assert ours.message("p/srv/S_Request").fields[0].type.name == "p/msg/A"
-    feedback = ours.message("p/action/Go_FeedbackMessage")
-    assert [field.name for field in feedback.fields] == ["goal_id", "rest"]
-
-
 def test_recording_without_definitions_says_what_to_do(tmp_path):
     path = make_old_db3(tmp_path / "old.db3", ["std_msgs/msg/String"])
     with pytest.raises(DefinitionError) as error:
@@ -290,14 +269,6 @@ def test_distribution_is_the_one_that_the_recording_says(tmp_path, recorded, dis
     found = RecordingOrigin(path)
     assert (found.distro, found.dialect) == (distro, "ros2")
     assert open_library(bags=[path]).distro == (distro or "lyrical")
-
-
-def test_distribution_is_that_of_the_first_recording_that_says_one(tmp_path):
-    paths = [make_recording(tmp_path / str(number), "mcap") for number in range(3)]
-    for path, recorded in zip(paths, ("rosbags", "humble", "jazzy"), strict=True):
-        metadata = path / "metadata.yaml"
-        metadata.write_text(metadata.read_text().replace(": rosbags\n", f": {recorded}\n"))
-    assert open_library(bags=paths).distro == "humble"
 
 
 def test_a_file_that_ends_too_early_is_damaged(tmp_path):

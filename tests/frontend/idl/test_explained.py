@@ -211,11 +211,6 @@ def test_wrong_sizes_and_nested_types_are_marked(marked, message):
     assert (found, wrong.message) == (f"{head}{marked} }}; }};", message)
 
 
-def test_a_struct_outside_of_modules_has_no_full_name():
-    (wrong,) = read("struct T { T a; };")[1]
-    assert wrong.message == OF_ROS.format("T")
-
-
 @pytest.mark.parametrize(
     ("members", "array", "good"),
     [
@@ -260,12 +255,6 @@ def test_names_after_an_array_are_marked(members, array, good):
 def test_a_mistake_is_reported_once_wherever_it_counts(text, messages):
     _, wrong = read(f"module p {{ {text} }};")
     assert [error.message for error in wrong] == messages
-
-
-def test_each_name_too_many_of_a_typedef_is_reported():
-    _, wrong = read("module p { typedef long A, B, C[2]; struct T { long a; }; };")
-    rule = "a typedef declares one name in ROS 2; '{}' is too many"
-    assert [error.message for error in wrong] == [rule.format("B"), rule.format("C")]
 
 
 def test_errors_at_one_place_are_in_the_order_of_their_words():

@@ -64,13 +64,6 @@ def test_a_module_around_a_struct_comes_before_the_structs_own_constants():
     assert set(texts_of(text).values()) == {7}
 
 
-def test_own_constants_come_before_those_of_modules_further_out():
-    text = SERVICE.format(outer="const long N = 7;", inner="", request="", response="")
-    assert sizes_of(text) == {
-        "S_Request.n": 3, "S_Request.m": 3, "S_Response.n": 4, "S_Response.m": 4
-    }  # fmt: skip
-
-
 def test_constant_of_one_struct_is_seen_by_all():
     text = SERVICE.format(outer="", inner="", request="long b[B];", response="long a[A];")
     sizes = sizes_of(text)
@@ -134,17 +127,6 @@ def test_constants_of_a_file_come_before_those_of_included_files(tmp_path):
     }
     found = types(library(tmp_path, files).message("p/msg/T"))
     assert found == {"k": "int32[11]", "n": "int32[12]", "m": "int32[12]"}
-
-
-def test_a_constant_that_hides_an_included_one_is_still_the_only_one_of_its_name(tmp_path):
-    constants = """module p {{ module msg {{
-        module A_Constants {{ const long N = {n}; }}; {more} }}; }};"""
-    struct = "struct T { long n[N]; };"
-    files = {
-        "p/msg/Base.idl": constants.format(n=2, more=""),
-        "p/msg/T.idl": '#include "p/msg/Base.idl"\n' + constants.format(n=12, more=struct),
-    }
-    assert types(library(tmp_path, files).message("p/msg/T")) == {"n": "int32[12]"}
 
 
 def test_each_included_file_has_constants_of_its_own(tmp_path):
@@ -313,42 +295,6 @@ def test_a_scope_before_a_typedef_has_to_be_its_own():
     assert wrong == [] and (type_.package, type_.kind, type_.name) == ("p", "msg", "V")
 
 
-def test_a_typedef_is_read_where_it_stands():
-    text = """module a { const long N = 2; typedef long V[N]; };
-      module p { const long N = 3; module msg { const long N = 4;
-        typedef long W[N]; struct T { V v; W w; long n[N]; }; }; };"""
-    assert sizes_of(text) == {"T.v": 2, "T.w": 4, "T.n": 4}
-
-
-def test_types_of_two_packages_may_have_one_name(tmp_path):
-    files = {
-        "q/msg/Part.idl": "module q { module msg { struct Part { long q; }; }; };",
-        "r/msg/Part.idl": "module r { module msg { struct Part { long r; }; }; };",
-        "p/msg/Part.idl": "module p { module msg { enum Kind { A }; struct Part { long p; }; }; };",
-        "p/msg/T.idl": """#include "q/msg/Part.idl"
-            #include "r/msg/Part.idl"
-            #include "p/msg/Part.idl"
-            module q { enum Part { X }; };
-            module p { module msg { struct T {
-            r::msg::Part a; p::msg::Part b; q::msg::Part c; }; }; };""",
-    }
-    found = library(tmp_path, files).message("p/msg/T")
-    assert [item.type.fields[0].name for item in found.fields] == ["r", "p", "q"]
-
-
-def test_unknown_constant_in_a_dependency_names_its_file(tmp_path):
-    files = {
-        "q/msg/U.idl": "module q { module msg { struct U { long a[N]; }; }; };",
-        "p/msg/T.idl": """#include "q/msg/U.idl"
-            module p { module msg { const long N = 3;
-            struct T { q::msg::U u; long n[N]; }; }; };""",
-    }
-    with pytest.raises(DefinitionError) as caught:
-        library(tmp_path, files).message("p/msg/T")
-    (wrong,) = caught.value.diagnostics
-    assert wrong.span.source.name.endswith("q/msg/U.idl")
-
-
 def test_a_constant_keeps_its_first_value_and_place():
     text = """module p { module T_Constants {
         const long N = 2;
@@ -375,17 +321,6 @@ def test_a_file_that_includes_itself_declares_nothing_earlier(tmp_path, path):
         library.message("p/T")
     assert "T.idl:2:" in errors_of(error.value, tmp_path)
     assert "error: constant 'B' is not declared above" in str(error.value)
-
-
-def test_two_files_that_include_each_other_declare_nothing_earlier(tmp_path):
-    files = {
-        "p/msg/T.idl": f'#include "U.idl"{LATE}',
-        "p/msg/U.idl": '#include "T.idl"\nmodule p { module msg { struct U { long a; }; }; };',
-    }
-    library = Library("lyrical", [make_files(tmp_path, files)])
-    with pytest.raises(DefinitionError, match="constant 'B' is not declared above"):
-        library.message("p/T")
-    assert library.message("p/U").fields[0].name == "a"
 
 
 @pytest.mark.parametrize(
@@ -432,13 +367,6 @@ def of_member(text):
 def test_names_in_a_typedef_are_those_of_its_own_module(typedef, found, use):
     far = FAR.format(typedef=f"{typedef} typedef W X;")
     assert of_member(far + NEAR.format(near="", use=use)) == found
-
-
-@pytest.mark.parametrize("use", ["W", "q::msg::X"])
-def test_a_typedef_does_not_see_the_module_where_it_is_used(use):
-    far = FAR.format(typedef="typedef msg::P W; typedef W X;")
-    message = of_member(far + NEAR.format(near="typedef long P[6];", use=use))
-    assert message.startswith("'msg::P' is not a type;")
 
 
 def test_a_typedef_has_no_struct_whose_constants_it_sees_first():

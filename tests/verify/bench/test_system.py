@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-import firm_hdl.verify.bench.run as benches
+import firm_hdl.verify.bench as benches
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
 from firm_hdl.frontend import Library
 from firm_hdl.verify.references.clients import client

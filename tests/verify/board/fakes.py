@@ -7,12 +7,11 @@ from collections import Counter
 from firm_hdl.node import read_description_text
 from firm_hdl.node.control import registers
 from firm_hdl.node.messages import MessageReceiver, MessageSender, NodeMessage
-from firm_hdl.plan import build_plan, decode, encode
+from firm_hdl.plan import decode, encode
 from firm_hdl.verify.board.description import loop_text
 from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Recorder
-from firm_hdl.wire import lay_out
 from tests.node.bridge.fakes import FakeBoard
 
 __all__ = ["BOTH", "STRING", "LoopNode", "described", "verdicts"]
@@ -38,14 +37,10 @@ class LoopNode:
         self.fingerprint = description.fingerprint
         self.counters, self.seconds = Counter(), 0
         self.loops = {came.id: back.id for came, back in description.loops()}
-        self.plans = {came.id: self.plan(came) for came, _ in description.loops()}
+        self.plans = {
+            came.id: description.plan(came.store("in")) for came, _ in description.loops()
+        }
         self.heard = 0
-
-    def plan(self, topic):
-        store, wire = topic.store("in"), self.description.wire
-        return build_plan(
-            lay_out(store.message, wire), bus_bytes=8, max_message_bytes=store.max_message_bytes
-        )
 
     def take(self, frame):
         """Take a frame; return the frames of the answers."""
@@ -103,5 +98,8 @@ def verdicts(loop_node, description=None, names=(), loses=lambda frame: False, *
     description = description or loop_node.description
     given = {"most_cases": 6, "references": (), **options}
     request = Request(types=tuple(names), board="fake", **given)
-    with Boards(description, request, FakeBoard(loop_node, loses)) as system:
+    board = FakeBoard(loop_node, loses)
+    # A request is repeated before a board counts as silent.
+    board.repeat_seconds = 0.05
+    with Boards(description, request, board) as system:
         return {each.what.split()[0]: each.verdict for each in system.run(Recorder())}

@@ -1,14 +1,12 @@
-"""Faults of deliberately broken libraries are found and reduced to small examples."""
+"""Faults of deliberately broken libraries are found and shown."""
 
 from __future__ import annotations
 
 import pytest
 
 from firm_hdl.verify.clients.judge import LibraryComparison
-from firm_hdl.verify.clients.shrink import shrunk
 from firm_hdl.verify.clients.unusual import UNUSUAL_CASES, unusual_packets
 from firm_hdl.verify.references.client import Refusal
-from firm_hdl.verify.references.objects import full_text
 from firm_hdl.verify.results.verdict import Failed, NotJudged
 from tests.verify.clients.twins import Same, Twin
 from tests.verify.judged import assert_known, assert_passed
@@ -67,25 +65,16 @@ def test_equal_libraries_have_no_differences(contest, message):
 
 
 @pytest.mark.parametrize(
-    ("fault", "what", "text"),
-    [
-        (WithoutPadding, "encode", "uint8 a\nfloat64 b\n"),
-        (SwappedFields, "decode", "uint16 c\nuint16 d\n"),
-        (AcceptsTruncated, "cut-1", "bool t\n"),
-    ],
+    ("fault", "what"),
+    [(WithoutPadding, "encode"), (SwappedFields, "decode"), (AcceptsTruncated, "cut-1")],
 )
-def test_faults_are_found_and_reduced(contest, message, fault, what, text):
-    made = contest(fault)
-    trial = made.judge(message, VALUES)
+def test_faults_are_found_and_shown_with_a_small_value(contest, message, fault, what):
+    trial = contest(fault).judge(message, VALUES)
     assert isinstance(trial.verdict, Failed)
-    finding = next(each for each in trial.findings if each.what == what)
-    small = shrunk(finding, made.again)
-    assert small.expected != small.got
-    lines = len(full_text(small.message).splitlines())
-    assert lines <= len(text.splitlines()), full_text(small.message)
-    if fault is SwappedFields:
-        assert full_text(small.message) == text
-        assert sorted(small.value.values())[0] == 0
+    (finding,) = [each for each in trial.findings if each.what == what]
+    assert finding.expected != finding.got
+    # Only the value that is not the smallest shows that two fields are swapped.
+    assert finding.value == VALUES[0 if fault in (SwappedFields, WithoutPadding) else 1]
 
 
 def test_a_type_that_a_library_lacks_is_not_judged(library_here, make_message):

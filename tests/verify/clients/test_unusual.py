@@ -5,25 +5,11 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.verify.clients.unusual import (
-    UNUSUAL_CASES,
     plain_packet,
     unusual_packet,
     unusual_packets,
     unusual_value,
 )
-
-LEGAL = "bare-string big-endian options dirty-padding pad-1 pad-2 pad-3".split()
-CDR_ALONE = [*LEGAL, "no-nul", "cut-header"]
-ANYWHERE = (
-    "nul-inside not-utf8 bool-2 trailing-4 cut-1 cut-half cut-all bound-text bound-items "
-    "long-text long-items"
-).split()
-
-
-def test_each_irregularity_has_its_places():
-    wires = {**dict.fromkeys(CDR_ALONE, "cdr"), **dict.fromkeys(ANYWHERE, "ros1 cdr")}
-    assert {**wires, "trailing-1": "ros1"} == UNUSUAL_CASES
-
 
 ROS1 = "01 02000000 02000000 7879 00000000 01 01000000 05"
 ROS1_ODD = {

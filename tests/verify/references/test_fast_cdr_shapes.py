@@ -138,15 +138,3 @@ def test_a_packet_that_is_cut_anywhere_is_refused(library_here, release):
             codec = library.open(message_of(kind, shape), "cdr")
             answers = codec.decode_all([whole[:size] for size in range(len(whole))])
             assert all(isinstance(each, Refusal) for each in answers), (kind, shape)
-
-
-@pytest.mark.parametrize("release", RELEASES)
-def test_padding_is_zero_whatever_was_written_before(library_here, release):
-    library = library_here(release)
-    padded = library.open(message_of("float64", "one"), "cdr")
-    full = library.open(message_of("uint64", "sequence"), "cdr")
-    _, (bits, *_) = samples("float64")
-    for count in (1, 2, 3, 8, 30):
-        full.encode({"p": 9, "x": [(1 << 64) - 1] * count, "z": 7})
-        packet = padded.encode({"p": 9, "x": bits, "z": 7})
-        assert packet == HEADER + b"\x09" + bytes(7) + struct.pack("<d", -1.5) + b"\x07"

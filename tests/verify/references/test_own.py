@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.verify.references.client import Refusal
-from firm_hdl.verify.references.own import FirmHdl
+from firm_hdl.verify.references.libraries import FirmHdl
 
 
 @pytest.fixture

@@ -7,8 +7,7 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from firm_hdl.drawing.svg import Scale, seconds
-from firm_hdl.verify.report.charts import counts_bar, cumulative, scatter, stages
-from firm_hdl.verify.report.outcomes import Counts
+from firm_hdl.verify.report.charts import cumulative, scatter, stages
 from firm_hdl.verify.report.stats import Correlation, Fit, box_of, curve_of
 from firm_hdl.verify.report.summary import Curve, Trend
 
@@ -90,17 +89,6 @@ def a_trend(points=((1, 0.1), (10, 1.0), (100, 10.0)), power=None, linear=None):
     )
 
 
-def test_points_of_a_trend_are_where_the_axes_say():
-    text = scatter(a_trend(points=((1, 0.1), (0, 5.0), (7, 0), (10, 1.0), (100, 10.0))))
-    x, y = Scale(1, 100, 62, 346, True), Scale(0.1, 10, 236, 14, True)
-    dots = of_kind(text, "circle", "point c1")
-    assert [at(each) for each in dots] == [
-        (x(a), y(b)) for a, b in ((1, 0.1), (10, 1.0), (100, 10.0))
-    ]
-    assert dots[1][2] == "dynamic leaves 10: 1 s"
-    assert not of_kind(text, "path", "fit-line") and not of_kind(text, "path", "fit-law")
-
-
 def test_fits_are_drawn_inside_the_axes():
     law, line = Fit(a=0.1, b=1.0, r2=0.5), Fit(a=1.0, b=0.01, r2=0.25)
     text = scatter(a_trend(power=law, linear=line))
@@ -115,23 +103,3 @@ def test_fits_are_drawn_inside_the_axes():
     # No point, or only one, is inside the axes, so there is no line.
     for far in (Fit(a=1000.0, b=0.0, r2=0.0), Fit(a=1e-6, b=0.0, r2=0.0)):
         assert not of_kind(scatter(a_trend(power=far)), "path", "fit-law")
-
-
-COUNTS = Counts(passed=96, known=1, failed=1, not_judged=1, not_run=1)
-
-
-def test_a_bar_has_a_part_of_each_count():
-    bar = counts_bar(COUNTS)
-    parts = [(kind, float(a["x"]), float(a["width"]), title) for kind, a, title in drawn(bar)]
-    assert [title for *_, title in parts] == [
-        "96 passed",
-        "1 known",
-        "1 failed",
-        "1 not judged",
-        "1 not run",
-    ]
-    assert [width for _, _, width, _ in parts] == [94, 4, 4, 4, 4]
-    assert [x for _, x, _, _ in parts] == [0, 94, 98, 102, 106]
-    kinds = [a["class"] for _, a, _ in drawn(bar)]
-    assert kinds == ["bar-pass", "bar-known", "bar-fail", "bar-skip", "bar-none"]
-    assert 'aria-hidden="true"' in bar and "role" not in bar

@@ -10,19 +10,15 @@ import re
 
 import pytest
 
-from firm_hdl.verify.report.command import FORMATS
-from firm_hdl.verify.report.outcomes import Counts, outcomes_of
-from firm_hdl.verify.report.prose import facts
-from firm_hdl.verify.report.summary import summarise
+from firm_hdl.verify.report.formats import FORMATS
+from firm_hdl.verify.report.summary import Counts, outcomes_of, summarise
 from firm_hdl.verify.report.tables import (
     coverage_table,
+    facts,
 )
-from firm_hdl.verify.results.file import ResultsWriter
-from firm_hdl.verify.results.records import OracleVerdict, PlanCoverage
+from firm_hdl.verify.results.records import PlanCoverage
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
-from tests.verify.report.samples import VERDICTS, a_record, a_test, mixed, run_of
-
-ALL = {"passed": 2, "known": 3, "failed": 5, "not_judged": 7, "not_run": 11}
+from tests.verify.report.samples import a_record, a_test, mixed, run_of
 
 
 def rows(table):
@@ -86,20 +82,6 @@ def test_groups_differ_in_each_of_their_keys():
     }  # fmt: skip
 
 
-def test_a_failure_counts_in_whatever_order_files_come():
-    good, bad = (a_record(verdict=VERDICTS[name]) for name in ("passed", "failed"))
-    other = a_record(a_test("b/msg/B"))
-    for files in (
-        [run_of(good), run_of(bad)],
-        [run_of(bad), run_of(good)],
-        [run_of(good), run_of(bad), run_of(good)],
-        [run_of(other), run_of(bad, other), run_of(good)],
-    ):
-        outcomes = {o.test.type: o.verdict.name for o in outcomes_of(files)}
-        assert outcomes["std_msgs/msg/Header"] == "failed"
-        assert outcomes.get("b/msg/B", "passed") == "passed"
-
-
 @pytest.mark.parametrize("form", list(FORMATS))
 def test_every_failure_is_named(form):
     records = [
@@ -128,13 +110,6 @@ def test_coverage_is_full_where_all_was_taken():
     assert "83.33%" in [figure for figure, what in facts(summary) if what == "plan coverage"]
 
 
-def written(path, run):
-    with ResultsWriter(path, options=run.options, planned=run.planned) as writer:
-        for record in run.records.values():
-            writer.add(record)
-    return str(path)
-
-
 def test_no_text_ends_the_block_that_it_is_in():
     for ticks in ("```", "````", "``` ````` ```"):
         verdict = Failed((f"before\n{ticks}\n# after",))
@@ -142,13 +117,6 @@ def test_no_text_ends_the_block_that_it_is_in():
         (fence,) = re.findall(r"(?m)^(`{3,})\nbefore$", text)
         assert fence not in ticks
         assert "\n# after\n" + fence in text
-
-
-def definition(name, verdict, is_refused=False, oracle="genmsg"):
-    """Return a record of TS1 with the verdict of one oracle."""
-    said = OracleVerdict(oracle=oracle, verdict=verdict, is_refused=is_refused)
-    test = a_test(name, system="ts1", simulator="", wire="", bus_bytes=0, options="")
-    return a_record(test, verdicts=(said,), coverage=None, shape="", metrics={})
 
 
 def test_a_later_file_counts_unless_an_earlier_one_failed():

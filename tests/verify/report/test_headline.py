@@ -5,10 +5,9 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
-from firm_hdl.verify.report.command import FORMATS
-from firm_hdl.verify.report.prose import headline
+from firm_hdl.verify.report.formats import FORMATS
 from firm_hdl.verify.report.summary import summarise
-from firm_hdl.verify.report.tables import SIGNS
+from firm_hdl.verify.report.tables import SIGNS, headline
 from tests.verify.report.samples import a_record, a_test, mixed, run_of
 
 

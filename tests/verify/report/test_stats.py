@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
-from firm_hdl.verify.report.charts import scatter
 from firm_hdl.verify.report.stats import (
-    Correlation,
-    Fit,
     box_of,
     correlate,
     curve_of,
     share_within,
 )
-from firm_hdl.verify.report.summary import Trend
 
 
 def test_box_has_quartiles():
@@ -33,22 +27,6 @@ def test_curve_ends_with_all_values(count):
     assert points == sorted(points) and len(set(points)) == len(points)
     for value, share in points:
         assert share == pytest.approx(share_within(values, value))
-
-
-LAW = Fit(a=2.0, b=1.5, r2=1.0)
-
-
-def trend(metric, spearman, time="total", power=LAW):
-    found = Correlation(count=9, pearson=0.0, spearman=spearman, linear=None, power=power)
-    return Trend(suite="ts3", metric=metric, time=time, correlation=found, points=())
-
-
-def test_points_without_a_logarithm_are_not_drawn():
-    """Types without leaves, and times of zero, cannot be drawn on logarithmic axes."""
-    points = ((0.0, 2.0), (2.0, 0.0), (0.0, 0.0), (2.0, 3.0), (50.0, 90.0))
-    drawn = scatter(replace(trend("leaves", 0.5), points=points))
-    assert drawn.count('class="point c1"') == 2
-    assert "leaves 2: 3 s" in drawn and "leaves 50: 90 s" in drawn
 
 
 def test_line_is_found():

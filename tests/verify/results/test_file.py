@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
-import random
-import signal
-import subprocess
-import sys
-import time
-from pathlib import Path
 
 import pytest
 
 from firm_hdl.verify.results.file import FORMAT, ResultsError, ResultsWriter, read_results
-from firm_hdl.verify.results.records import Record, to_json
+from firm_hdl.verify.results.records import to_json
 from firm_hdl.verify.results.verdict import Failed
-from tests.verify.judged import without_times
 from tests.verify.report.samples import a_record, a_test
 
 HEADER, BOOL = a_test(), a_test("std_msgs/msg/Bool")
@@ -107,7 +99,7 @@ def test_damage_elsewhere_is_an_error_that_names_the_line(tmp_path):
     path = written(tmp_path / "r", a_record(), a_record(BOOL))
     lines = path.read_bytes().splitlines(keepends=True)
     path.write_bytes(b"".join([*lines[:2], b'{"record": {"status": "pass"}}\n', *lines[3:]]))
-    with pytest.raises(ResultsError, match=r"^'.*', line 3: Test must be an object, not nothing$"):
+    with pytest.raises(ResultsError, match=r"^'.*', line 3: it is damaged$"):
         read_results(path)
 
 
@@ -159,170 +151,52 @@ def test_file_has_one_writer_at_a_time(tmp_path):
         ResultsWriter(path, options=OPTIONS, planned=[HEADER])
 
 
-FAKE = """
-import sys, time
-from tests.verify.report.samples import a_record, a_test
-from firm_hdl.jobs.executors import run_each
-from firm_hdl.verify.results.file import ResultsWriter
-from firm_hdl.verify.results.verdict import Failed, Passed
-
-def work(number):
-    time.sleep(0.01)
-    verdict = Failed(("it is odd",)) if number % 7 == 3 else Passed(1)
-    return a_record(a_test(f"p/msg/T{number}"), verdict=verdict, cycles=number)
-
-if __name__ == "__main__":
-    tests = {number: a_test(f"p/msg/T{number}") for number in range(100)}
-    with ResultsWriter(sys.argv[1], options={}, planned=list(tests.values())) as writer:
-        missing = {test.key for test in writer.before.missing}
-        left = [(n, (n,)) for n, test in tests.items() if test.key in missing]
-        print("ready", flush=True)
-        for _, record in run_each(work, left, jobs=2):
-            writer.add(record)
-"""
-
-
-def outcomes(path: Path) -> dict[str, Record]:
-    return {key: without_times(record) for key, record in read_results(path).records.items()}
-
-
-def ended(processes: set[int]) -> bool:
-    return not any(Path(f"/proc/{process}").exists() for process in processes)
-
-
-def test_run_that_was_killed_goes_on_and_ends_the_same(tmp_path):
-    script = tmp_path / "fake.py"
-    script.write_text(FAKE)
-    root = Path(__file__).parents[3]
-    command = [sys.executable, str(script)]
-    environment = {**os.environ, "PYTHONPATH": str(root)}
-    subprocess.run([*command, str(tmp_path / "whole")], env=environment, check=True)
-    seed = random.randrange(1 << 32)
-    print(f"seed {seed}")
-    rng = random.Random(seed)
-    path = tmp_path / "killed"
-    kills = counts = 0
-    while True:
-        process = subprocess.Popen(
-            [*command, str(path)], env=environment, stdout=subprocess.PIPE, text=True
-        )
-        assert process.stdout is not None
-        process.stdout.readline()
-        if kills < 3:
-            time.sleep(rng.uniform(0, 0.4))
-            process.send_signal(signal.SIGKILL)
-            kills += 1
-        done_well = process.wait() == 0
-        process.stdout.close()
-        assert len(outcomes(path)) >= counts, "results were lost"
-        counts = len(outcomes(path))
-        if done_well:
-            break
-    assert outcomes(path) == outcomes(tmp_path / "whole") and counts == 100
-
-
-def test_workers_end_with_a_run_that_was_killed(tmp_path):
-    script = tmp_path / "fake.py"
-    script.write_text(
-        FAKE.replace(
-            "time.sleep(0.01)", "time.sleep(0.2); os.write(1, b'pid %d\\n' % os.getpid())"
-        ).replace("import sys", "import os, sys")
-    )
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
-    process = subprocess.Popen(
-        [sys.executable, str(script), str(tmp_path / "r")],
-        env=environment,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    assert process.stdout is not None
-    workers = set()
-    while len(workers) < 2:
-        word, _, number = process.stdout.readline().partition(" ")
-        workers |= {int(number)} if word == "pid" else set()
-    process.kill()
-    process.wait()
-    process.stdout.close()
-    for _ in range(100):
-        if ended(workers):
-            return
-        time.sleep(0.1)
-    raise AssertionError(f"workers {workers} are still there")
-
-
 def changed(**values: object) -> str:
     return json.dumps({"record": {**to_json(a_record()), **values}})
 
 
 @pytest.mark.parametrize(
-    ("line", "reason"),
+    "line",
     [
-        # Python's own message about list indices would not help readers.
-        ("[]", "it is damaged"),
-        ("{}", "it is damaged"),
-        ("3", "it is damaged"),
-        ("{", "it is damaged"),
-        ('{"record": {"test": {"age": 3}}}', "it is damaged"),
-        ('{"record": {"test": {"system": "x"}}}', "it is damaged"),
-        ('{"record": []}', "A record must be an object, not a list"),
-        ('{"record": {"test": 3}}', "Test must be an object, not a number"),
+        *("[]", "{}", "3", "{", '{"record": []}', '{"record": {"test": 3}}'),
+        '{"record": {"test": {"system": "x"}}}',
+        '{"session": ' + "[" * 9999 + "]" * 9999 + "}",
+        *('{"session": 7}', '{"session": {"started": 7}}', '{"failure": 7}'),
         # Python reads such numbers, but reports cannot write them.
-        ('{"session": NaN}', "A number must be finite, not NaN"),
-        ('{"session": -Infinity}', "A number must be finite, not -Infinity"),
-        ('{"session": 1e999}', "A number must be finite, not 1e999"),
-        (f'{{"session": {"9" * 5000}}}', "A number must have at most 1000 digits, not 5000"),
-        ('{"session": ' + "[" * 9999 + "]" * 9999 + "}", "it is damaged"),
-        (changed(cycles=True), "Record: cycles must be of another type"),
-        (changed(cycles=-1), "A number must be from 0 to 1e+100, not -1"),
-        (changed(cpu_seconds=-0.5), "A number must be from 0 to 1e+100, not -0.5"),
-        (
-            changed(seconds={"testing": 10**400}),
-            f"A number must be from 0 to 1e+100, not 1{'0' * 19}... (401 characters)",
-        ),
-        (
-            changed(metrics={"depth": 1e300}),
-            "A number must be from 0 to 1e+100, not 1e+300",
-        ),
-        (
-            changed(verdict={"verdict": "v" * 9999}),
-            "A verdict must be one of failed, not judged, known difference, passed, not "
-            f"{{'verdict': '{'v' * 187}... (10014 characters)",
-        ),
-        ('{"session": 7}', "A session must be an object of texts"),
-        ('{"session": {"started": 7}}', "A session must be an object of texts"),
-        ('{"failure": 7}', "A failure must be a text"),
+        *('{"session": NaN}', '{"session": -Infinity}', '{"session": 1e999}'),
+        *(changed(cycles=-1), changed(cpu_seconds=-0.5), changed(seconds={"testing": 10**400})),
+        changed(metrics={"depth": 1e300}),
+        # Values of other types, and what no record has.
+        *(changed(cycles=True), changed(cases=1.5), changed(written_by=[True]), changed(age=3)),
+        *(changed(metrics={"steps": None}), changed(coverage={"taken": 1})),
+        *(changed(verdict={"verdict": "good"}), changed(verdict={"verdict": "passed", "cases": 0})),
+        changed(verdicts=[{"oracle": 7, "verdict": "passed", "cases": 1}]),
+        # It would take thirty times its size.
+        f'{{"record": [{"[]," * (12 << 20)}[]]}}',
     ],
+    ids=lambda line: line[:40],
 )
-def test_an_invalid_line_is_reported_with_the_reason(tmp_path, line, reason):
+def test_a_damaged_line_is_named(tmp_path, line):
     path = written(tmp_path / "r.jsonl", a_record())
     with path.open("a") as file:
         file.write(f"{line}\n")
     number = len(path.read_text().splitlines())
     with pytest.raises(ResultsError) as error:
         read_results(path)
-    assert str(error.value) == f"'{path}', line {number}: {reason}"
+    assert str(error.value) == f"'{path}', line {number}: it is damaged"
 
 
 @pytest.mark.parametrize(
-    ("more", "reason"),
+    "more",
     [
-        ('"options": 7, "planned": []', "The options must be an object"),
-        ('"options": {"seed": NaN}, "planned": []', "A number must be finite, not NaN"),
-        ('"options": {}, "planned": [{"system": 1}]', "Test: system must be of another type"),
-        ('"options": {}, "planned": 7', "it is damaged"),
+        '"options": 7, "planned": []',
+        '"options": {"seed": NaN}, "planned": []',
+        '"options": {}, "planned": [{"system": 1}]',
+        '"options": {}, "planned": 7',
     ],
 )
-def test_an_invalid_first_line_is_reported_with_the_reason(tmp_path, more, reason):
+def test_a_damaged_first_line_is_named(tmp_path, more):
     path = tmp_path / "r.jsonl"
     path.write_text(f'{{"format": "{FORMAT}", {more}}}\n')
-    with pytest.raises(ResultsError) as error:
-        read_results(path)
-    assert str(error.value) == f"'{path}', line 1: {reason}"
-
-
-def test_a_line_that_would_fill_the_memory_is_not_read(tmp_path):
-    path = written(tmp_path / "r.jsonl", a_record())
-    with path.open("a") as file:
-        file.write(f'{{"record": [{"[]," * (12 << 20)}[]]}}\n')
-    with pytest.raises(ResultsError, match="line 4: A line must have at most 33554432 bytes, not"):
+    with pytest.raises(ResultsError, match=r"^'.*', line 1: it is damaged$"):
         read_results(path)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from firm_hdl.verify.results.records import (
     MOST_CHARACTERS,
     OracleVerdict,
@@ -102,80 +100,9 @@ def test_the_json_of_a_record_is_complete():
     }
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["note", "seconds", "cpu_seconds", "cases", "coverage", "metrics", "verdicts", "written_by"],
-)
-def test_each_part_of_a_record_is_read_back(name):
+def test_a_record_is_read_back():
     given = to_json(RECORD)
     found = from_json(Record, given)
-    expected = {"seconds": Seconds(generation=1.0, simulation=2.0, testing=3.5)}
-    expected |= {"cpu_seconds": 0.123457, "metrics": {"fields": 3.0}}
-    assert getattr(found, name) == expected.get(name, getattr(RECORD, name))
-    without = from_json(Record, {n: value for n, value in given.items() if n != name})
-    assert getattr(without, name) == getattr(Record(test=WHOLE, verdict=Passed(1)), name)
-
-
-@pytest.mark.parametrize(
-    ("given", "output"),
-    [
-        ([], "A record must be an object, not a list"),
-        ({}, "Test must be an object, not nothing"),
-        ({"test": {"system": "x", "size": 1, "age": 2}}, "Test has no age, size"),
-    ],
-)
-def test_invalid_records_are_refused(given, output):
-    with pytest.raises(ValueError) as error:
-        from_json(Record, given)
-    assert str(error.value) == output
-
-
-def test_parts_of_a_record_are_refused_by_name():
-    whole = {
-        "test": {"system": "ts2", "distro": "iron", "type": "p/A"},
-        "verdict": {"verdict": "passed", "cases": 1},
-    }
-    for part, output in {
-        "seconds": "Seconds must be an object, not a number",
-        "coverage": "PlanCoverage must be an object, not a number",
-        "test": "Test must be an object, not a number",
-    }.items():
-        with pytest.raises(ValueError) as error:
-            from_json(Record, {**whole, part: 3})
-        assert str(error.value) == output
-    with pytest.raises(ValueError, match="What an oracle says must be an object, not a number"):
-        from_json(Record, {**whole, "verdicts": [3]})
-    with pytest.raises(ValueError, match="Test: "):
-        from_json(Record, {**whole, "test": {"system": "ts2"}})
-
-
-@pytest.mark.parametrize(
-    ("part", "name", "values"),
-    [
-        ("test", "type", [7, None]),
-        ("test", "same", ["humble", [7], {}]),
-        ("test", "bus_bytes", [True, 8.0, "8"]),
-        ("seconds", "testing", ["1", None]),
-        ("coverage", "missing", [[None], 7]),
-        (None, "metrics", [{"steps": None}, [1], {"steps": True}]),
-        (None, "written_by", [[True], "rosbags"]),
-        (None, "cases", [1.5, None]),
-        (None, "verdicts", [[{"oracle": 7, "verdict": "passed", "cases": 1}]]),
-    ],
-)
-def test_values_of_another_type_are_refused(part, name, values):
-    whole = {
-        "test": {"system": "ts2", "distro": "iron", "type": "p/A", "same": ["iron"]},
-        "verdict": {"verdict": "passed", "cases": 1},
-        "seconds": {"testing": 1},
-        "coverage": {"taken": 1, "possible": 2, "missing": ["x"]},
-        "metrics": {"steps": 1, "depth": 1.5},
-        "verdicts": [{"oracle": "genmsg", "verdict": "passed", "cases": 1, "is_refused": True}],
-        "written_by": ["rosbags"],
-        "cases": 3,
-    }
-    assert from_json(Record, whole).cases == 3
-    for value in values:
-        wrong = {name: value} if part is None else {part: {**whole[part], name: value}}
-        with pytest.raises(ValueError, match=r"must be of another type$"):
-            from_json(Record, {**whole, **wrong})
+    assert to_json(found) == given and found.verdicts == RECORD.verdicts
+    few = {"test": given["test"], "verdict": {"verdict": "passed", "cases": 1}}
+    assert from_json(Record, few) == Record(test=WHOLE, verdict=Passed(1))

@@ -92,12 +92,6 @@ def test_requests_arrive_whole_and_what_is_printed_does_no_harm(mine, folder):
     assert math.isnan(nan) and str(others) == "[-inf, -0.0]"
 
 
-def test_the_encoding_of_the_user_s_output_is_not_that_of_the_pipes(folder, monkeypatch):
-    monkeypatch.setenv("PYTHONIOENCODING", "utf-16")
-    with closing(Worker("fake", "here", modules=folder, python=sys.executable)) as found:
-        assert found.ask({"oracle": "repeat", "text": "é"})["facts"]["request"]["text"] == "é"
-
-
 def test_a_program_that_prints_a_line_without_end_is_ended(folder):
     (folder / "endless").write_text("#!/bin/sh\nexec cat /dev/zero\n")
     (folder / "endless").chmod(0o755)
@@ -162,17 +156,3 @@ def test_a_program_that_is_no_python_of_ros_is_missing(tmp_path, line):
         assert found.missing == "its Python does not start" and found._process is None
         # It may be asked nevertheless.
         assert found.ask({"oracle": "repeat"}) == {"failed": found.missing}
-
-
-def test_a_process_that_does_not_start_again_has_failed(folder, tmp_path):
-    python = tmp_path / "python"
-    python.symlink_to(sys.executable)
-    with closing(Worker("fake", "here", modules=folder, python=str(python))) as found:
-        assert found.missing is None
-        python.unlink()
-        assert found.ask({"oracle": "die"}) == {"failed": DIED}
-        why = f"{python} cannot be run: No such file or directory"
-        assert found.ask({"oracle": "repeat"}) == {"failed": why}
-        python.symlink_to(sys.executable)
-        assert "facts" in found.ask({"oracle": "repeat"})
-        assert found.missing is None

@@ -10,8 +10,8 @@ import pytest
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.sim import RunOptions, Stalls
 from firm_hdl.sim.harness import Harness
-from firm_hdl.verify.simulators.crosscheck import first_difference, replay_failures
 from firm_hdl.verify.simulators.trace import Trace, read_row
+from firm_hdl.verify.ts3.circuit import first_difference, replay_failures
 
 PACKETS = [bytes((0, 1, 0, 0, value)) for value in (1, 0, 1)]
 
@@ -29,25 +29,6 @@ def recorded():
         trace.start(name)
         seen.append(harness.run_packets(PACKETS, RunOptions(stalls=stalls, observe=trace.observe)))
     return trace, seen
-
-
-def rows_of(trace: Trace, name: str) -> list[str]:
-    number = [run for run, _ in trace.runs].index(name)
-    starts = [*(first for _, first in trace.runs), len(trace.expected)]
-    return trace.expected[starts[number] : starts[number + 1]]
-
-
-def test_pins_are_numbered_over_both_devices_and_the_reset_is_the_first_input(recorded):
-    trace, _ = recorded
-    assert [device.name for device in trace.devices] == [
-        "std_msgs_msg_bool_cdr_2_deserializer_flat",
-        "std_msgs_msg_bool_cdr_2_serializer_flat",
-    ]
-    assert [pin.number for pin in trace.inputs] == list(range(1, len(trace.inputs) + 1))
-    assert [pin.number for pin in trace.outputs] == list(range(len(trace.outputs)))
-    names = [(pin.device, pin.port.name) for pin in trace.inputs]
-    assert names[:4] == [(0, f"s_axis_{name}") for name in ("tdata", "tkeep", "tlast", "tvalid")]
-    assert names[-1] == (1, "m_axis_status_tready")
 
 
 def test_rows_have_changes_and_resets_separate_runs(recorded):
@@ -104,36 +85,6 @@ def test_missing_and_surplus_rows_are_reported(recorded, fewer):
     )
 
 
-def test_first_difference_names_run_cycle_port_and_both_values(recorded):
-    trace, _ = recorded
-    assert first_difference(trace, trace.expected) is None
-    assert rows_of(trace, "plain") + rows_of(trace, "stalled") == trace.expected
-    tdata = next(p for p in trace.outputs if p.port.name == "m_axis_tdata")
-    ready = next(p for p in trace.outputs if p.port.name == "s_axis_tready")
-    at = trace.runs[1][1] + 5
-    rows = list(trace.expected)
-    # Only the first of two differences is reported, and a value holds until it changes.
-    rows[at] = f"{rows[at]} {tdata.number} 1111000011110000".strip()
-    rows[at + 2] += f" {ready.number} U"
-    told = first_difference(trace, rows)
-    assert told is not None
-    assert told.startswith("stalled, cycle 5: m_axis_tdata of the serializer is 0xf0f0 instead of ")
-    rows = list(trace.expected)
-    rows[at] = f"{rows[at]} {ready.number} U".strip()
-    assert "s_axis_tready of the deserializer is 'U' instead of '" in str(
-        first_difference(trace, rows)
-    )
-
-
 def test_a_simulator_that_shows_nothing_is_no_pass(recorded):
     silent = SimpleNamespace(title="silent", replay=lambda *given: [])
     assert replay_failures(silent, recorded[0], list) == ["silent: no cycle was compared"]
-
-
-def test_a_repeated_value_is_no_difference(recorded):
-    trace, _ = recorded
-    rows = list(trace.expected)
-    number, bits = next(iter(read_row(rows[0])))
-    assert not any(number == other for other, _ in read_row(rows[1]))
-    rows[1] = f"{rows[1]} {number} {bits}".strip()
-    assert first_difference(trace, rows) is None

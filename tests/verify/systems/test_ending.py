@@ -105,26 +105,6 @@ def test_of_all_types_those_that_are_not_judged_are_listed(
         assert capsys.readouterr().out.endswith(LINE + "1 of 2 tests was not judged\n")
 
 
-def test_type_with_the_circuit_of_one_that_is_not_judged_is_not_judged(
-    source, monkeypatch, tmp_path, capsys
-):
-    def judge(message, *arguments, **options):
-        if message.name.endswith("A"):
-            raise NotJudgedError("it is A")
-        return judge_of(message, *arguments, **options)
-
-    monkeypatch.setattr(acceptance, "judge_of", judge)
-    path = tmp_path / "r.jsonl"
-    assert main(["verify", *FEW, "--path", source, "--all", "--results", str(path)]) == 1
-    assert capsys.readouterr().out.endswith("no test was judged, so the run fails\n")
-    records = read_results(path).records
-    (twin,) = [record for record in records.values() if record.same_as]
-    assert isinstance(twin.verdict, Passed)
-    assert settled(twin, records) == NotJudged(
-        f"has the circuit of '{twin.same_as}', which was not judged"
-    )
-
-
 @pytest.mark.parametrize(
     ("other", "verdict"),
     [

@@ -10,19 +10,6 @@ from firm_hdl.verify.systems.options import Request, command_again
 
 
 @pytest.mark.parametrize(
-    ("given", "alone"),
-    [
-        ({"systems": ("ts1",)}, True),
-        ({"systems": ("ts1",), "libraries": ("rosbags",)}, False),
-        ({"systems": ("ts1", "ts2")}, False),
-        ({"systems": ("ts3",)}, False),
-    ],
-)
-def test_ts1_alone_looks_up_its_types(given, alone):
-    assert Request(**given).is_ts1_alone is alone
-
-
-@pytest.mark.parametrize(
     ("given", "named", "shares"),
     [
         ({}, False, True),

@@ -79,17 +79,6 @@ def test_the_worst_that_is_known_is_the_verdict(given, verdict):
     assert trial.end().verdict == verdict
 
 
-def fails_often(context, test):
-    return recorded(test, lambda trial: trial.failures.extend(["no"] * (MOST_FAILURES + 3)))
-
-
-def test_of_many_failures_the_first_are_kept_and_the_others_counted():
-    run = run_tests(fails_often, None, [a_test()], lambda test: "again", lambda record: [], jobs=1)
-    ((((_, record, _),)),) = run
-    assert record.failures == (*["no"] * MOST_FAILURES, "and 3 more")
-    assert record.command == "again"
-
-
 def test_the_verdict_that_counts_is_that_of_the_circuit():
     one = a_record(a_test("p/A"), verdict=Failed(("no",)))
     twin = a_record(a_test("p/B"), same_as=one.test.key)
@@ -139,3 +128,14 @@ def test_shares_have_all_items_in_their_order(items, most, parts, sizes):
     found = shares_of(range(items), most, parts)
     assert [len(share) for share in found] == sizes
     assert [item for share in found for item in share] == list(range(items))
+
+
+def fails_often(context, test):
+    return recorded(test, lambda trial: trial.failures.extend(["no"] * (MOST_FAILURES + 3)))
+
+
+def test_of_many_failures_the_first_are_kept_and_the_others_counted():
+    run = run_tests(fails_often, None, [a_test()], lambda test: "again", lambda record: [], jobs=1)
+    ((((_, record, _),)),) = run
+    assert record.failures == (*["no"] * MOST_FAILURES, "and 3 more")
+    assert record.command == "again"

@@ -8,7 +8,7 @@ from functools import cache
 import pytest
 
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.ts1.system import Ts1Run
+from firm_hdl.verify.ts1.system import Ts1
 from firm_hdl.verify.ts1.universe import Universe
 from tests.depth import by_depth
 from tests.verify.ts1.conftest import judged_by, need
@@ -26,7 +26,7 @@ def spelled_names(path, distro):
 
 def differences(request, oracle):
     """Judge; return the differences, and the numbers of refused and judged definitions."""
-    with Ts1Run(replace(request, oracles=(oracle,), jobs=1)) as run:
+    with Ts1(replace(request, oracles=(oracle,), jobs=1)) as run:
         need(oracle, run.missing.get(oracle))
         verdicts, refused, wrong = judged_by(run)
     return wrong, refused, sum(verdicts[oracle, each] for each in JUDGED)
@@ -36,8 +36,8 @@ def differences(request, oracle):
     ("dialect", "oracle", "step"),
     [
         ("ros1", "genmsg", by_depth(200, 10)),
-        ("ros2", "rosidl_adapter", by_depth(320, 20)),
-        ("ros2", "rosidl_parser", by_depth(1200, 100)),
+        pytest.param("ros2", "rosidl_adapter", 20, marks=pytest.mark.thorough),
+        pytest.param("ros2", "rosidl_parser", 100, marks=pytest.mark.thorough),
         # Includes hashes, which need all nested types.
         ("ros2", "rosidl_parser-4.9", by_depth(1600, 100)),
     ],
@@ -53,7 +53,11 @@ def test_a_sample_is_read_as_oracles_read_it(corpus, dialect, oracle, step):
 
 @pytest.mark.parametrize(
     ("dialect", "oracle"),
-    [("ros1", "genmsg"), ("ros2", "rosidl_adapter"), ("ros2", "rosidl_parser")],
+    [
+        ("ros1", "genmsg"),
+        ("ros2", "rosidl_adapter"),
+        pytest.param("ros2", "rosidl_parser", marks=pytest.mark.thorough),
+    ],
 )
 def test_invalid_definitions_are_refused_by_both(corpus, dialect, oracle):
     distro = DISTROS[dialect]

@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.ts1.mutate import mutation
-from firm_hdl.verify.ts1.system import Ts1Run
+from firm_hdl.verify.ts1.system import Ts1
 from tests.depth import by_depth
 from tests.frontend.workspace import make_files
 from tests.verify.ts1.conftest import judged_by, need
@@ -36,29 +36,21 @@ ROS2 = {
 @pytest.mark.parametrize(
     ("distro", "oracle", "count"),
     [
-        ("noetic", "genmsg", by_depth(120, 250)),
-        ("lyrical", "rosidl_adapter", by_depth(120, 250)),
+        ("noetic", "genmsg", by_depth(60, 250)),
+        ("lyrical", "rosidl_adapter", by_depth(60, 250)),
         ("lyrical", "rosidl_parser", by_depth(60, 100)),
     ],
 )
 def test_oracles_and_we_agree_on_mistakes(tmp_path, distro, oracle, count):
     root = make_files(tmp_path, ROS1 if distro == "noetic" else ROS2)
     request = Request(distros=(distro,), paths=(str(root),), mutations=count)
-    with Ts1Run(replace(request, oracles=(oracle,), jobs=1)) as run:
+    with Ts1(replace(request, oracles=(oracle,), jobs=1)) as run:
         need(oracle, run.missing.get(oracle))
         verdicts, refused, wrong = judged_by(run)
     assert wrong == []
     assert sum(verdicts.values()) - verdicts[oracle, "not judged"] == count
     # Some mutants are invalid, and some are valid.
     assert count / 5 < refused < count * 9 / 10
-
-
-def test_a_mutation_is_decided_by_its_number(court):
-    cases = court("lyrical", ROS2).universe.select([])
-    texts = [mutation(cases, number) for number in range(200)]
-    assert texts == [mutation(cases, number) for number in range(200)]
-    assert len({case.text for case in texts}) > 150
-    assert all(case.text != case.before for case in texts)
 
 
 def test_later_versions_make_the_mutations_that_a_report_names(court):
@@ -70,17 +62,6 @@ def test_later_versions_make_the_mutations_that_a_report_names(court):
         *("bOol[2] b\n", "int5 a 5\n", "int8 a \x0b5\n", "bool[2]] b\n", "int 8 5\n"),
         *("bOol[2] b\n", "bool[2] b\nbool[2] b\n"),
     ]
-
-
-def test_changes_are_listed_by_line(court):
-    cases = court("lyrical", {"p/msg/A.msg": "int8 a\n"}).universe.select([])
-    changed = mutation(cases, 1)
-    assert changed.changes and all(line[0] in "+-" for line in changed.changes)
-
-
-def test_an_empty_text_can_be_mutated(court):
-    cases = court("lyrical", {"p/msg/A.msg": ""}).universe.select([])
-    assert all(mutation(cases, number).is_changed for number in range(50))
 
 
 def test_only_texts_of_some_length_are_changed(court):

@@ -15,14 +15,13 @@ from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.results.file import read_results
-from firm_hdl.verify.results.verdict import Failed, Passed
+from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Recorder
 from firm_hdl.verify.systems.tasks import UnknownTypeError
-from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.oracles.oracle import Refused
-from firm_hdl.verify.ts1.system import Ts1, Ts1Run, each_distro
+from firm_hdl.verify.ts1.system import Ts1, each_distro
 from firm_hdl.verify.ts1.universe import Universe
 from tests.frontend.workspace import make_files
 from tests.verify.ts1.conftest import judged_by, need
@@ -42,13 +41,13 @@ def source(tmp_path):
 
 def run_ts1(request, oracles, recorder=None):
     """Judge definitions as the command does; return what was judged."""
-    with Ts1([replace(request, oracles=tuple(oracles), jobs=1)]) as system:
+    with Ts1(replace(request, oracles=tuple(oracles), jobs=1)) as system:
         return system.run(recorder or Recorder())
 
 
 def judged(request, oracles=(), jobs=1):
     """Run all tests; return what `judged_by` returns, and the run."""
-    with Ts1Run(replace(request, oracles=tuple(oracles), jobs=jobs)) as run:
+    with Ts1(replace(request, oracles=tuple(oracles), jobs=jobs)) as run:
         for name in oracles:
             need(name, run.missing.get(name))
         return *judged_by(run), run
@@ -73,26 +72,6 @@ def test_embedded_types_agree_with_fast_oracles(distro):
     assert known <= 5 and verdicts["rosbags", "passed"] == len(messages) - known
 
 
-def test_a_sample_of_embedded_types_agrees_with_rosidl_parser():
-    names = ["Imu", "PointCloud2", "NavSatStatus", "JointState", "CameraInfo", "Range"]
-    types = tuple(f"sensor_msgs/msg/{name}" for name in names)
-    types += ("diagnostic_msgs/msg/DiagnosticArray", "std_msgs/msg/Empty", "std_msgs/msg/Char")
-    verdicts, *_ = judged(Request(distros=("lyrical",), types=types), ["rosidl_parser"])
-    assert verdicts == {("rosidl_parser", "passed"): len(types)}
-
-
-def test_all_of_a_folder_is_judged_and_no_more(source):
-    verdicts, refused, _, run = judged(Request(distros=("noetic",), paths=(source,)), ["genmsg"])
-    assert [case.full_name for case in run.cases.values()] == ["p/A", "p/Bad", "p/S", "q/B"]
-    assert verdicts == {("genmsg", "passed"): 4} and refused == 1
-
-
-def test_several_processes_give_the_results_of_one(source):
-    request = Request(distros=("noetic",), paths=(source,))
-    one, two = (judged(request, ["rosbags"], jobs)[:3] for jobs in (1, 2))
-    assert one == two
-
-
 def test_the_report_names_oracles_verdicts_and_types(source, capsys):
     found = run_ts1(Request(distros=("noetic",), paths=(source,)), ["rosbags"])
     assert not [each for each in found if isinstance(each.verdict, Failed)]
@@ -101,14 +80,6 @@ def test_the_report_names_oracles_verdicts_and_types(source, capsys):
     assert "p/Bad  rosbags  agrees: both refuse\n" in out
     assert re.search(r"^rosbags \S+ +3 +0 +0 +0  \(1 refused by both\)$", out, re.MULTILINE)
     assert re.search(r"^4 definitions, \d+ s, 0 differences$", out, re.MULTILINE)
-
-
-def test_known_differences_are_counted_by_their_keys(tmp_path, capsys):
-    files = {"p/msg/A.msg": "wstring w\n", "p/msg/B.msg": "char c\n", "p/msg/C.msg": "char c\n"}
-    request = Request(distros=("lyrical",), paths=(str(make_files(tmp_path, files)),))
-    run_ts1(request, ["rosbags"])
-    out = capsys.readouterr().out
-    assert "known, rosbags: rosbags-char-hash: 2\nknown, rosbags: rosbags-wstring: 1\n" in out
 
 
 def test_a_difference_is_printed_with_the_command_that_repeats_it(source, capsys, monkeypatch):
@@ -130,37 +101,10 @@ def test_a_requested_oracle_that_is_not_installed_fails(source, capsys, monkeypa
     assert "is not available: there is no command 'ros2'" in capsys.readouterr().out
 
 
-def test_a_missing_type_or_folder(source, tmp_path, capsys):
-    words = ["verify", "--systems", "ts1", "--oracle", "rosbags"]
-    assert main([*words, "--path", source, "q/C"]) == 1
-    assert main([*words, "--path", str(tmp_path / "none"), "--all"]) == 1
-    assert main([*words, "q/C"]) == 1
-    errors = [line for line in capsys.readouterr().err.splitlines() if line.startswith("error")]
-    assert len(errors) == 3 and "'C' is not defined in package 'q'" in errors[0]
-
-
 def test_a_message_of_a_service_has_no_definition_of_its_own(source):
     with pytest.raises(DefinitionError) as error:
-        Ts1Run(Request(distros=("lyrical",), paths=(source,), types=("p/srv/S_Request",)))
+        Ts1(Request(distros=("lyrical",), paths=(source,), types=("p/srv/S_Request",))).__enter__()
     assert str(error.value) == "error: 'p/srv/S_Request' has no definition of its own"
-
-
-def test_the_definitions_of_all_distributions_are_tested_and_judged(source):
-    asked = Request(paths=(source,), types=("q/B",), oracles=("rosbags",), jobs=1)
-    with Ts1([replace(asked, distros=(each,)) for each in ("noetic", "humble")]) as system:
-        assert [test.distro for test in system.tests] == ["noetic", "humble"]
-        (oracle,) = system.options["oracles"]
-        assert re.fullmatch(r"rosbags [\d.]+", oracle)
-        assert [type(each.verdict) for each in system.run(Recorder())] == [Passed, Passed]
-
-
-def test_a_run_that_cannot_begin_ends_those_that_have(source, tmp_path, monkeypatch):
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
-    (tmp_path / "temporary").mkdir()
-    good = Request(distros=("noetic",), paths=(source,))
-    with pytest.raises(DefinitionError):
-        Ts1([good, replace(good, paths=("/nowhere",))]).__enter__()
-    assert not os.listdir(tmp_path / "temporary")
 
 
 def distros_of(**asked):
@@ -205,47 +149,9 @@ def test_a_type_in_a_hidden_package_of_the_workspace_is_told(tmp_path, monkeypat
 )  # fmt: skip
 def test_the_command_that_repeats_a_test(source, asked, oracles, command):
     words = f"firm-hdl verify --systems ts1 --distro iron --path {source}"
-    with Ts1Run(Request(distros=("iron",), paths=(source,), **asked)) as run:
+    with Ts1(Request(distros=("iron",), paths=(source,), **asked)) as run:
         tests = [test for test in run.cases if asked.get("mutations") or test.type == "p/srv/S"]
         assert run.command(tests[0], oracles) == f"{words} {command}"
-
-
-def test_a_crash_of_the_front_end_ends_no_run(source, monkeypatch):
-    def read(universe, case):
-        return RecursionError("deep") if case.name == "A" else universe.interface(case)
-
-    monkeypatch.setattr(judging, "read", read)
-    types = ("p/A", "q/B")
-    request = Request(distros=("noetic",), paths=(source,), types=types)
-    assert judged(request, ["rosbags"])[0] == {("rosbags", "failed"): 1, ("rosbags", "passed"): 1}
-
-
-def test_a_run_keeps_nothing_and_ends_its_oracles(source, monkeypatch):
-    closed = []
-    monkeypatch.setattr(ORACLES["rosbags"], "close", lambda self: closed.append(self))
-    request = Request(distros=("noetic",), paths=(source,), oracles=("rosbags",), jobs=1)
-    with Ts1Run(request) as run:
-        folder = run.context.folder
-        judged_by(run)
-        assert os.path.isdir(folder)
-    # One was asked whether it is there, the other judged.
-    assert len({*closed}) == 2 and not os.path.exists(folder)
-
-
-def test_mutations_are_repeatable_and_numbered(source, capsys, monkeypatch):
-    monkeypatch.setattr(ORACLES["genmsg"], "judge", lambda self, case: Refused("no"))
-    monkeypatch.setattr(ORACLES["genmsg"], "missing", lambda self: None)
-    request = Request(distros=("noetic",), paths=(source,), types=("q/B",), mutations=30, seed=7)
-    found = run_ts1(request, ["genmsg"])
-    assert not any(each.has_name for each in found)
-    said = capsys.readouterr()
-    blocks = re.findall(r"DIFFERS .*\n((?:    .*\n)+)", said.out + said.err)
-    numbers = [int(re.search(r"--mutations 1 --seed (\d+) q/B", block)[1]) for block in blocks]
-    assert numbers and all(7 <= number < 37 for number in numbers)
-    assert len(set(numbers)) == len(numbers)
-    run_ts1(replace(request, mutations=1, seed=numbers[0]), ["genmsg"])
-    said = capsys.readouterr()
-    assert blocks[0] in said.out + said.err
 
 
 def test_oracles_read_the_text_that_we_take(tmp_path):

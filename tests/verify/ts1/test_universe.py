@@ -32,37 +32,6 @@ def universe_of(tmp_path):
     return make
 
 
-@pytest.mark.parametrize(
-    ("asked", "found"),
-    [
-        ("p/A", "p/msg/A"),
-        ("p/msg/A", "p/msg/A"),
-        ("p/S", "p/srv/S"),
-        ("p/srv/S", "p/srv/S"),
-        ("p/F", "p/action/F"),
-        ("p/action/F", "p/action/F"),
-        ("p/Both", "p/msg/Both"),
-        ("p/msg/Both", "p/msg/Both"),
-        ("p/srv/Both", "p/srv/Both"),
-        ("p/action/Both", "p/action/Both"),
-    ],
-)
-@pytest.mark.parametrize("distro", ["noetic", "lyrical"])
-def test_a_type_is_found_by_its_name_with_and_without_its_kind(universe_of, distro, asked, found):
-    universe = universe_of(distro, FILES)
-    (case,) = universe.select([asked])
-    assert case.spelled_name == found
-    assert case.text == FILES[f"{found}.{case.kind}"]
-    assert case.language == case.kind
-    assert universe.interface(case).name == case.full_name
-
-
-@pytest.mark.parametrize("name", ["p/msg/S", "p/srv/A", "p/action/S", "p/C", "r/A", "A", "p/x/A"])
-def test_missing_types_are_not_found(universe_of, name):
-    with pytest.raises(DefinitionError):
-        universe_of("lyrical", FILES).select(["p/A", name])
-
-
 def test_types_come_in_the_order_in_which_they_are_named_and_all_in_that_of_their_names(
     universe_of,
 ):
@@ -71,13 +40,6 @@ def test_types_come_in_the_order_in_which_they_are_named_and_all_in_that_of_thei
     assert names == ["q/msg/B", "p/action/F", "p/msg/A"]
     names = [case.spelled_name for case in universe.select([])]
     assert names == sorted(name.rpartition(".")[0] for name in FILES)
-
-
-def test_without_folders_all_that_a_distribution_has_is_taken(tmp_path):
-    found = {case.package for case in Universe("lyrical").select([])}
-    assert {"std_msgs", "sensor_msgs"} <= found and "p" not in found
-    # A folder without definitions has none that could be judged.
-    assert Universe("lyrical", [str(tmp_path)]).select([]) == []
 
 
 def test_definitions_of_an_active_workspace_come_after_those_of_the_folders(tmp_path, monkeypatch):
@@ -110,30 +72,6 @@ def test_definitions_of_an_active_workspace_come_after_those_of_the_folders(tmp_
         ("std_msgs/msg/Empty", texts[2]),
     ):
         assert (tmp_path / "all" / f"{name}.msg").read_text() == text
-
-
-def test_changes_are_lines_without_their_surroundings():
-    text = "a\nb\nc\nd\n"
-    case = DefinitionCase(
-        dialect="ros1", package="p", kind="srv", name="S", language="srv", text=text
-    )
-    names = (case.full_name, case.spelled_name, case.file)
-    assert names == ("p/S", "p/srv/S", "S.srv") and not case.is_changed
-    ros2 = replace(case, dialect="ros2", kind="msg", language="idl")
-    assert (ros2.full_name, ros2.spelled_name, ros2.file) == ("p/msg/S", "p/msg/S", "S.idl")
-    changed = replace(case, text="a\nx\tb\nc\n", before=text)
-    assert changed.is_changed and changed.changes == ["-b", "+x\\tb", "-d"]
-    # A text may have been empty before, or have become empty.
-    assert replace(case, before="").is_changed
-    assert replace(case, text="", before="a\nb").changes == ["-a", "-b"]
-    assert replace(case, source="other") == case != changed
-
-
-def test_messages_alone_are_message_cases(universe_of):
-    universe = universe_of("lyrical", FILES)
-    assert universe.message_case("p", "A") == universe.select(["p/A"])[0]
-    assert universe.message_case("p", "S") is None
-    assert universe.message_case("p", "C") is None
 
 
 def test_changed_texts_are_read_in_place_of_the_files(universe_of):
@@ -210,26 +148,18 @@ def test_definitions_are_written_as_they_are_wherever_they_are_from(tmp_path):
         assert (folder / case.package / case.kind / case.file).read_text() == case.text
 
 
-def test_definitions_are_linked_to_from_another_folder_and_embedded_ones_written(
-    tmp_path, monkeypatch
-):
-    """The oracles' processes may have another working folder than this one."""
-    make_files(tmp_path, {"one/p/msg/A.msg": "int8 x\n", "one/p/msg/more/B.msg": "int8 1y\n"})
-    make_files(tmp_path, {"one/q/srv/S.srv": "int8 s\r\n---\r\n"})
-    monkeypatch.chdir(tmp_path)
-    universe = Universe("noetic", ["one"], "all")
-    write_definitions(universe)
-    folder = tmp_path / "all"
-    # Links to single files, a link to a folder, and a package that is embedded in firm-hdl.
-    assert (folder / "p" / "msg" / "A.msg").is_symlink() and (folder / "q" / "srv").is_symlink()
-    texts = {
-        "p/msg/A": "int8 x\n",
-        "p/msg/B": "int8 1y\n",
-        "q/srv/S": "int8 s\r\n---\r\n",
-        "geometry_msgs/msg/Point": universe.select(["geometry_msgs/Point"])[0].text,
-    }
-    for name, text in texts.items():
-        kind = name.split("/")[1]
-        assert (folder / f"{name}.{kind}").read_bytes() == text.encode()
-    assert not (folder / "geometry_msgs" / "msg").is_symlink()
-    assert "float64 x" in texts["geometry_msgs/msg/Point"]
+def test_changes_are_lines_without_their_surroundings():
+    text = "a\nb\nc\nd\n"
+    case = DefinitionCase(
+        dialect="ros1", package="p", kind="srv", name="S", language="srv", text=text
+    )
+    names = (case.full_name, case.spelled_name, case.file)
+    assert names == ("p/S", "p/srv/S", "S.srv") and not case.is_changed
+    ros2 = replace(case, dialect="ros2", kind="msg", language="idl")
+    assert (ros2.full_name, ros2.spelled_name, ros2.file) == ("p/msg/S", "p/msg/S", "S.idl")
+    changed = replace(case, text="a\nx\tb\nc\n", before=text)
+    assert changed.is_changed and changed.changes == ["-b", "+x\\tb", "-d"]
+    # A text may have been empty before, or have become empty.
+    assert replace(case, before="").is_changed
+    assert replace(case, text="", before="a\nb").changes == ["-a", "-b"]
+    assert replace(case, source="other") == case != changed

@@ -1,4 +1,4 @@
-"""Every type of every distribution, with a few cases each; in `make test`, one type in five.
+"""Every type of every distribution, with a few cases each; in `make test`, one type in twelve.
 
 There, other tests plan all types of two distributions, such as `test_covering`.
 """
@@ -23,7 +23,7 @@ SIMULATED = by_depth(24, 1)
 
 
 @pytest.mark.parametrize("index", range(len(TASKS)), ids=[task.name for task in TASKS])
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(12)
 def test_every_type_passes(index):
     task = TASKS[index]
     options = Options(
@@ -38,7 +38,7 @@ def test_every_type_passes(index):
 
 
 @pytest.mark.parametrize("index", SAMPLE, ids=lambda index: TASKS[index].name)
-@pytest.mark.sampled(3)
+@pytest.mark.thorough
 def test_a_sample_passes_on_other_buses(index):
     task = TASKS[index]
     width = OTHER_WIDTHS[SAMPLE.index(index) % len(OTHER_WIDTHS)]

@@ -8,7 +8,6 @@ import firm_hdl.verify.ts3.acceptance as acceptance
 from firm_hdl.cli import main
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.systems.tasks import collect_tasks
 from tests.verify.judged import accept, assert_passed
 
 pytestmark = pytest.mark.usefixtures("same_circuit")
@@ -18,11 +17,6 @@ FAST = ["--jobs", "1", "--cases", "3", "--distro", "humble"]
 
 def verify(*arguments):
     return main(["verify", *FAST, *arguments])
-
-
-def task_of(name):
-    (task,) = collect_tasks(["humble"], [name])
-    return task
 
 
 def test_records_have_all_results():
@@ -38,15 +32,6 @@ def test_records_have_all_results():
     assert record.metrics["leaves"] == 3 and record.metrics["steps"] > 0
     assert record.command == "firm-hdl verify --distro humble --bus-bytes 8 --seed 0 " + name
     assert record.waveform_command == record.command.replace(name, f"--vcd waveforms {name}")
-
-
-def test_decisions_that_few_cases_do_not_take_are_named():
-    options = Options(most_cases=1, stalled=False)
-    record = accept("humble", "sensor_msgs/msg/JointState", options)
-    assert record.coverage.taken < record.coverage.possible
-    assert len(record.coverage.missing) == record.coverage.possible - record.coverage.taken
-    assert any("padding" in each for each in record.coverage.missing)
-    assert record.test.options == "seed=0,cases=1,no-stalls"
 
 
 def test_wrong_answer_to_a_bare_string_is_found(monkeypatch):
@@ -74,15 +59,6 @@ def test_failures_are_recorded_and_not_run_again(tmp_path, monkeypatch, capsys):
     assert verify("--results", str(path), "std_msgs/Bool") == 1
     output = capsys.readouterr().out
     assert f"1 of 1 types have a result in {path}" in output and "0 of    1 types pass" in output
-
-
-def test_results_of_another_run_are_refused(tmp_path, capsys):
-    path = tmp_path / "r.jsonl"
-    assert verify("--results", str(path), "std_msgs/Bool") == 0
-    assert verify("--results", str(path), "--seed", "1", "std_msgs/Bool") == 1
-    output = capsys.readouterr().err
-    assert output.startswith(f"error: '{path}' is of another run: seed was 0, and is 1; ")
-    assert "Traceback" not in output
 
 
 @pytest.mark.parametrize(
@@ -118,7 +94,7 @@ def test_same_circuits_are_simulated_once(tmp_path, capsys):
 
 @pytest.mark.parametrize(
     ("arguments", "simulated"),
-    [(["--all"], 1), (["--all", "--no-share-circuits"], 2), (["p/msg/A", "p/msg/B"], 2)],
+    [(["--all"], 1), (["p/msg/A", "p/msg/B"], 2)],
 )
 def test_all_types_share_circuits_and_those_with_a_name_do_not(tmp_path, arguments, simulated):
     (tmp_path / "p" / "msg").mkdir(parents=True)

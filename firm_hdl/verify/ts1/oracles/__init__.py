@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from firm_hdl.verify.ts1.oracles.debian import NEWER, Genmsg, RosidlAdapter, RosidlParser
 from firm_hdl.verify.ts1.oracles.oracle import Oracle
-from firm_hdl.verify.ts1.oracles.ros2_oracle import Ros2Proto
+from firm_hdl.verify.ts1.oracles.ros import NEWER, Genmsg, Ros2Proto, RosidlAdapter, RosidlParser
 from firm_hdl.verify.ts1.oracles.rosbags_oracle import Rosbags
 
 __all__ = ["ORACLES"]

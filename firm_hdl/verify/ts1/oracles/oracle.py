@@ -37,7 +37,6 @@ class Oracle(ABC):
 
     Attributes
     ----------
-    name : str
     languages : mapping of str to set of str
         The languages that it reads, for each dialect: ``msg``, ``srv``, ``action``, ``idl``.
     judges_changes : bool

@@ -37,7 +37,6 @@ FILES = {
           struct Do_Feedback {{ @unit(value="s") long z; }};
         }}; }};""",
 }
-UNITS = ["fields/y/unit", "constants/N/unit", "constants/M/unit"]
 RELEASES = pytest.mark.parametrize("oracle", ["rosidl_parser", "rosidl_parser-4.9"])
 ONE = pytest.mark.parametrize("oracle", by_depth(["rosidl_parser"], ["rosidl_parser-4.9"]))
 
@@ -86,10 +85,3 @@ def test_a_wrong_comment_or_unit_is_a_difference(court, monkeypatch, oracle, nam
     assert isinstance(verdict, Failed)
     found = [text.partition(": ")[0] for text in verdict.failures]
     assert found == [f"structure/p/msg/A/{place}" for place in places]
-
-
-@RELEASES
-def test_annotations_without_texts_are_not_compared(court, oracle):
-    members = "@verbatim long x; @unit(value=3) long y; @verbatim @unit(value=TRUE) long z;"
-    text = f"module p {{ module msg {{ struct A {{ {members} }}; }}; }};"
-    assert_passed(court("lyrical", {"p/msg/A.idl": text}).outcome(oracle, "p/A"))

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 import os
-import signal
 import stat
-from pathlib import Path
 
 import pytest
 
 from firm_hdl.verify.results.records import Test as Tested
 from firm_hdl.verify.results.verdict import Failed
-from firm_hdl.verify.ros_python.worker import Worker
 from firm_hdl.verify.ts1.judge import judge_case
-from firm_hdl.verify.ts1.oracles import debian, ros2_oracle
-from firm_hdl.verify.ts1.oracles.debian import Genmsg
-from firm_hdl.verify.ts1.oracles.oracle import Accepted, NotJudged, Refused
+from firm_hdl.verify.ts1.oracles import ros as ros2_oracle
+from firm_hdl.verify.ts1.oracles.oracle import Accepted, NotJudged
+from firm_hdl.verify.ts1.oracles.ros import Genmsg
 from tests.verify.judged import assert_passed
-from tests.verify.ts1.conftest import need
 
-MODULES = Path(debian.__file__).parent
 FILES = {
     "p/msg/A.msg": "int8 N=010\nq/B[2] bs\nHeader header\nHeader[] headers\n",
     "p/msg/Header.msg": "string x\n",
@@ -27,25 +22,6 @@ FILES = {
     "p/action/Do.action": "int8 g\n---\n---\nq/B f\n",
     "q/msg/B.msg": "float32 x\n",
 }
-
-
-def test_genmsg_gives_structure_text_and_sum(court):
-    answer = court("noetic", FILES).answer("genmsg", "p/A")
-    assert isinstance(answer, Accepted)
-    message = answer.facts["structure"]["p/A"]
-    assert message["constants"] == [{"name": "N", "type": "int8", "value": 10, "text": "010"}]
-    assert message["fields"] == [
-        {"name": "bs", "type": "q/B[2]"},
-        {"name": "header", "type": "std_msgs/Header"},
-        {"name": "headers", "type": "p/Header[]"},
-    ]
-    assert answer.facts["show"].splitlines()[:3] == ["int8 N=010", "q/B[2] bs", "  float32 x"]
-    assert len(answer.facts["md5"]["p/A"]) == 32
-
-
-@pytest.mark.parametrize("type_", ["p/A", "p/S", "p/Do"])
-def test_genmsg_and_we_agree(court, type_):
-    assert_passed(court("noetic", FILES).outcome("genmsg", type_))
 
 
 def test_messages_that_are_yet_to_be_made_from_an_action_are_refused_by_both(court):
@@ -60,56 +36,6 @@ ROS2 = FILES | {
 }
 
 
-def test_rosidl_adapter_gives_structure_defaults_and_comments(court):
-    answer = court("lyrical", ROS2).answer("rosidl_adapter", "p/A")
-    assert answer.facts["structure"]["p/msg/A"] == {
-        "comment": "",
-        "constants": [{"name": "N", "type": "int8", "value": 16, "comment": "", "unit": None}],
-        "fields": [
-            {
-                "name": "names",
-                "type": "string<=5[<=3]",
-                "default": ["a", "b"],
-                "comment": "Names.",
-                "unit": "m",
-            },
-            {"name": "bs", "type": "q/msg/B[]", "default": None, "comment": "", "unit": None},
-        ],
-    }
-
-
-def test_rosidl_parser_gives_derived_messages_too(court):
-    facts = court("lyrical", ROS2).answer("rosidl_parser", "p/Do").facts["structure"]
-    assert list(facts)[:3] == ["p/action/Do_Goal", "p/action/Do_Result", "p/action/Do_Feedback"]
-    assert "p/action/Do_SendGoal_Request" in facts and "p/action/Do_FeedbackMessage" in facts
-
-
-@pytest.mark.parametrize("oracle", ["rosidl_adapter", "rosidl_parser"])
-@pytest.mark.parametrize("type_", ["p/A", "p/S", "p/Do", "q/B"])
-def test_rosidl_and_we_agree(court, oracle, type_):
-    assert_passed(court("lyrical", ROS2).outcome(oracle, type_))
-
-
-@pytest.mark.parametrize(
-    ("distro", "oracle"),
-    [("noetic", "genmsg"), ("lyrical", "rosidl_adapter"), ("lyrical", "rosbags")],
-)
-def test_an_unknown_type_is_refused(court, distro, oracle):
-    files = {"p/msg/A.msg": "B b\n", "p/msg/B.msg": "C[] c\n"}
-    here = court(distro, files)
-    for type_ in ("p/A", "p/B"):
-        assert isinstance(here.answer(oracle, type_), Refused)
-        assert here.outcome(oracle, type_).is_refused
-
-
-@pytest.mark.parametrize(
-    ("distro", "oracle"), [("noetic", "genmsg"), ("lyrical", "rosidl_adapter")]
-)
-def test_a_type_that_contains_itself_is_refused_by_both(court, distro, oracle):
-    here = court(distro, {"p/msg/A.msg": "B b\n", "p/msg/B.msg": "A[] a\n"})
-    assert here.outcome(oracle, "p/A").is_refused
-
-
 @pytest.mark.parametrize(
     ("distro", "oracle"), [("noetic", "genmsg"), ("lyrical", "rosidl_adapter")]
 )
@@ -118,64 +44,6 @@ def test_a_file_that_is_no_text_is_refused_by_both(court, distro, oracle, tmp_pa
     folder.mkdir(parents=True)
     (folder / "A.msg").write_bytes(b"int8 x # \xff\n")
     assert court(distro, {}).outcome(oracle, "p/A").is_refused
-
-
-def test_rosbags_gives_structure_and_hash(court):
-    facts = court("lyrical", ROS2).answer("rosbags", "q/B").facts
-    assert facts["structure"]["q/msg/B"]["fields"] == [{"name": "x", "type": "float32"}]
-    assert facts["hash"]["q/msg/B"].startswith("RIHS01_")
-
-
-def worker(court, distro, family):
-    found = Worker(family, court(distro, FILES).universe.folder, modules=MODULES)
-    need(family, found.missing)
-    return found
-
-
-def request(**changes):
-    asked = {"oracle": "genmsg", "package": "q", "kind": "msg", "name": "B", "file": "B.msg"}
-    return {**asked, "text": None, "has_events": False, **changes}
-
-
-def test_a_worker_that_dies_is_replaced(court):
-    mine = worker(court, "noetic", "genmsg")
-    assert "facts" in mine.ask(request())
-    os.kill(mine._process.pid, signal.SIGKILL)
-    assert mine.ask(request()) == {"failed": "the process that was asked died"}
-    assert "facts" in mine.ask(request())
-    mine.close()
-
-
-def test_a_worker_ends_when_it_is_closed_and_may_be_asked_again(court):
-    mine = worker(court, "noetic", "genmsg")
-    process = mine._process
-    mine.close()
-    assert process.returncode == 0
-    assert "facts" in mine.ask(request())
-    mine.close()
-
-
-def test_whatever_a_definition_is_the_worker_answers(court):
-    mine = worker(court, "lyrical", "rosidl")
-    for text in ["\0", "string X='\\", "]", "int8[", "x" * 100_000, "#" * 5000, "\ud800", "@{x}\n"]:
-        answer = mine.ask(request(oracle="rosidl_parser", text=text))
-        assert set(answer) < {"facts", "refused", "failed"}, text
-    assert "facts" in mine.ask(request(oracle="rosidl_parser"))
-    mine.close()
-
-
-@pytest.mark.parametrize("python", ["/nowhere/python", "/bin/false", "/bin/cat"])
-def test_a_python_without_the_needed_packages(tmp_path, python):
-    assert Worker("genmsg", str(tmp_path), modules=MODULES, python=python).missing
-
-
-def test_a_failure_of_the_worker_is_an_answer(court):
-    class FailedOracle(Genmsg):
-        _worker = type("W", (), {"ask": lambda self, request: {"failed": "too slow"}})()
-
-    here = court("noetic", FILES)
-    (case,) = here.universe.select(["q/B"])
-    assert FailedOracle(here.universe).judge(case) == NotJudged("too slow")
 
 
 def test_an_invalid_answer_of_a_worker_fails(court):
@@ -244,14 +112,6 @@ def test_a_ros2_that_is_too_slow_or_cannot_be_run_has_not_judged(court, ros2_com
     monkeypatch.setenv("PATH", str(ros2_command))
     answer = court("lyrical", ROS2).answer("ros2", "p/A")
     assert isinstance(answer, NotJudged) and answer.reason.startswith("ros2 failed: [Errno 2]")
-
-
-def test_ros2_is_missing_where_it_is_not_installed(court, monkeypatch):
-    monkeypatch.setenv("PATH", "/nowhere")
-    universe = court("lyrical", {}).universe
-    from firm_hdl.verify.ts1.oracles.ros2_oracle import Ros2Proto
-
-    assert Ros2Proto(universe).missing() == "there is no command 'ros2'; source ROS 2's setup"
 
 
 @pytest.mark.parametrize("oracle", ["rosidl_parser", "rosidl_adapter"])

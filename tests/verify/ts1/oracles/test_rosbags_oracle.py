@@ -30,39 +30,6 @@ def answers(folder, distro, files, *types):
     return list(map(Rosbags(universe).judge, universe.select(types)))
 
 
-def types_of(answer, name):
-    return [each["type"] for each in answer.facts["structure"][name]["fields"]]
-
-
-def test_types_have_the_names_bounds_and_counts_of_ros2(folder):
-    text = "int8[] a\nint8[3] b\nint8[<=4] c\nstring<=5 d\nstring<=5[<=6] e\nB[] f\nB[2] g\nB h\n"
-    text += "builtin_interfaces/Time i\n"
-    (answer,) = answers(folder, "lyrical", {"p/msg/A.msg": text, "p/msg/B.msg": "bool x\n"}, "p/A")
-    assert types_of(answer, "p/msg/A") == [
-        *("int8[]", "int8[3]", "int8[<=4]", "string<=5", "string<=5[<=6]"),
-        *("p/msg/B[]", "p/msg/B[2]", "p/msg/B", "builtin_interfaces/msg/Time"),
-    ]
-
-
-def test_types_have_the_names_of_ros1_and_no_hash(folder):
-    files = {"p/msg/A.msg": "time a\nduration[] b\nB[2] c\nint8 K=3\n", "p/msg/B.msg": "bool x\n"}
-    (answer,) = answers(folder, "noetic", files, "p/A")
-    assert types_of(answer, "p/A") == ["time", "duration[]", "p/B[2]"]
-    assert answer.facts["structure"]["p/A"]["constants"] == [
-        {"name": "K", "type": "int8", "value": 3}
-    ]
-    assert list(answer.facts) == ["structure"]
-
-
-def test_constants_do_not_keep_a_message_from_having_a_hash(folder):
-    plain, named = "int8 x\n", "string S='\\'\nfloat32 F=inf\nint8 x\n"
-    files = {"p/msg/A.msg": plain, "q/msg/A.msg": named, "r/msg/A.msg": "p/A a\nq/A b\n"}
-    one, other, whole = answers(folder, "lyrical", files, "p/A", "q/A", "r/A")
-    for answer, name in ((one, "p/msg/A"), (other, "q/msg/A"), (whole, "r/msg/A")):
-        assert list(answer.facts["hash"]) == [name]
-        assert answer.facts["hash"][name].startswith("RIHS01_")
-
-
 def test_line_ends_are_a_fact_of_their_own(folder):
     plain = {"p/msg/A.msg": "B b\nint8 x\n", "p/msg/B.msg": "int8 y\n"}
     (expected,) = answers(folder, "lyrical", plain, "p/A")

@@ -113,12 +113,6 @@ def test_genmsg_tells_of_each_part_and_of_derived_messages(court):
         assert_passed(here.outcome("genmsg", type_))
 
 
-def test_an_action_of_ros1_has_three_parts(court):
-    for text, count in (("int8 a\n---\n", 2), ("---\n---\n---\n", 4)):
-        answer = court("noetic", {"p/action/Do.action": text}).answer("genmsg", "p/Do")
-        assert answer == Refused(f"ValueError: an action has 3 parts, not {count}")
-
-
 PLACES = {
     "msg": ["int8 x\n{} n\n", "int8 x\n{}[] n\n", "{}[2] n\n"],
     "srv": ["{} n\n---\nint8 x\n", "int8 x\n---\n{}[] n\n"],
@@ -143,47 +137,6 @@ def test_a_missing_type_is_refused_wherever_it_is(court, distro, oracle):
     for case in cases:
         answer = judge.judge(case)
         assert isinstance(answer, Refused) == case.name.startswith("Bad"), (case.text, answer)
-
-
-@pytest.mark.parametrize("oracle", ["rosidl_adapter", "rosidl_parser"])
-def test_a_type_that_is_needed_twice_does_not_contain_itself(court, oracle):
-    files = {
-        "p/msg/A.msg": "B b\nC c\nB[] more\n",
-        "p/msg/B.msg": "D d\n",
-        "p/msg/C.msg": "B b\nD d\n",
-        "p/msg/D.msg": "int8 x\n",
-    }
-    assert_passed(court("humble", files).outcome(oracle, "p/A"))
-    circle = court("humble", {**files, "p/msg/D.msg": "C[] c\n"})
-    for name in "ABCD":
-        assert circle.outcome(oracle, f"p/{name}").is_refused
-
-
-def test_types_that_idl_needs_are_looked_up(court):
-    files = {"p/msg/B.msg": "int8 x\n"}
-    for number, member in enumerate(
-        ("p::msg::{} n", "p::msg::{} n[2]", "sequence<p::msg::{}> n", "sequence<p::msg::{}, 3> n")
-    ):
-        for name, needed in (("Good", "B"), ("Bad", "C")):
-            struct = f"struct {name}{number} {{ long x; {member.format(needed)}; }};"
-            text = f"module p {{ module msg {{ {struct} }}; }};"
-            files[f"p/msg/{name}{number}.idl"] = text
-    here = court("humble", files)
-    cases = [case for case in here.universe.select([]) if case.language == "idl"]
-    refused = Refused("_RefusedError: p/msg/C is not there")
-    oracle = here.oracle("rosidl_parser")
-    for case in cases:
-        answer = oracle.judge(case)
-        assert (answer == refused) is case.name.startswith("Bad"), (case.text, answer)
-
-
-def test_line_ends_of_a_changed_text_are_those_of_a_file(court):
-    here = court("humble", FILES)
-    (case,) = here.universe.select(["p/A"])
-    expected = here.answer("rosidl_adapter", "p/A")
-    for end in ("\r\n", "\r"):
-        changed = replace(case, text=case.text.replace("\n", end), before=case.text)
-        assert here.oracle("rosidl_adapter").judge(changed) == expected
 
 
 def test_genmsg_reads_a_changed_text_as_a_file_that_is_none_of_the_folder(court):
@@ -213,18 +166,6 @@ def test_a_changed_definition_is_not_what_others_need(court):
     circle = replace(inner, text="p/A a\n", before=inner.text)
     assert isinstance(oracle.judge(circle), Refused)
     assert oracle.judge(outer) == whole
-
-
-def test_a_type_without_a_number_has_no_hash(court):
-    text = (
-        "module p {{ module msg {{ module A_Constants {{ const long N = 3; }}; "
-        "struct A {{ wstring<{}> w; }}; }}; }};"
-    )
-    here = court("lyrical", {"p/msg/A.idl": text.format("3")})
-    (case,) = here.universe.select(["p/A"])
-    other = replace(case, text=text.format("A_Constants::N"), before=case.text)
-    one, other = map(here.oracle("rosidl_parser-4.9").judge, (case, other))
-    assert "hash" in one.facts and list(other.facts) == ["structure", "scope"]
 
 
 def test_a_needed_type_is_that_of_the_msg_file_if_there_are_two(court):

@@ -1,4 +1,4 @@
-"""The generated test benches of a type, in GHDL.
+"""A test system that runs the generated VHDL test benches of many types, in GHDL.
 
 The output of ``firm-hdl build`` goes to a temporary folder. GHDL analyses all of its VHDL with
 warnings as errors. Then the folder's own script runs the bench. The bench sends the packets of
@@ -11,8 +11,12 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Sequence
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases.make import Case
@@ -24,18 +28,32 @@ from firm_hdl.export.manifest import MANIFEST
 from firm_hdl.export.options import Options as BuildOptions
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
 from firm_hdl.jobs.processes import ToolError, made_by, run_tool
+from firm_hdl.jobs.programs import find_ghdl, version_of
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
 from firm_hdl.sim.payloads import encoder_of
 from firm_hdl.verify.references.clients import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.results.records import Record, Test
-from firm_hdl.verify.results.texts import first_difference
-from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.systems.system import Stopwatch, Trial, recorded
-from firm_hdl.verify.systems.tasks import library_of
+from firm_hdl.verify.results.verdict import first_difference
+from firm_hdl.verify.systems.options import Options, Request
+from firm_hdl.verify.systems.system import (
+    Judged,
+    Made,
+    Recorder,
+    Stopwatch,
+    Trial,
+    TypesSystem,
+    failure_of,
+    judged,
+    kept,
+    print_passes,
+    recorded,
+    run_tests,
+)
+from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.verify.ts3.confirm import confirm
 
-__all__ = ["run_bench"]
+__all__ = ["Benches", "run_bench"]
 
 WARNINGS = ("--warn-error", "--warn-unused", "--warn-body", "--warn-default-binding")
 
@@ -175,3 +193,68 @@ def _compare(what: str, got: str, right: str) -> None:
         f"{what}: number {at} of {len(wanted)} is {received[at : at + 1]} "
         f"instead of {wanted[at : at + 1]}"
     )
+
+
+class Benches(TypesSystem):
+    """The test system of generated benches. A test is the bench of a type of one distribution.
+
+    Parameters
+    ----------
+    request : Request
+        `paths`, `wire`, `widths` and `jobs` are used.
+
+    Raises
+    ------
+    ProgramMissingError
+    """
+
+    name = "bench"
+
+    def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
+        # Equal types of several distributions each have a bench, because the headers of the
+        # generated files differ.
+        each = [replace(task, distro=name, same=(name,)) for task in tasks for name in task.same]
+        super().__init__(each, request)
+        self._ghdl = find_ghdl()
+
+    @cached_property
+    def tests(self) -> Sequence[Test]:
+        """The tests of all types on all buses."""
+        return [each for width in self._request.widths for each in self._tests(width)]
+
+    def _tests(self, bus_bytes: int) -> list[Test]:
+        return [self._test(task, bus_bytes, "ghdl") for task in self._tasks]
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """What GHDL says of its version: results of another one are another run's."""
+        return {"ghdl": version_of(self._ghdl)}
+
+    def run(self, recorder: Recorder) -> list[Judged]:
+        """Run all benches, and print a table for each bus."""
+        return [each for width in self._request.widths for each in self._run(width, recorder)]
+
+    def _run(self, bus_bytes: int, recorder: Recorder) -> list[Judged]:
+        """Run the benches with one bus."""
+        began = time.perf_counter()
+        label = f"{bus_bytes}-byte bus"
+        tests = {test: test for test in self._tests(bus_bytes)}
+        records = kept(tests, recorder, self._records, label=label).values()
+        print_passes(records, "benches pass")
+        packets = sum(each.packets for each in records)
+        transfers = round(sum(each.metrics.get("transfers", 0) for each in records))
+        seconds = time.perf_counter() - began
+        print(f"{packets} packets, {transfers} transfers of leaves, {seconds:.0f} s")
+        return judged(records)
+
+    def _records(self, left: Sequence[Test]) -> Made[Test]:
+        given = self._request, self._ghdl
+        jobs = self._request.jobs
+        return run_tests(
+            run_bench,
+            given,
+            left,
+            self._command,
+            lambda record: failure_of(f"{record.test.type} ({record.test.distro})", record),
+            jobs=jobs,
+        )

@@ -1,4 +1,4 @@
-"""ROS's own readers, which run in separate processes; see `worker_script`.
+"""ROS's own readers: in separate processes (see `worker_script`), and the command ``ros2``.
 
 Debian has genmsg and the rosidl of humble. Newer releases of rosidl come from PyPI. Each of them
 has its own oracles, whose names end in the version.
@@ -12,12 +12,14 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from firm_hdl.frontend import DISTROS
+from firm_hdl.jobs.processes import ToolError, TooSlowError, run_tool
+from firm_hdl.jobs.programs import which
 from firm_hdl.verify.ros2_wheels import RELEASES, Release
 from firm_hdl.verify.ros_python.worker import ROS_PYTHON, Worker
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Answer, NotJudged, Oracle, Refused
 from firm_hdl.verify.ts1.universe import DefinitionCase
 
-__all__ = ["NEWER", "Genmsg", "RosidlAdapter", "RosidlParser"]
+__all__ = ["NEWER", "Genmsg", "Ros2Proto", "RosidlAdapter", "RosidlParser"]
 
 
 class _Worked(Oracle):
@@ -135,3 +137,33 @@ def _newer() -> Iterator[type[Oracle]]:
 
 NEWER: tuple[type[Oracle], ...] = tuple(_newer())
 """Oracles of the releases that PyPI has, oldest first."""
+
+
+_MOST_SECONDS = 60
+
+
+class Ros2Proto(Oracle):
+    """The command ``ros2 interface proto``, which is called for each type.
+
+    It knows installed packages only. So a type that it does not find is not judged.
+    """
+
+    name = "ros2"
+    languages: ClassVar = {"ros2": frozenset({"msg", "srv", "action", "idl"})}
+    judges_changes = False
+
+    def missing(self) -> str | None:
+        return None if which("ros2") else "there is no command 'ros2'; source ROS 2's setup"
+
+    def judge(self, case: DefinitionCase) -> Answer:
+        command = ["ros2", "interface", "proto", case.full_name]
+        try:
+            said = run_tool(command, timeout=_MOST_SECONDS, with_errors=False)
+        except (TooSlowError, OSError) as error:
+            return NotJudged(f"ros2 failed: {error}")
+        except ToolError as error:
+            return NotJudged(f"ros2 does not have it: {str(error).splitlines()[-1]}")
+        if not said.strip():
+            return NotJudged("ros2 says nothing of it")
+        # The command's `print` adds one line end.
+        return Accepted({"proto": said.removesuffix("\n")})

@@ -1,3 +1,0 @@
-"""The generated VHDL test benches as a test system."""
-
-__all__ = []

@@ -1,0 +1,211 @@
+"""Client libraries under test as a test system: each is compared with ROS's own serializers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+from firm_hdl.cases.effort import all_cases
+from firm_hdl.cases.user_oracle import judge_of
+from firm_hdl.cases.values import Plain, from_objects
+from firm_hdl.model import Message
+from firm_hdl.plan import build_plan
+from firm_hdl.verify.clients.judge import LibraryComparison, LibraryResult
+from firm_hdl.verify.references.client import ClientMissingError
+from firm_hdl.verify.references.clients import (
+    CLIENTS,
+    REFERENCES,
+    client,
+    close_clients,
+    find_clients,
+)
+from firm_hdl.verify.results.records import Record, Test
+from firm_hdl.verify.results.verdict import NotJudged
+from firm_hdl.verify.systems.options import Request, command_again
+from firm_hdl.verify.systems.system import (
+    Judged,
+    Recorder,
+    Trial,
+    TypesSystem,
+    failure_of,
+    judged,
+    kept,
+    print_passes,
+    recorded,
+    run_tests,
+    wire_of,
+)
+from firm_hdl.verify.systems.tasks import library_of
+from firm_hdl.wire import Wire, lay_out
+
+__all__ = ["Libraries", "judge_library", "reference_of"]
+
+BUS_BYTES = 8
+"""Lengths of sequences and texts are chosen as for a bus of this width."""
+
+
+def reference_of(library: str, wire: Wire, installed: Sequence[str]) -> str | None:
+    """Return the first reference for a library on a wire; `None` if none is installed."""
+    return next(iter(_references(library, wire, installed)), None)
+
+
+def _references(library: str, wire: Wire, installed: Sequence[str]) -> list[str]:
+    own, *others = REFERENCES[wire]
+    # ROS's own serializer is judged by rosbags first, and only then by other releases of itself.
+    names = reversed(others) if library == own else (own, *others)
+    return [name for name in names if name in installed and name != library]
+
+
+class Libraries(TypesSystem):
+    """The test system of ``--sut``. A test is one library on one type.
+
+    A type has no test of a library that does not speak its wire, unless the user named wires or
+    distributions.
+
+    Raises
+    ------
+    ClientMissingError
+        When the system is entered, if a library under test is not installed.
+    """
+
+    name = "sut"
+
+    def __enter__(self) -> Libraries:
+        request = self._request
+        wires = {wire_of(task.distro, request.wire) for task in self._tasks}
+        self._wires: list[Wire] = [wire for wire in REFERENCES if wire in wires]
+        references = {name for wire in self._wires for name in REFERENCES[wire]}
+        asked = [*request.libraries, *(name for name in CLIENTS if name in references)]
+        self._versions, missing = find_clients(list(dict.fromkeys(asked)))
+        for name in request.libraries:
+            if name in missing:
+                raise ClientMissingError(missing[name])
+        self._installed = tuple(n for n in CLIENTS if n in references and n in self._versions)
+        for wire in self._wires:
+            ros = REFERENCES[wire][0]
+            if ros in missing:
+                print(f"{ros}, which is ROS's own on {wire}, is not installed: {missing[ros]}")
+            for name in request.libraries:
+                if wire in CLIENTS[name].wires:
+                    by = self._by(name, wire)
+                    print(f"{name} {self._versions[name]} on {wire}: judged by {by}")
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        close_clients()
+
+    def _by(self, library: str, wire: Wire) -> str:
+        judge = reference_of(library, wire, self._installed)
+        return f"{judge} {self._versions[judge]}" if judge else "no reference"
+
+    @property
+    def tests(self) -> Sequence[Test]:
+        """The tests of all libraries: type by type, so that a process makes its values once."""
+        request = self._request
+        words = [f"seed={request.seed}"]
+        words += [] if request.most_cases is None else [f"cases={request.most_cases}"]
+        return [
+            Test(
+                system=f"sut {library}",
+                distro=task.distro,
+                type=task.name,
+                same=task.same,
+                wire=wire,
+                options=",".join([*words, *request.folders]),
+            )
+            for task in self._tasks
+            for wire in [wire_of(task.distro, request.wire)]
+            for library in request.libraries
+            if request.names_wires or wire in CLIENTS[library].wires
+        ]
+
+    @property
+    def options(self) -> Mapping[str, Any]:
+        """The libraries and references with their versions."""
+        return {"libraries": [f"{name} {version}" for name, version in self._versions.items()]}
+
+    def run(self, recorder: Recorder) -> list[Judged]:
+        """Judge the libraries on all types, and print a summary of each."""
+        request = self._request
+        records = kept(
+            {test: test for test in self.tests},
+            recorder,
+            lambda left: run_tests(
+                judge_library,
+                (request, self._installed),
+                left,
+                self._again,
+                lambda record: failure_of(record.test.title, record),
+                most=len(request.libraries),
+                jobs=request.jobs,
+            ),
+            label="client libraries",
+        ).values()
+        for name in request.libraries:
+            own = [each for each in records if each.test.system == f"sut {name}"]
+            compared = round(sum(each.metrics.get("comparisons", 0) for each in own))
+            print(f"{name} {self._versions[name]}: {compared} comparisons")
+            print_passes(own, "types agree")
+        return judged(records)
+
+    def _again(self, test: Test) -> str:
+        request = self._request
+        return command_again(
+            test.type,
+            sut=test.system.removeprefix("sut "),
+            distro=test.distro,
+            path=request.paths,
+            depends=request.depends,
+            wire=request.wire,
+            seed=request.seed or None,
+            cases=request.most_cases,
+        )
+
+
+def judge_library(given: tuple[Request, Sequence[str]], test: Test) -> Record:
+    """Judge a library on a type, by the first of some references that has the type."""
+    request, installed = given
+    library = test.system.removeprefix("sut ")
+
+    def run(trial: Trial) -> None:
+        message = library_of(test.distro, request).message(test.type)
+        wire = request.wire or message.wire
+        values = _values(test.distro, message, wire, request)
+        trial.watch.enter("testing")
+        result = None
+        for reference in _references(library, wire, installed):
+            both = LibraryComparison(client(library), client(reference), wire)
+            other = both.judge(message, values)
+            result = result or other
+            if not isinstance(other.obstacle, NotJudged):
+                result = other
+                break
+        if result is None:
+            trial.obstacle = NotJudged(f"no reference for {wire} is installed")
+        else:
+            _take(result, trial)
+
+    return recorded(test, run)
+
+
+def _take(result: LibraryResult, trial: Trial) -> None:
+    """Add the result of a comparison to a trial."""
+    trial.record.metrics["comparisons"] = float(result.comparisons)
+    trial.record.cases = result.comparisons
+    verdict = result.verdict
+    if isinstance(verdict, NotJudged):
+        trial.obstacle = verdict
+    trial.failures += getattr(verdict, "failures", ())
+    trial.known = getattr(verdict, "keys", ())
+    trial.judged = getattr(verdict, "cases", 0)
+
+
+@lru_cache(maxsize=1)
+def _values(distro: str, message: Message, wire: Wire, request: Request) -> list[Plain]:
+    """Choose values as TS3 does: all lengths and extremes, and values for a plan's decisions."""
+    judge = judge_of(message, None if request.paths else distro, stand_in=True)
+    plan = build_plan(lay_out(message, wire), bus_bytes=BUS_BYTES)
+    seed, most = request.seed, request.most_cases
+    cases = all_cases(judge.oracle, judge.name, plan, seed=seed, most=most)
+    return [from_objects(message, case.value) for case in cases]
