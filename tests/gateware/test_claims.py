@@ -10,7 +10,6 @@ from functools import cache
 import pytest
 
 from firm_hdl import Deserializer, Parser
-from firm_hdl.gateware.parser import PlanParser
 from firm_hdl.gateware.signatures import LATENCY_CYCLES
 from firm_hdl.plan import build_plan, decode
 from firm_hdl.plan.recovery import recovery
@@ -186,7 +185,7 @@ def test_a_parser_with_a_larger_budget_is_found():
     first = plan.steps[0]
     claim = replace(first.begin.claim, total=first.begin.claim.total + 1)
     step = replace(first, begin=replace(first.begin, claim=claim))
-    parser = PlanParser(replace(plan, steps=(step, *plan.steps[1:])))
+    parser = Parser(BOOK, plan=replace(plan, steps=(step, *plan.steps[1:])))
     seen = test_parser.run(parser, [numbers(100, 80, 301), numbers(100, 80, 302)])
     assert [status.name for status in seen.statuses] == ["TRUNCATED", "LENGTH"]
     assert decode(plan, numbers(100, 80, 301)).status == "LENGTH"
