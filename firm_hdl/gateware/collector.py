@@ -194,6 +194,8 @@ class Collector(wiring.Component):
             for state in program.states
             if state.cut is not None
         ]
+        # The last state also waits for room for the status: so a status is never lost, and `status`
+        # needs only one register.
         m.d.comb += [
             free.eq(~self.words.valid | self.words.ready),
             complete.eq(free & ~any_of(missing) & (~ends | ~status.valid | status.ready)),
@@ -262,6 +264,7 @@ class Collector(wiring.Component):
             single=of_length(lambda length: length.at_most_one_pass),
             nul=False,
         )
+        # The rest waits for the state that takes it; in between are only words of its own run.
         with m.If(complete):
             with m.If(ends):
                 m.d.sync += [rest.eq(0), has_nul.eq(0)]

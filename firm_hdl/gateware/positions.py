@@ -24,7 +24,10 @@ __all__ = [
 
 
 class Ring:
-    """The shape of positions: a lane of a bus word, the word's slot in the ring, and a lap bit.
+    """The shape of positions: a lane of a bus word, the word's slot in the ring, and a lap bit::
+
+        | lap | slot | lane |      8 words of 8 bytes: 1 + 3 + 3 bits
+        |<- beat --->|
 
     A position is a number of `bits` bits, with the lane in the lowest ones and the lap bit in the
     highest one. It counts bytes and wraps around. The sign of the difference compares two positions
