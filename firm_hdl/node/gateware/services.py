@@ -14,7 +14,7 @@ from firm_hdl.gateware.packets.memory import WhenFull
 from firm_hdl.node.control import GATE_COUNTERS
 from firm_hdl.node.description import Store
 from firm_hdl.node.gateware.streams import TAG_BITS, passes
-from firm_hdl.plan.geometry import ring_beats
+from firm_hdl.timing.rings import ring_beats
 from firm_hdl.wire import Wire
 
 __all__ = ["RequestGate", "TaggedFifo"]
