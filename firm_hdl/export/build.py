@@ -27,7 +27,7 @@ from firm_hdl.export.manifest import (
 )
 from firm_hdl.export.options import Options
 from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, ports_of
-from firm_hdl.export.vhdl.neighbours import check_packages
+from firm_hdl.export.vhdl.backend import check_packages
 from firm_hdl.frontend import Library, load_all
 from firm_hdl.jobs.executors import ExecutorError, run_each
 from firm_hdl.model import Message

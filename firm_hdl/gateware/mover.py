@@ -94,7 +94,9 @@ class Mover(wiring.Component):
         writers = self._writers(m, take)
 
         # The status of a packet is sent with its last order.
-        ends, ends_now, status_now = Signal(), Signal(), Signal.like(order.status)
+        ends = Signal()
+        ends_now = Signal()
+        status_now = Signal.like(order.status)
         m.d.comb += ends.eq(self.orders.valid & order.ends)
         with m.If(take):
             m.d.sync += [ends_now.eq(ends), status_now.eq(order.status)]
@@ -223,7 +225,8 @@ class _Words:
         self.word: dict[str, Signal] = {}
         self.good: dict[str, Signal] = {}
         order = mover.orders.payload
-        self.length_good, self.last = Signal(), Signal()
+        self.length_good = Signal()
+        self.last = Signal()
         self.final = Signal.like(order.final)
         with m.If(take):
             m.d.sync += [

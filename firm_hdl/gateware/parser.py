@@ -172,7 +172,8 @@ class VerdictQueue(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         came, first = self.came, self.first
-        second, third = Signal(came.shape()), Signal(came.shape())
+        second = Signal(came.shape())
+        third = Signal(came.shape())
         takes = Signal()
         m.d.comb += [
             self.has_room.eq(~second.ends),
@@ -224,7 +225,8 @@ class PacketSizes(wiring.Component):
         m = Module()
         ring, beat = self.ring, self.beat
         # The counter of beats has overflowed.
-        over, total = Signal(), Signal(SIZE_BITS + 1)
+        over = Signal()
+        total = Signal(SIZE_BITS + 1)
         # A packet has at least one beat, so the ring holds at most `depth` packets. Three packets
         # that are judged may wait as well.
         memory = LutMemory(m, "ends", SIZE_BITS, 2 * ring.depth)

@@ -120,7 +120,8 @@ def align_up(
         low = align.bit_length() - 1
         m.d.comb += total.eq(value + (distance + align_addend(align, phase, shift)))
         return Cat(Const((phase + shift) % align, low), total[low:])
-    pad, result = Signal(3), Signal(len(value))
+    pad = Signal(3)
+    result = Signal(len(value))
     m.d.comb += [
         total.eq(value + distance),
         pad.eq((phase - total) & (align - 1)),

@@ -41,8 +41,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   wire more;
   wire follows;
   wire or_14;
-  wire [10:0] mux_15;
-  wire mux_22;
+  wire [10:0] arrival_limit_next;
+  wire has_second_next;
   wire [10:0] ends_read_data;
 
   // Signals that no logic reads, for simulation.
@@ -71,8 +71,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   assign more = stored | ends_now;
   assign follows = arrival_ended_q & ends_now;
   assign or_14 = arrival_next | ~arrival_ended_q;
-  assign mux_15 = has_second ? second : {next_beat, newest_0};
-  assign mux_22 = has_second ? (~arrival_next | more) : (~arrival_next & follows);
+  assign arrival_limit_next = has_second ? second : {next_beat, newest_0};
+  assign has_second_next = has_second ? (~arrival_next | more) : (~arrival_next & follows);
 
   always @(posedge aclk) begin
     ends[pushed[2:0]] <= {next_beat, add_3};
@@ -98,8 +98,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
       at <= at + {3'd0, full};
       packets_ready_q <= ~used[3] & ~((used == 4'd7) & arrives);
       if (or_14) begin
-        arrival_limit_q <= mux_15[6:0];
-        arrival_following_q <= mux_15[10:7];
+        arrival_limit_q <= arrival_limit_next[6:0];
+        arrival_following_q <= arrival_limit_next[10:7];
         arrival_ended_q <= has_second | ends_now;
       end
       if (arrival_next || !has_second) begin
@@ -109,7 +109,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
           second <= {next_beat, add_3};
         end
       end
-      has_second <= mux_22;
+      has_second <= has_second_next;
       if (has_second && ends_now) begin
         pushed <= pushed + 4'd1;
       end
@@ -194,11 +194,11 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
 );
 
   // Registers.
-  reg register_signal = 1'b0;
+  reg bad = 1'b0;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   reg [2:0] code = 3'd0;
   reg new_error = 1'b0;
-  reg [3:0] register_signal_50 = 4'd0;
+  reg [3:0] items_room = 4'd0;
   reg [3:0] map_room = 4'd0;
   reg rest = 1'b0;
   reg has_nul = 1'b0;
@@ -223,7 +223,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   wire cut;
   wire trailing;
   wire stops;
-  wire and_signal_35;
+  wire drains;
   wire allowed;
   wire issue;
   wire [6:0] map_at;
@@ -237,8 +237,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   wire and_187;
   wire and_201;
   wire and_203;
-  wire [3:0] mux_224;
-  wire [6:0] mux_243;
+  wire [3:0] items_room_next;
+  wire [6:0] first_at_next;
 
   // Signals that no logic reads, for simulation.
   wire default_0;
@@ -292,12 +292,12 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign cut = arrival_ended & ~present;
   assign trailing = present & (|left[5:2]);
   assign stops = mismatch | cut | (ends_message & ~arrival_ended & trailing);
-  assign and_signal_35 = register_signal & ~new_error & (~at_end | arrival_ended);
-  assign allowed = ~register_signal & (~ends_message | arrival_ended);
-  assign orders_valid = and_signal_35 | (allowed & present & ~(step[0] & mismatch_31));
-  assign issue = (and_signal_35 & orders_ready) | (allowed & orders_ready & present & ~(step[0] &
+  assign drains = bad & ~new_error & (~at_end | arrival_ended);
+  assign allowed = ~bad & (~ends_message | arrival_ended);
+  assign orders_valid = drains | (allowed & present & ~(step[0] & mismatch_31));
+  assign issue = (drains & orders_ready) | (allowed & orders_ready & present & ~(step[0] &
       mismatch_31));
-  assign arrival_next = (and_signal_35 & orders_ready & ends_packet) | (allowed & orders_ready &
+  assign arrival_next = (drains & orders_ready & ends_packet) | (allowed & orders_ready &
       ends_packet & present & ~(step[0] & mismatch_31));
   assign map_at = last_at + {{2{map_offset[4]}}, map_offset};
   assign sub_77 = map_at[6:3] - {3'd0, two_word_map};
@@ -311,19 +311,19 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign early_last = ends_packet ? ({arrival_following, 3'd0} + 7'd7) : exit_sum;
   assign step_to_exit = issue & ~ends_packet;
   assign and_187 = issue & ends_packet;
-  assign and_201 = register_signal & new_error;
-  assign and_203 = register_signal & and_signal_35 & orders_ready;
-  assign mux_224 = two_word_map ? (map_left[6] ? {1'b0, (&map_left[6:3]) ? map_left[2:0] : 3'd0} :
-      4'd8) : (map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]));
-  assign mux_243 = ends_packet ? {arrival_following, 3'd0} : (register_signal ? (at_end ?
-      arrival_limit : first_at) : step_end);
+  assign and_201 = bad & new_error;
+  assign and_203 = bad & drains & orders_ready;
+  assign items_room_next = two_word_map ? (map_left[6] ? {1'b0, (&map_left[6:3]) ? map_left[2:0] :
+      3'd0} : 4'd8) : (map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]));
+  assign first_at_next = ends_packet ? {arrival_following, 3'd0} : (bad ? (at_end ? arrival_limit :
+      first_at) : step_end);
 
   always @(posedge aclk) begin
     if (rst) begin
-      register_signal <= 1'b0;
+      bad <= 1'b0;
       code <= 3'd0;
       new_error <= 1'b0;
-      register_signal_50 <= 4'd0;
+      items_room <= 4'd0;
       map_room <= 4'd0;
       rest <= 1'b0;
       has_nul <= 1'b0;
@@ -338,9 +338,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
       exit_add <= 6'd8;
     end else begin
       if (and_187) begin
-        register_signal <= 1'b0;
-      end else if (!register_signal) begin
-        register_signal <= stops;
+        bad <= 1'b0;
+      end else if (!bad) begin
+        bad <= stops;
         if (ends_message) begin
           code <= 3'd2;
         end else begin
@@ -352,15 +352,15 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
           code <= 3'd1;
         end
       end
-      new_error <= stops & ~register_signal;
+      new_error <= stops & ~bad;
       if (and_201) begin
         if ((code == 3'd2) || (code == 3'd5)) begin
-          register_signal_50 <= 4'd8;
+          items_room <= 4'd8;
         end else begin
-          register_signal_50 <= 4'd0;
+          items_room <= 4'd0;
         end
         if (code == 3'd1) begin
-          register_signal_50 <= mux_224;
+          items_room <= items_room_next;
         end
         if (code == 3'd2) begin
           map_room <= 4'd8;
@@ -379,7 +379,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
           end
         end
       end else if (and_203) begin
-        register_signal_50 <= 4'd0;
+        items_room <= 4'd0;
         map_room <= 4'd0;
       end
       if (issue) begin
@@ -402,8 +402,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
           exit_add <= {2'd0, |step[3:0], step[3], 2'd0};
         end
       end
-      if (issue || (register_signal && at_end)) begin
-        first_at <= mux_243;
+      if (issue || (bad && at_end)) begin
+        first_at <= first_at_next;
       end
       words_last <= words_last;
       words_less <= words_less;
@@ -411,10 +411,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   end
 
   assign header_at = first_at[6:3];
-  assign orders_payload = {register_signal ? code : (trailing ? 3'd2 : 3'd0), ends_packet,
-      first_at[6:3], 1'b0, ~register_signal, words_last, 1'b0, register_signal ? map_room : 4'd8,
-      (register_signal && (register_signal_50 < 4'd8)) ? register_signal_50 : 4'd8,
-      map_at[5:3] + 3'd1, sub_77[2:0] + 3'd1, map_at[5:0], sub_77[2:0], map_at[2:0], at_end,
+  assign orders_payload = {bad ? code : (trailing ? 3'd2 : 3'd0), ends_packet, first_at[6:3], 1'b0,
+      ~bad, words_last, 1'b0, bad ? map_room : 4'd8, (bad && (items_room < 4'd8)) ? items_room :
+      4'd8, map_at[5:3] + 3'd1, sub_77[2:0] + 3'd1, map_at[5:0], sub_77[2:0], map_at[2:0], at_end,
       |step[5:4], |step[3:2], |{step[5], step[3], step[1]}};
 
   assign default_0 = step[0];
@@ -553,8 +552,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   reg [63:0] message_angular_x_payload_q = 64'd0;
   reg [63:0] message_angular_y_payload_q = 64'd0;
   reg [63:0] message_angular_z_payload_q = 64'd0;
-  reg register_signal_93 = 1'b0;
-  reg register_signal_94 = 1'b0;
+  reg length_good = 1'b0;
+  reg last = 1'b0;
   reg final_sig = 1'b0;
   reg [63:0] items_word = 64'd0;
   reg [7:0] items_good = 8'd0;
@@ -572,7 +571,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   reg active_3 = 1'b0;
   reg active_4 = 1'b0;
   reg active_5 = 1'b0;
-  reg register_signal_122 = 1'b0;
+  reg ends_now = 1'b0;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   reg [2:0] status_now = 3'd0;
   reg slow = 1'b0;
@@ -590,13 +589,13 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire go_4;
   wire blocked_5;
   wire go_5;
-  wire and_signal;
-  wire mux_84;
-  wire mux_91;
-  wire mux_98;
-  wire mux_105;
-  wire mux_112;
-  wire mux_119;
+  wire ends;
+  wire active_0_next;
+  wire active_1_next;
+  wire active_2_next;
+  wire active_3_next;
+  wire active_4_next;
+  wire active_5_next;
   wire or_165;
   wire or_181;
   wire [7:0] lane_0_items_data;
@@ -733,21 +732,21 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign go_4 = active_4 & ~blocked_4;
   assign blocked_5 = active_5 & message_angular_z_valid_q;
   assign go_5 = active_5 & ~blocked_5 & ~blocked_4;
-  assign and_signal = orders_valid & orders_payload[38];
+  assign ends = orders_valid & orders_payload[38];
   assign orders_ready = ~slow;
-  assign mux_84 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_0_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd1)) : (active_0 & ~go_0);
-  assign mux_91 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_1_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd2)) : (active_1 & ~go_1);
-  assign mux_98 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_2_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd3)) : (active_2 & ~go_2);
-  assign mux_105 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_3_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd4)) : (active_3 & ~go_3);
-  assign mux_112 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_4_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd5)) : (active_4 & ~go_4);
-  assign mux_119 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_5_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd5)) : (active_5 & ~go_5);
-  assign or_165 = |{and_signal & status_valid_q & ~status_ready, orders_valid & ~orders_payload[3] &
+  assign or_165 = |{ends & status_valid_q & ~status_ready, orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd5) & message_angular_z_valid_q & ~message_angular_z_ready,
       orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd5) &
       message_angular_y_valid_q & ~message_angular_y_ready, orders_valid & ~orders_payload[3] &
@@ -756,10 +755,10 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
       ~message_linear_z_ready, orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd2) &
       message_linear_y_valid_q & ~message_linear_y_ready, orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd1) & message_linear_x_valid_q & ~message_linear_x_ready};
-  assign or_181 = |{register_signal_122 & status_valid_q & ~status_ready, blocked_5 &
-      ~message_angular_z_ready, blocked_4 & ~message_angular_y_ready, blocked_3 &
-      ~message_angular_x_ready, blocked_2 & ~message_linear_z_ready, blocked_1 &
-      ~message_linear_y_ready, blocked_0 & ~message_linear_x_ready};
+  assign or_181 = |{ends_now & status_valid_q & ~status_ready, blocked_5 & ~message_angular_z_ready,
+      blocked_4 & ~message_angular_y_ready, blocked_3 & ~message_angular_x_ready, blocked_2 &
+      ~message_linear_z_ready, blocked_1 & ~message_linear_y_ready, blocked_0 &
+      ~message_linear_x_ready};
 
   always @(posedge aclk) begin
     if (beat[73]) begin
@@ -834,8 +833,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
       message_angular_y_valid_q <= 1'b0;
       message_angular_z_valid_q <= 1'b0;
       status_valid_q <= 1'b0;
-      register_signal_93 <= 1'b0;
-      register_signal_94 <= 1'b0;
+      length_good <= 1'b0;
+      last <= 1'b0;
       final_sig <= 1'b0;
       cut_0 <= 1'b0;
       cut_1 <= 1'b0;
@@ -848,7 +847,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
       active_3 <= 1'b0;
       active_4 <= 1'b0;
       active_5 <= 1'b0;
-      register_signal_122 <= 1'b0;
+      ends_now <= 1'b0;
       status_now <= 3'd0;
       status_payload_q <= 3'd0;
       slow <= 1'b0;
@@ -893,27 +892,27 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
         status_valid_q <= 1'b0;
       end
       if (orders_ready) begin
-        if (register_signal_122) begin
+        if (ends_now) begin
           status_valid_q <= 1'b1;
           status_payload_q <= status_now;
         end
-        register_signal_93 <= orders_payload[32];
-        register_signal_94 <= orders_payload[31];
+        length_good <= orders_payload[32];
+        last <= orders_payload[31];
         final_sig <= orders_payload[33];
         cut_0 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd0);
         cut_1 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd1);
         cut_2 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd2);
         cut_3 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd3);
         cut_4 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd4);
-        register_signal_122 <= and_signal;
+        ends_now <= ends;
         status_now <= orders_payload[41:39];
       end
-      active_0 <= mux_84;
-      active_1 <= mux_91;
-      active_2 <= mux_98;
-      active_3 <= mux_105;
-      active_4 <= mux_112;
-      active_5 <= mux_119;
+      active_0 <= active_0_next;
+      active_1 <= active_1_next;
+      active_2 <= active_2_next;
+      active_3 <= active_3_next;
+      active_4 <= active_4_next;
+      active_5 <= active_5_next;
       if (orders_ready) begin
         slow <= or_165;
       end else begin

@@ -42,19 +42,19 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   reg served_0 = 1'b0;
   reg served_1 = 1'b0;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  reg [2:0] found = 3'd0;
+  reg [2:0] error_sig = 3'd0;
   reg [31:0] items_0 = 32'd0;
   reg [31:0] items_4 = 32'd0;
   reg [31:0] map_0 = 32'd0;
   reg [31:0] map_4 = 32'd0;
-  reg register_signal_61 = 1'b0;
+  reg begun = 1'b0;
   reg words_last = 1'b1;
   reg words_less = 1'b0;
   reg [5:0] step = 6'd1;
   reg [3:0] map_bytes = 4'd8;
   reg [3:0] items_bytes = 4'd0;
   reg two_word_map = 1'b0;
-  reg register_signal_83 = 1'b0;
+  reg rest = 1'b0;
   reg has_nul = 1'b0;
 
   // Combinational signals.
@@ -71,17 +71,17 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   wire left_5_1;
   wire lacks_5_1;
   wire go_5_1;
-  wire or_signal_15;
+  wire free;
   wire or_60;
-  wire and_signal_45;
+  wire complete;
   wire [4:0] map_size;
   wire begins;
-  wire [3:0] mux_78;
+  wire [3:0] to_map_0;
   wire step_to_exit;
-  wire and_96;
+  wire served_0_next;
   wire and_101;
   wire [31:0] or_129;
-  wire [31:0] or_135;
+  wire [31:0] map_0_next;
   wire [31:0] or_148;
   wire [5:0] add_155;
   wire [5:0] to_end;
@@ -95,8 +95,9 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   wire default_4;
   wire default_5;
   wire [160:0] words_payload;
-  wire [4:0] like;
+  wire [4:0] to_map;
   wire words_loads;
+  wire done;
   wire ends;
   wire go_1_0;
   wire go_2_0;
@@ -107,48 +108,49 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   wire step_to_body;
   wire words_down;
   wire words_keeps;
+  wire [2:0] found;  // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   wire words_pending;
   wire [2:0] words_value;
 
   assign left_1_0 = step[1] & ~served_0;
   assign lacks_1_0 = left_1_0 & ~message_linear_x_valid;
-  assign message_linear_x_ready = left_1_0 & message_linear_x_valid & or_signal_15;
+  assign message_linear_x_ready = left_1_0 & message_linear_x_valid & free;
   assign left_2_0 = step[2] & ~served_0;
   assign lacks_2_0 = left_2_0 & ~message_linear_y_valid;
-  assign message_linear_y_ready = left_2_0 & message_linear_y_valid & or_signal_15;
+  assign message_linear_y_ready = left_2_0 & message_linear_y_valid & free;
   assign left_3_0 = step[3] & ~served_0;
   assign lacks_3_0 = left_3_0 & ~message_linear_z_valid;
-  assign message_linear_z_ready = left_3_0 & message_linear_z_valid & or_signal_15;
+  assign message_linear_z_ready = left_3_0 & message_linear_z_valid & free;
   assign left_4_0 = step[4] & ~served_0;
   assign lacks_4_0 = left_4_0 & ~message_angular_x_valid;
-  assign message_angular_x_ready = left_4_0 & message_angular_x_valid & or_signal_15;
+  assign message_angular_x_ready = left_4_0 & message_angular_x_valid & free;
   assign left_5_0 = step[5] & ~served_0;
   assign lacks_5_0 = left_5_0 & ~message_angular_y_valid;
-  assign message_angular_y_ready = left_5_0 & message_angular_y_valid & or_signal_15;
+  assign message_angular_y_ready = left_5_0 & message_angular_y_valid & free;
   assign left_5_1 = step[5] & ~served_1;
   assign lacks_5_1 = left_5_1 & ~message_angular_z_valid;
-  assign go_5_1 = left_5_1 & message_angular_z_valid & or_signal_15 & ~lacks_5_0;
-  assign or_signal_15 = ~words_valid_q | words_ready;
+  assign go_5_1 = left_5_1 & message_angular_z_valid & free & ~lacks_5_0;
+  assign free = ~words_valid_q | words_ready;
   assign or_60 = |{step[4] & ~message_angular_y_valid, step[3] & ~message_angular_x_valid, step[2] &
       ~message_linear_z_valid, step[1] & ~message_linear_y_valid, step[0] & ~message_linear_x_valid,
       lacks_5_1, lacks_5_0, lacks_4_0, lacks_3_0, lacks_2_0, lacks_1_0};
-  assign and_signal_45 = or_signal_15 & ~or_60 & (~step[5] | ~status_valid_q | status_ready);
+  assign complete = free & ~or_60 & (~step[5] | ~status_valid_q | status_ready);
   assign map_size = {1'd0, map_bytes} + {1'd0, two_word_map ? 4'd8 : 4'd0};
-  assign begins = register_signal_61 | (|items_bytes) | (|map_bytes);
-  assign mux_78 = two_word_map ? 4'd0 : items_bytes;
-  assign step_to_exit = and_signal_45 & ~step[5];
-  assign and_96 = (served_0 | (|{message_angular_y_ready, message_angular_x_ready,
-      message_linear_z_ready, message_linear_y_ready, message_linear_x_ready})) & ~and_signal_45;
-  assign and_101 = and_signal_45 & step[5];
+  assign begins = begun | (|items_bytes) | (|map_bytes);
+  assign to_map_0 = two_word_map ? 4'd0 : items_bytes;
+  assign step_to_exit = complete & ~step[5];
+  assign served_0_next = (served_0 | (|{message_angular_y_ready, message_angular_x_ready,
+      message_linear_z_ready, message_linear_y_ready, message_linear_x_ready})) & ~complete;
+  assign and_101 = complete & step[5];
   assign or_129 = (step[0] ? 32'd256 : 32'd0) | (step[1] ? message_linear_x_payload[63:32] :
       32'd0) | (step[2] ? message_linear_y_payload[63:32] : 32'd0) | (step[3] ?
       message_linear_z_payload[63:32] : 32'd0);
-  assign or_135 = or_129 | (step[4] ? message_angular_x_payload[63:32] : 32'd0) | (step[5] ?
+  assign map_0_next = or_129 | (step[4] ? message_angular_x_payload[63:32] : 32'd0) | (step[5] ?
       message_angular_z_payload[63:32] : 32'd0);
   assign or_148 = (step[0] ? message_linear_x_payload[31:0] : 32'd0) | (step[1] ?
       message_linear_y_payload[31:0] : 32'd0) | (step[2] ? message_linear_z_payload[31:0] : 32'd0) |
       (step[3] ? message_angular_x_payload[31:0] : 32'd0);
-  assign add_155 = {1'd0, 1'b0, mux_78} + to_end + 6'd7;
+  assign add_155 = {1'd0, 1'b0, to_map_0} + to_end + 6'd7;
 
   assign to_end = step[5] ? (begins ? ({1'd0, map_size} + 6'd7) : 6'd8) :
       {1'b0, map_size};
@@ -161,10 +163,10 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
       port_549_0_q <= 33'd0;
       served_0 <= 1'b0;
       served_1 <= 1'b0;
-      found <= 3'd0;
+      error_sig <= 3'd0;
       status_valid_q <= 1'b0;
       status_payload_q <= 3'd0;
-      register_signal_61 <= 1'b0;
+      begun <= 1'b0;
       words_valid_q <= 1'b0;
       words_last <= 1'b1;
       words_less <= 1'b0;
@@ -172,25 +174,25 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
       map_bytes <= 4'd8;
       items_bytes <= 4'd0;
       two_word_map <= 1'b0;
-      register_signal_83 <= 1'b0;
+      rest <= 1'b0;
       has_nul <= 1'b0;
     end else begin
-      if (or_signal_15) begin
-        port_549_0_q[13:0] <= {1'b0, mux_78, two_word_map, map_bytes, items_bytes};
+      if (free) begin
+        port_549_0_q[13:0] <= {1'b0, to_map_0, two_word_map, map_bytes, items_bytes};
         port_549_0_q[28:26] <= add_155[5:3];
         port_549_0_q[25:14] <= {end_mask, to_end, 3'd0};
         port_549_0_q[30] <= ~begins;
-        words_valid_q <= and_signal_45;
+        words_valid_q <= complete;
       end
-      if (or_signal_15) begin
+      if (free) begin
         port_549_0_q[29] <= step[5];
-        port_549_0_q[32:31] <= {found != 3'd0, 1'b0};
+        port_549_0_q[32:31] <= {error_sig != 3'd0, 1'b0};
       end
-      served_0 <= and_96;
-      served_1 <= (served_1 | go_5_1) & ~and_signal_45;
+      served_0 <= served_0_next;
+      served_1 <= (served_1 | go_5_1) & ~complete;
       if (and_101) begin
-        found <= 3'd0;
-        status_payload_q <= found;
+        error_sig <= 3'd0;
+        status_payload_q <= error_sig;
       end
       if (status_ready) begin
         status_valid_q <= 1'b0;
@@ -198,8 +200,8 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
       if (and_101) begin
         status_valid_q <= 1'b1;
       end
-      if (and_signal_45) begin
-        register_signal_61 <= begins & ~step[5];
+      if (complete) begin
+        begun <= begins & ~step[5];
         if (step[5]) begin
           step <= 6'd1;
           map_bytes <= 4'd8;
@@ -212,7 +214,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
           two_word_map <= step[4];
         end
         if (step[5]) begin
-          register_signal_83 <= 1'b0;
+          rest <= 1'b0;
           has_nul <= 1'b0;
         end
       end
@@ -222,16 +224,16 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   end
 
   always @(posedge aclk) begin
-    if (or_signal_15 && (!step[5] || !served_0)) begin
+    if (free && (!step[5] || !served_0)) begin
       items_0 <= message_angular_y_payload[63:32];
     end
-    if (or_signal_15 && (!step[5] || !served_1)) begin
+    if (free && (!step[5] || !served_1)) begin
       items_4 <= message_angular_z_payload[31:0];
     end
-    if (or_signal_15 && !(|{step[5] & served_1, (|step[4:1]) & served_0})) begin
-      map_0 <= or_135;
+    if (free && !(|{step[5] & served_1, (|step[4:1]) & served_0})) begin
+      map_0 <= map_0_next;
     end
-    if (or_signal_15) begin
+    if (free) begin
       map_4 <= or_148 | (step[4] ? message_angular_y_payload[31:0] : 32'd0);
     end
   end
@@ -251,8 +253,9 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   assign default_4 = step[4];
   assign default_5 = step[5];
   assign words_payload = {port_549_0_q, map_4, map_0, items_4, items_0};
-  assign like = {1'b0, mux_78};
+  assign to_map = {1'b0, to_map_0};
   assign words_loads = 1'b0;
+  assign done = 1'b1;
   assign ends = step[5];
   assign go_1_0 = message_linear_x_ready;
   assign go_2_0 = message_linear_y_ready;
@@ -263,6 +266,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   assign step_to_body = 1'b0;
   assign words_down = 1'b0;
   assign words_keeps = 1'b1;
+  assign found = error_sig;
   assign words_pending = 1'b0;
   assign words_value = 3'd0;
 endmodule
@@ -285,7 +289,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   reg packets_valid_q = 1'b0;
   reg [68:0] packets_payload_q = 69'd0;
   reg error_sig_q = 1'b0;
-  reg register_signal_21 = 1'b0;
+  reg writes = 1'b0;
   reg [63:0] items_0_write_data = 64'd0;
   reg [6:0] items_start = 7'd0;
   reg [3:0] items_size = 4'd0;
@@ -294,27 +298,27 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   reg [3:0] map_size = 4'd0;
   reg [6:0] at = 7'd0;
   reg [3:0] complete_next = 4'd0;
-  reg register_signal_22 = 1'b0;
-  reg ends_write_data_4 = 1'b0;
+  reg ends_packet = 1'b0;
+  reg failed = 1'b0;
   reg waits = 1'b0;
   reg [3:0] last_bytes = 4'd0;
   reg [3:0] bound = 4'd5;
-  reg [3:0] register_signal_59 = 4'd0;
-  reg [7:0] register_signal_63 = 8'd0;
+  reg [3:0] complete = 4'd0;
+  reg [7:0] last = 8'd0;
   reg [7:0] items_0_has = 8'd0;
   reg [7:0] map_0_has = 8'd0;
   reg [7:0] map_4_has = 8'd0;
   reg [3:0] first = 4'd0;
 
   // Combinational signals.
-  wire and_signal;
+  wire takes;
   wire [6:0] total;
   wire [6:0] total_6;
   wire [6:0] base;
   wire [6:0] end_sig;
-  wire [3:0] add_13;
+  wire [3:0] map_start_next_3;
   wire [6:0] map_end;
-  wire [3:0] add_16;
+  wire [3:0] newest;
   wire [3:0] room;
   wire [2:0] ends_write_addr;
   wire ends_write_en;
@@ -387,33 +391,33 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
       map_4[map_4_at] = 32'd0;
   end
 
-  assign and_signal = words_valid & words_ready_q;
+  assign takes = words_valid & words_ready_q;
   assign total = at + {2'd0, words_payload_128[13:9]};
   assign total_6 = base + {1'd0, words_payload_128[22:17]};
   assign base = (total & ~{4'd0, words_payload_128[16:14]}) | {4'd0, words_payload_128[16:14] &
       3'd4};
   assign end_sig = (total_6 & ~{4'd0, words_payload_128[25:23]}) | {4'd0, words_payload_128[25:23] &
       (words_payload_128[29] ? 3'd0 : 3'd4)};
-  assign add_13 = base[6:3] + {3'd0, words_payload_128[8]};
-  assign map_end = {add_13, base[2:0]} + {3'd0, words_payload_128[7:4]};
-  assign add_16 = at[6:3] + {1'd0, and_signal ? words_payload_128[28:26] : 3'd0};
-  assign room = bound - add_16;
+  assign map_start_next_3 = base[6:3] + {3'd0, words_payload_128[8]};
+  assign map_end = {map_start_next_3, base[2:0]} + {3'd0, words_payload_128[7:4]};
+  assign newest = at[6:3] + {1'd0, takes ? words_payload_128[28:26] : 3'd0};
+  assign room = bound - newest;
   assign ends_write_addr = complete_next[2:0] - 3'd1;
-  assign ends_write_en = register_signal_21 & register_signal_22;
-  assign items_used_0 = register_signal_21 & (items_size > 4'd0);
+  assign ends_write_en = writes & ends_packet;
+  assign items_used_0 = writes & (items_size > 4'd0);
   assign items_0_written = items_0_has[first[2:0]];
-  assign map_used_0 = register_signal_21 & (map_size > 4'd0);
+  assign map_used_0 = writes & (map_size > 4'd0);
   assign map_0_written = map_0_has[first[2:0]];
-  assign map_used_4 = register_signal_21 & (map_size > 4'd4);
+  assign map_used_4 = writes & (map_size > 4'd4);
   assign map_4_written = map_4_has[first[2:0]];
-  assign reads = (register_signal_59 != first) & (~packets_valid_q | packets_ready);
-  assign is_last = register_signal_63[first[2:0]];
-  assign and_43 = register_signal_21 & ~waits;
+  assign reads = (complete != first) & (~packets_valid_q | packets_ready);
+  assign is_last = last[first[2:0]];
+  assign and_43 = writes & ~waits;
   assign sub_44 = complete_next[2:0] - 3'd1;
 
   always @(posedge aclk) begin
     if (ends_write_en) begin
-      ends[ends_write_addr] <= {ends_write_data_4, last_bytes};
+      ends[ends_write_addr] <= {failed, last_bytes};
     end
   end
   assign ends_read_data = ends[first[2:0]];
@@ -441,41 +445,41 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
 
   always @(posedge aclk) begin
     if (rst) begin
-      register_signal_21 <= 1'b0;
+      writes <= 1'b0;
       items_start <= 7'd0;
       items_size <= 4'd0;
       map_start <= 7'd0;
       map_size <= 4'd0;
       at <= 7'd0;
       complete_next <= 4'd0;
-      register_signal_22 <= 1'b0;
-      ends_write_data_4 <= 1'b0;
+      ends_packet <= 1'b0;
+      failed <= 1'b0;
       waits <= 1'b0;
       last_bytes <= 4'd0;
       words_ready_q <= 1'b1;
       bound <= 4'd5;
-      register_signal_59 <= 4'd0;
-      register_signal_63 <= 8'd0;
+      complete <= 4'd0;
+      last <= 8'd0;
       items_0_has <= 8'd0;
       map_0_has <= 8'd0;
       map_4_has <= 8'd0;
       packets_valid_q <= 1'b0;
       first <= 4'd0;
     end else begin
-      register_signal_21 <= and_signal;
-      if (and_signal) begin
+      writes <= takes;
+      if (takes) begin
         if (words_payload_128[8]) begin
           items_start <= base;
         end else begin
           items_start <= at;
         end
         items_size <= words_payload_128[3:0];
-        map_start <= {add_13, base[2:0]};
+        map_start <= {map_start_next_3, base[2:0]};
         map_size <= words_payload_128[7:4];
         at <= end_sig;
         complete_next <= end_sig[6:3];
-        register_signal_22 <= words_payload_128[29];
-        ends_write_data_4 <= words_payload_128[32];
+        ends_packet <= words_payload_128[29];
+        failed <= words_payload_128[32];
         waits <= words_payload_128[31];
         if (words_payload_128[30]) begin
           last_bytes <= 4'd0;
@@ -489,31 +493,31 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
         first <= first + 4'd1;
       end
       if (and_43) begin
-        register_signal_59 <= complete_next;
-        if (register_signal_22) begin
+        complete <= complete_next;
+        if (ends_packet) begin
           case (sub_44)
-            3'd0: register_signal_63[0] <= 1'b1;
-            3'd1: register_signal_63[1] <= 1'b1;
-            3'd2: register_signal_63[2] <= 1'b1;
-            3'd3: register_signal_63[3] <= 1'b1;
-            3'd4: register_signal_63[4] <= 1'b1;
-            3'd5: register_signal_63[5] <= 1'b1;
-            3'd6: register_signal_63[6] <= 1'b1;
-            3'd7: register_signal_63[7] <= 1'b1;
+            3'd0: last[0] <= 1'b1;
+            3'd1: last[1] <= 1'b1;
+            3'd2: last[2] <= 1'b1;
+            3'd3: last[3] <= 1'b1;
+            3'd4: last[4] <= 1'b1;
+            3'd5: last[5] <= 1'b1;
+            3'd6: last[6] <= 1'b1;
+            3'd7: last[7] <= 1'b1;
             default: ;
           endcase
         end
       end
       if (reads) begin
         case (first[2:0])
-          3'd0: register_signal_63[0] <= 1'b0;
-          3'd1: register_signal_63[1] <= 1'b0;
-          3'd2: register_signal_63[2] <= 1'b0;
-          3'd3: register_signal_63[3] <= 1'b0;
-          3'd4: register_signal_63[4] <= 1'b0;
-          3'd5: register_signal_63[5] <= 1'b0;
-          3'd6: register_signal_63[6] <= 1'b0;
-          3'd7: register_signal_63[7] <= 1'b0;
+          3'd0: last[0] <= 1'b0;
+          3'd1: last[1] <= 1'b0;
+          3'd2: last[2] <= 1'b0;
+          3'd3: last[3] <= 1'b0;
+          3'd4: last[4] <= 1'b0;
+          3'd5: last[5] <= 1'b0;
+          3'd6: last[6] <= 1'b0;
+          3'd7: last[7] <= 1'b0;
           default: ;
         endcase
       end
@@ -647,7 +651,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   end
 
   always @(posedge aclk) begin
-    if (and_signal) begin
+    if (takes) begin
       items_0_write_data <= words_payload_0[63:0];
       map_placed <= words_payload_0[127:64];
     end
@@ -671,7 +675,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign error_sig = error_sig_q;
 
   assign words_payload = {words_payload_128, words_payload_0};
-  assign map_at = {add_13, base[2:0]};
+  assign map_at = {map_start_next_3, base[2:0]};
   assign ready = words_ready_q;
   assign items_index_0 = 3'd0;
   assign items_slot_0 = items_start[5:3];
@@ -693,7 +697,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign map_4_read_addr = first[2:0];
   assign ends_read_addr = first[2:0];
   assign payload = packets_payload_q;
-  assign ends_write_data = {ends_write_data_4, last_bytes};
+  assign ends_write_data = {failed, last_bytes};
 endmodule
 
 module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core (

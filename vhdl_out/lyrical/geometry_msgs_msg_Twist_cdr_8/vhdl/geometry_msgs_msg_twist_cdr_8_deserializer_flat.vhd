@@ -45,19 +45,19 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer 
   signal popped              : unsigned(3 downto 0) := (others => '0');
 
   -- Combinational signals.
-  signal arrives        : std_logic;
-  signal used           : unsigned(3 downto 0);
-  signal next_beat      : unsigned(3 downto 0);
-  signal ends_now       : std_logic;
-  signal add_3          : unsigned(6 downto 0);
-  signal newest_0       : unsigned(6 downto 0);
-  signal stored         : std_logic;
-  signal more           : std_logic;
-  signal follows        : std_logic;
-  signal or_14          : std_logic;
-  signal mux_15         : unsigned(10 downto 0);
-  signal mux_22         : std_logic;
-  signal ends_read_data : unsigned(10 downto 0);
+  signal arrives            : std_logic;
+  signal used               : unsigned(3 downto 0);
+  signal next_beat          : unsigned(3 downto 0);
+  signal ends_now           : std_logic;
+  signal add_3              : unsigned(6 downto 0);
+  signal newest_0           : unsigned(6 downto 0);
+  signal stored             : std_logic;
+  signal more               : std_logic;
+  signal follows            : std_logic;
+  signal or_14              : std_logic;
+  signal arrival_limit_next : unsigned(10 downto 0);
+  signal has_second_next    : std_logic;
+  signal ends_read_data     : unsigned(10 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal room            : std_logic;
@@ -82,8 +82,9 @@ begin
   more <= stored or ends_now;
   follows <= arrival_ended_q and ends_now;
   or_14 <= arrival_next or not arrival_ended_q;
-  mux_15 <= second when has_second = '1' else next_beat & newest_0;
-  mux_22 <= not arrival_next or more when has_second = '1' else not arrival_next and follows;
+  arrival_limit_next <= second when has_second = '1' else next_beat & newest_0;
+  has_second_next <= not arrival_next or more when has_second = '1' else not arrival_next and
+      follows;
 
   process (aclk)
   begin
@@ -115,8 +116,8 @@ begin
         at <= at + full;
         packets_ready_q <= not used(3) and not (to_std_logic(used = 7) and arrives);
         if or_14 = '1' then
-          arrival_limit_q <= mux_15(6 downto 0);
-          arrival_following_q <= mux_15(10 downto 7);
+          arrival_limit_q <= arrival_limit_next(6 downto 0);
+          arrival_following_q <= arrival_limit_next(10 downto 7);
           arrival_ended_q <= has_second or ends_now;
         end if;
         if arrival_next = '1' or has_second = '0' then
@@ -126,7 +127,7 @@ begin
             second <= next_beat & add_3;
           end if;
         end if;
-        has_second <= mux_22;
+        has_second <= has_second_next;
         if has_second = '1' and ends_now = '1' then
           pushed <= pushed + 1;
         end if;
@@ -244,51 +245,51 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer is
 
   -- Registers.
-  signal register_signal    : std_logic := '0';
+  signal bad          : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal code               : unsigned(2 downto 0) := (others => '0');
-  signal new_error          : std_logic := '0';
-  signal register_signal_50 : unsigned(3 downto 0) := (others => '0');
-  signal map_room           : unsigned(3 downto 0) := (others => '0');
-  signal rest               : std_logic := '0';
-  signal has_nul            : std_logic := '0';
-  signal first_at           : unsigned(6 downto 0) := (others => '0');
-  signal last_at            : unsigned(6 downto 0) := "0000111";
-  signal words_last         : std_logic := '1';
-  signal words_less         : std_logic := '0';
-  signal step               : unsigned(6 downto 0) := "0000001";
-  signal at_end             : std_logic := '0';
-  signal map_offset         : unsigned(4 downto 0) := "11001";
-  signal two_word_map       : std_logic := '0';
-  signal exit_add           : unsigned(5 downto 0) := "001000";
+  signal code         : unsigned(2 downto 0) := (others => '0');
+  signal new_error    : std_logic := '0';
+  signal items_room   : unsigned(3 downto 0) := (others => '0');
+  signal map_room     : unsigned(3 downto 0) := (others => '0');
+  signal rest         : std_logic := '0';
+  signal has_nul      : std_logic := '0';
+  signal first_at     : unsigned(6 downto 0) := (others => '0');
+  signal last_at      : unsigned(6 downto 0) := "0000111";
+  signal words_last   : std_logic := '1';
+  signal words_less   : std_logic := '0';
+  signal step         : unsigned(6 downto 0) := "0000001";
+  signal at_end       : std_logic := '0';
+  signal map_offset   : unsigned(4 downto 0) := "11001";
+  signal two_word_map : std_logic := '0';
+  signal exit_add     : unsigned(5 downto 0) := "001000";
 
   -- Combinational signals.
-  signal mismatch_31   : std_logic;
-  signal step_end      : unsigned(6 downto 0);
-  signal left          : unsigned(6 downto 0);
-  signal present       : std_logic;
-  signal ends_message  : std_logic;
-  signal ends_packet   : std_logic;
-  signal mismatch      : std_logic;
-  signal cut           : std_logic;
-  signal trailing      : std_logic;
-  signal stops         : std_logic;
-  signal and_signal_35 : std_logic;
-  signal allowed       : std_logic;
-  signal issue         : std_logic;
-  signal map_at        : unsigned(6 downto 0);
-  signal sub_77        : unsigned(3 downto 0);
-  signal sub_88        : unsigned(5 downto 0);
-  signal or_132        : unsigned(5 downto 0);
-  signal map_left      : unsigned(6 downto 0);
-  signal exit_sum      : unsigned(6 downto 0);
-  signal early_last    : unsigned(6 downto 0);
-  signal step_to_exit  : std_logic;
-  signal and_187       : std_logic;
-  signal and_201       : std_logic;
-  signal and_203       : std_logic;
-  signal mux_224       : unsigned(3 downto 0);
-  signal mux_243       : unsigned(6 downto 0);
+  signal mismatch_31     : std_logic;
+  signal step_end        : unsigned(6 downto 0);
+  signal left            : unsigned(6 downto 0);
+  signal present         : std_logic;
+  signal ends_message    : std_logic;
+  signal ends_packet     : std_logic;
+  signal mismatch        : std_logic;
+  signal cut             : std_logic;
+  signal trailing        : std_logic;
+  signal stops           : std_logic;
+  signal drains          : std_logic;
+  signal allowed         : std_logic;
+  signal issue           : std_logic;
+  signal map_at          : unsigned(6 downto 0);
+  signal sub_77          : unsigned(3 downto 0);
+  signal sub_88          : unsigned(5 downto 0);
+  signal or_132          : unsigned(5 downto 0);
+  signal map_left        : unsigned(6 downto 0);
+  signal exit_sum        : unsigned(6 downto 0);
+  signal early_last      : unsigned(6 downto 0);
+  signal step_to_exit    : std_logic;
+  signal and_187         : std_logic;
+  signal and_201         : std_logic;
+  signal and_203         : std_logic;
+  signal items_room_next : unsigned(3 downto 0);
+  signal first_at_next   : unsigned(6 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal default_0     : std_logic;
@@ -344,12 +345,12 @@ begin
   cut <= arrival_ended and not present;
   trailing <= present and (or left(5 downto 2));
   stops <= mismatch or cut or (ends_message and not arrival_ended and trailing);
-  and_signal_35 <= register_signal and not new_error and (not at_end or arrival_ended);
-  allowed <= not register_signal and (not ends_message or arrival_ended);
-  orders_valid <= and_signal_35 or (allowed and present and not (step(0) and mismatch_31));
-  issue <= (and_signal_35 and orders_ready) or (allowed and orders_ready and present and
-      not (step(0) and mismatch_31));
-  arrival_next <= (and_signal_35 and orders_ready and ends_packet) or (allowed and orders_ready and
+  drains <= bad and not new_error and (not at_end or arrival_ended);
+  allowed <= not bad and (not ends_message or arrival_ended);
+  orders_valid <= drains or (allowed and present and not (step(0) and mismatch_31));
+  issue <= (drains and orders_ready) or (allowed and orders_ready and present and not (step(0) and
+      mismatch_31));
+  arrival_next <= (drains and orders_ready and ends_packet) or (allowed and orders_ready and
       ends_packet and present and not (step(0) and mismatch_31));
   map_at <= last_at + sign_extend(map_offset, 7);
   sub_77 <= map_at(6 downto 3) - two_word_map;
@@ -363,22 +364,22 @@ begin
   early_last <= unsigned'(arrival_following & "000") + 7 when ends_packet = '1' else exit_sum;
   step_to_exit <= issue and not ends_packet;
   and_187 <= issue and ends_packet;
-  and_201 <= register_signal and new_error;
-  and_203 <= register_signal and and_signal_35 and orders_ready;
-  mux_224 <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0), "000"), 4),
-      "1000") when two_word_map = '1' else mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8),
-      "1000", map_left(3 downto 0)));
-  mux_243 <= arrival_following & "000" when ends_packet = '1' else mux(register_signal, mux(at_end,
+  and_201 <= bad and new_error;
+  and_203 <= bad and drains and orders_ready;
+  items_room_next <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0),
+      "000"), 4), "1000") when two_word_map = '1' else mux(map_left(6), "0000",
+      mux(to_std_logic(map_left >= 8), "1000", map_left(3 downto 0)));
+  first_at_next <= arrival_following & "000" when ends_packet = '1' else mux(bad, mux(at_end,
       arrival_limit, first_at), step_end);
 
   p_aclk : process (aclk)
   begin
     if rising_edge(aclk) then
       if rst = '1' then
-        register_signal <= '0';
+        bad <= '0';
         code <= (others => '0');
         new_error <= '0';
-        register_signal_50 <= (others => '0');
+        items_room <= (others => '0');
         map_room <= (others => '0');
         rest <= '0';
         has_nul <= '0';
@@ -393,9 +394,9 @@ begin
         exit_add <= "001000";
       else
         if and_187 = '1' then
-          register_signal <= '0';
-        elsif register_signal = '0' then
-          register_signal <= stops;
+          bad <= '0';
+        elsif bad = '0' then
+          bad <= stops;
           if ends_message = '1' then
             code <= "010";
           else
@@ -407,15 +408,15 @@ begin
             code <= "001";
           end if;
         end if;
-        new_error <= stops and not register_signal;
+        new_error <= stops and not bad;
         if and_201 = '1' then
           if code = 2 or code = 5 then
-            register_signal_50 <= "1000";
+            items_room <= "1000";
           else
-            register_signal_50 <= (others => '0');
+            items_room <= (others => '0');
           end if;
           if code = 1 then
-            register_signal_50 <= mux_224;
+            items_room <= items_room_next;
           end if;
           if code = 2 then
             map_room <= "1000";
@@ -434,7 +435,7 @@ begin
             end if;
           end if;
         elsif and_203 = '1' then
-          register_signal_50 <= (others => '0');
+          items_room <= (others => '0');
           map_room <= (others => '0');
         end if;
         if issue = '1' then
@@ -458,8 +459,8 @@ begin
             exit_add <= resize(unsigned'((or step(3 downto 0)) & step(3) & "00"), 6);
           end if;
         end if;
-        if issue = '1' or (register_signal = '1' and at_end = '1') then
-          first_at <= mux_243;
+        if issue = '1' or (bad = '1' and at_end = '1') then
+          first_at <= first_at_next;
         end if;
         words_last <= words_last;
         words_less <= words_less;
@@ -468,12 +469,12 @@ begin
   end process;
 
   header_at <= first_at(6 downto 3);
-  orders_payload <= mux(register_signal, code, mux(trailing, "010", "000")) & ends_packet &
-      first_at(6 downto 3) & '0' & not register_signal & words_last & '0' & mux(register_signal,
-      map_room, "1000") & mux(register_signal and not to_std_logic(register_signal_50 >= 8),
-      register_signal_50, "1000") & (map_at(5 downto 3) + 1) & (sub_77(2 downto 0) + 1) &
-      map_at(5 downto 0) & sub_77(2 downto 0) & map_at(2 downto 0) & at_end &
-      (or step(5 downto 4)) & (or step(3 downto 2)) & (or unsigned'(step(5) & step(3) & step(1)));
+  orders_payload <= mux(bad, code, mux(trailing, "010", "000")) & ends_packet &
+      first_at(6 downto 3) & '0' & not bad & words_last & '0' & mux(bad, map_room, "1000") &
+      mux(bad and not to_std_logic(items_room >= 8), items_room, "1000") &
+      (map_at(5 downto 3) + 1) & (sub_77(2 downto 0) + 1) & map_at(5 downto 0) &
+      sub_77(2 downto 0) & map_at(2 downto 0) & at_end & (or step(5 downto 4)) &
+      (or step(3 downto 2)) & (or unsigned'(step(5) & step(3) & step(1)));
 
   default_0 <= step(0);
   default_1 <= step(1);
@@ -649,8 +650,8 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal message_angular_x_payload_q : unsigned(63 downto 0) := (others => '0');
   signal message_angular_y_payload_q : unsigned(63 downto 0) := (others => '0');
   signal message_angular_z_payload_q : unsigned(63 downto 0) := (others => '0');
-  signal register_signal_93          : std_logic := '0';
-  signal register_signal_94          : std_logic := '0';
+  signal length_good                 : std_logic := '0';
+  signal last                        : std_logic := '0';
   signal final_sig                   : std_logic := '0';
   signal items_word                  : unsigned(63 downto 0) := (others => '0');
   signal items_good                  : unsigned(7 downto 0) := (others => '0');
@@ -668,7 +669,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal active_3                    : std_logic := '0';
   signal active_4                    : std_logic := '0';
   signal active_5                    : std_logic := '0';
-  signal register_signal_122         : std_logic := '0';
+  signal ends_now                    : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal status_now                  : unsigned(2 downto 0) := (others => '0');
   signal slow                        : std_logic := '0';
@@ -686,13 +687,13 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal go_4              : std_logic;
   signal blocked_5         : std_logic;
   signal go_5              : std_logic;
-  signal and_signal        : std_logic;
-  signal mux_84            : std_logic;
-  signal mux_91            : std_logic;
-  signal mux_98            : std_logic;
-  signal mux_105           : std_logic;
-  signal mux_112           : std_logic;
-  signal mux_119           : std_logic;
+  signal ends              : std_logic;
+  signal active_0_next     : std_logic;
+  signal active_1_next     : std_logic;
+  signal active_2_next     : std_logic;
+  signal active_3_next     : std_logic;
+  signal active_4_next     : std_logic;
+  signal active_5_next     : std_logic;
   signal or_165            : std_logic;
   signal or_181            : std_logic;
   signal lane_0_items_data : unsigned(7 downto 0);
@@ -798,21 +799,27 @@ begin
   go_4 <= active_4 and not blocked_4;
   blocked_5 <= active_5 and message_angular_z_valid_q;
   go_5 <= active_5 and not blocked_5 and not blocked_4;
-  and_signal <= orders_valid and orders_payload(38);
+  ends <= orders_valid and orders_payload(38);
   orders_ready <= not slow;
-  mux_84 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      1) when orders_ready = '1' else active_0 and not go_0;
-  mux_91 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      2) when orders_ready = '1' else active_1 and not go_1;
-  mux_98 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      3) when orders_ready = '1' else active_2 and not go_2;
-  mux_105 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      4) when orders_ready = '1' else active_3 and not go_3;
-  mux_112 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      5) when orders_ready = '1' else active_4 and not go_4;
-  mux_119 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      5) when orders_ready = '1' else active_5 and not go_5;
-  or_165 <= or unsigned'((and_signal and status_valid_q and not status_ready) & (orders_valid and
+  active_0_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 1) when orders_ready = '1' else active_0 and
+      not go_0;
+  active_1_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 2) when orders_ready = '1' else active_1 and
+      not go_1;
+  active_2_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 3) when orders_ready = '1' else active_2 and
+      not go_2;
+  active_3_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 4) when orders_ready = '1' else active_3 and
+      not go_3;
+  active_4_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 5) when orders_ready = '1' else active_4 and
+      not go_4;
+  active_5_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 5) when orders_ready = '1' else active_5 and
+      not go_5;
+  or_165 <= or unsigned'((ends and status_valid_q and not status_ready) & (orders_valid and
       not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 5) and
       message_angular_z_valid_q and not message_angular_z_ready) & (orders_valid and
       not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 5) and
@@ -825,10 +832,10 @@ begin
       message_linear_y_valid_q and not message_linear_y_ready) & (orders_valid and
       not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 1) and
       message_linear_x_valid_q and not message_linear_x_ready));
-  or_181 <= or unsigned'((register_signal_122 and status_valid_q and not status_ready) &
-      (blocked_5 and not message_angular_z_ready) & (blocked_4 and not message_angular_y_ready) &
-      (blocked_3 and not message_angular_x_ready) & (blocked_2 and not message_linear_z_ready) &
-      (blocked_1 and not message_linear_y_ready) & (blocked_0 and not message_linear_x_ready));
+  or_181 <= or unsigned'((ends_now and status_valid_q and not status_ready) & (blocked_5 and
+      not message_angular_z_ready) & (blocked_4 and not message_angular_y_ready) & (blocked_3 and
+      not message_angular_x_ready) & (blocked_2 and not message_linear_z_ready) & (blocked_1 and
+      not message_linear_y_ready) & (blocked_0 and not message_linear_x_ready));
 
   process (aclk)
   begin
@@ -945,8 +952,8 @@ begin
         message_angular_y_valid_q <= '0';
         message_angular_z_valid_q <= '0';
         status_valid_q <= '0';
-        register_signal_93 <= '0';
-        register_signal_94 <= '0';
+        length_good <= '0';
+        last <= '0';
         final_sig <= '0';
         cut_0 <= '0';
         cut_1 <= '0';
@@ -959,7 +966,7 @@ begin
         active_3 <= '0';
         active_4 <= '0';
         active_5 <= '0';
-        register_signal_122 <= '0';
+        ends_now <= '0';
         status_now <= (others => '0');
         status_payload_q <= (others => '0');
         slow <= '0';
@@ -1004,12 +1011,12 @@ begin
           status_valid_q <= '0';
         end if;
         if orders_ready = '1' then
-          if register_signal_122 = '1' then
+          if ends_now = '1' then
             status_valid_q <= '1';
             status_payload_q <= status_now;
           end if;
-          register_signal_93 <= orders_payload(32);
-          register_signal_94 <= orders_payload(31);
+          length_good <= orders_payload(32);
+          last <= orders_payload(31);
           final_sig <= orders_payload(33);
           cut_0 <= orders_valid and not orders_payload(3) and
               to_std_logic(orders_payload(2 downto 0) = 0);
@@ -1021,15 +1028,15 @@ begin
               to_std_logic(orders_payload(2 downto 0) = 3);
           cut_4 <= orders_valid and not orders_payload(3) and
               to_std_logic(orders_payload(2 downto 0) = 4);
-          register_signal_122 <= and_signal;
+          ends_now <= ends;
           status_now <= orders_payload(41 downto 39);
         end if;
-        active_0 <= mux_84;
-        active_1 <= mux_91;
-        active_2 <= mux_98;
-        active_3 <= mux_105;
-        active_4 <= mux_112;
-        active_5 <= mux_119;
+        active_0 <= active_0_next;
+        active_1 <= active_1_next;
+        active_2 <= active_2_next;
+        active_3 <= active_3_next;
+        active_4 <= active_4_next;
+        active_5 <= active_5_next;
         if orders_ready = '1' then
           slow <= or_165;
         else

@@ -48,28 +48,28 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector is
 
   -- Registers.
-  signal port_549_0_q       : unsigned(32 downto 0) := (others => '0');
-  signal status_valid_q     : std_logic := '0';
+  signal port_549_0_q     : unsigned(32 downto 0) := (others => '0');
+  signal status_valid_q   : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal status_payload_q   : unsigned(2 downto 0) := (others => '0');
-  signal words_valid_q      : std_logic := '0';
-  signal served_0           : std_logic := '0';
-  signal served_1           : std_logic := '0';
+  signal status_payload_q : unsigned(2 downto 0) := (others => '0');
+  signal words_valid_q    : std_logic := '0';
+  signal served_0         : std_logic := '0';
+  signal served_1         : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal found              : unsigned(2 downto 0) := (others => '0');
-  signal items_0            : unsigned(31 downto 0) := (others => '0');
-  signal items_4            : unsigned(31 downto 0) := (others => '0');
-  signal map_0              : unsigned(31 downto 0) := (others => '0');
-  signal map_4              : unsigned(31 downto 0) := (others => '0');
-  signal register_signal_61 : std_logic := '0';
-  signal words_last         : std_logic := '1';
-  signal words_less         : std_logic := '0';
-  signal step               : unsigned(5 downto 0) := "000001";
-  signal map_bytes          : unsigned(3 downto 0) := "1000";
-  signal items_bytes        : unsigned(3 downto 0) := (others => '0');
-  signal two_word_map       : std_logic := '0';
-  signal register_signal_83 : std_logic := '0';
-  signal has_nul            : std_logic := '0';
+  signal error_sig        : unsigned(2 downto 0) := (others => '0');
+  signal items_0          : unsigned(31 downto 0) := (others => '0');
+  signal items_4          : unsigned(31 downto 0) := (others => '0');
+  signal map_0            : unsigned(31 downto 0) := (others => '0');
+  signal map_4            : unsigned(31 downto 0) := (others => '0');
+  signal begun            : std_logic := '0';
+  signal words_last       : std_logic := '1';
+  signal words_less       : std_logic := '0';
+  signal step             : unsigned(5 downto 0) := "000001";
+  signal map_bytes        : unsigned(3 downto 0) := "1000";
+  signal items_bytes      : unsigned(3 downto 0) := (others => '0');
+  signal two_word_map     : std_logic := '0';
+  signal rest             : std_logic := '0';
+  signal has_nul          : std_logic := '0';
 
   -- Combinational signals.
   signal left_1_0      : std_logic;
@@ -85,17 +85,17 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
   signal left_5_1      : std_logic;
   signal lacks_5_1     : std_logic;
   signal go_5_1        : std_logic;
-  signal or_signal_15  : std_logic;
+  signal free          : std_logic;
   signal or_60         : std_logic;
-  signal and_signal_45 : std_logic;
+  signal complete      : std_logic;
   signal map_size      : unsigned(4 downto 0);
   signal begins        : std_logic;
-  signal mux_78        : unsigned(3 downto 0);
+  signal to_map_0      : unsigned(3 downto 0);
   signal step_to_exit  : std_logic;
-  signal and_96        : std_logic;
+  signal served_0_next : std_logic;
   signal and_101       : std_logic;
   signal or_129        : unsigned(31 downto 0);
-  signal or_135        : unsigned(31 downto 0);
+  signal map_0_next    : unsigned(31 downto 0);
   signal or_148        : unsigned(31 downto 0);
   signal add_155       : unsigned(5 downto 0);
   signal to_end        : unsigned(5 downto 0);
@@ -109,8 +109,9 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
   signal default_4     : std_logic;
   signal default_5     : std_logic;
   signal words_payload : unsigned(160 downto 0);
-  signal like          : unsigned(4 downto 0);
+  signal to_map        : unsigned(4 downto 0);
   signal words_loads   : std_logic;
+  signal done          : std_logic;
   signal ends          : std_logic;
   signal go_1_0        : std_logic;
   signal go_2_0        : std_logic;
@@ -121,54 +122,54 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
   signal step_to_body  : std_logic;
   signal words_down    : std_logic;
   signal words_keeps   : std_logic;
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal found         : unsigned(2 downto 0);
   signal words_pending : std_logic;
   signal words_value   : unsigned(2 downto 0);
 begin
 
   left_1_0 <= step(1) and not served_0;
   lacks_1_0 <= left_1_0 and not message_linear_x_valid;
-  message_linear_x_ready <= left_1_0 and message_linear_x_valid and or_signal_15;
+  message_linear_x_ready <= left_1_0 and message_linear_x_valid and free;
   left_2_0 <= step(2) and not served_0;
   lacks_2_0 <= left_2_0 and not message_linear_y_valid;
-  message_linear_y_ready <= left_2_0 and message_linear_y_valid and or_signal_15;
+  message_linear_y_ready <= left_2_0 and message_linear_y_valid and free;
   left_3_0 <= step(3) and not served_0;
   lacks_3_0 <= left_3_0 and not message_linear_z_valid;
-  message_linear_z_ready <= left_3_0 and message_linear_z_valid and or_signal_15;
+  message_linear_z_ready <= left_3_0 and message_linear_z_valid and free;
   left_4_0 <= step(4) and not served_0;
   lacks_4_0 <= left_4_0 and not message_angular_x_valid;
-  message_angular_x_ready <= left_4_0 and message_angular_x_valid and or_signal_15;
+  message_angular_x_ready <= left_4_0 and message_angular_x_valid and free;
   left_5_0 <= step(5) and not served_0;
   lacks_5_0 <= left_5_0 and not message_angular_y_valid;
-  message_angular_y_ready <= left_5_0 and message_angular_y_valid and or_signal_15;
+  message_angular_y_ready <= left_5_0 and message_angular_y_valid and free;
   left_5_1 <= step(5) and not served_1;
   lacks_5_1 <= left_5_1 and not message_angular_z_valid;
-  go_5_1 <= left_5_1 and message_angular_z_valid and or_signal_15 and not lacks_5_0;
-  or_signal_15 <= not words_valid_q or words_ready;
+  go_5_1 <= left_5_1 and message_angular_z_valid and free and not lacks_5_0;
+  free <= not words_valid_q or words_ready;
   or_60 <= or unsigned'((step(4) and not message_angular_y_valid) & (step(3) and
       not message_angular_x_valid) & (step(2) and not message_linear_z_valid) & (step(1) and
       not message_linear_y_valid) & (step(0) and not message_linear_x_valid) & lacks_5_1 &
       lacks_5_0 & lacks_4_0 & lacks_3_0 & lacks_2_0 & lacks_1_0);
-  and_signal_45 <= or_signal_15 and not or_60 and (not step(5) or not status_valid_q or
-      status_ready);
+  complete <= free and not or_60 and (not step(5) or not status_valid_q or status_ready);
   map_size <= resize(map_bytes, 5) + mux(two_word_map, "1000", "0000");
-  begins <= register_signal_61 or (or items_bytes) or (or map_bytes);
-  mux_78 <= (others => '0') when two_word_map = '1' else items_bytes;
-  step_to_exit <= and_signal_45 and not step(5);
-  and_96 <= (served_0 or (or unsigned'(message_angular_y_ready & message_angular_x_ready &
-      message_linear_z_ready & message_linear_y_ready & message_linear_x_ready))) and
-      not and_signal_45;
-  and_101 <= and_signal_45 and step(5);
+  begins <= begun or (or items_bytes) or (or map_bytes);
+  to_map_0 <= (others => '0') when two_word_map = '1' else items_bytes;
+  step_to_exit <= complete and not step(5);
+  served_0_next <= (served_0 or (or unsigned'(message_angular_y_ready & message_angular_x_ready &
+      message_linear_z_ready & message_linear_y_ready & message_linear_x_ready))) and not complete;
+  and_101 <= complete and step(5);
   or_129 <= mux(step(0), x"00000100", x"00000000") or mux(step(1),
       message_linear_x_payload(63 downto 32), x"00000000") or mux(step(2),
       message_linear_y_payload(63 downto 32), x"00000000") or mux(step(3),
       message_linear_z_payload(63 downto 32), x"00000000");
-  or_135 <= or_129 or mux(step(4), message_angular_x_payload(63 downto 32), x"00000000") or
+  map_0_next <= or_129 or mux(step(4), message_angular_x_payload(63 downto 32), x"00000000") or
       mux(step(5), message_angular_z_payload(63 downto 32), x"00000000");
   or_148 <= mux(step(0), message_linear_x_payload(31 downto 0), x"00000000") or mux(step(1),
       message_linear_y_payload(31 downto 0), x"00000000") or mux(step(2),
       message_linear_z_payload(31 downto 0), x"00000000") or mux(step(3),
       message_angular_x_payload(31 downto 0), x"00000000");
-  add_155 <= resize(mux_78, 5) + to_end + 7;
+  add_155 <= resize(to_map_0, 5) + to_end + 7;
 
   to_end <= mux(begins, resize(map_size, 6) + 7, "001000") when step(5) = '1' else
             resize(map_size, 6);
@@ -183,10 +184,10 @@ begin
         port_549_0_q <= (others => '0');
         served_0 <= '0';
         served_1 <= '0';
-        found <= (others => '0');
+        error_sig <= (others => '0');
         status_valid_q <= '0';
         status_payload_q <= (others => '0');
-        register_signal_61 <= '0';
+        begun <= '0';
         words_valid_q <= '0';
         words_last <= '1';
         words_less <= '0';
@@ -194,26 +195,26 @@ begin
         map_bytes <= "1000";
         items_bytes <= (others => '0');
         two_word_map <= '0';
-        register_signal_83 <= '0';
+        rest <= '0';
         has_nul <= '0';
       else
-        if or_signal_15 = '1' then
-          port_549_0_q(13 downto 0) <= resize(unsigned'(mux_78 & two_word_map & map_bytes &
+        if free = '1' then
+          port_549_0_q(13 downto 0) <= resize(unsigned'(to_map_0 & two_word_map & map_bytes &
               items_bytes), 14);
           port_549_0_q(28 downto 26) <= add_155(5 downto 3);
           port_549_0_q(25 downto 14) <= end_mask & to_end & "000";
           port_549_0_q(30) <= not begins;
-          words_valid_q <= and_signal_45;
+          words_valid_q <= complete;
         end if;
-        if or_signal_15 = '1' then
+        if free = '1' then
           port_549_0_q(29) <= step(5);
-          port_549_0_q(32 downto 31) <= to_std_logic(found /= 0) & '0';
+          port_549_0_q(32 downto 31) <= to_std_logic(error_sig /= 0) & '0';
         end if;
-        served_0 <= and_96;
-        served_1 <= (served_1 or go_5_1) and not and_signal_45;
+        served_0 <= served_0_next;
+        served_1 <= (served_1 or go_5_1) and not complete;
         if and_101 = '1' then
-          found <= (others => '0');
-          status_payload_q <= found;
+          error_sig <= (others => '0');
+          status_payload_q <= error_sig;
         end if;
         if status_ready = '1' then
           status_valid_q <= '0';
@@ -221,8 +222,8 @@ begin
         if and_101 = '1' then
           status_valid_q <= '1';
         end if;
-        if and_signal_45 = '1' then
-          register_signal_61 <= begins and not step(5);
+        if complete = '1' then
+          begun <= begins and not step(5);
           if step(5) = '1' then
             step <= "000001";
             map_bytes <= "1000";
@@ -235,7 +236,7 @@ begin
             two_word_map <= step(4);
           end if;
           if step(5) = '1' then
-            register_signal_83 <= '0';
+            rest <= '0';
             has_nul <= '0';
           end if;
         end if;
@@ -248,17 +249,17 @@ begin
   p_aclk_2 : process (aclk)
   begin
     if rising_edge(aclk) then
-      if or_signal_15 = '1' and (step(5) = '0' or served_0 = '0') then
+      if free = '1' and (step(5) = '0' or served_0 = '0') then
         items_0 <= message_angular_y_payload(63 downto 32);
       end if;
-      if or_signal_15 = '1' and (step(5) = '0' or served_1 = '0') then
+      if free = '1' and (step(5) = '0' or served_1 = '0') then
         items_4 <= message_angular_z_payload(31 downto 0);
       end if;
-      if or_signal_15 = '1' and unsigned'((step(5) and served_1) & ((or step(4 downto 1)) and
-          served_0)) = 0 then
-        map_0 <= or_135;
+      if free = '1' and unsigned'((step(5) and served_1) & ((or step(4 downto 1)) and served_0)) =
+          0 then
+        map_0 <= map_0_next;
       end if;
-      if or_signal_15 = '1' then
+      if free = '1' then
         map_4 <= or_148 or mux(step(4), message_angular_y_payload(31 downto 0), x"00000000");
       end if;
     end if;
@@ -279,8 +280,9 @@ begin
   default_4 <= step(4);
   default_5 <= step(5);
   words_payload <= port_549_0_q & map_4 & map_0 & items_4 & items_0;
-  like <= resize(mux_78, 5);
+  to_map <= resize(to_map_0, 5);
   words_loads <= '0';
+  done <= '1';
   ends <= step(5);
   go_1_0 <= message_linear_x_ready;
   go_2_0 <= message_linear_y_ready;
@@ -291,6 +293,7 @@ begin
   step_to_body <= '0';
   words_down <= '0';
   words_keeps <= '1';
+  found <= error_sig;
   words_pending <= '0';
   words_value <= (others => '0');
 
@@ -328,7 +331,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal packets_valid_q    : std_logic := '0';
   signal packets_payload_q  : unsigned(68 downto 0) := (others => '0');
   signal error_sig_q        : std_logic := '0';
-  signal register_signal_21 : std_logic := '0';
+  signal writes             : std_logic := '0';
   signal items_0_write_data : unsigned(63 downto 0) := (others => '0');
   signal items_start        : unsigned(6 downto 0) := (others => '0');
   signal items_size         : unsigned(3 downto 0) := (others => '0');
@@ -337,27 +340,27 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal map_size           : unsigned(3 downto 0) := (others => '0');
   signal at                 : unsigned(6 downto 0) := (others => '0');
   signal complete_next      : unsigned(3 downto 0) := (others => '0');
-  signal register_signal_22 : std_logic := '0';
-  signal ends_write_data_4  : std_logic := '0';
+  signal ends_packet        : std_logic := '0';
+  signal failed             : std_logic := '0';
   signal waits              : std_logic := '0';
   signal last_bytes         : unsigned(3 downto 0) := (others => '0');
   signal bound              : unsigned(3 downto 0) := "0101";
-  signal register_signal_59 : unsigned(3 downto 0) := (others => '0');
-  signal register_signal_63 : unsigned(7 downto 0) := (others => '0');
+  signal complete           : unsigned(3 downto 0) := (others => '0');
+  signal last               : unsigned(7 downto 0) := (others => '0');
   signal items_0_has        : unsigned(7 downto 0) := (others => '0');
   signal map_0_has          : unsigned(7 downto 0) := (others => '0');
   signal map_4_has          : unsigned(7 downto 0) := (others => '0');
   signal first              : unsigned(3 downto 0) := (others => '0');
 
   -- Combinational signals.
-  signal and_signal        : std_logic;
+  signal takes             : std_logic;
   signal total             : unsigned(6 downto 0);
   signal total_6           : unsigned(6 downto 0);
   signal base              : unsigned(6 downto 0);
   signal end_sig           : unsigned(6 downto 0);
-  signal add_13            : unsigned(3 downto 0);
+  signal map_start_next_3  : unsigned(3 downto 0);
   signal map_end           : unsigned(6 downto 0);
-  signal add_16            : unsigned(3 downto 0);
+  signal newest            : unsigned(3 downto 0);
   signal room              : unsigned(3 downto 0);
   signal ends_write_addr   : unsigned(2 downto 0);
   signal ends_write_en     : std_logic;
@@ -415,36 +418,35 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal map_4 : map_4_array := (others => (others => '0'));
 begin
 
-  and_signal <= words_valid and words_ready_q;
+  takes <= words_valid and words_ready_q;
   total <= at + words_payload_128(13 downto 9);
   total_6 <= base + words_payload_128(22 downto 17);
   base <= (total and not resize(words_payload_128(16 downto 14), 7)) or
       resize(words_payload_128(16 downto 14) and "100", 7);
   end_sig <= (total_6 and not resize(words_payload_128(25 downto 23), 7)) or
       resize(words_payload_128(25 downto 23) and mux(words_payload_128(29), "000", "100"), 7);
-  add_13 <= base(6 downto 3) + words_payload_128(8);
-  map_end <= unsigned'(add_13 & base(2 downto 0)) + words_payload_128(7 downto 4);
-  add_16 <= at(6 downto 3) + mux(and_signal, words_payload_128(28 downto 26), "000");
-  room <= bound - add_16;
+  map_start_next_3 <= base(6 downto 3) + words_payload_128(8);
+  map_end <= unsigned'(map_start_next_3 & base(2 downto 0)) + words_payload_128(7 downto 4);
+  newest <= at(6 downto 3) + mux(takes, words_payload_128(28 downto 26), "000");
+  room <= bound - newest;
   ends_write_addr <= complete_next(2 downto 0) - 1;
-  ends_write_en <= register_signal_21 and register_signal_22;
-  items_used_0 <= '1' when register_signal_21 = '1' and items_size > 0 else '0';
+  ends_write_en <= writes and ends_packet;
+  items_used_0 <= '1' when writes = '1' and items_size > 0 else '0';
   items_0_written <= lsb(resize(shift_right(items_0_has, to_integer(first(2 downto 0))), 1));
-  map_used_0 <= '1' when register_signal_21 = '1' and map_size > 0 else '0';
+  map_used_0 <= '1' when writes = '1' and map_size > 0 else '0';
   map_0_written <= lsb(resize(shift_right(map_0_has, to_integer(first(2 downto 0))), 1));
-  map_used_4 <= '1' when register_signal_21 = '1' and map_size > 4 else '0';
+  map_used_4 <= '1' when writes = '1' and map_size > 4 else '0';
   map_4_written <= lsb(resize(shift_right(map_4_has, to_integer(first(2 downto 0))), 1));
-  reads <= '1' when register_signal_59 /= first and (packets_valid_q = '0' or packets_ready =
-      '1') else '0';
-  is_last <= lsb(resize(shift_right(register_signal_63, to_integer(first(2 downto 0))), 1));
-  and_43 <= register_signal_21 and not waits;
+  reads <= '1' when complete /= first and (packets_valid_q = '0' or packets_ready = '1') else '0';
+  is_last <= lsb(resize(shift_right(last, to_integer(first(2 downto 0))), 1));
+  and_43 <= writes and not waits;
   sub_44 <= complete_next(2 downto 0) - 1;
 
   process (aclk)
   begin
     if rising_edge(aclk) then
       if ends_write_en = '1' then
-        ends(to_integer(ends_write_addr)) <= ends_write_data_4 & last_bytes;
+        ends(to_integer(ends_write_addr)) <= failed & last_bytes;
       end if;
     end if;
   end process;
@@ -488,41 +490,41 @@ begin
   begin
     if rising_edge(aclk) then
       if rst = '1' then
-        register_signal_21 <= '0';
+        writes <= '0';
         items_start <= (others => '0');
         items_size <= (others => '0');
         map_start <= (others => '0');
         map_size <= (others => '0');
         at <= (others => '0');
         complete_next <= (others => '0');
-        register_signal_22 <= '0';
-        ends_write_data_4 <= '0';
+        ends_packet <= '0';
+        failed <= '0';
         waits <= '0';
         last_bytes <= (others => '0');
         words_ready_q <= '1';
         bound <= "0101";
-        register_signal_59 <= (others => '0');
-        register_signal_63 <= (others => '0');
+        complete <= (others => '0');
+        last <= (others => '0');
         items_0_has <= (others => '0');
         map_0_has <= (others => '0');
         map_4_has <= (others => '0');
         packets_valid_q <= '0';
         first <= (others => '0');
       else
-        register_signal_21 <= and_signal;
-        if and_signal = '1' then
+        writes <= takes;
+        if takes = '1' then
           if words_payload_128(8) = '1' then
             items_start <= base;
           else
             items_start <= at;
           end if;
           items_size <= words_payload_128(3 downto 0);
-          map_start <= add_13 & base(2 downto 0);
+          map_start <= map_start_next_3 & base(2 downto 0);
           map_size <= words_payload_128(7 downto 4);
           at <= end_sig;
           complete_next <= end_sig(6 downto 3);
-          register_signal_22 <= words_payload_128(29);
-          ends_write_data_4 <= words_payload_128(32);
+          ends_packet <= words_payload_128(29);
+          failed <= words_payload_128(32);
           waits <= words_payload_128(31);
           if words_payload_128(30) = '1' then
             last_bytes <= (others => '0');
@@ -536,25 +538,25 @@ begin
           first <= first + 1;
         end if;
         if and_43 = '1' then
-          register_signal_59 <= complete_next;
-          if register_signal_22 = '1' then
+          complete <= complete_next;
+          if ends_packet = '1' then
             case sub_44 is
               when "000" =>
-                register_signal_63(0) <= '1';
+                last(0) <= '1';
               when "001" =>
-                register_signal_63(1) <= '1';
+                last(1) <= '1';
               when "010" =>
-                register_signal_63(2) <= '1';
+                last(2) <= '1';
               when "011" =>
-                register_signal_63(3) <= '1';
+                last(3) <= '1';
               when "100" =>
-                register_signal_63(4) <= '1';
+                last(4) <= '1';
               when "101" =>
-                register_signal_63(5) <= '1';
+                last(5) <= '1';
               when "110" =>
-                register_signal_63(6) <= '1';
+                last(6) <= '1';
               when "111" =>
-                register_signal_63(7) <= '1';
+                last(7) <= '1';
               when others =>
                 null;
             end case;
@@ -563,21 +565,21 @@ begin
         if reads = '1' then
           case first(2 downto 0) is
             when "000" =>
-              register_signal_63(0) <= '0';
+              last(0) <= '0';
             when "001" =>
-              register_signal_63(1) <= '0';
+              last(1) <= '0';
             when "010" =>
-              register_signal_63(2) <= '0';
+              last(2) <= '0';
             when "011" =>
-              register_signal_63(3) <= '0';
+              last(3) <= '0';
             when "100" =>
-              register_signal_63(4) <= '0';
+              last(4) <= '0';
             when "101" =>
-              register_signal_63(5) <= '0';
+              last(5) <= '0';
             when "110" =>
-              register_signal_63(6) <= '0';
+              last(6) <= '0';
             when "111" =>
-              register_signal_63(7) <= '0';
+              last(7) <= '0';
             when others =>
               null;
           end case;
@@ -715,7 +717,7 @@ begin
   p_aclk_2 : process (aclk)
   begin
     if rising_edge(aclk) then
-      if and_signal = '1' then
+      if takes = '1' then
         items_0_write_data <= words_payload_0(63 downto 0);
         map_placed <= words_payload_0(127 downto 64);
       end if;
@@ -741,7 +743,7 @@ begin
   error_sig <= error_sig_q;
 
   words_payload <= words_payload_128 & words_payload_0;
-  map_at <= add_13 & base(2 downto 0);
+  map_at <= map_start_next_3 & base(2 downto 0);
   ready <= words_ready_q;
   items_index_0 <= (others => '0');
   items_slot_0 <= items_start(5 downto 3);
@@ -763,7 +765,7 @@ begin
   map_4_read_addr <= first(2 downto 0);
   ends_read_addr <= first(2 downto 0);
   payload <= packets_payload_q;
-  ends_write_data <= ends_write_data_4 & last_bytes;
+  ends_write_data <= failed & last_bytes;
 
 end architecture;
 
