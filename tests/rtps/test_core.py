@@ -12,7 +12,7 @@ from firm_hdl.rtps import Durability, Qos, Reliability, SampleIdentity
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import Guid
-from firm_hdl.rtps.wire.submessages import AckNack, Data, DataFrag
+from firm_hdl.rtps.wire.submessages import AckNack, Data
 from tests.depth import by_depth
 from tests.rtps.network import Network
 
@@ -91,19 +91,6 @@ def test_best_effort_samples_come_at_most_once_and_in_order(seed, sizes):
     assert numbers == sorted(set(numbers))
     assert [sent[n - 1] for n in numbers] == two.payloads
     assert not [each for each in sent_to(one, AckNack) if each.writer == writer.guid.entity]
-
-
-def test_timestamps_and_related_samples_arrive():
-    network = Network()
-    one, two, writer = pair(network)
-    related = SampleIdentity(Guid(bytes(range(12)), 0x1304), -1 << 32)
-    one.core.write(writer, bytes(8), network.now, 1_700_000_000_123_456_789, related)
-    one.core.write(writer, bytes(3000), network.now, None, related)
-    network.run(1)
-    first, second = two.samples
-    assert (first.source_timestamp, first.related) == (1_700_000_000_123_456_789, related)
-    assert (second.source_timestamp, second.related) == (None, related)
-    assert first.identity == SampleIdentity(writer.guid, 1)
 
 
 def test_the_end_of_an_instance_is_no_sample():
@@ -286,18 +273,6 @@ def test_samples_go_in_fragments_that_fit_an_ethernet_frame():
     network.run(1)
     assert [len(each) for each in two.payloads] == [1_000_000, 1280]
     assert max(map(len, network.sent)) <= 1472
-
-
-def test_only_missing_fragments_are_sent_again():
-    network = Network(seed=1)
-    one, two, writer = pair(network)
-    network.loss = 0.1
-    one.write(writer, bytes(128_000))
-    network.run(0.01)
-    network.loss = 0
-    network.run(5)
-    assert two.payloads == [bytes(128_000)]
-    assert 100 < len(sent_to(two, DataFrag)) < 130
 
 
 def test_peers_of_the_other_byte_order(monkeypatch):

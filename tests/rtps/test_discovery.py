@@ -8,9 +8,8 @@ from dataclasses import replace
 
 import pytest
 
-from firm_hdl.rtps import Durability, Qos, Reliability, core
+from firm_hdl.rtps import Qos, Reliability, core
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData, key_payload
-from firm_hdl.rtps.events import Matched
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import (
     PARTICIPANT,
@@ -22,7 +21,7 @@ from firm_hdl.rtps.wire.guid import (
 )
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.parameters import Pid
-from firm_hdl.rtps.wire.submessages import AckNack, Data, Heartbeat, NumberSet
+from firm_hdl.rtps.wire.submessages import AckNack, Data, Heartbeat
 from tests.rtps.network import GROUP, TOPIC, TYPE, Network
 
 PREFIX, OTHER = b"\x01\x10" + bytes(9) + b"\x09", b"\x01\x10" + bytes(9) + b"\x08"
@@ -127,23 +126,6 @@ def test_a_flood_of_announcements_makes_no_flood_of_answers(station):
     assert [each.name for each in station.core.peers] == ["d"]
 
 
-@pytest.mark.parametrize(("lease", "end"), [(1e-6, 1.0), (2.5, 2.5), (1e9, 30.0)])
-def test_a_silent_peer_is_lost_when_its_lease_ends(lease, end):
-    station = Network().station(period=1e6)
-    announce(station, 0.0, replace(PEER, lease=lease, endpoints=0))
-    now = 0.0
-    while station.core.peers:
-        before, now = now, station.core.tick(now)
-    assert before == end
-    # Anything that it sends is a sign of life.
-    announce(station, 5000.0, replace(PEER, lease=lease))
-    tell(station, 5000.9)
-    station.core.tick(5000.9 + end - 0.01)
-    assert station.core.peers
-    station.core.tick(5000.9 + end)
-    assert not station.core.peers
-
-
 def test_only_a_peer_that_left_is_not_found_again_at_once(station):
     leaves = farewell(Guid(PREFIX, PARTICIPANT), Pid.PARTICIPANT_GUID, 2, SPDP_WRITER)
     tell(station, 0.0, leaves)
@@ -225,28 +207,6 @@ def test_policies_that_change(station):
         tell(station, 0.0, replace(ends, sequence_number=number + 1))
 
 
-def test_a_removed_writer_says_nothing_more(station):
-    writer = station.writer(Qos(durability=Durability.TRANSIENT_LOCAL))
-    # A peer that announces readers, and does not listen to announcements.
-    announce(station, 0.0, replace(PEER, endpoints=1 << 4))
-    tell(station, 0.0, *announcement(READER, 1, SUBSCRIPTIONS_WRITER))
-    station.write(writer, b"abcd")
-    # While a reader has not acknowledged, a heartbeat is due soon.
-    assert station.core.tick(0.0) == pytest.approx(0.05)
-    ask = AckNack(
-        reader=READER.guid.entity,
-        writer=writer.guid.entity,
-        missing=NumberSet(1, (1,)),
-        count=1,
-    )
-    for count in (1, 2):
-        posted(station)
-        tell(station, float(count), replace(ask, count=count))
-        about = [each for _, each in posted(station) if each.writer == writer.guid.entity]
-        assert bool(about) is (count == 1)
-        station.core.remove(writer.guid, 1.5)
-
-
 def test_bad_discovery_data_does_not_concern_what_follows(station):
     bad = Data(reader=0, writer=SPDP_WRITER, sequence_number=1, payload=b"\0\1\0\0")
     good = replace(bad, payload=PEER.encode())
@@ -271,51 +231,6 @@ def test_datagrams_that_wait_take_limited_memory(station, monkeypatch):
     dropped = station.core.counters["dropped"]
     station.core.tick(4.0)
     assert station.core.outbox and station.core.counters["dropped"] == dropped
-
-
-def test_every_endpoint_of_a_participant_that_moves_moves_with_it():
-    network = Network()
-    one, two = network.station(), network.station()
-    topics = ["rt/a", "rt/b", "rt/c"]
-    writers = [one.writer(topic=topic) for topic in topics]
-    for topic in topics:
-        two.reader(topic=topic)
-    assert network.run(10, lambda: len(one.named("Matched")) == len(topics))
-    network.run(1)
-    there = Address("10.0.0.77", 7500)
-    # Endpoints without addresses have the default ones of their participant.
-    readers = [replace(each, addresses=()) for each in one.core.remotes(writers=False)]
-    two.core._sedp.subscriptions.forget(1)
-    for each in readers:
-        two.core._sedp.subscriptions.write(each.encode(), network.now)
-    network.run(1)
-    own = two.core.settings.own
-    moved = replace(own, discovery=(Address(there.host, 7410),), user=(there,))
-    announcement = Data(
-        reader=SPDP_READER, writer=SPDP_WRITER, sequence_number=1, payload=moved.encode()
-    )
-    one.core.receive(message.write(own.prefix, [announcement]), network.now, there.host)
-    while one.core.outbox:
-        one.core.pop()
-    for writer in writers:
-        one.write(writer, b"\0\1\0\0")
-        found = []
-        while one.core.outbox:
-            found.append(one.core.pop()[0])
-        assert found == [there]
-    assert not [event for event in one.core.events if isinstance(event, Matched)]
-
-
-def test_an_endpoint_can_be_removed_twice():
-    network = Network()
-    one, two = network.station(), network.station()
-    writer, reader = one.writer(), two.reader()
-    assert network.run(5, lambda: len(writer.matched) == 1)
-    for _ in range(2):
-        one.core.remove(writer.guid, network.now)
-        two.core.remove(reader.guid, network.now)
-    assert network.run(5, lambda: not list(two.core.remotes(writers=True)))
-    assert writer.matched == reader.matched == ()
 
 
 def test_an_endpoint_that_is_removed_takes_no_memory():

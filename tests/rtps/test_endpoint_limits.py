@@ -39,38 +39,6 @@ def listening(sent, qos=KEEP_ALL, limit=1 << 20):
     return reader, got, budget
 
 
-@pytest.mark.parametrize("own", [KEEP_ALL, BEST_EFFORT])
-@pytest.mark.parametrize("other", [KEEP_ALL, BEST_EFFORT])
-def test_nobody_waits_for_the_other_side_unless_both_are_reliable(sent, own, other):
-    both = own is other is KEEP_ALL
-    got = []
-    deliver = lambda writer, data, timestamp: got.append(data.sequence_number)  # noqa: E731
-    reader = Reader(THERE, own, sent.append, deliver, Budget(1 << 20))
-    reader.match(endpoint(HERE, other), ROUTE, 0.0)
-    reader.on_data(HERE, data(2), None, 1.0)
-    assert got == ([] if both else [2])
-    writer = Writer(HERE, own, sent.append)
-    writer.match(endpoint(THERE, other), ROUTE, 0.0)
-    writer.write(b"abcd", 1.0)
-    assert writer.acknowledged is not both
-
-
-def test_what_a_best_effort_reader_lost_begins_with_its_first_sample(sent):
-    reader, got, _ = listening(sent, BEST_EFFORT)
-    for number, lost in ((5, 0), (6, 0), (9, 2), (8, 2), (10, 2)):
-        reader.on_data(HERE, data(number), None, 1.0)
-        assert reader.lost == lost
-    assert got == [5, 6, 9, 10]
-    assert not sent
-
-
-def test_samples_far_ahead_take_no_memory(sent):
-    reader, _, budget = listening(sent)
-    for number, takes in ((4097, False), (4096, True)):
-        reader.on_data(HERE, data(number), None, 1.0)
-        assert bool(budget.used) is takes
-
-
 def test_early_samples_without_memory_are_dropped_and_asked_for(sent):
     # A sample of 4 bytes takes 204.
     reader, got, budget = listening(sent, limit=410)
@@ -98,15 +66,6 @@ def test_fragments_of_a_sample_that_will_not_come_are_forgotten(sent):
     assert budget.used == 204
 
 
-def test_fragments_of_a_sample_that_came_whole_are_forgotten_at_once(sent):
-    reader, got, budget = listening(sent)
-    for first in (1, 2):
-        reader.on_data_frag(HERE, part(3, first), None, 1.0)
-    assert budget.used == 408
-    reader.on_data(HERE, data(3), None, 1.0)
-    assert (got, budget.used) == ([], 204)
-
-
 def gap(start, base, members=()):
     return Gap(reader=0, writer=0x103, start=start, numbers=NumberSet(base, members))
 
@@ -129,17 +88,6 @@ def test_what_is_gone_is_lost_unless_it_never_was(sent, gaps, first, lost):
     assert reader.lost == 0
     reader.on_heartbeat(HERE, heartbeat(first, 9, count=2), 1.0)
     assert reader.lost == lost
-
-
-def test_a_heartbeat_that_is_late_takes_nothing_back(sent):
-    reader, got, _ = listening(sent)
-    reader.on_data(HERE, data(1), None, 1.0)
-    reader.on_heartbeat(HERE, heartbeat(1, 3, count=2), 1.0)
-    for last in (1, 0):
-        assert not reader.on_heartbeat(HERE, heartbeat(1, last, count=1), 1.9)
-    reader.on_data(HERE, data(1), None, 1.9)
-    reader.on_data(HERE, data(2), None, 1.9)
-    assert got == [1, 2] and [each.missing.base for each in sent.take(AckNack)] == [2]
 
 
 @pytest.mark.parametrize("qos", [KEEP_ALL, BEST_EFFORT])
@@ -167,29 +115,6 @@ def test_a_writer_that_says_nothing_is_asked_ever_more_seldom(sent):
         times += [now for each in sent.take(AckNack) if not each.final]
         now = due
     assert times == [1.0, 1.25, 1.75, 2.75, 4.75, 8.75]
-
-
-def test_an_old_answer_takes_no_acknowledgement_back(sent):
-    writer = Writer(HERE, KEEP_ALL, sent.append)
-    writer.match(endpoint(THERE), ROUTE, 0.0)
-    writer.write(b"abcd", 1.0)
-    writer.write(b"abcd", 1.0)
-    for count, base in ((1, 2), (2, 3), (3, 2)):
-        writer.on_ack_nack(THERE, ack(base, count=count), 1.1)
-        assert writer.acknowledged is (count > 1)
-
-
-def test_a_durable_writer_whose_history_is_empty(sent):
-    durable = Qos(durability=Durability.TRANSIENT_LOCAL)
-    writer = Writer(HERE, durable, sent.append)
-    for _ in range(3):
-        writer.write(b"abcd", 1.0)
-    for number in (1, 2, 3):
-        writer.forget(number)
-    writer.match(endpoint(THERE, durable), ROUTE, 2.0)
-    (first,) = sent.take(Heartbeat)
-    assert (first.first, first.last) == (4, 3)
-    assert writer.acknowledged
 
 
 @pytest.mark.parametrize(("acknowledged", "sent_again"), [(1, [1, 2, 3]), (2, [1, 3]), (3, [1, 3])])

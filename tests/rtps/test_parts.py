@@ -112,18 +112,6 @@ def test_incomplete_samples_are_limited():
         backlog.drop(99)
 
 
-def test_samples_below_a_number_are_forgotten():
-    budget = Budget(1 << 20)
-    backlog = Backlog(GUID.prefix, budget)
-    for number in (7, 3, 5, 4):
-        sample = Data(reader=1, writer=2, sequence_number=number, payload=bytes(2000))
-        assert backlog.add(fragment(sample, 1, 1000)) is None
-    whole = budget.used
-    backlog.take_below(5)
-    assert [backlog.has_part(number) for number in (3, 4, 5, 7)] == [False, False, True, True]
-    assert budget.used == whole // 2
-
-
 def test_tables_of_policies():
     """DDS table 2.2.3, by hand: which offers satisfy a request."""
     best, reliable = Reliability

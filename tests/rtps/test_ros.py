@@ -10,11 +10,10 @@ import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from firm_hdl.rtps import Guid, Sample, SampleIdentity
-from firm_hdl.rtps.ros import Context, Node, names, services
+from firm_hdl.rtps.ros import names, services
 from firm_hdl.rtps.ros.graph import GraphInfo, NodeInfo
 from firm_hdl.rtps.ros.services import Client, Service
 from firm_hdl.rtps.wire.octets import MalformedError
-from tests.rtps.test_participant import OPTIONS
 
 GUIDS = [Guid(bytes(range(12)), entity) for entity in (0x1C1, 0x103, 0x204, 0x304)]
 INFO = GraphInfo(
@@ -325,16 +324,3 @@ def test_replies_of_futures(caplog):
     assert replies.sent == [] and [each.message for each in caplog.records] == ["a service failed"]
     futures[2].set_result(b"!")
     assert replies.sent == [(b"!", SampleIdentity(GUIDS[1], 2), (GUIDS[2],))]
-
-
-def test_a_context_has_a_node_of_each_complete_name_once():
-    with Context(**OPTIONS) as context:
-        made = [Node("n", space, context=context) for space in ("/a", "/b", "/", "/a/b")]
-        for space in ("/a", "a", "/a/", "/", "/a/b"):
-            with pytest.raises(ValueError, match=r"^there is a node 'n' in '.*' already$"):
-                Node("n", space, context=context)
-        # One that is closed makes room for another one.
-        made[1].close()
-        Node("n", "/b", context=context)
-        names_of = [(each.namespace, each.name) for each in context.nodes()]
-        assert sorted(names_of) == [("/", "n"), ("/a", "n"), ("/a/b", "n"), ("/b", "n")]

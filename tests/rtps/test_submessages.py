@@ -192,12 +192,6 @@ def test_the_identifier_of_the_standard_counts_more_than_that_of_a_vendor():
         assert alone.related(vendor) == wanted
 
 
-def test_a_source_by_hand():
-    body = bytes.fromhex("00000000 0203 0110") + ME
-    read = InfoSource.decode(0, Cursor(body, little=True))
-    assert (read.prefix, read.version, read.vendor) == (ME, b"\2\3", b"\1\x10")
-
-
 def test_a_set_has_at_most_256_numbers():
     full = NumberSet.of(5, range(400))
     assert (full.base, full.members) == (5, tuple(range(5, 5 + 256)))

@@ -119,29 +119,6 @@ def test_fragments_that_are_announced_and_missing_may_still_come():
     assert backlog.add(part(2, b"efghij", count=2)) == SAMPLE
 
 
-@pytest.mark.parametrize("change", [{"fragment_bytes": 5}, {"sample_bytes": 11}])
-def test_fragments_of_other_sizes_are_of_another_sample(change):
-    backlog = Backlog(bytes(12), Budget(1 << 20))
-    backlog.add(part(1, b"abcd"))
-    assert backlog.add(part(2, b"EFGHI", **change)) is None
-    assert backlog.missing(7) == [2, 3]
-    assert backlog.add(part(2, b"efghij", count=2)) == SAMPLE
-
-
-def test_a_sample_that_outgrows_the_memory_is_given_up_and_may_begin_again():
-    for fitting in (1, 2):
-        # A byte too few for one more.
-        budget = Budget(204 * fitting + 203)
-        backlog = Backlog(bytes(12), budget)
-        for first in range(1, fitting + 1):
-            assert backlog.add(part(first, b"abcd")) is None
-        assert budget.used == 204 * fitting
-        assert backlog.add(part(fitting + 1, b"efgh")) is None
-        assert not backlog and budget.used == 0
-        assert backlog.add(part(3, b"ij")) is None
-        assert backlog.missing(7) == [1, 2] and budget.used == 204
-
-
 def test_no_more_fragments_are_missing_than_one_answer_can_name():
     backlog = Backlog(bytes(12), Budget(1 << 20))
     backlog.add(part(1, b"abcd", sample_bytes=4 * 1000))

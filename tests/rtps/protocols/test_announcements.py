@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import pytest
 
-from firm_hdl.rtps import Durability, Guid, Qos, sedp
+from firm_hdl.rtps import Guid, Qos, sedp
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData, key_payload
-from firm_hdl.rtps.events import Incompatible, Matched, PeerLost, Unmatched
+from firm_hdl.rtps.events import PeerLost, Unmatched
 from firm_hdl.rtps.peers import Peer
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.sedp import Local, Sedp
@@ -136,19 +136,6 @@ def test_an_address_where_a_peer_may_be_is_told_at_first_and_then_seldom():
     assert len(announcer.sent) == 1 + len(many) // 10
 
 
-def test_an_address_is_told_once():
-    # The one named target is also a peer's address.
-    announcer = Announcer((GROUP, ONE.discovery[0]))
-    announcer.listen(ONE, 0.0)
-    announcer.listen(TWO, 0.0)
-    announcer.sent.clear()
-    announcer.leave()
-    assert [to for to, _ in announcer.sent] == [GROUP, ONE.discovery[0], TWO.discovery[0]]
-    (farewell,) = {data for _, data in announcer.sent}
-    # It comes after the announcement, which has number 1.
-    assert farewell.key and farewell.sequence_number == 2
-
-
 def strangers(count, host=9):
     """Return participants that announce themselves, and nothing else."""
     return [
@@ -244,47 +231,6 @@ def test_each_participant_has_as_many_endpoints_as_it_may(monkeypatch):
             matcher.listen(remote(peer, number << 8 | 3), True)
     known = [(each.guid.prefix, each.guid.entity >> 8) for each in matcher.remotes(True)]
     assert known == [(ONE.prefix, 0), (ONE.prefix, 1), (TWO.prefix, 0), (TWO.prefix, 1)]
-
-
-@pytest.mark.parametrize("is_first", [False, True])
-@pytest.mark.parametrize(
-    ("own", "other", "is_writer", "topic", "fits"),
-    [
-        (WRITER, READER, False, "t", True),
-        (READER, WRITER, True, "t", True),
-        (KEYED_READER, KEYED_WRITER, True, "t", True),
-        (WRITER, WRITER, True, "t", False),
-        (READER, READER, False, "t", False),
-        (WRITER, READER, False, "u", False),
-        (WRITER, KEYED_READER, False, "t", False),
-        (KEYED_READER, WRITER, True, "t", False),
-    ],
-)
-def test_who_fits_whom_whoever_comes_first(own, other, is_writer, topic, fits, is_first):
-    matcher = Matcher()
-    steps = [lambda: matcher.own(own), lambda: matcher.listen(remote(ONE, other, topic), is_writer)]
-    for step in steps if is_first else reversed(steps):
-        step()
-    assert matcher.news() == ([Matched] if fits else [])
-
-
-def test_policies_that_do_not_fit_are_told_when_they_change():
-    durable = Durability.TRANSIENT_LOCAL
-    matcher = Matcher()
-    matcher.own(WRITER)
-    fits = remote(ONE, READER)
-    once = replace(fits, qos=Qos(durability=durable))
-    twice = replace(fits, qos=Qos(durability=durable, deadline=5))
-    for data, news in (
-        (fits, [Matched]),
-        (once, [Unmatched, Incompatible]),
-        (once, []),
-        (twice, [Incompatible]),
-        (fits, [Matched]),
-        (twice, [Unmatched, Incompatible]),
-    ):
-        matcher.listen(data, False)
-        assert matcher.news() == news
 
 
 def test_a_participant_that_is_gone_takes_all_with_it():
