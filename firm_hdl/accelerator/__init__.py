@@ -11,12 +11,13 @@ from __future__ import annotations
 from firm_hdl.accelerator.convert import fixed_to_float, float_to_fixed
 from firm_hdl.accelerator.fixed import Fixed, float_bits
 from firm_hdl.accelerator.messages import offer_message, offer_messages, take_message, tie_off
-from firm_hdl.accelerator.streams import FixedToFloat, FloatToFixed
+from firm_hdl.accelerator.streams import FixedToFloat, FloatToFixed, Fork
 
 __all__ = [
     "Fixed",
     "FixedToFloat",
     "FloatToFixed",
+    "Fork",
     "fixed_to_float",
     "float_bits",
     "float_to_fixed",

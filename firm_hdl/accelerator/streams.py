@@ -1,19 +1,41 @@
-"""The conversions as components with streams."""
+"""The conversions as components with streams, and a fork of streams."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
-from amaranth.hdl import Module, Mux, Signal
+from amaranth.hdl import Cat, Module, Mux, Signal, Value
 from amaranth.lib import stream
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.accelerator.convert import Rounding, Step, Values, to_fixed_steps, to_float_steps
 from firm_hdl.accelerator.fixed import Fixed, format_of
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.limits import check_integer
 
-__all__ = ["FixedToFloat", "FloatToFixed"]
+__all__ = ["FixedToFloat", "FloatToFixed", "Fork"]
+
+
+def _kept(m: Module, port: Any, moves: Value) -> tuple[Signal, Signal]:
+    """Return payload and `valid` of an input; they are taken if `moves` is high.
+
+    `ready` of the input has to come from a register. So one more transfer is kept in registers when
+    the output stops.
+    """
+    came = Value.cast(port.payload)
+    kept, is_kept = Signal.like(came, name="kept"), Signal()
+    payload, valid = Signal.like(came, name="number"), Signal(name="is_offered")
+    m.d.comb += [
+        port.ready.eq(~is_kept),
+        payload.eq(Mux(is_kept, kept, came)),
+        valid.eq(is_kept | port.valid),
+    ]
+    with m.If(moves):
+        m.d.sync += is_kept.eq(0)
+    with m.Elif(port.valid & port.ready):
+        m.d.sync += [is_kept.eq(1), kept.eq(came)]
+    return payload, valid
 
 
 class _Pipeline(Component):
@@ -25,20 +47,9 @@ class _Pipeline(Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        # `i.ready` has to come from a register. So one more number is kept when the output stops.
-        kept = Signal.like(self.i.payload)
-        is_kept, moves = Signal(), Signal()
-        number, valid = Signal.like(self.i.payload), Signal()
-        m.d.comb += [
-            self.i.ready.eq(~is_kept),
-            number.eq(Mux(is_kept, kept, self.i.payload)),
-            valid.eq(is_kept | self.i.valid),
-            moves.eq(~self.o.valid | self.o.ready),
-        ]
-        with m.If(moves):
-            m.d.sync += is_kept.eq(0)
-        with m.Elif(self.i.valid & self.i.ready):
-            m.d.sync += [is_kept.eq(1), kept.eq(self.i.payload)]
+        moves = Signal()
+        m.d.comb += moves.eq(~self.o.valid | self.o.ready)
+        number, valid = _kept(m, self.i, moves)
         values: Values = {"number": number}
         for step in self._steps:
             values = step(m, values)
@@ -51,6 +62,56 @@ class _Pipeline(Component):
             with m.If(moves):
                 m.d.sync += valid.eq(before)
         m.d.comb += [self.o.payload.eq(values["number"]), self.o.valid.eq(valid)]
+        return m
+
+
+class Fork(Component):
+    """Send each transfer of a stream to several others, which may take it at different times.
+
+    One transfer per cycle; latency 1 cycle. All outputs depend on registers only. An output that
+    stops holds the others after two transfers.
+
+    Parameters
+    ----------
+    shape : shape-like
+        Of the payload.
+    outputs : int
+        How many streams come out.
+
+    Members
+    -------
+    i : In(stream.Signature(shape))
+    o : Out(stream.Signature(shape)).array(outputs)
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `outputs` is no number from 1 on.
+    """
+
+    def __init__(self, shape: Any, outputs: int):
+        check_integer("The number of outputs", outputs)
+        if outputs < 1:
+            raise ValueError(f"A fork has at least 1 output, not {outputs}")
+        port = stream.Signature(shape)
+        super().__init__({"i": In(port), "o": Out(port).array(outputs)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        outputs: list[Any] = list(self.o)
+        moves = Signal()
+        m.d.comb += moves.eq(Cat(~each.valid | each.ready for each in outputs).all())
+        payload, valid = _kept(m, self.i, moves)
+        held = Signal.like(payload, name="held")
+        with m.If(moves):
+            m.d.sync += held.eq(payload)
+        for number, each in enumerate(outputs):
+            waits = Signal(name=f"waits_{number}")
+            m.d.comb += [Value.cast(each.payload).eq(held), each.valid.eq(waits)]
+            with m.If(moves):
+                m.d.sync += waits.eq(valid)
+            with m.Elif(each.ready):
+                m.d.sync += waits.eq(0)
         return m
 
 

@@ -239,36 +239,42 @@ def _python() -> str:
 
 
 def _libraries() -> Iterator[_Item]:
-    from firm_hdl.verify.references.clients import CLIENTS, WRITERS, find_clients
+    from firm_hdl.verify.references.clients import CLIENTS, WRITERS
 
     for name in CLIENTS:
-        versions, missing = find_clients([name])
-        uses = f"verify --sut {name}"
-        yield _Item(
-            group="Client libraries, for verify",
-            name=name,
-            version=versions.get(name),
-            enables=f"{uses}; confirms bytes in verify" if name in WRITERS else uses,
-            how=missing.get(name, ""),
-        )
+        confirms = "; confirms bytes in verify" if name in WRITERS else ""
+        enables = f"verify --sut {name}{confirms}"
+        yield _found("Client libraries, for verify", name, enables, partial(_library, name))
+
+
+def _library(name: str) -> str:
+    from firm_hdl.verify.references.clients import find_clients
+
+    versions, missing = find_clients([name])
+    if missing:
+        raise UserError(missing[name])
+    return versions[name]
 
 
 def _oracles() -> Iterator[_Item]:
+    from firm_hdl.verify.ts1.oracles import ORACLES
+
+    group = "Readers of definitions, for verify --systems ts1"
+    for name in ORACLES:
+        enables = f"verify --systems ts1 --oracle {name}"
+        yield _found(group, name, enables, partial(_oracle, name))
+
+
+def _oracle(name: str) -> str:
     from firm_hdl.frontend import DISTROS
     from firm_hdl.verify.ts1.oracles import ORACLES
     from firm_hdl.verify.ts1.universe import Universe
 
-    for name, kind in ORACLES.items():
-        distro = next(d.name for d in DISTROS.values() if d.dialect in kind.languages)
-        oracle = kind(Universe(distro))
-        try:
-            why = oracle.missing()
-            yield _Item(
-                group="Readers of definitions, for verify --systems ts1",
-                name=name,
-                version=oracle.version() if why is None else None,
-                enables=f"verify --systems ts1 --oracle {name}",
-                how=why or "",
-            )
-        finally:
-            oracle.close()
+    kind = ORACLES[name]
+    oracle = kind(Universe(next(d.name for d in DISTROS.values() if d.dialect in kind.languages)))
+    try:
+        if (why := oracle.missing()) is not None:
+            raise UserError(why)
+        return oracle.version()
+    finally:
+        oracle.close()

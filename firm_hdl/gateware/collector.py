@@ -13,7 +13,7 @@ from firm_hdl.gateware.flow import Flow, exceeds, last_word
 from firm_hdl.gateware.positions import Ring, any_of, pick
 from firm_hdl.gateware.signatures import Status, StatusSignature
 from firm_hdl.gateware.words import words_layout, write_bytes
-from firm_hdl.plan import LoopEnd, Plan
+from firm_hdl.plan import Plan
 from firm_hdl.program import (
     LENGTH_BITS,
     Length,
@@ -197,6 +197,8 @@ class Collector(wiring.Component):
             for state in program.states
             if state.cut is not None
         ]
+        # The last state also waits for room for the status: so a status is never lost, and `status`
+        # needs only one register.
         m.d.comb += [
             free.eq(~self.words.valid | self.words.ready),
             complete.eq(free & ~any_of(missing) & (~ends | ~status.valid | status.ready)),
@@ -266,6 +268,7 @@ class Collector(wiring.Component):
             single=of_length(lambda length: length.at_most_one_pass),
             nul=False,
         )
+        # The rest waits for the state that takes it; in between are only words of its own run.
         with m.If(complete):
             with m.If(ends):
                 m.d.sync += [rest.eq(0), has_nul.eq(0)]
@@ -357,13 +360,13 @@ def _last(flow: Flow[SerializerState], reader: _Reader) -> Value:
     """Return the value that `items.last` must have in a transfer."""
     part, run = reader.transfer.part, reader.transfer.run
     if part is not None:
-        if isinstance(part.end, LoopEnd):
-            return flow.levels[part.end.level].last
-        return Const(part.end is not None, 1)
+        if part.level is not None:
+            return flow.levels[part.level].last
+        return Const(part.last, 1)
     assert run is not None
     if run.counted:
         return Const(reader.transfer.is_rest, 1)
-    return flow.words.last & run.last
+    return flow.words.last & (not run.has_tail)
 
 
 def _items_align(

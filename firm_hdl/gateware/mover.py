@@ -13,8 +13,7 @@ from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import order_layout
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
 from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
-from firm_hdl.plan import LoopEnd, Part
-from firm_hdl.program import DeserializerProgram, DeserializerState, Transfer
+from firm_hdl.program import DeserializerProgram, DeserializerState, Part, Transfer
 
 __all__ = ["Mover"]
 
@@ -304,7 +303,7 @@ class _Words:
         if run is not None:
             # A word or the rest of a run.
             name = "items" if run.counted else "map"
-            m.d.sync += payload.last.eq(self.last & run.last)
+            m.d.sync += payload.last.eq(self.last & (not run.has_tail))
             for lane in range(leaf.lanes):
                 value = self.word[name][8 * lane * size : 8 * (lane + 1) * size]
                 good = self.good[name][(lane + 1) * size - 1]
@@ -313,9 +312,9 @@ class _Words:
         assert part is not None
         if leaf.kind == "items":
             # A transfer of static size.
-            last: Value = Const(part.end is not None)
-            if isinstance(part.end, LoopEnd):
-                last = self.final[part.end.level]
+            last: Value = Const(part.last)
+            if part.level is not None:
+                last = self.final[part.level]
             m.d.sync += payload.last.eq(last)
             for lane in range(leaf.lanes):
                 value, good = Const(0), Const(1)

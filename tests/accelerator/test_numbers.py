@@ -19,6 +19,7 @@ from firm_hdl.accelerator import (
     Fixed,
     FixedToFloat,
     FloatToFixed,
+    Fork,
     fixed_to_float,
     float_bits,
     float_to_fixed,
@@ -157,10 +158,47 @@ def test_components_do_the_same_with_a_number_per_cycle(kind, width, shape, late
         assert next(cycle for cycle, _, o in times if o) == first + latency
 
 
-@pytest.mark.parametrize("dut", [FloatToFixed(32, Fixed(8, 4)), FixedToFloat(Fixed(8, 4), 32)])
+@pytest.mark.parametrize(
+    "dut", [FloatToFixed(32, Fixed(8, 4)), FixedToFloat(Fixed(8, 4), 32), Fork(8, 3)]
+)
 def test_no_output_depends_on_an_input_in_the_same_cycle(dut):
-    inputs = Cat(dut.i.payload, dut.i.valid, dut.o.ready)
-    assert not has_path(dut, inputs, Cat(dut.i.ready, dut.o.valid, dut.o.payload))
+    outputs = dut.o if isinstance(dut, Fork) else [dut.o]
+    inputs = Cat(dut.i.payload, dut.i.valid, *(each.ready for each in outputs))
+    held = [(each.valid, each.payload) for each in outputs]
+    assert not has_path(dut, inputs, Cat(dut.i.ready, *held))
+
+
+@pytest.mark.parametrize("stalls", [Stalls.none, Stalls(probability=0.5, seed=1)])
+def test_a_fork_sends_each_transfer_to_all(stalls):
+    dut = Fork(8, 3)
+    times = []
+
+    async def source(ctx):
+        await send(ctx, dut.i, range(50), stalls=stalls, name="i")
+
+    def sink(number):
+        async def bench(ctx):
+            name = f"o{number}"
+            got = await receive(ctx, dut.o[number], 50, stalls=stalls, name=name)
+            assert got == list(range(50))
+
+        return bench
+
+    async def clock(ctx):
+        async for *_, moved in ctx.tick().sample(dut.o[2].valid & dut.o[2].ready):
+            times.append(moved)
+
+    simulator = Simulator(dut)
+    simulator.add_clock(1e-8)
+    simulator.add_testbench(source)
+    for number in range(3):
+        simulator.add_testbench(sink(number))
+    simulator.add_process(clock)
+    simulator.add_testbench(watch({f"o{n}": dut.o[n] for n in range(3)}), background=True)
+    simulator.run()
+    if stalls is Stalls.none:
+        # One per cycle.
+        assert "".join(map(str, times)).strip("0") == "1" * 50
 
 
 def test_constants():
@@ -188,5 +226,7 @@ def test_formats_are_checked():
         FloatToFixed(32, Fixed(9, 127))
     with pytest.raises(TypeError, match=r"^A fixed-point number is signed"):
         fixed_to_float(Module(), Signal(8), 4, 32)
+    with pytest.raises(ValueError, match=r"^A fork has at least 1 output, not 0$"):
+        Fork(8, 0)
     with pytest.raises(ValueError, match=r"^Rounding must be 'nearest' or 'zero', not 'up'$"):
         float_to_fixed(Module(), Signal(32), Fixed(8, 0), rounding="up")

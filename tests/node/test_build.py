@@ -240,6 +240,7 @@ def given(monkeypatch):
 
     monkeypatch.setattr(node_build, "write_design", write_design)
     monkeypatch.setattr(node_build.rtlil, "rtlil_of", lambda *_, **__: "circuit")
+    monkeypatch.setattr(node_build.rtlil, "netlist_of", lambda circuit: circuit)
     return asked
 
 
@@ -337,6 +338,7 @@ def test_the_files_of_each_kind_are_compared(name, owner, monkeypatch, tmp_path)
 
     monkeypatch.setattr(node_build, "convert", convert)
     monkeypatch.setattr(node_build.rtlil, "rtlil_of", lambda *_, **__: "circuit")
+    monkeypatch.setattr(node_build.rtlil, "netlist_of", lambda circuit: circuit)
     message = f"the node and {owner} would both have a unit with the name '{name}'"
     with pytest.raises(DefinitionError, match=message):
         build_node(read(RELAY, node=name), tmp_path)

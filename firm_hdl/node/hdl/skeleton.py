@@ -66,8 +66,11 @@ def new_accelerator(description: Description, language: str | None = None) -> tu
     else:
         file = hdl.files[-1] if hdl else f"{name}.{NEW_LANGUAGES[wanted]}"
         entity = hdl.entity if hdl else name
-        write = _vhdl if wanted == "vhdl" else _verilog
-        text = "".join(f"{line}\n" for line in write(description, entity))
+        if wanted == "vhdl":
+            lines = _vhdl(description, entity)
+        else:
+            lines = _verilog(description, entity, "wire" if wanted == "verilog" else "logic")
+        text = "".join(f"{line}\n" for line in lines)
         value = f"{{{wanted}: {file}, entity: {entity}}}"
     place = os.path.normpath(os.path.join(description.folder, file))
     try:
@@ -194,12 +197,12 @@ def _vhdl(description: Description, entity: str) -> Iterator[str]:
     yield from ("", "end architecture;")
 
 
-def _verilog(description: Description, entity: str) -> Iterator[str]:
+def _verilog(description: Description, entity: str, kind: str) -> Iterator[str]:
     rows = list(_rows(description, "//"))
     ports = [port for port, _ in rows if port is not None]
     width = max(len(port.name) for port in ports)
     text = {
-        port.name: f"{port.direction + 'put':<6} wire "
+        port.name: f"{port.direction + 'put':<6} {kind} "
         + f"{'signed ' if port.signed else ''}"
         + ("" if port.width == 1 else f"[{port.width - 1}:0] ")
         + port.name

@@ -50,7 +50,7 @@ def checked_vhdl(
         try:
             modules = parse_dump(dump)
         except ProofError as error:
-            raise refused(description, f"{error}") from None
+            raise refused(description, _reason(error)) from None
         # GHDL writes the outermost entity under its own name; those with generics under others.
         own = next((m.own for name, m in modules.items() if name.lower() == entity.lower()), None)
         if own is None:
@@ -83,10 +83,14 @@ def verilog_of_vhdl(
     try:
         circuit = read_vhdl(dump)
     except ProofError as error:
-        reason = str(error).replace(", which a proof does not support", "")
-        raise refused(description, f"the VHDL cannot be simulated in a node: {reason}") from None
+        raise refused(description, _reason(error)) from None
     names = {port.name.lower(): port.name for port in ports}
     return verilog_of(circuit, name=_entity(description), names=names)
+
+
+def _reason(error: ProofError) -> str:
+    reason = str(error).replace(", which a proof does not support", "")
+    return f"the VHDL cannot be simulated in a node: {reason}"
 
 
 def _entity(description: Description) -> str:

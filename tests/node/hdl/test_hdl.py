@@ -102,6 +102,20 @@ def test_members_are_listed(tmp_path, capsys):
     assert "Calibrate_Response: offer\n" in said
 
 
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (["--board", "udp://localhost"], "the board udp://localhost has no waveform"),
+        (["--wave", "."], "cannot write '.': Is a directory"),
+    ],
+)
+def test_a_waveform_needs_a_simulation_and_a_file(tmp_path, capsys, options, text):
+    described(tmp_path, "firm_hdl.node.loop:Loop")
+    command = ["node", "run", str(tmp_path / "node.yaml"), "--path", str(PACKAGES)]
+    assert main([*command, "--graph", "none", "--wave", "node.vcd", *options]) == 1
+    assert text in capsys.readouterr().err
+
+
 MISTAKES = [
     ("vhdl", ("begin\n", "begin begin\n"), r"^\S*Relay\.vhd:\d+:\d+: error: .*begin"),
     ("vhdl", ("Relay is", "other is"), "there is no entity 'Relay' in 'Relay.vhd'"),
@@ -178,7 +192,6 @@ def test_a_node_of_vhdl_is_built_and_runs(written, tmp_path, ghdl):
     )
     assert "PASS node Relay_node: " in said.stdout
     # A change of the user's file makes the folder outdated.
-    assert build_node(description, tmp_path, stimuli=stimuli).was_current
     source = tmp_path / "Relay.vhd"
     source.write_text(source.read_text() + "-- changed\n")
     assert not build_node(description, tmp_path, stimuli=stimuli).was_current

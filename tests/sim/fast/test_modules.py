@@ -32,14 +32,19 @@ class Sum(wiring.Component):
 
 
 @pytest.mark.thorough
-def test_verilator_compiles_them_too(programs, verilator):
+def test_verilator_compiles_them_too(programs, verilator, tmp_path):
     options = {"engine": "verilator", "options": ["-O0"], "cache": programs}
-    with FastSimulation(Sum(), modules=MODULES, **options) as simulation:
+    wave = tmp_path / "sum.vcd"
+    with FastSimulation(Sum(), modules=MODULES, wave=wave, **options) as simulation:
         simulation.send("i", [1, 2, 30])
         simulation.run(5)
         assert simulation.get("o") == 33
+    # What is inside of the module is in the waveform.
+    assert "scope module add" in wave.read_text() and "b00100001 " in wave.read_text()
 
 
-def test_amaranth_has_no_verilog():
+def test_amaranth_has_no_verilog(tmp_path):
+    with pytest.raises(BuildError, match=r"^Amaranth's simulator writes no waveform while"):
+        FastSimulation(Sum(), wave=tmp_path / "sum.vcd", engine="amaranth")
     with pytest.raises(BuildError, match=r"^Amaranth's simulator takes no modules of Verilog$"):
         FastSimulation(Sum(), modules=MODULES, engine="amaranth")
