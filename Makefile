@@ -64,7 +64,7 @@ lint: $(VENV)/.installed-dev ## ruff and mypy alone
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-HDL_EXAMPLES := vhdl_motor vhdl_two_types sv_motor cocotb_motor
+HDL_EXAMPLES := vhdl_motor vhdl_two_types sv_motor cocotb_motor nodes/wheels_vhdl nodes/wheels_sv
 examples: $(VENV)/.installed-dev ghdl verilog ## designs that act on good packets only, with their benches
 	for name in $(HDL_EXAMPLES); do \
 	  PATH="$(CURDIR)/$(BIN):$$PATH" $(MAKE) --no-print-directory -C examples/$$name || exit; \
@@ -72,7 +72,7 @@ examples: $(VENV)/.installed-dev ghdl verilog ## designs that act on good packet
 	$(BIN)/python examples/range_filter.py
 	$(BIN)/python examples/half_speed.py
 	$(BIN)/python examples/fast_simulation.py
-	for file in wheels/wheels filter/near echo_ros1/echo; do \
+	for file in wheels/wheels odometry/odometry filter/near echo_ros1/echo; do \
 	  $(BIN)/firm-hdl node run examples/nodes/$$file.yaml --graph none </dev/null || exit; \
 	done
 

@@ -13,10 +13,12 @@ from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.model import Wire
 
 __all__ = [
+    "TYPE_HELP",
     "add_bus_bytes",
     "add_depends",
     "add_engine",
     "add_jobs",
+    "add_json",
     "add_options",
     "add_origins",
     "add_path",
@@ -27,6 +29,9 @@ __all__ = [
     "positive",
     "seconds",
 ]
+
+TYPE_HELP = "such as sensor_msgs/msg/Imu, or a file of a package: .msg, .srv, .action or .idl"
+"""What is taken as a type."""
 
 
 def positive(text: str) -> int:
@@ -79,7 +84,7 @@ def add_types_or_all(
     which: str = "all types; with --path, all in those folders; with --bag, all in the recordings",
 ) -> None:
     """Add names of types, and ``--all`` as the alternative."""
-    command.add_argument("types", nargs="*", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
+    command.add_argument("types", nargs="*", metavar="TYPE", help=TYPE_HELP)
     command.add_argument("--all", action="store_true", help=which)
     command.set_defaults(usage_error=command.error)
 
@@ -108,6 +113,16 @@ def add_origins(command: argparse.ArgumentParser) -> None:
         "--depends, or from --distro if given; repeatable",
     )
     add_depends(command)
+
+
+def add_json(command: argparse._ActionsContainer) -> None:
+    """Add ``--json``: the command fills `document` of its arguments instead of printing."""
+    command.add_argument(
+        "--json",
+        dest="as_json",
+        action="store_true",
+        help="print one object of JSON to standard output, and nothing else",
+    )
 
 
 def add_path(command: argparse._ActionsContainer) -> None:

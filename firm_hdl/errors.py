@@ -7,6 +7,7 @@ then carets under the words in question.
 
 from __future__ import annotations
 
+import unicodedata
 from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -82,6 +83,16 @@ class Diagnostic:
     message: str
     span: Span | None = None
 
+    def facts(self) -> dict[str, str | int | None]:
+        """Return the problem as values of JSON: message, file, line and column."""
+        span = self.span
+        return {
+            "message": self.message,
+            "file": None if span is None else span.source.name,
+            "line": None if span is None else span.line,
+            "column": None if span is None else span.column,
+        }
+
     def __str__(self) -> str:
         message = printable(self.message)
         if self.span is None:
@@ -95,9 +106,17 @@ class Diagnostic:
             printable(part) for part in (text[:before], text[before:end], text[end:])
         )
         # Keep the tabs of the line before the carets, so that carets are aligned at any tab width.
-        indent = "".join("\t" if c == "\t" else " " for c in head)
-        carets = "^" * max(1, len(words))
+        indent = "\t".join(" " * _columns(part) for part in head.split("\t"))
+        carets = "^" * max(1, _columns(words))
         return f"{where}: error: {message}\n{head}{words}{tail}\n{indent}{carets}"
+
+
+def _columns(text: str) -> int:
+    """Return the columns of a text in a terminal: an East Asian sign takes two, an accent none."""
+    if text.isascii():
+        return len(text)
+    accents = sum(unicodedata.category(c) in ("Mn", "Me", "Cf") for c in text)
+    return len(text) - accents + sum(unicodedata.east_asian_width(c) in "WF" for c in text)
 
 
 # A file may be one single line with many errors.
@@ -136,6 +155,11 @@ class DefinitionError(Exception):
         self.diagnostics = tuple(diagnostics)
         assert self.diagnostics
         super().__init__(self.diagnostics)
+
+    @classmethod
+    def of(cls, message: str, span: Span | None = None) -> DefinitionError:
+        """Make the error of one problem."""
+        return cls([Diagnostic(message=message, span=span)])
 
     def __str__(self) -> str:
         # Format the text only when it is read: there may be a thousand errors in a thousand types.

@@ -27,8 +27,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
-from tqdm import tqdm
-
 from firm_hdl.errors import DefinitionError, Source
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.names import Kind
@@ -40,6 +38,7 @@ from firm_hdl.frontend.sources import (
     Origin,
     PackagePlace,
 )
+from firm_hdl.terminal import printable_streams, progress, stage
 from tests.damage import MOST_CHARACTERS, mutate
 
 __all__ = ["Finding", "Fuzzer", "Seed", "main", "seeds"]
@@ -274,7 +273,7 @@ def _report(finding: Finding, seed: int, out: Path) -> None:
     path = out / f"{seed}_{finding.number}.{finding.seed.language}"
     path.write_text(finding.text, encoding="utf-8", newline="")
     where = f"{finding.seed.dialect}/{finding.seed.package}/{finding.seed.kind}/{finding.seed.name}"
-    tqdm.write(f"--seed {seed} --only {finding.number}: {finding.problem}; from {where}; {path}")
+    print(f"--seed {seed} --only {finding.number}: {finding.problem}; from {where}; {path}")
 
 
 def _ranges(count: int, first: int) -> Iterator[range]:
@@ -304,14 +303,14 @@ def main(arguments: list[str] | None = None) -> int:
         initializer=_prepare,
         initargs=(folder, options.seed),
     )
-    with pool, tqdm(total=count, unit=" inputs", disable=None) as bar:
+    with pool, printable_streams(), progress("fuzzing"):
         tasks = [pool.submit(_task, numbers) for numbers in _ranges(count, first)]
         for task in as_completed(tasks):
             found, findings = task.result()
             counts += found
             for finding in findings:
                 _report(finding, options.seed, options.out)
-            bar.update(sum(found.values()))
+            stage("fuzzing: inputs", counts.total(), count)
     seconds = time.monotonic() - start
     print(
         f"{counts['model']} models, {counts['error']} errors, {counts['finding']} findings; "

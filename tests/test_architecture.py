@@ -25,8 +25,8 @@ MAY_IMPORT = {
     "recordings": {"errors", "files"},
     "rtlil": {"names"},
     "vhdl": {"names", "rtlil"},
-    # `errors`, `jobs`: Yosys may have too little memory; its process ends with this one.
-    "verilog": {"errors", "jobs", "names", "rtlil"},
+    # The netlist, the names and the statements are those of the VHDL.
+    "verilog": {"names", "rtlil", "vhdl"},
     "rtps": set[str](),
     # Know messages.
     "model": {"errors"},
@@ -37,46 +37,51 @@ MAY_IMPORT = {
     "metrics": {"errors", "model", "frontend", "identity", "wire"},
     "plan": {"model", "wire"},
     "estimates": {"plan"},
-    "gateware": {"model", "wire", "plan"},
+    "program": {"plan", "wire"},
+    "gateware": {"model", "wire", "plan", "program"},
     # `jobs`: compilers.
     "sim": {
         *("errors", "garbage", "jobs", "rtlil", "verilog", "model", "wire", "plan", "gateware"),
     },
 }
+# What a user's accelerator is made of. `sim`: values of messages become transfers.
+MAY_IMPORT["accelerator"] = {"gateware", "model", "plan", "sim", "wire"}
 MAY_IMPORT["export"] = {
     *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl", "verilog"),
     *("model", "frontend", "wire", "plan", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
-    # `terminal`: names of peers are printed.
+    # `terminal`: names of peers are printed. `equivalence`, `jobs`: accelerators in VHDL and
+    # Verilog are read by GHDL and Verilator.
     *("firm_hdl", "errors", "files", "garbage", "names", "rtlil", "rtps", "terminal", "vhdl"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
-    *("sim", "export"),
+    *("sim", "export", "equivalence", "jobs"),
 }
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {
-    *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export"),
+    *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export", "terminal"),
 }
 # Messages and packets to try, and the oracle that writes them.
 MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
     "cases",
     *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil"}),
-    *("arguments", "drawing", "export", "identity", "node", "recordings", "sim"),
+    *("arguments", "drawing", "export", "identity", "node", "recordings", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
-    *("arguments", "errors", "jobs", "names", "terminal", "vhdl", "verilog"),
+    *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
     *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
 }
 MAY_IMPORT["bench"] = {
-    *("arguments", "errors", "files", "jobs", "rtlil"),
+    *("arguments", "errors", "files", "jobs", "rtlil", "terminal"),
     *("model", "frontend", "wire", "plan", "gateware", "sim", "export"),
 }
 MAY_IMPORT["cli"] = {
-    *("firm_hdl", "arguments", "errors", "terminal"),
-    *("names", "model", "frontend", "plan", "estimates", "export"),
+    *("firm_hdl", "arguments", "errors", "jobs", "terminal"),
+    *("names", "model", "frontend", "plan", "program", "estimates", "export"),
     *("identity", "metrics", "node", "cases", "covering", "verify", "equivalence", "bench"),
 }
+MAY_IMPORT["__main__"] = {"cli"}
 # The public interface of the package.
 MAY_IMPORT["firm_hdl"] = {"errors", "frontend", "gateware"}
 
@@ -100,7 +105,7 @@ VERIFY_MAY_IMPORT["run"] = {
     *("bench", "board", "clients", "command", "references", "report", "results"),
     *("systems", "ts1", "ts2", "ts3"),
 }
-VERIFY_MAY_IMPORT["command"] = {"board", "run", "systems", "ts3"}
+VERIFY_MAY_IMPORT["command"] = {"board", "report", "results", "run", "systems", "ts3"}
 VERIFY_MAY_IMPORT["verify"] = set()
 
 

@@ -19,6 +19,13 @@ def test_caret_stands_under_the_words():
     assert str(diagnostic(text, 9, 13)) == "a.msg:2:2: error: no\n\tint9 b\n\t^^^^"
 
 
+def test_carets_are_counted_in_columns_of_a_terminal():
+    # Chinese signs take two columns each, and an accent of its own takes none.
+    text = "\u5b57e\u0301 int9\tx"
+    assert str(diagnostic(text, 4, 8)) == f"a.msg:1:5: error: no\n{text}\n    ^^^^"
+    assert str(diagnostic("a \u5b57\u6bb5 b", 2, 4)).endswith("\n  ^^^^")
+
+
 def test_place_after_the_last_line_has_a_caret():
     assert str(diagnostic("a\n", 2, 2)) == "a.msg:2:1: error: no\n\n^"
 

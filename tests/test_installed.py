@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -151,7 +152,9 @@ def test_what_is_installed_works_in_an_empty_folder(wheel, tmp_path):
         return run(env / "bin" / "firm-hdl", *arguments, folder=folder, given=given)
 
     assert command("--version") == f"firm-hdl {firm_hdl.__version__}\n"
-    assert "4 steps" in command("build", "std_msgs/msg/Bool", "--bus-bytes", "1")
+    assert "5 bytes in 5 beats" in command("build", "std_msgs/msg/Bool", "--bus-bytes", "1")
+    documentation = json.loads(command("doctor", "--json"))["documentation"]
+    assert Path(documentation) == env.resolve() / "share/doc/firm-hdl/docs/index.md"
 
     (folder / "echo.yaml").write_text(NODE)
     shutil.copy(ROOT / "examples/nodes/echo_ros1/echo.py", folder)

@@ -73,20 +73,15 @@ def test_streams_are_restored_afterwards(capsys):
     with printable_streams():
         print("\x1b[2J")
         print("\rbar \x1b[2J", file=sys.stderr)
-        print("\x1b[A", end="", file=sys.stderr)
-        print("\x1b[0m", end="", file=sys.stderr)
-        print("\n\x1b[A\x1b[0m\n", end="", file=sys.stderr)
-        # Only a whole text moves the cursor, and only where there are bars.
         print("\x1b[A\x1b[2J", end="", file=sys.stderr)
         print("\rno bar\x1b[A", end="")
-        # A carriage return moves the cursor only where a text starts with it.
+        # A carriage return moves the cursor only where a text of standard error starts with it.
         print("a\rb", file=sys.stderr)
         sys.stdout.writelines(["\x07\n"])
     assert (sys.stdout, sys.stderr) == before
-    # Progress bars move the cursor; control characters in their text do not act.
     assert capsys.readouterr() == (
         "\\x1b[2J\n\\rno bar\\x1b[A\\x07\n",
-        "\rbar \\x1b[2J\n\x1b[A\x1b[0m\n\x1b[A\x1b[0m\n\\x1b[A\\x1b[2Ja\\rb\n",
+        "\rbar \\x1b[2J\n\\x1b[A\\x1b[2Ja\\rb\n",
     )
 
 
@@ -107,19 +102,48 @@ def test_caret_stands_below_the_marked_text():
     ]
 
 
-def test_progress_bars_are_drawn_on_a_terminal():
-    code = (
-        "import sys; from tqdm import tqdm; from firm_hdl.terminal import printable_streams\n"
-        "with printable_streams():\n    list(tqdm(range(3), desc='x\\x1b[2J'))\n"
-    )
+def on_terminal(code, **streams):
+    """What a program shows on a terminal of 80 columns."""
     here, there = pty.openpty()
     fcntl.ioctl(there, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-    subprocess.run([sys.executable, "-c", code], stderr=there, stdout=there, check=True)
+    streams = {"stdout": there, "stderr": there, **streams}
+    subprocess.run([sys.executable, "-c", code], **streams, check=True)
     os.close(there)
     output = ""
     with io.FileIO(here) as terminal, suppress(OSError):
         # Reading after the other side has closed raises an error.
         while part := terminal.read(4096):
             output += part.decode()
-    assert "\rx\\x1b[2J: 100%" in output
-    assert "\x1b" not in output.replace("\x1b[0m", "")
+    return output
+
+
+PROGRESS = """
+import time
+from firm_hdl import terminal
+terminal.SECONDS_UNTIL_SHOWN = terminal.SECONDS_BETWEEN = 0.01
+with terminal.printable_streams(), terminal.progress("build"):
+    time.sleep(0.5)
+    terminal.stage("more\x1b", 0, 4)
+    terminal.stage("more\x1b", 3, 4)
+    time.sleep(0.5)
+    print("a line")
+"""
+
+
+def test_what_takes_long_is_told_on_a_terminal_and_gives_way_to_what_is_printed():
+    output = on_terminal(PROGRESS)
+    assert (
+        output.startswith("\rbuild, 0 s")
+        and "\rmore\\x1b: 3 of 4, " in output
+        and " s left" in output
+    )
+    before, line, after = output.partition("a line\r\n")
+    assert line and before.endswith(" \r")
+    # What was shown after it was taken away, too.
+    assert not after or after.endswith(" \r")
+
+
+def test_what_takes_long_is_not_told_in_a_file_or_beside_a_pipe():
+    done = subprocess.run([sys.executable, "-c", PROGRESS], capture_output=True, check=True)
+    assert (done.stdout, done.stderr) == (b"a line\n", b"")
+    assert on_terminal(PROGRESS, stdout=subprocess.PIPE) == ""

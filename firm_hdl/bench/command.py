@@ -6,8 +6,6 @@ import argparse
 from collections.abc import Sequence
 from dataclasses import replace
 
-from tqdm import tqdm
-
 from firm_hdl.arguments import (
     add_jobs,
     add_types_or_all,
@@ -26,6 +24,7 @@ from firm_hdl.bench.tools import versions
 from firm_hdl.files import write_file
 from firm_hdl.frontend import all_names, load_all, open_library
 from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, DIRECTIONS
+from firm_hdl.terminal import stage
 
 __all__ = ["NO_DEVICE", "add_bench_arguments", "bench_tasks", "run_bench"]
 
@@ -130,14 +129,10 @@ def run_bench(given: argparse.Namespace) -> int:
         versions(device, with_placer=bool(given.seeds))
     print(head(device), flush=True)
     results: list[Result] = []
-    disable = None if given.all else True
-    jobs = 1 if len(tasks) == 1 else given.jobs
-    with tqdm(total=len(tasks), unit="converter", desc="bench", disable=disable) as progress:
-        for result in run_tasks(tasks, jobs):
-            results.append(result)
-            with progress.external_write_mode():
-                print(row(result, path=not given.all), flush=True)
-            progress.update()
+    for result in run_tasks(tasks, 1 if len(tasks) == 1 else given.jobs):
+        results.append(result)
+        stage("bench: converters", len(results), len(tasks))
+        print(row(result, path=not given.all), flush=True)
     print(summary(results, tasks[0].stated if tasks else None))
     if given.json is not None:
         write_file(given.json, results_text(results))

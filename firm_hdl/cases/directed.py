@@ -8,13 +8,13 @@ decision. The record of a test names the decisions that are still missing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from firm_hdl.cases.make import Case, make_cases
 from firm_hdl.cases.oracle import RosbagsOracle
-from firm_hdl.plan import BeginRun, Edge, Plan, RunStep, decode, encode
+from firm_hdl.plan import Edge, Plan, decode, encode
 from firm_hdl.plan.edges import edges
-from firm_hdl.plan.ir import successors
+from firm_hdl.plan.tree import Constant, Item, Loop, Run, Step, numbered, walk
 
 __all__ = ["bare_packets", "more_cases"]
 
@@ -96,13 +96,26 @@ def bare_packets(plan: Plan, cases: Iterable[Case]) -> list[tuple[Case, bytes]]:
 
 def _bare_edges(plan: Plan) -> frozenset[Edge]:
     """Return the decisions that only a CDR string of length 0 takes, which has not even a NUL."""
-    # Other paths than the end of a string lead to these steps, and there is no rest on them.
-    others = {plan.start.step}
-    for step in plan.steps:
-        if not isinstance(step, RunStep) and not isinstance(step.begin, BeginRun):
-            others.update(jump.step for _, jump in successors(step))
+    strings = {run.leaf for run in walk(plan.items) if isinstance(run, Run) and run.count.nul}
     return frozenset(
-        Edge(index, "no rest")
-        for index, step in enumerate(plan.steps)
-        if step.rest is not None and plan.runs[step.rest].terminated and index not in others
+        Edge(index, "no rest") for index, step in _after_runs(plan.items, 0) if step.rest in strings
     )
+
+
+def _after_runs(items: Sequence[Item], first: int) -> Iterator[tuple[int, Step]]:
+    """Yield the steps that nothing but a run leads to, with their numbers."""
+    before: Item | None = None
+    for index, item in numbered(items, first):
+        if isinstance(item, Loop):
+            # The first step of a body is also reached from before the loop.
+            yield from _after_runs(item.body, index)
+        elif isinstance(item, Step) and isinstance(_last_of(before), Run):
+            yield index, item
+        before = item
+
+
+def _last_of(item: Item | None) -> Item | None:
+    """Return what is always the last step or run of an item."""
+    while isinstance(item, Loop) and isinstance(item.count, Constant):
+        item = item.body[-1]
+    return item

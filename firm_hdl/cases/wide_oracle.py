@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import Any
 
 from firm_hdl.cases.oracle import RosbagsOracle, Transfers
-from firm_hdl.model import FieldType, Message, String, spelled
+from firm_hdl.model import FieldType, Message, String, type_text
 
 __all__ = ["STAND_IN_NOTE", "WIDE_MEMBER", "WideOracle", "fit_units", "stand_in_type", "stand_ins"]
 
@@ -27,7 +27,7 @@ _PACKAGE = "firm_hdl_wide"
 
 def stand_in_type(kind: FieldType, text: String) -> str:
     """Return the type that replaces a wide text, or an array or a sequence of wide texts."""
-    return spelled(kind, f"{_PACKAGE}/{_base_name(text)}")
+    return type_text(kind, f"{_PACKAGE}/{_base_name(text)}")
 
 
 def stand_ins(messages: Iterable[Message]) -> dict[str, str]:

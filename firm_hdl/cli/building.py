@@ -6,18 +6,17 @@ import argparse
 import os
 from typing import TYPE_CHECKING
 
-from firm_hdl.arguments import add_jobs, add_options
+from firm_hdl.arguments import TYPE_HELP, add_jobs, add_json, add_options
 from firm_hdl.cli.types import library_of
+from firm_hdl.export.options import EXTRAS, PORTS, Extra, Options
+from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
     from firm_hdl.export.build import Built
     from firm_hdl.model import Message
     from firm_hdl.plan import Plan
 
-__all__ = ["PORT_NAMES", "add_build", "add_info", "add_plan"]
-
-PORT_NAMES = ("records", "flat")
-"""Values of ``--ports``: `firm_hdl.export.backend.PORTS`, copied to avoid that module's imports."""
+__all__ = ["add_build", "add_info", "add_plan"]
 
 
 class _Gone(argparse.Action):
@@ -36,13 +35,30 @@ def add_build(command: argparse.ArgumentParser) -> None:
     command.add_argument("--out", default="vhdl_out", help="folder to write to (%(default)s)")
     command.add_argument(
         "--ports",
-        choices=PORT_NAMES,
+        choices=PORTS,
         default="records",
         help="whether the VHDL has records, or plain vectors only; default: %(default)s",
+    )
+    command.add_argument(
+        "--with",
+        dest="extras",
+        type=_extras,
+        default=frozenset(),
+        metavar="EXTRA,...",
+        help=f"more files: {', '.join(EXTRAS)}, or all",
     )
     command.add_argument("--force", action="store_true", help="also write folders that are current")
     add_jobs(command)
     command.set_defaults(run=_build)
+
+
+def _extras(text: str) -> frozenset[Extra]:
+    """Read names of extras, separated by commas."""
+    chosen = {each for name in text.split(",") for each in (EXTRAS if name == "all" else [name])}
+    if unknown := chosen - {*EXTRAS}:
+        listed = ", ".join([*EXTRAS, "all"])
+        raise argparse.ArgumentTypeError(f"{min(unknown)!r} is not one of {listed}")
+    return frozenset(each for each in EXTRAS if each in chosen)
 
 
 def _build(args: argparse.Namespace) -> None:
@@ -50,8 +66,8 @@ def _build(args: argparse.Namespace) -> None:
 
     library = library_of(args)
     # Errors in definitions are reported before Amaranth is imported, which takes time.
-    load_all(library, args.types)
-    from firm_hdl.export.backend import Options
+    messages = load_all(library, args.types)
+    stage(f"build: {messages[0].name}" if len(messages) == 1 else "build")
     from firm_hdl.export.build import build
 
     def packets_of(message: Message, plan: Plan) -> list[bytes]:
@@ -60,7 +76,12 @@ def _build(args: argparse.Namespace) -> None:
 
         return stimuli(message, plan)
 
+    written = 0
+
     def report(built: Built) -> None:
+        nonlocal written
+        written += 1
+        stage("build: types", written, len(messages))
         state = "current" if built.was_current else "wrote"
         print(f"{state:8}{built.folder}{os.sep}", flush=True)
         for name in built.kept:
@@ -75,6 +96,7 @@ def _build(args: argparse.Namespace) -> None:
             bus_bytes=args.bus_bytes,
             max_message_bytes=args.max_message_bytes,
             ports=args.ports,
+            extras=args.extras,
         ),
         force=args.force,
         stimuli=packets_of,
@@ -83,11 +105,20 @@ def _build(args: argparse.Namespace) -> None:
     )
     for built in done:
         print(built.description)
+    for built in done[:1]:
+        script = built.folder / "vhdl" / "run_ghdl.sh"
+        run = f"{script} runs a test bench in GHDL; " if script.is_file() else ""
+        print(f"next: {run}--with all adds SystemVerilog, templates, scripts and pictures")
 
 
 def add_plan(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl plan``."""
-    command.add_argument("type", metavar="TYPE")
+    command.add_argument("type", metavar="TYPE", help=TYPE_HELP)
+    command.add_argument(
+        "--program",
+        action="store_true",
+        help="print what the circuits of both directions make of the plan: their states",
+    )
     _add_options(command)
     command.set_defaults(run=_plan)
 
@@ -95,31 +126,50 @@ def add_plan(command: argparse.ArgumentParser) -> None:
 def _plan(args: argparse.Namespace) -> None:
     from firm_hdl.frontend import load_all
     from firm_hdl.plan import to_yaml
+    from firm_hdl.program.table import program_text
 
     for index, message in enumerate(load_all(library_of(args), [args.type])):
         plan = _planned(message, args)
-        print("---\n" * bool(index) + to_yaml(plan), end="")
+        if args.program:
+            print("\n" * bool(index) + program_text(plan), end="")
+        else:
+            print("---\n" * bool(index) + to_yaml(plan), end="")
 
 
 def add_info(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl info``."""
     _add_types(command)
     _add_options(command)
+    add_json(command)
     command.set_defaults(run=_info)
 
 
 def _info(args: argparse.Namespace) -> None:
     from firm_hdl.estimates import estimate_text
+    from firm_hdl.export.manifest import figures_of
     from firm_hdl.frontend import load_all
     from firm_hdl.plan.timing import describe, recovery_text, timing
 
+    messages = args.document["messages"] = []
     for message in load_all(library_of(args), args.types):
         plan = _planned(message, args)
         figures = timing(plan)
+        if args.as_json:
+            messages.append(
+                {
+                    "name": message.name,
+                    "wire": plan.wire,
+                    "bus_bytes": plan.bus_bytes,
+                    **figures_of(plan, figures),
+                }
+            )
+            continue
         print(describe(message.name, plan, figures))
         print(recovery_text(figures))
         if estimate := estimate_text(plan):
             print(estimate)
+    if not args.as_json:
+        print("next: firm-hdl build, with the same arguments, writes them in VHDL and Verilog")
 
 
 def _planned(message: Message, args: argparse.Namespace) -> Plan:
@@ -135,4 +185,4 @@ def _add_options(command: argparse.ArgumentParser) -> None:
 
 
 def _add_types(command: argparse.ArgumentParser) -> None:
-    command.add_argument("types", nargs="+", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
+    command.add_argument("types", nargs="+", metavar="TYPE", help=TYPE_HELP)

@@ -5,11 +5,15 @@ from __future__ import annotations
 import argparse
 import sys
 import warnings
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from firm_hdl.arguments import add_engine, add_path, number_between, seconds
+from firm_hdl.arguments import add_engine, add_json, add_path, number_between, seconds
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
+from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
     from firm_hdl.node import Description
@@ -19,47 +23,104 @@ __all__ = ["add_node"]
 
 def add_node(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl node``."""
-    command.add_argument(
-        "action",
-        choices=["info", "build", "run"],
-        help="info: check the description and its accelerator, and print topics, ids, cycles, "
-        "clocks, memory and area; build: write the design; "
-        "run: join a board, or the design in simulation, with a graph of ROS",
+    actions = command.add_subparsers(
+        title="actions", dest="action", metavar="ACTION", required=True
     )
+    for action, (text, add, examples) in _ACTIONS.items():
+        sub = actions.add_parser(
+            action,
+            help=text,
+            description=f"{text[0].upper()}{text[1:]}.",
+            examples=examples,
+        )
+        sub.add_argument(
+            "file",
+            metavar="FILE",
+            help="description of the node, in YAML; reference/node.md of the documentation has its "
+            "keys, and firm-hdl doctor says where the documentation is",
+        )
+        add_path(sub)
+        add(sub)
+    command.set_defaults(run=_node)
+
+
+def _add_new(command: argparse.ArgumentParser) -> None:
     command.add_argument(
-        "file",
-        metavar="FILE",
-        help="description of a node; the documentation has all keys under Node description",
+        "--language",
+        choices=["amaranth", "vhdl", "verilog", "sv"],
+        help="language of the accelerator (default: that of the description, else amaranth)",
     )
-    add_path(command)
+
+
+def _add_info(command: argparse.ArgumentParser) -> None:
     command.add_argument(
-        "--out", default="node_out", help="folder that build writes to (%(default)s)"
+        "--members",
+        action="store_true",
+        help="also list the fields that an accelerator has to take and to offer",
     )
+    add_json(command)
+
+
+def _add_build(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--out", default="node_out", help="folder to write to (%(default)s)")
     command.add_argument("--force", action="store_true", help="also write a folder that is current")
     command.add_argument(
-        "--sim", action="store_true", help="for build: also compile the simulation, for run"
+        "--sim", action="store_true", help="also compile the simulation, for firm-hdl node run"
     )
+    add_engine(command, "--sim")
+
+
+def _add_run(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--board",
         default="sim",
         metavar="BOARD",
-        help="for run: sim, udp://HOST[:PORT], tcp://HOST:PORT or serial:///dev/DEVICE[?baud=RATE] "
+        help="sim, udp://HOST[:PORT], tcp://HOST:PORT or serial:///dev/DEVICE[?baud=RATE] "
         "(%(default)s)",
     )
     command.add_argument(
         "--graph",
         choices=["ros2", "ros1", "rtps", "none"],
-        help="for run: ros2 is rclpy if an environment of ROS 2 is active, else rtps; rtps needs "
+        help="ros2 is rclpy if an environment of ROS 2 is active, else rtps; rtps needs "
         "no ROS; ros1 is rospy; none: lines of JSON (default: by the distro)",
     )
-    command.add_argument("--domain", type=_domain, help="for run: domain of ROS 2 (ROS_DOMAIN_ID)")
-    command.add_argument("--interface", help="for run: network interface of rtps, such as lo")
+    command.add_argument("--domain", type=_domain, help="domain of ROS 2 (ROS_DOMAIN_ID)")
+    command.add_argument("--interface", help="network interface of rtps, such as lo")
+    command.add_argument("--seconds", type=seconds, help="end after so long (default: at Ctrl-C)")
     command.add_argument(
-        "--seconds", type=seconds, help="for run: end after so long (default: at Ctrl-C)"
+        "--wave", metavar="FILE", type=Path, help="write the waveform of --board sim, as VCD"
     )
-    add_engine(command, "run --board sim and build --sim")
-    command.add_argument("--quiet", action="store_true", help="for run: print no figures")
-    command.set_defaults(run=_node)
+    add_engine(command, "--board sim")
+    command.add_argument("--quiet", action="store_true", help="print no figures")
+
+
+_ACTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None], tuple[str, ...]]] = {
+    "new": (
+        "write a file to begin the accelerator with, beside the description",
+        _add_new,
+        ("firm-hdl node new double.yaml --language vhdl",),
+    ),
+    "info": (
+        "check a description and its accelerator, and print topics, sizes, cycles, clocks and area",
+        _add_info,
+        ("firm-hdl node info double.yaml",),
+    ),
+    "build": (
+        "write the design as VHDL and Verilog, with benches",
+        _add_build,
+        ("firm-hdl node build double.yaml --out node_out",),
+    ),
+    "run": (
+        "join a board, or the design in simulation, with a graph of ROS",
+        _add_run,
+        (
+            "firm-hdl node run double.yaml",
+            "firm-hdl node run double.yaml --graph none --seconds 60",
+            "firm-hdl node run double.yaml --board udp://192.168.1.50",
+        ),
+    ),
+}
+"""Help, function that adds the arguments, and examples of each action."""
 
 
 def _domain(text: str) -> int:
@@ -98,6 +159,14 @@ def _leave_unused() -> None:
 
 
 def _act(args: argparse.Namespace, description: Description) -> None:
+    if args.action == "new":
+        from firm_hdl.node.hdl import new_accelerator
+
+        place, value = new_accelerator(description, args.language)
+        print(f"wrote   {place}")
+        if not description.accelerator:
+            print(f"Add this line to {args.file}:\n\naccelerator: {value}")
+        return
     if args.action == "run":
         from firm_hdl.node.bridge.command import run_bridge
 
@@ -110,10 +179,29 @@ def _act(args: argparse.Namespace, description: Description) -> None:
             seconds=args.seconds,
             engine=args.engine,
             quiet=args.quiet,
+            wave=args.wave,
         )
         return
-    from firm_hdl.node.summary import summary
+    from firm_hdl.node.summary import facts_of, summary, warnings_of
 
+    if args.action == "info" and args.as_json:
+        facts = facts_of(description)
+        args.document |= {**facts, "warnings": list(warnings_of(description, facts))}
+        if args.members:
+            from firm_hdl.node.hdl.members import accelerator_streams
+
+            args.document["members"] = [
+                {
+                    "topic": each.topic.name,
+                    "message": each.message,
+                    "member": each.member,
+                    "direction": each.direction,
+                    "type": each.type,
+                    "ports": [asdict(port) for port in each.ports],
+                }
+                for each in accelerator_streams(description)
+            ]
+        return
     if args.action == "build":
         from firm_hdl.node.build import build_node
 
@@ -124,12 +212,17 @@ def _act(args: argparse.Namespace, description: Description) -> None:
         if args.sim:
             _compile(description, args)
     print(summary(description))
+    if args.action == "info" and args.members:
+        from firm_hdl.node.hdl.members import members_text
+
+        print(f"\n{members_text(description)}")
 
 
 def _compile(description: Description, args: argparse.Namespace) -> None:
     from firm_hdl.node.boards.simulated import SimulatedBoard
 
-    def report(stage: str) -> None:
-        print(f"board sim: {stage}", file=sys.stderr, flush=True)
+    def report(text: str) -> None:
+        print(f"board sim: {text}", file=sys.stderr, flush=True)
+        stage(f"board sim: {text}")
 
     SimulatedBoard(description, engine=args.engine, report=report).compile()

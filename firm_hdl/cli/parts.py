@@ -10,27 +10,6 @@ from firm_hdl.cli.types import library_of
 
 __all__ = ["add_part"]
 
-_HELP = {
-    "gate": "forward only the good packets of a message type",
-    "fifo": "store packets, and forward them whole or drop them",
-    "width": "carry packets to a bus of another width",
-    "crossing": "carry packets to another clock",
-    "arbiter": "merge packet streams, packet by packet, round robin",
-    "router": "send each packet to the output with the number in tdest",
-}
-_PARAMETERS = {
-    "gate": (
-        *("wire", "bus_bytes", "max_message_bytes"),
-        *("memory_bytes", "packets", "when_full"),
-    ),
-    "fifo": ("bus_bytes", "memory_bytes", "packets", "when_full"),
-    "width": ("in_bytes", "out_bytes"),
-    "crossing": ("bus_bytes", "beats"),
-    "arbiter": ("bus_bytes", "inputs", "side_bits"),
-    "router": ("bus_bytes", "topics", "topic_bits", "side_bits"),
-}
-"""The options of each part: the parameters of its component."""
-
 # Default, least and largest number, and the help text.
 _NUMBERS = {
     "memory_bytes": (1 << 16, 1, 1 << 20, "size of the memory, a power of two"),
@@ -45,16 +24,19 @@ _NUMBERS = {
 
 def add_part(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl part``."""
+    from firm_hdl.export.parts import KINDS
+
     kinds = command.add_subparsers(dest="kind", metavar="PART", required=True)
-    for kind, text in _HELP.items():
+    for kind, about in KINDS.items():
+        text = about.text
         part = kinds.add_parser(kind, help=text, description=f"Write a part: {text}.")
         if kind == "gate":
             add_origins(part)
             part.add_argument("type", metavar="TYPE", help="such as sensor_msgs/msg/Imu")
             add_options(part)
-        elif "bus_bytes" in _PARAMETERS[kind]:
+        elif "bus_bytes" in about.parameters:
             add_bus_bytes(part)
-        for name in _PARAMETERS[kind]:
+        for name in about.parameters:
             _add_parameter(part, name)
         part.add_argument("--name", type=_name, help="name of the design; default: by its options")
         part.add_argument("--out", default="parts_out", help="folder to write to (%(default)s)")
@@ -105,9 +87,9 @@ def _name(text: str) -> str:
 
 def _part(args: argparse.Namespace) -> None:
     message = library_of(args).message(args.type) if args.kind == "gate" else None
-    from firm_hdl.export.parts import build_part, make_part
+    from firm_hdl.export.parts import KINDS, build_part, make_part
 
-    given = {name: getattr(args, name) for name in _PARAMETERS[args.kind]}
+    given = {name: getattr(args, name) for name in KINDS[args.kind].parameters}
     part = make_part(args.kind, message=message, name=args.name, **given)
     built = build_part(part, args.out, force=args.force)
     print(f"{'current' if built.was_current else 'wrote':8}{built.folder}{os.sep}", flush=True)

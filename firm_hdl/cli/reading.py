@@ -3,29 +3,46 @@
 from __future__ import annotations
 
 import argparse
+import json
 
-from firm_hdl.arguments import add_types_or_all, add_wire
+from firm_hdl.arguments import TYPE_HELP, add_json, add_types_or_all, add_wire
 from firm_hdl.cli.types import library_of, names_of, print_unusable
 from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend import DEFAULT_DISTRO, Library
 
 __all__ = ["add_hash", "add_list", "add_md5", "add_metrics", "add_proto", "add_show"]
 
 
 def add_list(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl list``."""
-    command.set_defaults(run=_list)
+    command.add_argument(
+        "--only-path",
+        action="store_true",
+        help="list the types of --path alone, and not those of the distribution",
+    )
+    add_json(command)
+    command.set_defaults(run=_list, usage_error=command.error)
 
 
 def _list(args: argparse.Namespace) -> None:
-    library = library_of(args)
+    if args.only_path and not args.path:
+        args.usage_error("--only-path needs --path")
+    if args.only_path:
+        library = Library(args.distro or DEFAULT_DISTRO, args.path, origins=())
+    else:
+        library = library_of(args)
     problems = library.problems()
     print_unusable(library)
-    _print_all(library.interfaces(), DefinitionError(problems) if problems else None)
+    kinds = library.kinds()
+    args.document["distro"] = library.distro
+    args.document["types"] = [{"name": name, "kind": kind} for name, kind in kinds.items()]
+    lines = [] if args.as_json else list(kinds)
+    _print_all(lines, DefinitionError(problems) if problems else None)
 
 
 def add_show(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl show``."""
-    command.add_argument("type", metavar="TYPE")
+    command.add_argument("type", metavar="TYPE", help=TYPE_HELP)
     command.set_defaults(run=_show)
 
 
@@ -89,15 +106,19 @@ def add_metrics(command: argparse.ArgumentParser) -> None:
         "--format", choices=list(FORMATS), default="table", help="default: %(default)s"
     )
     add_wire(command)
+    add_json(command)
     command.set_defaults(run=_metrics)
 
 
 def _metrics(args: argparse.Namespace) -> None:
     from firm_hdl.metrics.command import metrics_text
 
-    names = names_of(args)
-    text, wrong = metrics_text(library_of(args), names, args.format, args.wire, bar=args.all)
-    print(text, end="")
+    names, form = names_of(args), "json" if args.as_json else args.format
+    text, wrong = metrics_text(library_of(args), names, form, args.wire)
+    if args.as_json:
+        args.document["messages"] = json.loads(text)
+    else:
+        print(text, end="")
     if wrong is not None:
         raise wrong
 

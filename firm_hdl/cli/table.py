@@ -24,12 +24,15 @@ class Command:
     module : str
         Name of the module of `firm_hdl.cli` with the function ``add_NAME``, which adds the
         arguments and sets ``run``.
+    examples : tuple of str
+        Command lines that its help shows.
     has_origins : bool
         Whether the command takes ``--distro``, ``--path``, ``--bag`` and ``--depends``.
     """
 
     help: str
     module: str
+    examples: tuple[str, ...] = ()
     has_origins: bool = True
 
     def add(self, name: str, parser: argparse.ArgumentParser) -> None:
@@ -42,47 +45,131 @@ class Command:
 
 
 COMMANDS: dict[str, Command] = {
-    "build": Command(help="write the converters of message types", module="building"),
-    "list": Command(help="list all messages, services and actions", module="reading"),
-    "show": Command(help="print a type as ROS's own tools do", module="reading"),
-    "plan": Command(help="print what converters do in each cycle, as YAML", module="building"),
+    "build": Command(
+        help="write the converters of message types",
+        module="building",
+        examples=(
+            "firm-hdl build geometry_msgs/msg/Twist --bus-bytes 4",
+            "firm-hdl build my_msgs/msg/Spot --path src",
+        ),
+    ),
+    "list": Command(
+        help="list all messages, services and actions",
+        module="reading",
+        examples=(
+            "firm-hdl list --distro humble",
+            "firm-hdl list --path src --only-path",
+        ),
+    ),
+    "show": Command(
+        help="print a type as ROS's own tools do",
+        module="reading",
+        examples=(
+            "firm-hdl show sensor_msgs/msg/Imu",
+            "firm-hdl show src/my_msgs/msg/Spot.msg",
+        ),
+    ),
+    "plan": Command(
+        help="print what converters do in each cycle, as YAML",
+        module="building",
+        examples=("firm-hdl plan geometry_msgs/msg/Twist --bus-bytes 4",),
+    ),
     "info": Command(
         help="print how many cycles packets take, and which clock a line rate needs",
         module="building",
+        examples=(
+            "firm-hdl info sensor_msgs/msg/Imu",
+            "firm-hdl info sensor_msgs/msg/Imu --json",
+        ),
     ),
     "part": Command(
         help="write a part that stores, checks, merges or routes packets",
         module="parts",
         has_origins=False,
+        examples=(
+            "firm-hdl part gate sensor_msgs/msg/Imu",
+            "firm-hdl part fifo --memory-bytes 4096",
+        ),
     ),
     "node": Command(
         help="write a design with several topics behind one link, print its figures, or run it "
         "in a graph of ROS",
         module="nodes",
         has_origins=False,
+        examples=(
+            "firm-hdl node info double.yaml",
+            "firm-hdl node build double.yaml",
+            "firm-hdl node run double.yaml",
+        ),
     ),
     "verify": Command(
-        help="test converters against ROS's own libraries", module="testing", has_origins=False
+        help="test converters against ROS's own libraries",
+        module="testing",
+        has_origins=False,
+        examples=(
+            "firm-hdl verify sensor_msgs/msg/Imu",
+            "firm-hdl verify --all --path src",
+            "firm-hdl verify sensor_msgs/msg/Imu --simulator ghdl",
+        ),
     ),
     "report": Command(
         help="write a report of results of verify, as HTML, Markdown or JSON",
         module="testing",
         has_origins=False,
+        examples=(
+            "firm-hdl verify --all --results all.jsonl",
+            "firm-hdl report all.jsonl --out all.html",
+        ),
     ),
     "prove": Command(
-        help="prove that the VHDL is equivalent to Amaranth's circuit", module="testing"
+        help="prove that the VHDL is equivalent to Amaranth's circuit",
+        module="testing",
+        examples=("firm-hdl prove std_msgs/msg/Header",),
     ),
     "bench": Command(
-        help="measure converters on an FPGA: area, clock rate, cycles", module="testing"
+        help="measure converters on an FPGA: area, clock rate, cycles",
+        module="testing",
+        examples=("firm-hdl bench std_msgs/msg/Header --device ice40",),
     ),
-    "golden": Command(help="compare plans with golden ones, by meaning", module="testing"),
-    "cover": Command(help="choose a few types that have every feature", module="testing"),
-    "md5": Command(help="print the md5 sums of ROS 1 types", module="reading"),
-    "hash": Command(help="print the type hashes (RIHS01) of ROS 2 types", module="reading"),
-    "proto": Command(help="print an example of a type as ROS's own tools do", module="reading"),
+    "golden": Command(
+        help="compare plans with golden ones, by meaning",
+        module="testing",
+        examples=(
+            "firm-hdl golden add plans sensor_msgs/msg/Imu",
+            "firm-hdl golden check plans",
+        ),
+    ),
+    "cover": Command(
+        help="choose a few types that have every feature",
+        module="testing",
+        examples=("firm-hdl cover --path src --out types.txt",),
+    ),
+    "doctor": Command(
+        help="say which tools, graphs and libraries are here, what they are for, and how to get "
+        "the others",
+        module="doctor",
+        examples=("firm-hdl doctor", "firm-hdl doctor --json"),
+        has_origins=False,
+    ),
+    "md5": Command(
+        help="print the md5 sums of ROS 1 types",
+        module="reading",
+        examples=("firm-hdl md5 std_msgs/String",),
+    ),
+    "hash": Command(
+        help="print the type hashes (RIHS01) of ROS 2 types",
+        module="reading",
+        examples=("firm-hdl hash std_msgs/msg/String",),
+    ),
+    "proto": Command(
+        help="print an example of a type as ROS's own tools do",
+        module="reading",
+        examples=("firm-hdl proto geometry_msgs/msg/Twist",),
+    ),
     "metrics": Command(
         help="print figures of message types: depth, leaves, sizes, alignment, features",
         module="reading",
+        examples=("firm-hdl metrics --all --path src --format csv",),
     ),
 }
 """All commands by name, in the order in which ``--help`` lists them."""

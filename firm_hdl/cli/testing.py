@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from firm_hdl.arguments import add_options
+from firm_hdl.arguments import add_json, add_options
 
 __all__ = ["add_bench", "add_cover", "add_golden", "add_prove", "add_report", "add_verify"]
 
@@ -14,6 +14,7 @@ def add_verify(command: argparse.ArgumentParser) -> None:
     from firm_hdl.verify.command import add_verify_arguments, run_verify
 
     add_verify_arguments(command)
+    add_json(command)
     command.set_defaults(run=run_verify)
 
 

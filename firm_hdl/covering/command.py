@@ -8,8 +8,6 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from tqdm import tqdm
-
 from firm_hdl.covering.choose import FAMILIES, all_features, choose, cost
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
@@ -17,6 +15,7 @@ from firm_hdl.files import read_file, write_file
 from firm_hdl.frontend import Library, all_names, load_all, open_library
 from firm_hdl.model import Message
 from firm_hdl.plan.shape import shape
+from firm_hdl.terminal import stage
 
 __all__ = ["add_cover_arguments", "read_chosen", "run_cover"]
 
@@ -78,13 +77,14 @@ def run_cover(given: argparse.Namespace) -> int:
         )
     types: dict[str, frozenset[str]] = {}
     costs, shapes = {}, set()
-    for message in tqdm(messages, unit="type", desc="features", disable=None):
+    for number, message in enumerate(messages):
+        stage("cover: features of types", number, len(messages))
         try:
             plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)
         except BuildError as error:
             if given.types:
                 raise
-            tqdm.write(f"left out: {error}", file=sys.stderr)
+            print(f"left out: {error}", file=sys.stderr)
             continue
         types[message.name] = all_features(library, message, plan, with_branches=given.branches)
         costs[message.name] = cost(plan)

@@ -14,7 +14,7 @@ from pathlib import Path
 from firm_hdl.arguments import add_bus_bytes, add_jobs
 from firm_hdl.equivalence.command import add_timeout, run_proofs
 from firm_hdl.equivalence.covering import covering_tasks, write_definitions
-from firm_hdl.terminal import printable_streams
+from firm_hdl.terminal import printable_streams, progress
 
 
 @printable_streams()
@@ -25,11 +25,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add_jobs(parser)
     add_timeout(parser)
     given = parser.parse_args(arguments)
-    with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
+    with progress("prove"), tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
         write_definitions(Path(folder))
         timeout = float(given.timeout)
         tasks = covering_tasks(Path(folder), bus_bytes=given.bus_bytes, timeout=timeout)
-        return run_proofs(tasks, given.jobs, bar=True)
+        return run_proofs(tasks, given.jobs, with_summary=True)
 
 
 if __name__ == "__main__":

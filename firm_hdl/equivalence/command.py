@@ -7,8 +7,6 @@ import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from tqdm import tqdm
-
 from firm_hdl.arguments import add_jobs, add_types_or_all, check_types_or_all, positive
 from firm_hdl.equivalence.converters import Attempt, ProofTask, both_directions, run_tasks
 from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT
@@ -17,6 +15,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library, all_names, load_all, open_library
 from firm_hdl.jobs import ProgramMissingError, ToolError
+from firm_hdl.terminal import stage
 
 __all__ = ["add_prove_arguments", "add_timeout", "run_proofs", "run_prove"]
 
@@ -71,7 +70,7 @@ def run_prove(given: argparse.Namespace) -> int:
             timeout=float(given.timeout),
         )
     ]
-    return run_proofs(tasks, given.jobs, bar=given.all)
+    return run_proofs(tasks, given.jobs, with_summary=given.all)
 
 
 def _all_messages(library: Library, types: Iterable[str]) -> list[str]:
@@ -85,13 +84,13 @@ def _all_messages(library: Library, types: Iterable[str]) -> list[str]:
     return list(names)
 
 
-def run_proofs(tasks: Sequence[ProofTask], jobs: int | None, *, bar: bool) -> int:
+def run_proofs(tasks: Sequence[ProofTask], jobs: int | None, *, with_summary: bool) -> int:
     """Run tasks, and print the result of each; return the exit status.
 
     Parameters
     ----------
-    bar : bool
-        Show a progress bar on a terminal, and a summary.
+    with_summary : bool
+        Print a summary.
     """
     try:
         find_tools()
@@ -99,14 +98,11 @@ def run_proofs(tasks: Sequence[ProofTask], jobs: int | None, *, bar: bool) -> in
         print(f"error: {error}", file=sys.stderr)
         return 1
     results: list[tuple[ProofTask, Attempt]] = []
-    disable = None if bar else True
-    with tqdm(total=len(tasks), unit="converter", desc="proofs", disable=disable) as progress:
-        for task, attempt in run_tasks(tasks, 1 if len(tasks) == 1 else jobs):
-            results.append((task, attempt))
-            with progress.external_write_mode():
-                print(_line(task, attempt), flush=True)
-            progress.update()
-    if bar:
+    for task, attempt in run_tasks(tasks, 1 if len(tasks) == 1 else jobs):
+        results.append((task, attempt))
+        stage("prove: converters", len(results), len(tasks))
+        print(_line(task, attempt), flush=True)
+    if with_summary:
         print(_summary(results))
     if not results:
         print("there was no converter to prove")

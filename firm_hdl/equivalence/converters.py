@@ -14,7 +14,7 @@ from firm_hdl.export.build import check_size, plan_of
 from firm_hdl.export.top import DIRECTIONS, Direction, Top
 from firm_hdl.frontend import open_library
 from firm_hdl.gateware import Deserializer, Serializer
-from firm_hdl.jobs.processes import in_processes
+from firm_hdl.jobs import run_each
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
@@ -160,9 +160,9 @@ def run_tasks(
 ) -> Iterator[tuple[ProofTask, Attempt]]:
     """Run tasks in `jobs` processes (`None`: one per processor); yield results as they finish."""
     work = [(task, (task,)) for task in tasks]
-    for task, result in in_processes(attempt, work, jobs):
+    for task, result in run_each(attempt, work, jobs=jobs):
         if isinstance(result, Exception):
-            yield task, Attempt(proof=None, problem=str(result))
+            yield task, Attempt(proof=None, problem=repr(result))
         else:
             yield task, result
 

@@ -54,6 +54,12 @@ _UNARY = {
     "$red_or": "$reduce_or",
     "$red_xor": "$reduce_xor",
 }
+_EXTREMES = {
+    "$umin": ("$lt", False),
+    "$smin": ("$lt", True),
+    "$umax": ("$gt", False),
+    "$smax": ("$gt", True),
+}
 _SAME = frozenset("$signal $isignal $output $ioutput $port $nop".split())
 _CONCATENATIONS = frozenset("$concat2 $concat3 $concat4 $concatn".split())
 
@@ -166,6 +172,21 @@ def gate_cells(gate: Gate, output: tuple[int, ...]) -> list[Cell]:
         if kind in ("$not", "$neg"):
             gate.check(len(values[0]) == gate.width)
         return [operator_cell(_UNARY[kind], output, A=values[0])]
+    if kind in _EXTREMES:
+        compare, is_signed = _EXTREMES[kind]
+        gate.check(len(values[0]) == len(values[1]) == gate.width)
+        first = gate.fresh(1)
+        return [
+            operator_cell(compare, first, signed=is_signed, A=values[0], B=values[1]),
+            mux_cell(output, first[0], values[1], values[0]),
+        ]
+    if kind == "$abs":
+        between = gate.fresh(gate.width)
+        gate.check(len(values[0]) == gate.width)
+        return [
+            operator_cell("$neg", between, A=values[0]),
+            mux_cell(output, values[0][-1], values[0], between),
+        ]
     if kind == "$mux2":
         gate.check([len(value) for value in values] == [1, gate.width, gate.width])
         select, low, high = values

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import re
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -9,7 +12,9 @@ from pathlib import Path
 
 from firm_hdl.jobs import ProgramMissingError, ToolError, TooSlowError, made_by, run_tool
 from firm_hdl.jobs.programs import find_ghdl, find_package, find_yosys
-from firm_hdl.verilog import is_out_of_memory, out_of_memory
+
+if sys.platform != "win32":
+    import resource
 
 __all__ = ["Tools", "answer_of", "find_tools"]
 
@@ -106,8 +111,11 @@ def _run(command: Sequence[str], folder: Path, name: str, timeout: float | None)
 
 
 def _failed(name: str, said: str, *, is_wasm: bool) -> ToolError:
-    if is_out_of_memory(said) and name == "Yosys":
-        return ToolError(out_of_memory(NEEDS_GB if is_wasm else None))
+    if _NO_MEMORY.search(said) and name == "Yosys":
+        reserved = (
+            f"it reserves {NEEDS_GB} GB of address space, and a circuit may use all of that; "
+        )
+        return ToolError(f"Yosys ran out of memory; {reserved if is_wasm else ''}{_available()}")
     return ToolError(f"{name} failed: {_error_of(said.splitlines())}")
 
 
@@ -117,3 +125,23 @@ def _error_of(lines: list[str]) -> str:
         crash = [line for line in lines if "exception" in line.lower() or "raised" in line.lower()]
         return f"a bug of GHDL itself ({' '.join(crash[:1]).strip()})"
     return " ".join(line.strip() for line in lines[-3:])
+
+
+_NO_MEMORY = re.compile(
+    r"mmap failed|Cannot allocate memory|bad_alloc|out of memory|memory allocation|MemoryError",
+    re.IGNORECASE,
+)
+_GB = 10**9
+
+
+def _available() -> str:
+    """Describe the memory that is available."""
+    if sys.platform != "win32":
+        limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+        if limit != resource.RLIM_INFINITY:
+            return f"this process may have {limit / _GB:.1f} GB (see 'ulimit -v')"
+    try:
+        free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, OSError, ValueError):
+        return "the amount of free memory is unknown on this system"
+    return f"{free / _GB:.1f} GB are free now"

@@ -105,18 +105,15 @@ def _distance(features: Mapping[str, int], plan: Plan, entry: Mapping[str, Any])
 
 
 def estimate_text(plan: Plan) -> str:
-    """Return a line with the estimates of a plan's converters; empty if there are none."""
-    parts = []
-    told = None
-    for direction, found in estimates_of(plan).items():
-        what = "measured" if found.is_same else f"that of {found.type}, the nearest measured"
-        origin = (found.part, what)
-        start = "" if origin == told else f"{found.part} ({what}): "
-        told = origin
-        parts.append(
-            f"{start}{direction} about {found.mhz:.0f} MHz, {found.lut:,} LUT, {found.ff:,} FF"
+    """Return lines with the estimates of a plan's converters; empty if there are none."""
+    lines = []
+    for direction, each in estimates_of(plan).items():
+        what = "measured" if each.is_same else f"that of {each.type}, the nearest measured type"
+        lines.append(
+            f"    {direction} on {each.part}: {each.lut:,} look-up tables, {each.ff:,} "
+            f"flip-flops, {each.mhz:.0f} MHz ({what})"
         )
-    return f"    estimate, {'; '.join(parts)}" if parts else ""
+    return "\n".join(lines)
 
 
 @cache

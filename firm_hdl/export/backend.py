@@ -1,38 +1,28 @@
 # amaranth: UnusedElaboratable=no
 # A failed build leaves converters without elaboration. Amaranth's warning about them does not help.
-"""Shared parts of back ends: the options of a build, a type's converters, and the output.
+"""Shared parts of back ends: a type's converters, and the output.
 
 A back end turns a type's converters into files and into entries of the manifest.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any, ClassVar, Literal, TypeAlias
+from typing import Any
 
-from firm_hdl import rtlil
 from firm_hdl.errors import UserError
 from firm_hdl.export.manifest import MANIFEST
+from firm_hdl.export.options import Options
 from firm_hdl.export.top import DIRECTIONS, Direction, Top
 from firm_hdl.garbage import search_put_off
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
-from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
-from firm_hdl.wire import Wire
+from firm_hdl.plan import Plan
+from firm_hdl.rtlil import netlist_of, rtlil_of
+from firm_hdl.rtlil.ir import Design
 
-__all__ = [
-    "PORTS",
-    "BackEnd",
-    "BuildError",
-    "Converters",
-    "Options",
-    "Output",
-    "Ports",
-    "module_name",
-]
+__all__ = ["BuildError", "Converters", "Output", "module_name"]
 
 
 class BuildError(UserError):
@@ -46,31 +36,6 @@ def module_name(folder: str, direction: Direction) -> str:
     entities in one library and look them up regardless of case.
     """
     return f"{folder}_{direction}_verilog"
-
-
-Ports: TypeAlias = Literal["records", "flat"]
-PORTS: tuple[Ports, ...] = ("records", "flat")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """The options of a build.
-
-    Attributes
-    ----------
-    wire : "ros1", "cdr" or None
-        Wire format; `None`: that of the distribution.
-    bus_bytes, max_message_bytes : int
-        As for the converters.
-    ports : "records" or "flat"
-        "records" adds entities with records and modules with structs; "flat" is for tools that do
-        not support them.
-    """
-
-    wire: Wire | None = None
-    bus_bytes: int = 8
-    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
-    ports: Ports = "records"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,9 +55,9 @@ class Converters:
         :func:`firm_hdl.export.manifest.inputs_of`.
     stimuli : sequence of bytes
         Packets for test benches.
-    circuits : mapping of direction to str
-        RTLIL with named ports, the source of the text in all languages. Empty until
-        :meth:`make_circuits` has made it.
+    circuits : mapping of direction to Design
+        Netlists with named ports, the source of the text in all languages. Empty until
+        :meth:`make_circuits` has made them.
     """
 
     message: Message
@@ -101,7 +66,7 @@ class Converters:
     options: Options = field(default_factory=Options)
     inputs: Mapping[str, Any] = field(default_factory=dict)
     stimuli: Sequence[bytes] = ()
-    circuits: Mapping[Direction, str] = field(default_factory=dict)
+    circuits: Mapping[Direction, Design] = field(default_factory=dict)
 
     def parameters(self) -> dict[str, Any]:
         """Return the keyword arguments of `Deserializer` and `Serializer`."""
@@ -111,15 +76,15 @@ class Converters:
             "max_message_bytes": self.plan.max_message_bytes,
         }
 
-    def make_circuits(self) -> dict[Direction, str]:
+    def make_circuits(self) -> dict[Direction, Design]:
         """Make the circuits. Back ends give their outermost modules other names."""
         return {direction: self._circuit(direction) for direction in DIRECTIONS}
 
     @search_put_off()
-    def _circuit(self, direction: Direction) -> str:
+    def _circuit(self, direction: Direction) -> Design:
         converter = Deserializer if direction == "deserializer" else Serializer
         top = Top(converter(self.message, **self.parameters()))
-        return rtlil.rtlil_of(top, name=f"{self.name}_{direction}")
+        return netlist_of(rtlil_of(top, name=f"{self.name}_{direction}"))
 
     def header(self, name: str, what: str) -> str:
         """Write the lines of a comment at the head of a file; empty without `inputs`.
@@ -157,34 +122,3 @@ class Output:
 
     files: Mapping[str, str]
     manifest: Mapping[str, Any] = field(default_factory=dict)
-
-
-class BackEnd(ABC):
-    """A language, or another form of output.
-
-    Attributes
-    ----------
-    name : str
-        Name among the inputs in the manifest.
-    """
-
-    name: ClassVar[str]
-
-    def check(self, folders: Mapping[Path, Converters]) -> None:  # noqa: B027
-        """Refuse types whose folders cannot be used together, before any file is written.
-
-        Most back ends have nothing to refuse.
-
-        Parameters
-        ----------
-        folders : mapping of Path to Converters
-            All folders that are built, with their converters. Other folders may stand beside them.
-
-        Raises
-        ------
-        BuildError
-        """
-
-    @abstractmethod
-    def write(self, converters: Converters) -> Output:
-        """Write the files of a message type's converters."""

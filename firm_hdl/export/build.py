@@ -1,13 +1,13 @@
 """Build folders of files from names of types.
 
 All errors in definitions and options are found before the first file is written. A folder that is
-current stays unchanged.
+current stays unchanged. A folder has the files of each language and form that the options ask for:
+each is written by a function `write`, which also makes its entries of the manifest.
 """
 
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing
@@ -15,29 +15,29 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.export.backend import BackEnd, BuildError, Converters, Options
-from firm_hdl.export.documents import Documents
+from firm_hdl.export import systemverilog, verilog, vhdl
+from firm_hdl.export.backend import BuildError, Converters, Output
 from firm_hdl.export.folder import build_folder, check_folder
-from firm_hdl.export.manifest import inputs_of, make_manifest
-from firm_hdl.export.systemverilog import SystemVerilog
+from firm_hdl.export.manifest import (
+    converter_facts,
+    converter_sections,
+    digest,
+    inputs_of,
+    manifest_of,
+)
+from firm_hdl.export.options import Options
 from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, ports_of
-from firm_hdl.export.verilog import Verilog
-from firm_hdl.export.vhdl.backend import Vhdl
+from firm_hdl.export.vhdl.neighbours import check_packages
 from firm_hdl.frontend import Library, load_all
 from firm_hdl.jobs.executors import ExecutorError, run_each
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
-from firm_hdl.plan import Plan, build_plan
+from firm_hdl.plan import Plan, build_plan, to_yaml
 from firm_hdl.plan.timing import Timing, describe, timing
 from firm_hdl.wire import Wire, lay_out
+from firm_hdl.wire.picture import to_svg
 
-__all__ = ["BACK_ENDS", "BuildError", "Built", "build", "check_size", "plan_of"]
-
-BACK_ENDS: tuple[BackEnd, ...] = (Verilog(), Documents(), Vhdl(), SystemVerilog())
-"""The back ends that write a folder, in the order of their entries in the manifest.
-
-A folder that was built by other back ends is not current: their names are among the inputs.
-"""
+__all__ = ["BuildError", "Built", "build", "check_size", "plan_of"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,8 +133,7 @@ def build(
         folder = Path(out, library.distro, converters.name)
         tasks.append(_Task(converters=converters, folder=folder))
     _check_folders(tasks)
-    for back_end in BACK_ENDS:
-        back_end.check({task.folder: task.converters for task in tasks})
+    check_packages({task.folder: task.converters for task in tasks})
     return _build_all(tasks, force, jobs, report)
 
 
@@ -169,27 +168,27 @@ def _build_each(
 def _converters(
     library: Library, message: Message, plan: Plan, options: Options, packets: Sequence[bytes]
 ) -> Converters:
-    inputs = inputs_of(
-        message,
-        plan,
-        distro=library.distro,
-        definition_sha256=library.definition_hash(message),
-        ports=options.ports,
-    )
-    inputs["stimuli_sha256"] = _digest(packets)
-    inputs["back_ends"] = [each.name for each in BACK_ENDS]
+    facts = {
+        **converter_facts(message, plan),
+        "distro": library.distro,
+        "definition_sha256": library.definition_hash(message),
+        "options": {
+            "wire": plan.wire,
+            "bus_bytes": plan.bus_bytes,
+            "max_message_bytes": plan.max_message_bytes,
+            "ports": options.ports,
+            "extras": sorted(options.extras),
+        },
+        "stimuli_sha256": digest("".join(f"{packet.hex()}\n" for packet in packets)),
+    }
     return Converters(
         message=message,
         plan=plan,
         name=f"{identifier(message.name)}_{plan.wire}_{plan.bus_bytes}",
         options=options,
-        inputs=inputs,
+        inputs=inputs_of(facts),
         stimuli=packets,
     )
-
-
-def _digest(packets: Sequence[bytes]) -> str:
-    return hashlib.sha256("".join(f"{packet.hex()}\n" for packet in packets).encode()).hexdigest()
 
 
 def plan_of(message: Message, wire: Wire | None, bus_bytes: int, max_message_bytes: int) -> Plan:
@@ -244,14 +243,14 @@ def _build_one(task: _Task, force: bool) -> Built:
 def _files(converters: Converters, figures: Timing) -> tuple[dict[str, str], dict[str, Any]]:
     """Write all files of a folder; return them and the manifest."""
     converters = dataclasses.replace(converters, circuits=converters.make_circuits())
-    outputs = [each.write(converters) for each in BACK_ENDS]
+    message, plan, extras = converters.message, converters.plan, converters.options.extras
+    outputs = [verilog.write(converters), vhdl.write(converters)]
+    if "systemverilog" in extras:
+        outputs.append(systemverilog.write(converters))
+    if "documents" in extras:
+        picture = to_svg(lay_out(message, plan.wire), f"{message.name} on {plan.wire}")
+        outputs.append(Output(files={"plan.yaml": to_yaml(plan), "layout.svg": picture}))
     files = {name: text for output in outputs for name, text in output.files.items()}
-    manifest = make_manifest(
-        converters.message,
-        converters.plan,
-        figures,
-        inputs=converters.inputs,
-        files=files,
-        sections={key: value for output in outputs for key, value in output.manifest.items()},
-    )
-    return files, manifest
+    sections = {key: value for output in outputs for key, value in output.manifest.items()}
+    sections = {**converter_sections(message, plan, figures), **sections}
+    return files, manifest_of(converters.inputs, files, sections)

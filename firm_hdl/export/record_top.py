@@ -6,13 +6,21 @@ user's layer in VHDL converts it to a record (:mod:`firm_hdl.export.vhdl.values`
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
 
-from amaranth.hdl import Module, Value
-from amaranth.lib import wiring
+from amaranth.hdl import Instance, Module, Value
 
-from firm_hdl.export.top import MAX_INPUT_BITS, Direction, Port, Top, ports_of
-from firm_hdl.gateware import Deserializer, RecordReader, RecordWriter, Serializer, record_layout
+from firm_hdl.export.top import (
+    MAX_INPUT_BITS,
+    Direction,
+    Port,
+    add_domain,
+    leaf_members,
+    port_members,
+    ports_of,
+)
+from firm_hdl.gateware import RecordReader, RecordWriter, record_layout
+from firm_hdl.gateware.component import Component
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
@@ -63,17 +71,23 @@ def record_ports(plan: Plan, direction: Direction, bits: int) -> tuple[Port, ...
     return tuple(ports)
 
 
-class RecordTop(Top):
-    """A converter with AXI4-Stream on its packet side and one vector on its message side.
+class RecordTop(Component):
+    """An instance of a converter, with AXI4-Stream and one vector on its message side.
 
     The latency is the converter's; see `RecordReader` and `RecordWriter` for the paths between
     ``msg_valid`` and ``msg_ready``. Clock and reset are those of :class:`Top`.
 
     Parameters
     ----------
-    core : Deserializer or Serializer
     message : Message
-        The converter's message; has a fixed size.
+        Has a fixed size.
+    plan : Plan
+        The plan of the converter.
+    direction : Direction
+    entity : str
+        Name of the converter's top level.
+    names : mapping of str to str
+        Names of its ports, where they differ from those of :func:`ports_of`.
 
     Members
     -------
@@ -85,45 +99,47 @@ class RecordTop(Top):
         If the message has no record view; :func:`why_no_record` says why.
     """
 
-    def __init__(self, core: Deserializer | Serializer, message: Message):
-        reason = why_no_record(message, core.plan)
+    def __init__(
+        self,
+        message: Message,
+        plan: Plan,
+        direction: Direction,
+        entity: str,
+        names: Mapping[str, str],
+    ):
+        reason = why_no_record(message, plan)
         if reason:
             raise ValueError(reason)
-        adapter = RecordReader if isinstance(core, Deserializer) else RecordWriter
-        self.record = adapter(message, wire=core.plan.wire, bus_bytes=core.plan.bus_bytes)
-        self.bits = record_layout(message, wire=core.plan.wire).size
-        super().__init__(core)
+        adapter = RecordReader if direction == "deserializer" else RecordWriter
+        self.record = adapter(message, wire=plan.wire, bus_bytes=plan.bus_bytes)
+        self.plan, self.direction = plan, direction
+        self.entity, self.names = entity, names
+        bits = len(Value.cast(self.record.record.payload))
+        super().__init__(port_members(record_ports(plan, direction, bits)))
 
-    @classmethod
-    def of(cls, message: Message, direction: Direction, **options: Any) -> RecordTop:
-        """Make a converter of a message and a top level around it.
-
-        Parameters
-        ----------
-        options
-            Keyword arguments of the converter.
-        """
-        converter = Deserializer if direction == "deserializer" else Serializer
-        return cls(converter(message, **options), message)
-
-    def _ports(self) -> tuple[Port, ...]:
-        return record_ports(self.core.plan, self.direction, self.bits)
-
-    def _message(self, m: Module) -> None:
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        add_domain(m, "sync", self.aclk, self.aresetn)
         m.submodules.record = self.record
+        leaves = dict(leaf_members(self.record.message, self.record.tree))
+        actuals = {}
+        for port in ports_of(self.plan, self.direction):
+            leaf = port.leaf
+            value = getattr(self, port.name) if leaf is None else leaves[leaf][port.member]
+            actuals[f"{port.direction[0]}_{self.names.get(port.name, port.name)}"] = value
+        m.submodules.core = Instance(self.entity, **actuals)
         stream = self.record.record
         vector = Value.cast(stream.payload)
         if self.direction == "deserializer":
-            wiring.connect(m, self.core.message, self.record.message)
             m.d.comb += [
                 self.msg_data.eq(vector),
                 self.msg_valid.eq(stream.valid),
                 stream.ready.eq(self.msg_ready),
             ]
         else:
-            wiring.connect(m, self.record.message, self.core.message)
             m.d.comb += [
                 vector.eq(self.msg_data),
                 stream.valid.eq(self.msg_valid),
                 self.msg_ready.eq(stream.ready),
             ]
+        return m

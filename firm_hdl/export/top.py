@@ -7,7 +7,7 @@ manifest repeats.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -18,6 +18,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.limits import MAX_CELL_BITS
+from firm_hdl.gateware.members import MemberTree
 from firm_hdl.gateware.signatures import leaf_shape
 from firm_hdl.model import Array, Field, Message, Sequence
 from firm_hdl.names.identifiers import flat_names
@@ -31,7 +32,9 @@ __all__ = [
     "Top",
     "add_domain",
     "field_of",
+    "leaf_members",
     "leaf_names",
+    "port_members",
     "ports_of",
     "trailing_ones",
 ]
@@ -219,16 +222,8 @@ class Top(Component):
         self.direction: Direction = (
             "deserializer" if isinstance(core, Deserializer) else "serializer"
         )
-        flows = {"in": In, "out": Out}
-        super().__init__(
-            {
-                port.name: flows[port.direction](Shape(port.width, port.signed))
-                for port in self._ports()
-            }
-        )
-
-    def _ports(self) -> tuple[Port, ...]:
-        return ports_of(self.core.plan, self.direction)
+        self.ports = ports_of(core.plan, self.direction)
+        super().__init__(port_members(self.ports))
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -243,7 +238,11 @@ class Top(Component):
             self.m_axis_status_tvalid.eq(self.core.status.valid),
             self.core.status.ready.eq(self.m_axis_status_tready),
         ]
-        self._message(m)
+        leaves = dict(leaf_members(self.core.message, self.core.tree))
+        for port in self.ports:
+            if port.leaf is not None:
+                inner, outer = leaves[port.leaf][port.member], getattr(self, port.name)
+                m.d.comb += inner.eq(outer) if port.direction == "in" else outer.eq(inner)
         return m
 
     def _packets_in(self, m: Module) -> None:
@@ -269,28 +268,23 @@ class Top(Component):
             packets.ready.eq(self.m_axis_tready),
         ]
 
-    def _message(self, m: Module) -> None:
-        m.d.comb += list(self._leaves())
 
-    def _leaves(self) -> Iterator[Any]:
-        names = leaf_names(self.core.plan)
-        inwards = self.direction == "serializer"
+def port_members(ports: Iterable[Port]) -> dict[str, Any]:
+    """Return the members of a component with such ports."""
+    flows = {"in": In, "out": Out}
+    return {port.name: flows[port.direction](Shape(port.width, port.signed)) for port in ports}
 
-        def connect(inner: Value, port: Value, *, inwards: bool = inwards) -> Any:
-            return inner.eq(port) if inwards else port.eq(inner)
 
-        for index, path in self.core.tree.leaves():
-            interface = self.core.message
-            for name in path:
-                interface = getattr(interface, name)
-            base = names[self.core.plan.leaves[index].path]
-            payload: Any = interface.payload
-            if isinstance(payload, data.View):
-                yield connect(payload["last"], getattr(self, f"{base}_last"))
-                payload = payload["data"]
-            yield connect(Value.cast(payload), getattr(self, f"{base}_data"))
-            yield connect(interface.valid, getattr(self, f"{base}_valid"))
-            yield connect(interface.ready, getattr(self, f"{base}_ready"), inwards=not inwards)
+def leaf_members(message: Any, tree: MemberTree) -> Iterator[tuple[int, dict[str, Value]]]:
+    """Yield each leaf of a message's interface: its index, and its signals by `Port.member`."""
+    for index, path in tree.leaves():
+        stream = message
+        for name in path:
+            stream = getattr(stream, name)
+        members = {"data": stream.payload, "valid": stream.valid, "ready": stream.ready}
+        if isinstance(stream.payload, data.View):
+            members |= {name: stream.payload[name] for name in ("data", "last")}
+        yield index, {name: Value.cast(value) for name, value in members.items()}
 
 
 def add_domain(m: Module, name: str, clock: Signal, resetn: Value) -> None:

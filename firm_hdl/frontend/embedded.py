@@ -18,7 +18,14 @@ from rosbags.typesys import Stores, get_typestore
 from firm_hdl.errors import Source
 from firm_hdl.model import EMPTY_MEMBER, Dialect
 
-__all__ = ["DEFAULT_DISTRO", "DISTROS", "Distro", "embedded_names", "embedded_source"]
+__all__ = [
+    "DEFAULT_DISTRO",
+    "DISTROS",
+    "Distro",
+    "embedded_names",
+    "embedded_source",
+    "replacement_of",
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,6 +67,11 @@ DISTROS: dict[str, Distro] = {
 DEFAULT_DISTRO = "lyrical"
 """The newest one with long-term support."""
 
+# Distributions without embedded types, oldest first, and the next one that has them.
+_NEXT = dict.fromkeys("fuerte groovy hydro indigo jade kinetic lunar melodic".split(), "noetic")
+_NEXT |= dict.fromkeys("ardent bouncy crystal dashing eloquent".split(), "foxy")
+_NEXT |= {"galactic": "humble"}
+
 # Fields with a default value, and the first distribution that has it. ROS 1 has none. Sources:
 # - Quaternion: ros2/common_interfaces, pull request 74, of 2019; its CHANGELOG has no change since.
 # - NavSatStatus: ros2/common_interfaces, pull request 220, sensor_msgs 5.3.2 of April 2024.
@@ -84,6 +96,26 @@ _ROS1_BUILTINS = {
     "builtin_interfaces/msg/Time": "time",
     "builtin_interfaces/msg/Duration": "duration",
 }
+
+
+def replacement_of(distro: str) -> str:
+    """Say which distribution to take instead of one whose types are not embedded.
+
+    Returns
+    -------
+    str
+        Empty if `distro` is not the name of such a distribution.
+    """
+    name = distro.strip().lower()
+    if name == "rolling":
+        return (
+            f"the types of rolling change any day: take '{DEFAULT_DISTRO}', the newest one here; "
+            "types of a workspace come from --path, or from its setup file"
+        )
+    if name in _NEXT:
+        return f"the types of {name} do not come with firm-hdl: take '{_NEXT[name]}', the next one"
+    return ""
+
 
 # (constants, fields) of a type, as rosbags types them in its private `Typesdict`.
 _Definition = tuple[list[tuple[str, str, Any]], list[tuple[str, Any]]]

@@ -7,13 +7,14 @@ recognizes common mistakes.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from difflib import get_close_matches
 
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
 from firm_hdl.model import PRIMITIVES, Dialect
 
-__all__ = ["NAME_RULES", "clip", "explain", "similar_builtin"]
+__all__ = ["NAME_RULES", "alternatives", "clip", "explain", "similar_builtin", "words_at"]
 
 NAME_RULES = {
     "NAME": "letters, digits and underscores, a letter first",
@@ -141,7 +142,7 @@ def _wrong_part(line: str, start: int, expected: frozenset[str], dialect: Dialec
 
 
 def _wrong_name(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
-    word = _group(_NAME_WORD, line, start)
+    word = words_at(_NAME_WORD, line, start)
     kinds = expected & {"NAME", "FIELD_NAME", "CONSTANT_NAME"}
     if not word or not kinds:
         return None
@@ -162,7 +163,7 @@ def _wrong_name(line: str, start: int, expected: frozenset[str], dialect: Dialec
 
 
 def _wrong_type(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
-    word = _group(_TYPE_WORD, line, start)
+    word = words_at(_TYPE_WORD, line, start)
     if not word or "MESSAGE_NAME" not in expected:
         return None
     if "PACKAGE" not in expected:
@@ -209,7 +210,7 @@ def _wrong_list(line: str, start: int, expected: frozenset[str], dialect: Dialec
 
 def _wrong_value(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
     is_item = line[:start].rstrip()[-1:] in ("[", ",")
-    word = _group(_ITEM_WORD if is_item else _VALUE_WORD, line, start)
+    word = words_at(_ITEM_WORD if is_item else _VALUE_WORD, line, start)
     if not word:
         return None
     quoted = clip(word)
@@ -229,7 +230,7 @@ def _wrong_value(line: str, start: int, expected: frozenset[str], dialect: Diale
 
 
 def _wrong_size(line: str, start: int, expected: frozenset[str], dialect: Dialect) -> _Found:
-    word = _group(_WORD, line, start)
+    word = words_at(_WORD, line, start)
     if "SIZE" not in expected:
         return None
     if not word:
@@ -241,7 +242,7 @@ def _wrong_separator(line: str, start: int, expected: frozenset[str], dialect: D
     if "_SPACE" not in expected or "COMMENT" in expected:
         return None
     rest = line[start:]
-    word = _group(_WORD, line, start)
+    word = words_at(_WORD, line, start)
     if not rest.strip() or rest.lstrip().startswith("#"):
         return 1, "a name must follow the type"
     if rest[0].isspace():
@@ -255,15 +256,21 @@ def _wrong_separator(line: str, start: int, expected: frozenset[str], dialect: D
 
 def _in_general(line: str, start: int, expected: frozenset[str]) -> tuple[int, int, str]:
     phrases = list(dict.fromkeys(p for name, p in _PHRASES.items() if name in expected))
-    *others, last = phrases or ["the end of the line"]
-    wanted = f"{', '.join(others)} or {last}" if others else last
+    wanted = alternatives(phrases or ["the end of the line"])
     start = len(line) - len(line[start:].lstrip())
-    word = _group(_WORD, line, start)
+    word = words_at(_WORD, line, start)
     if word:
         return start, start + len(word), f"expected {wanted}, not '{clip(word)}'"
     return start, start + 1, f"expected {wanted}, but the definition ends here"
 
 
-def _group(pattern: re.Pattern[str], line: str, start: int) -> str:
-    match = pattern.match(line, start)
+def alternatives(words: Sequence[str]) -> str:
+    """Join words: ``a, b or c``."""
+    *others, last = words
+    return f"{', '.join(others)} or {last}" if others else last
+
+
+def words_at(pattern: re.Pattern[str], text: str, start: int) -> str:
+    """Return what matches a pattern at a place, or nothing."""
+    match = pattern.match(text, start)
     return match.group() if match else ""

@@ -8,13 +8,22 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source
-from firm_hdl.frontend.assemble import assemble
 from firm_hdl.frontend.embedded import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.explain import clip
 from firm_hdl.frontend.interfaces import Unit
-from firm_hdl.frontend.names import KINDS, Kind, TypeName, owners
+from firm_hdl.frontend.names import (
+    ACTION_SERVICES,
+    ACTION_WRAPPERS,
+    EVENT,
+    KINDS,
+    PARTS,
+    Kind,
+    TypeName,
+    owners,
+)
 from firm_hdl.frontend.resolve import Resolver
 from firm_hdl.frontend.sources import EmbeddedOrigin, FolderOrigin, Origin, Sources
+from firm_hdl.frontend.spelling import spelled
 from firm_hdl.frontend.suggest import did_you_mean, similar_types, unknown_type
 from firm_hdl.model import Action, Dialect, Interface, Message, Service, closure
 
@@ -93,13 +102,16 @@ class Library:
         If two types of ROS 1 have the same name, the second is listed with its kind:
         ``package/srv/Name``.
         """
-        names: dict[str, TypeName] = {}
+        return list(self.kinds())
+
+    def kinds(self) -> dict[str, Kind]:
+        """Return the kind of every type that `interfaces` lists, by its name and in that order."""
+        names: dict[str, Kind] = {}
         order = {kind: index for index, kind in enumerate(KINDS)}
         for package, kind, name in sorted(self._sources.names, key=lambda n: order[n[1]]):
-            full = TypeName(package, kind, name, self.dialect)
-            short = str(full)
-            names[short if short not in names else f"{package}/{kind}/{name}"] = full
-        return sorted(names)
+            short = str(TypeName(package, kind, name, self.dialect))
+            names[short if short not in names else f"{package}/{kind}/{name}"] = kind
+        return dict(sorted(names.items()))
 
     def problems(self) -> list[Diagnostic]:
         """List why types cannot be used although they are listed: two files have them."""
@@ -111,8 +123,9 @@ class Library:
         Parameters
         ----------
         name : str
-            ``package/msg/Name`` or ``package/Name``. Messages of services and actions have names,
-            too: ``package/srv/Name_Request``, and in ROS 1 ``package/NameRequest``.
+            ``package/msg/Name`` or ``package/Name``, or another spelling of these that
+            :func:`.spelled` knows. Messages of services and actions have names, too:
+            ``package/srv/Name_Request``, and in ROS 1 ``package/NameRequest``.
 
         Raises
         ------
@@ -131,7 +144,7 @@ class Library:
                 what = "a service" if candidate.kind == "srv" else "an action"
                 text = f"'{candidate}' is {what}, not a message"
                 parts = [str(candidate)[: -len(candidate.name)] + part for part in unit.messages]
-                raise self._error(did_you_mean(text, parts))
+                raise DefinitionError.of(did_you_mean(text, parts))
         raise self._unknown(candidates)
 
     def interface(self, name: str) -> Interface:
@@ -140,15 +153,15 @@ class Library:
         Parameters
         ----------
         name : str
-            ``package/kind/Name``, or ``package/Name`` for the first of message, service and action
-            of that name; also any name that `message` takes.
+            ``package/kind/Name``, or ``package/Name``; also any name that `message` takes. In
+            ROS 1, ``package/Name`` is the first of message, service and action of that name.
 
         Raises
         ------
         DefinitionError
-            As by `message`.
+            As by `message`; also if ``package/Name`` of ROS 2 can be several types.
         """
-        candidates = self._parse(name)
+        candidates = self._unambiguous(name)
         for candidate in self._by_origin(candidates):
             unit = self._resolver.unit(candidate)
             if unit is not None and not unit.is_message:
@@ -199,7 +212,7 @@ class Library:
         return digest.hexdigest()
 
     def _unit(self, name: str) -> Unit:
-        candidates = self._parse(name)
+        candidates = self._unambiguous(name)
         for candidate in self._by_origin(candidates):
             unit = self._resolver.unit(candidate) or self._resolver.unit_of(candidate)
             if unit is not None:
@@ -208,27 +221,58 @@ class Library:
 
     def _assembled(self, name: TypeName, unit: Unit) -> Service | Action:
         if name not in self._interfaces:
-
-            def resolve(part: str) -> Message | None:
-                return self._resolver.resolve(replace(name, name=part))
-
-            self._interfaces[name] = assemble(unit, resolve)
+            messages = self._messages_of(unit)
+            self._interfaces[name] = (
+                _service(unit, name.name, messages)
+                if name.kind == "srv"
+                else _action(unit, messages)
+            )
         return self._interfaces[name]
+
+    def _messages_of(self, unit: Unit) -> dict[str, Message]:
+        """Resolve all messages of a service or an action, by their names without the package."""
+        messages: dict[str, Message] = {}
+        diagnostics = list(unit.diagnostics)
+        for part in unit.messages:
+            try:
+                message = self._resolver.resolve(replace(unit.name, name=part))
+            except DefinitionError as error:
+                diagnostics += error.diagnostics
+            else:
+                assert message is not None
+                messages[part] = message
+        if diagnostics:
+            raise DefinitionError(_in_order(unit, diagnostics))
+        return messages
 
     def _parse(self, name: str) -> list[TypeName]:
         """List the types that a name can mean, the likeliest first."""
         if not isinstance(name, str):
             raise TypeError(f"Name of a type must be a string, not {name!r}")
         kinds: tuple[Kind, ...] = KINDS
-        match name.split("/"):
+        match spelled(name).split("/"):
             case [package, base] if package and base:
                 return [TypeName(package, kind, base, self.dialect) for kind in kinds]
             case [package, "msg" | "srv" | "action" as kind, base] if package and base:
                 return [TypeName(package, kind, base, self.dialect)]
+            case [*parts, base]:
+                package = parts[0] if parts else ""
         form = "package/msg/Name" if self.dialect == "ros2" else "package/Name"
         message = f"'{clip(name)}' is not the name of a type, which is '{form}'"
-        similar = similar_types(self._sources, "", name.rpartition("/")[2])
-        raise self._error(did_you_mean(message, self._spell(similar)))
+        similar = similar_types(self._sources, package, base)
+        if not package and base in self._sources.types:
+            message = f"'{clip(name)}' is a package, and not the name of a type, which is '{form}'"
+            similar = [(base, *each) for each in self._sources.types[base]]
+        raise DefinitionError.of(did_you_mean(message, self._spell(similar)))
+
+    def _unambiguous(self, name: str) -> list[TypeName]:
+        """List the types that a name can mean; in ROS 2, only one of them has a definition."""
+        candidates = self._parse(name)
+        defined = [n for n in candidates if (n.package, n.kind, n.name) in self._sources.names]
+        if self.dialect == "ros2" and len(defined) > 1:
+            choice = " or ".join(f"'{each}'" for each in defined)
+            raise DefinitionError.of(f"'{clip(name)}' can be {choice}; name one of them")
+        return candidates
 
     def _by_origin(self, names: list[TypeName]) -> list[TypeName]:
         """Sort names by the origin that defines them; drop those that no origin defines.
@@ -251,13 +295,10 @@ class Library:
         name = names[0]
         message = unknown_type(self._sources, names)
         similar = similar_types(self._sources, name.package, name.name)
-        return self._error(did_you_mean(message, self._spell(similar)))
+        return DefinitionError.of(did_you_mean(message, self._spell(similar)))
 
     def _spell(self, types: list[tuple[str, Kind, str]]) -> list[str]:
         return [str(TypeName(package, kind, name, self.dialect)) for package, kind, name in types]
-
-    def _error(self, message: str) -> DefinitionError:
-        return DefinitionError([Diagnostic(message=message)])
 
 
 def load_message(
@@ -291,3 +332,48 @@ def _folders(paths: Iterable[str | os.PathLike[str]]) -> list[FolderOrigin]:
     if wrong:
         raise DefinitionError(wrong)
     return folders
+
+
+def _in_order(unit: Unit, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Sort by position in the file; diagnostics of other files come last."""
+
+    def place(diagnostic: Diagnostic) -> tuple[bool, int]:
+        span = diagnostic.span
+        if span is None or span.source != unit.source:
+            return True, 0
+        return False, span.start
+
+    return sorted(dict.fromkeys(diagnostics), key=place)
+
+
+def _service(unit: Unit, base: str, messages: dict[str, Message]) -> Service:
+    dialect = unit.name.dialect
+    request, response = (messages[base + suffix] for suffix in PARTS[dialect, "srv"])
+    package = str(unit.name)[: -len(unit.name.name)]
+    is_whole = base == unit.name.name
+    return Service(
+        name=package + base,
+        dialect=dialect,
+        request=request,
+        response=response,
+        event=messages.get(base + EVENT),
+        comment=request.comment if is_whole else "",
+        text=unit.source.text if is_whole else "",
+    )
+
+
+def _action(unit: Unit, messages: dict[str, Message]) -> Action:
+    base, dialect = unit.name.name, unit.name.dialect
+    goal, result, feedback = (messages[base + suffix] for suffix in PARTS[dialect, "action"])
+    services = ACTION_SERVICES if dialect == "ros2" else ()
+    return Action(
+        name=str(unit.name),
+        dialect=dialect,
+        goal=goal,
+        result=result,
+        feedback=feedback,
+        services=tuple(_service(unit, base + suffix, messages) for suffix in services),
+        wrappers=tuple(messages[base + suffix] for suffix in ACTION_WRAPPERS[dialect]),
+        comment=goal.comment,
+        text=unit.source.text,
+    )

@@ -4,6 +4,10 @@ A ``.bag`` of ROS 1 has the definition of every topic's type, followed by those 
 An ``.mcap`` of ROS 2 and, since iron, a ``.db3`` have them, too. The format of these definitions is
 described in ros2/rosbag2, ``docs/message_definition_encoding.md``. Their texts are processed like
 those of definition files.
+
+ROS has one message per file, and records one section per file. Other writers put all types of a
+topic into one section of IDL. Of such a section, each struct gets a copy in which the other structs
+are replaced by blanks. So constants, typedefs and line numbers stay.
 """
 
 from __future__ import annotations
@@ -11,18 +15,18 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source
 from firm_hdl.frontend.embedded import DISTROS
 from firm_hdl.frontend.explain import clip
-from firm_hdl.frontend.names import Kind, TypeName, owners
+from firm_hdl.frontend.names import KINDS, PARTS, Kind, TypeName, owners
 from firm_hdl.frontend.parse import is_type_name
-from firm_hdl.frontend.recorded_idl import MAX_COPIED, structs_of
 from firm_hdl.frontend.sources import Definition, Language, Origin, PackagePlace, distro_of
 from firm_hdl.model import Dialect
 from firm_hdl.recordings import MAX_TEXT_BYTES, MAX_TOPICS, Recording, Schema, Topic
 
-__all__ = ["RecordingOrigin"]
+__all__ = ["RecordingOrigin", "structs_of"]
 
 _Name = tuple[str, Kind, str]
 
@@ -119,14 +123,16 @@ class RecordingOrigin:
     def find(self, package: str, kind: Kind, name: str) -> Definition | None:
         """Give a definition; raise `DefinitionError` for a topic's type that cannot be used."""
         if (package, kind, name) in self._refused:
-            raise _refusal(self._refused[package, kind, name])
+            raise DefinitionError.of(self._refused[package, kind, name])
         return self._definitions.get((package, kind, name))
 
     def _name(self, text: str) -> _Name | None:
         """Split the name of a type, once; `None` if it is no such name."""
         if text not in self._names:
             if len(self._names) == _MOST_NAMES:
-                raise _refusal(f"'{self.path}' has more than {_MOST_NAMES} names of types")
+                raise DefinitionError.of(
+                    f"'{self.path}' has more than {_MOST_NAMES} names of types"
+                )
             self._names[text] = self._split(text)
         return self._names[text]
 
@@ -274,5 +280,118 @@ def _is_of_dds(text: str) -> bool:
     return not text.startswith("===") and len(_STRUCT.findall(text)) > 1
 
 
-def _refusal(message: str) -> DefinitionError:
-    return DefinitionError([Diagnostic(message=message)])
+MAX_COPIED = 1 << 25
+"""Characters of all copies of the sections of a recording."""
+
+# What is not closed, ends with the line or with the text.
+_TEXT_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"?|//[^\n]*|/\*.*?(?:\*/|\Z)', re.DOTALL)
+_MARK = re.compile(r"\bmodule\s+(?P<module>\w+)\s*\{|\bstruct\s+(?P<struct>\w+)\s*\{|[{}]")
+_EMPTY = re.compile(r"\bmodule\s+\w+\s*\{\s*\}\s*;?")
+_END = re.compile(r"\s*;?")
+# A type of a member, or the element of a sequence.
+_PLACE = re.compile(r"(?<![\w:])(\w+)(?=\s+\w+\s*[;,\[])|(?<=<)\s*(\w+)(?=\s*[>,])")
+_SUFFIXES = PARTS["ros2", "srv"] + PARTS["ros2", "action"]
+# Modules may be in modules: ROS has a package and a folder.
+_MOST_LEVELS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class _Struct:
+    """The position of a struct with its annotations, and the modules around it."""
+
+    modules: tuple[str, ...]
+    name: str
+    start: int
+    end: int
+
+
+def structs_of(text: str, most: int = MAX_COPIED) -> dict[tuple[str, Kind, str], str]:
+    """Cut a section into texts of one message each, by package, folder and name.
+
+    The result is empty if there is nothing to cut: the section has one message, a service or an
+    action. It is also empty if the copies together would have more than `most` characters.
+    """
+    found = _find(_blank(text))
+    if len(found) < 2 or any(each.name.endswith(_SUFFIXES) for each in found):
+        return {}
+    if len(found) * len(text) > most:
+        return {}
+    texts: dict[tuple[str, Kind, str], str] = {}
+    for each in found:
+        kind = next((kind for kind in KINDS if each.modules[1:] == (kind,)), None)
+        if kind is None:
+            return {}
+        texts[each.modules[0], kind, each.name] = _isolated(text, each, found)
+    return texts
+
+
+def _blank(text: str) -> str:
+    """Replace string literals and comments by blanks; the length stays the same."""
+    return _TEXT_OR_COMMENT.sub(lambda match: _blanks(match[0]), text)
+
+
+def _blanks(text: str) -> str:
+    return re.sub(r"[^\n]", " ", text)
+
+
+def _find(code: str) -> list[_Struct]:
+    found: list[_Struct] = []
+    scopes: list[tuple[str, str, int]] = []
+    before = 0
+    for mark in _MARK.finditer(code):
+        if mark[0] != "}":
+            # The part starts after the previous declaration, so that it includes annotations.
+            start = max(before, code.rfind(";", before, mark.start()) + 1)
+            kind = "module" if mark["module"] else "struct" if mark["struct"] else ""
+            scopes.append((kind, mark["module"] or mark["struct"] or "", start))
+        elif scopes:
+            kind, name, start = scopes.pop()
+            if kind == "struct":
+                terminator = _END.match(code, mark.end())
+                assert terminator is not None
+                modules = tuple(each for what, each, _ in scopes if what == "module")
+                found.append(_Struct(modules, name, start, terminator.end()))
+        before = mark.end()
+    return found
+
+
+def _isolated(text: str, struct: _Struct, structs: list[_Struct]) -> str:
+    text = _without(text, [(each.start, each.end) for each in structs if each is not struct])
+    code = _blank(text)
+    for _ in range(_MOST_LEVELS):
+        empty = [match.span() for match in _EMPTY.finditer(code)]
+        if not empty:
+            break
+        text, code = _without(text, empty), _without(code, empty)
+    return _with_scopes(text, code, struct, structs)
+
+
+def _without(text: str, spans: list[tuple[int, int]]) -> str:
+    """Replace parts by blanks. A part may be in another one."""
+    parts: list[tuple[int, int, str]] = []
+    for start, end in sorted(spans):
+        if not parts or start >= parts[-1][1]:
+            parts.append((start, end, _blanks(text[start:end])))
+    return _replaced(text, parts)
+
+
+def _replaced(text: str, parts: list[tuple[int, int, str]]) -> str:
+    """Replace parts, in the order of the text, by others."""
+    pieces, position = [], 0
+    for start, end, new in parts:
+        pieces += [text[position:start], new]
+        position = end
+    return "".join([*pieces, text[position:]])
+
+
+def _with_scopes(text: str, code: str, struct: _Struct, structs: list[_Struct]) -> str:
+    """Write the names of structs in the same module in full, as ROS does."""
+    others = (each for each in structs if each is not struct)
+    siblings = {each.name for each in others if each.modules == struct.modules}
+    parts = []
+    for match in _PLACE.finditer(code):
+        name = match[1] or match[2]
+        if name in siblings:
+            full = "::".join([*struct.modules, name])
+            parts.append((match.end() - len(name), match.end(), full))
+    return _replaced(text, parts)

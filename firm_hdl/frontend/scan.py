@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import TypeAlias
 from xml.etree import ElementTree
 
-from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.errors import DefinitionError
 from firm_hdl.files import read_file
 from firm_hdl.frontend.names import KINDS, Kind
 
-__all__ = ["MAX_BYTES", "PackageFolder", "Scan"]
+__all__ = ["MAX_BYTES", "PackageFolder", "Scan", "package_name"]
 
 MAX_BYTES = 1 << 22
 """Limit on a file: ten times the longest definition in a thousand packages."""
@@ -93,7 +93,7 @@ class Scan:
                 names = self._names(path, seen)
             except OSError as error:
                 if path == self._root:
-                    raise _error(f"'{path}' cannot be read: {error.strerror}") from None
+                    raise DefinitionError.of(f"'{path}' cannot be read: {error.strerror}") from None
                 self.unreadable.append(path)
                 continue
             if path != self._root and not _IGNORE_MARKERS.isdisjoint(names):
@@ -102,7 +102,7 @@ class Scan:
             found = PackageFolder(package=os.path.basename(path), path=path)
             self._add_files(found, names, is_package=is_package)
             if is_package or found.files:
-                found.package, found.wrong = _package_name(path, is_package)
+                found.package, found.wrong = package_name(path, is_package)
                 config = os.path.join(path, "cmake", f"{found.package}Config.cmake")
                 found.is_part = not is_package and os.path.isfile(config)
                 yield found
@@ -166,7 +166,7 @@ class Scan:
         self._left -= 1
         if self._left < 0:
             few = "name a folder with fewer, such as that of a workspace"
-            raise _error(f"'{self._root}' has more than {MAX_FOLDERS} folders: {few}")
+            raise DefinitionError.of(f"'{self._root}' has more than {MAX_FOLDERS} folders: {few}")
         return sorted(os.listdir(path))
 
 
@@ -189,7 +189,7 @@ def _listed(path: str) -> list[str]:
         return []
 
 
-def _package_name(folder: str, is_named: bool) -> tuple[str, str]:
+def package_name(folder: str, is_named: bool) -> tuple[str, str]:
     """Read a package's name; also return the reason if it cannot be read."""
     name, wrong = None, ""
     if is_named:
@@ -203,7 +203,3 @@ def _package_name(folder: str, is_named: bool) -> tuple[str, str]:
         except (LookupError, ValueError):
             wrong = f"'{path}' is in an encoding that is not known"
     return (name or "").strip() or Path(folder).resolve().name, wrong
-
-
-def _error(message: str) -> DefinitionError:
-    return DefinitionError([Diagnostic(message=message)])

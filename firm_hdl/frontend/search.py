@@ -139,7 +139,7 @@ def _of_recordings(
     first = recordings[0]
     for other in recordings:
         if other.dialect != first.dialect:
-            raise _error(
+            raise DefinitionError.of(
                 f"'{first.path}' is a recording of {_ros(first.dialect)}, and '{other.path}' of "
                 f"{_ros(other.dialect)}; read them one at a time"
             )
@@ -147,7 +147,7 @@ def _of_recordings(
         known = [recording.distro for recording in recordings if recording.distro is not None]
         distro = known[0] if known else _newest(first.dialect)
     if DISTROS[distro].dialect != first.dialect:
-        raise _error(
+        raise DefinitionError.of(
             f"'{first.path}' is a recording of {_ros(first.dialect)}, and {distro} is "
             f"{_ros(DISTROS[distro].dialect)}"
         )
@@ -166,10 +166,6 @@ def _newest(dialect: Dialect) -> str:
 
 def _ros(dialect: Dialect) -> str:
     return "ROS 1" if dialect == "ros1" else "ROS 2"
-
-
-def _error(message: str) -> DefinitionError:
-    return DefinitionError([Diagnostic(message=message)])
 
 
 def load_all(library: Library, types: Iterable[str]) -> list[Message]:

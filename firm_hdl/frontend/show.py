@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend.library import Library
 from firm_hdl.frontend.parse import lines_of
 from firm_hdl.model import (
@@ -95,7 +95,7 @@ def _check_characters(printer: _Ros1 | _Ros2, interface: Interface) -> None:
                 f"{name} is shown in {characters[name]} characters, which is more than "
                 f"{MOST_CHARACTERS}"
             )
-            raise DefinitionError([Diagnostic(message=message)])
+            raise DefinitionError.of(message)
 
     for part in _parts(interface):
         for message in closure(part.children):

@@ -160,7 +160,7 @@ class FolderOrigin:
     def __init__(self, path: str | os.PathLike[str], *, is_prefix: bool = False) -> None:
         root = os.fspath(path)
         if not os.path.isdir(root):
-            raise _error(f"'{root}' is not a folder")
+            raise DefinitionError.of(f"'{root}' is not a folder")
         self.path = root
         scan = Scan(root)
         self.unreadable = scan.unreadable
@@ -188,7 +188,7 @@ class FolderOrigin:
         if not files:
             return None
         if wrong := self.problem(package, kind, name):
-            raise _error(wrong)
+            raise DefinitionError.of(wrong)
         language: Language = "idl" if files[0].endswith(".idl") else kind
         return Definition(source=_read(files[0]), language=language)
 
@@ -215,7 +215,7 @@ class FolderOrigin:
         if package not in self._folders or rest.startswith("/") or ".." in rest.split("/"):
             return None
         if package in self.packages and self.packages[package].wrong:
-            raise _error(self.packages[package].wrong)
+            raise DefinitionError.of(self.packages[package].wrong)
         file = os.path.join(self._folders[package][0].path, rest)
         return _read(file) if os.path.isfile(file) else None
 
@@ -393,15 +393,11 @@ def _listed(paths: Sequence[str]) -> str:
     return shown + (", ..." if len(paths) > _MOST_PLACES else "")
 
 
-def _error(message: str) -> DefinitionError:
-    return DefinitionError([Diagnostic(message=message)])
-
-
 def _read(path: str) -> Source:
     try:
         data = read_file(path, MAX_BYTES)
     except OSError as error:
-        raise _error(f"'{path}' cannot be read: {error.strerror}") from None
+        raise DefinitionError.of(f"'{path}' cannot be read: {error.strerror}") from None
     try:
         return Source(name=path, text=data.decode("utf-8"))
     except UnicodeDecodeError as error:
@@ -409,4 +405,4 @@ def _read(path: str) -> Source:
         start = len(data[: error.start].decode("utf-8"))
         span = Span(source=source, start=start, end=start + 1)
         message = f"byte 0x{data[error.start]:02x} is not UTF-8 text"
-        raise DefinitionError([Diagnostic(message=message, span=span)]) from None
+        raise DefinitionError.of(message, span) from None

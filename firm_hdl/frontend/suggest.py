@@ -6,7 +6,7 @@ import os
 from collections.abc import Sequence
 from difflib import get_close_matches
 
-from firm_hdl.frontend.explain import clip
+from firm_hdl.frontend.explain import alternatives, clip
 from firm_hdl.frontend.names import KINDS, Kind, TypeName
 from firm_hdl.frontend.sources import PackagePlace, Sources
 
@@ -74,19 +74,37 @@ def similar_types(
 ) -> list[tuple[str, Kind, str]]:
     """List package, kind and name of the types that the user may mean, the likeliest first.
 
-    The order is: the same name in a package with a similar name, then in any other package; then
-    a similar name in the package, if it exists.
+    The order is: the same name but for case and underscores; the same name in a package with a
+    similar name, then in any other package; then a similar name in the package, if it exists.
     """
-    found: list[tuple[str, Kind, str]] = []
+    found = [
+        (other, kind, base)
+        for other, types in sources.types.items()
+        for kind, base in types
+        if kind in kinds and (other, base) != (package, name)
+        if _plain(base) == _plain(name) and _plain(other) == _plain(package)
+    ]
     for kind in kinds:
         packages = sources.packages_of.get((kind, name), [])
         close = get_close_matches(package, packages)
         found += [(other, kind, name) for other in [*close, *packages]]
+    if not found:
+        found = [
+            (other, kind, base)
+            for other, types in sources.types.items()
+            for kind, base in types
+            if kind in kinds and _plain(base) == _plain(name)
+        ]
     found += _close_names(sources, package, name, kinds)
     if package not in sources.types and not found:
         for other in get_close_matches(package, sources.types):
             found += _close_names(sources, other, name, kinds)
     return list(dict.fromkeys(found))
+
+
+def _plain(name: str) -> str:
+    """Write a name such that mistakes of case do not count, as in ``point_cloud2``."""
+    return name.replace("_", "").casefold()
 
 
 def _close_names(
@@ -100,10 +118,4 @@ def _close_names(
 def did_you_mean(message: str, names: list[str]) -> str:
     """Add at most three suggestions to a message."""
     quoted = [f"'{name}'" for name in names[:3]]
-    match quoted:
-        case []:
-            return message
-        case [*others, last]:
-            choice = f"{', '.join(others)} or {last}" if others else last
-            return f"{message}; did you mean {choice}?"
-    raise AssertionError
+    return f"{message}; did you mean {alternatives(quoted)}?" if quoted else message

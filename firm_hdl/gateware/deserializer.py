@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from amaranth.hdl import Module
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
@@ -20,6 +21,7 @@ from firm_hdl.plan import (
     DEFAULT_MAX_MESSAGE_BYTES,
     build_plan,
 )
+from firm_hdl.program import deserializer_program
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["Deserializer"]
@@ -78,7 +80,7 @@ class Deserializer(Component):
         super().__init__(
             {
                 "packets": In(PacketSignature(bus_bytes)),
-                "message": Out(MessageSignature.of_plan(message, self.plan, self.tree)),
+                "message": Out(MessageSignature(message, plan=self.plan)),
                 "status": Out(StatusSignature),
             }
         )
@@ -86,33 +88,21 @@ class Deserializer(Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         plan = self.plan
+        program = deserializer_program(plan)
         m.submodules.buffer = buffer = Buffer(plan)
-        m.submodules.sequencer = sequencer = Sequencer(plan)
+        m.submodules.sequencer = sequencer = Sequencer(program)
         m.submodules.queue = queue = OrderQueue(plan)
-        m.submodules.mover = mover = Mover(plan, leaf_streams(self.message, self.tree))
-        orders = queue.o
+        m.submodules.mover = mover = Mover(program, leaf_streams(self.message, self.tree))
+        wiring.connect(m, wiring.flipped(self.packets), buffer.packets)
+        wiring.connect(m, buffer.arrival, sequencer.arrival)
+        wiring.connect(m, sequencer.orders, queue.i)
+        wiring.connect(m, queue.o, mover.orders)
+        wiring.connect(m, mover.status, wiring.flipped(self.status))
         m.d.comb += [
-            buffer.packets.payload.eq(self.packets.payload),
-            buffer.packets.valid.eq(self.packets.valid),
-            self.packets.ready.eq(buffer.packets.ready),
-            sequencer.beat.eq(buffer.beat),
-            sequencer.limit.eq(buffer.limit),
-            sequencer.ended.eq(buffer.ended),
-            sequencer.following.eq(buffer.following),
-            buffer.next.eq(sequencer.next),
-            queue.i.payload.eq(sequencer.orders.payload),
-            queue.i.valid.eq(sequencer.orders.valid),
-            sequencer.orders.ready.eq(queue.i.ready),
-            mover.orders.payload.eq(orders.payload),
-            mover.orders.valid.eq(orders.valid),
-            orders.ready.eq(mover.orders.ready),
-            mover.beat.eq(buffer.beat),
+            mover.beat.eq(buffer.arrival.beat),
             queue.oldest.eq(sequencer.oldest),
+            queue.stall_newest.eq(sequencer.stall_newest),
+            queue.zero_length.eq(sequencer.zero_length),
             buffer.freed.eq(queue.freed),
-            self.status.payload.eq(mover.status.payload),
-            self.status.valid.eq(mover.status.valid),
-            mover.status.ready.eq(self.status.ready),
         ]
-        if plan.has_claims:
-            m.d.comb += [queue.holds.eq(sequencer.holds), queue.refuses.eq(sequencer.refuses)]
         return m

@@ -1,16 +1,16 @@
-"""The control flow of a plan, common to both directions: step, counters, exits."""
+"""The control flow of a program, common to both directions: state, counters, transitions."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from types import SimpleNamespace
+from typing import Generic
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 
 from firm_hdl.gateware.counter import Counter
 from firm_hdl.gateware.positions import any_of, pick
-from firm_hdl.plan import RUN_COUNTER, BeginLoop, BeginRun, Jump, Plan, RunStep, Step
+from firm_hdl.program import AnyState, Program, Transition
 
 __all__ = ["Flow", "exceeds", "last_word"]
 
@@ -47,57 +47,54 @@ def exceeds(value: Value, limit: int) -> Value:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Exit:
-    """An exit of a step.
+    """An exit of a state.
 
     Attributes
     ----------
     taken : Signal(1)
-        The step, once done, takes this exit.
-    step : int
-        Index of the step.
-    jump : Jump
-    level : int or None
-        The loop that the exit repeats; `None` for the default exit.
+        The state, once done, takes this exit.
+    state : int
+        Number of the state.
+    way : Transition
     """
 
     taken: Signal
-    step: int
-    jump: Jump
-    level: int | None
+    state: int
+    way: Transition
 
 
-class Flow:
-    """Step, counters and jumps of a plan. Not a component: logic of one module.
+@dataclass(frozen=True, slots=True)
+class _Register:
+    """A register that is written together with the state: its value by state, and at the end."""
 
-    A *trait* is what a circuit has to know of a step. Each trait is a register of its own, written
-    together with the step. So traits are valid at the start of a cycle. A trait that is the same at
-    all steps is a constant.
+    signal: Signal
+    values: Sequence[int]
+    if_ended: int
+
+    def at(self, state: int | None) -> int:
+        return self.if_ended if state is None else self.values[state]
+
+
+class Flow(Generic[AnyState]):
+    """State, counters and transitions of a program. Not a component: logic of one module.
+
+    Declare constants by :meth:`register`, then add the transitions by :meth:`advance`, once.
 
     Parameters
     ----------
     m : Module
         Module to which the logic is added.
-    plan : Plan
-    limit : function
-        Returns the largest count of a run or loop that a length begins.
-    widths : mapping of str to int
-        Widths of the traits in bits, by name; at most 32.
-    traits : function
-        Returns the traits of the step with an index; `None` is the end of the packet. Traits that
-        it leaves out are 0.
-    has_end : bool
-        The end of the packet is a state of its own.
-    written : str
-        A trait that the caller writes, too.
+    program : Program
 
     Attributes
     ----------
     step : list of Value(1)
-        Whether the circuit is at a step, by index. One more at the end if `has_end`.
-    traits : SimpleNamespace of Signal or Const
-        The traits of the step, by name.
+        Whether the circuit is in a state, by number. The state is one-hot, so this is a bit of a
+        register.
+    bits : Value(states)
+        All of `step`.
     exits : list of Exit
-        All exits of all steps; at most one of them is taken.
+        All exits of all states; at most one of them is taken.
     exit_ends : Value(1)
         The exit that is taken ends the packet.
     words : Counter
@@ -106,135 +103,96 @@ class Flow:
         Count the elements of loops, by level.
     """
 
-    def __init__(
-        self,
-        m: Module,
-        plan: Plan,
-        limit: Callable[[BeginRun | BeginLoop], int],
-        widths: Mapping[str, int],
-        traits: Callable[[int | None], Mapping[str, int]],
-        *,
-        has_end: bool,
-        written: str = "",
-    ):
-        self.m, self.plan = m, plan
-        self._traits, self._has_end = traits, has_end
-        self._widths = self._step_widths() | dict(widths)
-        start = self._state(plan.start.step)
-        others = [self._state(i) for i in [*range(len(plan.steps)), *([None] if has_end else [])]]
-        self._registers = {
-            name: Signal(width, init=start[name], name=name)
-            for name, width in self._widths.items()
-            if name not in widths or name == written or any(s[name] != start[name] for s in others)
-        }
-        self.step: list[Value] = [
-            bit for name in self._step_widths() for bit in self._registers[name]
-        ]
-        self.traits = SimpleNamespace(
-            **{
-                name: self._registers.get(name, Const(start[name], width))
-                for name, width in widths.items()
-            }
-        )
-        init = {
-            counter: self._words_or_elements(plan.start, counter) for counter, _ in plan.start.enter
-        }
-        most = self._most(limit)
-        self.words = Counter(most[RUN_COUNTER], "words", init.get(RUN_COUNTER))
+    def __init__(self, m: Module, program: Program[AnyState]):
+        self.m, self.program = m, program
+        self._registers: list[_Register] = []
+        self._is_complete = False
+        count, most = len(program.states), REGISTER_BITS
+        for low in range(0, count, most):
+            name = "step" if count <= most else f"step_{low}"
+            one_hot = [1 << number >> low & ((1 << most) - 1) for number in range(count)]
+            self._add(name, min(most, count - low), one_hot)
+        self._steps = list(self._registers)
+        self.bits = Cat(each.signal for each in self._steps)
+        self.step: list[Value] = [bit for each in self._steps for bit in each.signal]
+        init = {load.level: load.number for load in program.start.loads}
+        self.words = Counter(program.most_loaded(None), "words", init.get(None))
         self.levels = [
-            Counter(most[level], f"level_{level}", init.get(level)) for level in range(plan.levels)
+            Counter(program.most_loaded(level), f"level_{level}", init.get(level))
+            for level in range(program.plan.levels)
         ]
         self.exits = list(self._exits())
-        self.exit_ends = any_of([each.taken for each in self.exits if each.jump.step is None])
+        self.exit_ends = any_of([each.taken for each in self.exits if each.way.to is None])
 
-    def _step_widths(self) -> dict[str, int]:
-        """Return the registers of the step, which is one-hot: their names and widths."""
-        count, most = len(self.plan.steps) + self._has_end, REGISTER_BITS
-        if count <= most:
-            return {"step": count}
-        return {f"step_{k}": min(most, count - k) for k in range(0, count, most)}
+    def _add(self, name: str, bits: int, values: Sequence[int]) -> Signal:
+        start, end = self.program.start.to, self.program.end
+        assert start is not None
+        assert not self._is_complete, "the register would keep its initial value"
+        signal = Signal(bits, init=values[start], name=name)
+        self._registers.append(_Register(signal, values, 0 if end is None else values[end]))
+        return signal
 
-    def _state(self, index: int | None) -> dict[str, int]:
-        """Return the values of all registers at a step; `None` is the end of the packet."""
-        number = len(self.plan.steps) if index is None else index
-        one_hot = 1 << number if index is not None or self._has_end else 0
-        state = dict.fromkeys(self._widths, 0)
-        for k, (name, width) in enumerate(self._step_widths().items()):
-            state[name] = one_hot >> REGISTER_BITS * k & ((1 << width) - 1)
-        for name, value in self._traits(index).items():
-            state[name] = int(value) & ((1 << self._widths[name]) - 1)
-        return state
+    def _exits(self) -> Iterator[Exit]:
+        for state in self.program.states:
+            no_repeat: Value = self.step[state.number]
+            for way in state.exits:
+                if way.level is None:
+                    taken = Signal(name=f"default_{state.number}")
+                    self.m.d.comb += taken.eq(no_repeat)
+                else:
+                    last = self.levels[way.level].last
+                    taken = Signal(name=f"again_{state.number}_{way.level}")
+                    self.m.d.comb += taken.eq(no_repeat & ~last)
+                    no_repeat = no_repeat & last
+                yield Exit(taken=taken, state=state.number, way=way)
 
-    def go(self, *, ends: Value, done: Value, aborts: Value | None = None) -> None:
-        """Go to the next step; the caller's `m.If` says when.
+    def register(
+        self, name: str, bits: int, of: Callable[[AnyState], int], *, written: bool = False
+    ) -> Signal | Const:
+        """Return a constant of the current state, at most 32 bits.
+
+        It is a register that is written together with the state, and so is valid at the start of a
+        cycle: no logic from the state's number comes before it. A constant that is the same in all
+        states is no register.
 
         Parameters
         ----------
-        ends : Value
-            To the start of the next packet.
-        aborts : Value or None
-            Else, to the end of the packet.
-        done : Value
-            Else, through an exit if `done`, and into the body that the step begins if not.
+        of : function
+            Returns the constant of a state; negative numbers are in two's complement.
+        written : bool
+            The caller writes the register, too.
         """
-        start, end = self._state(self.plan.start.step), self._state(None)
-        exits = [(each.taken, self._state(each.jump.step)) for each in self.exits]
-        bodies = [
-            (self.step[i], self._state(i if s.begin is None else s.begin.body.step))
-            for i, s in enumerate(self.plan.steps)
-            if isinstance(s, RunStep) or s.begin is not None
-        ]
-        registers = self._registers.items()
-        m, sync = self.m, self.m.d.sync
-        with m.If(ends):
-            sync += [register.eq(start[name]) for name, register in registers]
-        if aborts is not None:
-            with m.Elif(aborts):
-                sync += [register.eq(end[name]) for name, register in registers]
-        for condition, cases in ((m.Elif(done), exits), (m.Else(), bodies)):
-            with condition:
-                for name, register in registers:
-                    choices = [(on, state[name]) for on, state in cases]
-                    sync += register.eq(pick(choices, len(register)))
+        values = [of(state) & ((1 << bits) - 1) for state in self.program.states]
+        if written or any(value != values[0] for value in values[1:]):
+            return self._add(name, bits, values)
+        return Const(values[0], bits)
 
-    def go_to(self, steps: Mapping[int, Value]) -> None:
-        """Change the step, but no trait: to the step whose value is high."""
-        bits = Cat(steps.get(i, Const(0, 1)) for i in range(len(self.step)))
-        for k, name in enumerate(self._step_widths()):
-            self.m.d.sync += self._registers[name].eq(bits[REGISTER_BITS * k :])
+    def select(self, bits: int, of: Callable[[AnyState], int]) -> Value:
+        """Return a constant of the current state, as logic from the state's number."""
+        return pick([(self.step[each.number], int(of(each))) for each in self.program.states], bits)
 
-    def on(self, test: Callable[[Step], bool]) -> Value:
-        """Return, as one bit, whether a test holds for the current step."""
-        return any_of([self.step[i] for i, s in enumerate(self.plan.steps) if test(s)])
+    def on(self, test: Callable[[AnyState], object]) -> Value:
+        """Return, as one bit, whether a test holds for the current state."""
+        return any_of([self.step[each.number] for each in self.program.states if test(each)])
 
     def rest_bytes(self, rest: Value) -> Value:
-        """Return the size in bytes of the rest that the step takes, without the NUL.
+        """Return the size in bytes of the rest that the state takes, without the NUL.
 
         Parameters
         ----------
         rest : Value
             Number of items in the rest.
         """
-        units: dict[int, list[Value]] = {}
-        for i, s in enumerate(self.plan.steps):
-            if s.rest is not None:
-                units.setdefault(self.plan.item_bytes(s.rest), []).append(self.step[i])
-        cases = [(any_of(on), rest << (unit.bit_length() - 1)) for unit, on in units.items()]
-        return cases[0][1] if len(cases) == 1 else pick(cases, self.plan.bus_bytes.bit_length())
+        units = {state.rest_unit for state in self.program.states if state.takes_rest}
+        cases = [
+            (self.on(lambda s, unit=unit: s.rest_unit == unit), rest << (unit.bit_length() - 1))
+            for unit in sorted(units)
+        ]
+        if len(cases) == 1:
+            return cases[0][1]
+        return pick(cases, self.program.plan.bus_bytes.bit_length())
 
-    def _exits(self) -> Iterator[Exit]:
-        for i, s in enumerate(self.plan.steps):
-            no_repeat: Value = self.step[i]
-            for level, jump in s.exits.repeats:
-                again = Signal(name=f"again_{i}_{level}")
-                self.m.d.comb += again.eq(no_repeat & ~self.levels[level].last)
-                yield Exit(taken=again, step=i, jump=jump, level=level)
-                no_repeat = no_repeat & self.levels[level].last
-            default = Signal(name=f"default_{i}")
-            self.m.d.comb += default.eq(no_repeat)
-            yield Exit(taken=default, step=i, jump=s.exits.default, level=None)
-
-    def count(
+    def advance(
         self,
         *,
         moves: Value,
@@ -244,109 +202,86 @@ class Flow:
         single: Value,
         double: Value | None = None,
         nul: bool,
+        aborts: Value | None = None,
     ) -> None:
-        """Add the logic that loads and decrements the counters.
+        """Add the logic that goes to the next state, and loads and decrements the counters.
 
         Parameters
         ----------
-        moves, ends, done : Value
-            The step is executed in this cycle (`moves`). If `ends`, the packet ends with it.
-            Otherwise, the step is left through an exit if `done`, else into its body.
+        moves : Value
+            The state is executed in this cycle.
+        ends : Value
+            The packet ends with the state: the next one is the first one of a packet.
+        aborts : Value or None
+            Else, it is the end of the packet.
+        done : Value
+            Else, the state is left through an exit if `done`, and into its body if not.
         count : Value
-            The length of the current step. If `double` is given: of the step in the cycle before.
+            The length of the current state. If `double` is given: of that of the cycle before.
         single, double : Value
             `single`: at most one pass of the body of the run or loop.
             `double`: two passes; valid only if `single` is 0.
         nul : bool
             Whether the count of a string includes the NUL.
         """
+        m, program, self._is_complete = self.m, self.program, True
         to_exit, to_body = Signal(name="step_to_exit"), Signal(name="step_to_body")
-        self.m.d.comb += [to_exit.eq(moves & ~ends & done), to_body.eq(moves & ~ends & ~done)]
-        self._load_constants(moves & ends, to_exit, to_body)
-        self._load_levels(count, single, double)
-        self._load_words(count, single, double, nul)
+        m.d.comb += [to_exit.eq(moves & ~ends & done), to_body.eq(moves & ~ends & ~done)]
+        exits = [(each.taken, each.way) for each in self.exits]
+        bodies = [(self.step[s.number], s.body) for s in program.states if s.body is not None]
+        loads: dict[tuple[int | None, int], list[Value]] = {}
+        for when, ways in (
+            (moves & ends, [(Const(1, 1), program.start)]),
+            (to_exit, exits),
+            (to_body, bodies),
+        ):
+            for taken, way in ways:
+                for load in way.loads:
+                    loads.setdefault((load.level, load.number), []).append(when & taken)
+        for (level, number), on in loads.items():
+            (self.words if level is None else self.levels[level]).load(any_of(on), number)
+        self._load_lengths(count, single, double, nul)
         for each in self.exits:
-            if each.level is not None:
-                self.levels[each.level].down(to_exit & each.taken)
-        self.words.down(to_body & self.on(lambda step: isinstance(step, RunStep)))
+            if each.way.level is not None:
+                self.levels[each.way.level].down(to_exit & each.taken)
+        self.words.down(to_body & self.on(lambda state: state.is_words))
         for counter in (self.words, *self.levels):
-            counter.add_logic(self.m)
+            counter.add_logic(m)
+        with m.If(moves):
+            with m.If(ends):
+                m.d.sync += [each.signal.eq(each.at(program.start.to)) for each in self._registers]
+            if aborts is not None:
+                with m.Elif(aborts):
+                    m.d.sync += [each.signal.eq(each.at(None)) for each in self._registers]
+            for condition, ways in ((m.Elif(done), exits), (m.Else(), bodies)):
+                with condition:
+                    for register in self._registers:
+                        cases = [(taken, register.at(way.to)) for taken, way in ways]
+                        m.d.sync += register.signal.eq(pick(cases, len(register.signal)))
 
-    def _load_constants(self, starts: Value, to_exit: Value, to_body: Value) -> None:
-        """Load counters where a jump enters a run or loop of a constant count."""
-        jumps = [(starts, self.plan.start)]
-        jumps += [
-            (to_exit & each.taken, each.jump) for each in self.exits if each.jump.step is not None
-        ]
-        jumps += [
-            (to_body & self.step[i], step.begin.body)
-            for i, step in enumerate(self.plan.steps)
-            if step.begin is not None
-        ]
-        loads: dict[tuple[int | str, int], list[Value]] = {}
-        for on, jump in jumps:
-            for counter, _ in jump.enter:
-                loads.setdefault((counter, self._words_or_elements(jump, counter)), []).append(on)
-        for (counter, number), on in loads.items():
-            target = self.words if counter == RUN_COUNTER else self.levels[int(counter)]
-            target.load(any_of(on), number)
+    def go_to(self, states: Mapping[int, Value]) -> None:
+        """Change the state, but none of its constants: to the state whose value is high."""
+        bits = Cat(states.get(i, Const(0, 1)) for i in range(len(self.step)))
+        for k, each in enumerate(self._steps):
+            self.m.d.sync += each.signal.eq(bits[REGISTER_BITS * k :])
 
-    def _most(self, limit: Callable[[BeginRun | BeginLoop], int]) -> dict[int | str, int]:
-        """Return the largest number that each counter is loaded with."""
-        plan = self.plan
-        most: dict[int | str, int] = dict.fromkeys([RUN_COUNTER, *range(plan.levels)], 1)
-        for jump in plan.jumps():
-            for counter, _ in jump.enter:
-                most[counter] = max(most[counter], self._words_or_elements(jump, counter))
-        for step in plan.steps:
-            if isinstance(step.begin, BeginRun):
-                lanes = plan.items_leaf(step.begin.run).lanes
-                most[RUN_COUNTER] = max(most[RUN_COUNTER], limit(step.begin) // lanes)
-            elif step.begin is not None:
-                most[step.begin.level] = max(most[step.begin.level], limit(step.begin))
-        return most
+    def _load_lengths(self, count: Value, single: Value, double: Value | None, nul: bool) -> None:
+        """Load the counter of the loop or run that the state may begin.
 
-    def _words_or_elements(self, jump: Jump, counter: int | str) -> int:
-        """Return the number of words or elements that a jump loads into a counter."""
-        count = dict(jump.enter)[counter]
-        if counter != RUN_COUNTER:
-            return count
-        assert jump.step is not None
-        step = self.plan.steps[jump.step]
-        assert isinstance(step, RunStep)
-        return count // self.plan.items_leaf(step.run).lanes
-
-    def _load_levels(self, count: Value, single: Value, double: Value | None) -> None:
-        """Load the counter of a loop that the step may begin.
-
-        The counter is not in use before the loop, so every cycle of the step may load it.
+        The counter is not in use before, so every cycle of the state may load it.
         """
+        lengths = self.program.lengths.items()
         for level, counter in enumerate(self.levels):
-            chosen = [
-                self.step[i]
-                for i, s in enumerate(self.plan.steps)
-                if isinstance(s.begin, BeginLoop) and s.begin.level == level
-            ]
+            chosen = [self.step[number] for number, length in lengths if length.level == level]
             if chosen:
                 counter.preload(any_of(chosen), count, single, double)
-
-    def _load_words(
-        self, count: Value, single: Value, double: Value | None, nul_counts: bool
-    ) -> None:
-        """Load the counter of words of a run that the step may begin, like `_load_levels`.
-
-        Of n items in words of w, (n - 1) // w words are taken before the rest.
-        """
-        plan = self.plan
-        groups: dict[tuple[int, int], list[Value]] = {}
-        for i, s in enumerate(plan.steps):
-            if isinstance(s.begin, BeginRun):
-                run = plan.runs[s.begin.run]
-                shift = plan.leaves[run.items].lanes.bit_length() - 1
-                groups.setdefault((shift, int(run.terminated and nul_counts)), []).append(
-                    self.step[i]
-                )
-        for (shift, nul), chosen in groups.items():
-            less = ~exceeds(count[:shift], nul) if shift else Const(1)
-            value = count - 1 if nul and not shift else count[shift:]
+        # Of n items in words of w, (n - 1) // w words are taken before the rest.
+        groups: dict[tuple[int, bool], list[Value]] = {}
+        for number, length in lengths:
+            if length.level is None:
+                key = length.lanes.bit_length() - 1, length.has_nul and nul
+                groups.setdefault(key, []).append(self.step[number])
+        for (shift, has_nul), chosen in groups.items():
+            less = ~exceeds(count[:shift], int(has_nul)) if shift else Const(1)
+            value = count - 1 if has_nul and not shift else count[shift:]
             self.words.preload(any_of(chosen), value, single, double, less)

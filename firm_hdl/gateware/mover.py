@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import chain, count
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import stream, wiring
@@ -14,24 +13,54 @@ from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import order_layout
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
 from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
-from firm_hdl.plan import LoopEnd, Part, Plan, Run, RunStep, Step
-from firm_hdl.plan.geometry import geometry
-from firm_hdl.plan.transfers import repeated_leaves, transfers
+from firm_hdl.plan import LoopEnd, Part
+from firm_hdl.program import DeserializerProgram, DeserializerState, Transfer
 
 __all__ = ["Mover"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Writer:
+    """A transfer that a state may write.
+
+    Attributes
+    ----------
+    state : DeserializerState
+    transfer : Transfer
+    chosen : Value(1)
+        The next order has the transfer.
+    active : Signal(1)
+        The order that is executed has the transfer, and it is not written yet.
+    blocked : Signal(1)
+        The transfer is active, and its register is not free.
+    go : Signal(1)
+        The transfer is written in this cycle.
+    """
+
+    state: DeserializerState
+    transfer: Transfer
+    chosen: Value
+    active: Signal
+    blocked: Signal
+    go: Signal
 
 
 class Mover(wiring.Component):
     """Read two words of the packet buffer per order, and write leaves from their lanes.
 
     One cycle reads the words and rotates their first bytes to lane 0; the next cycle writes the
-    leaves. So a leaf is valid 2 cycles after its order. Leaves of a step become valid in wire
+    leaves. So a leaf is valid 2 cycles after its order. Leaves of a state become valid in wire
     order, each as soon as its register is free. A leaf whose register is full delays only later
-    leaves.
+    leaves::
+
+        cycle           | 0        | 1             | 2
+        orders          | a        | b             | c
+        words           |          | of a          | of b
+        leaves of a     |          | are written   | valid
 
     Parameters
     ----------
-    plan : Plan
+    program : DeserializerProgram
     leaves : mapping of int to stream.Interface
         By leaf: streams of `leaf_shape(leaf)`, which the mover drives. Members of its own would
         only copy those of the converter.
@@ -44,349 +73,269 @@ class Mover(wiring.Component):
     status : Out(StatusSignature)
     """
 
-    def __init__(self, plan: Plan, leaves: Mapping[int, stream.Interface]):
-        self.plan, self.leaves = plan, leaves
+    def __init__(self, program: DeserializerProgram, leaves: Mapping[int, stream.Interface]):
+        self.program, self.plan, self.leaves = program, program.plan, leaves
         super().__init__(
             {
-                "beat": In(beat_layout(plan)),
-                "orders": In(stream.Signature(order_layout(plan))),
+                "beat": In(beat_layout(program.plan)),
+                "orders": In(stream.Signature(order_layout(program.plan))),
                 "status": Out(StatusSignature),
             }
         )
 
     def elaborate(self, platform: object) -> Module:
-        return _MoverLogic(self).m
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Writer:
-    """A transfer that a step may write.
-
-    Attributes
-    ----------
-    step : int
-    slot : int
-        Number of the transfer in its step, in wire order.
-    leaf : int
-    part : Part or None
-        Its bytes in the map of the step; `None` for a word or the rest of a run.
-    active : Signal
-        The current order is of this step, and the transfer is not written yet.
-    blocked : Signal
-        The transfer is active, and its register is not free.
-    go : Signal
-        The transfer is written in this cycle.
-    """
-
-    step: int
-    slot: int
-    leaf: int
-    part: Part | None
-    active: Signal
-    blocked: Signal
-    go: Signal
-
-
-class _MoverLogic:
-    """The mover's logic, built by one method for each part of it."""
-
-    def __init__(self, mover: Mover):
-        self.c, self.plan, self.ring = mover, mover.plan, Ring(mover.plan)
-        self.m = m = Module()
-        plan = self.plan
-        self.order = mover.orders.payload
-        self.take = Signal(name="take")
-        m.d.comb += mover.orders.ready.eq(self.take)
-        self.streams = [mover.leaves[k] for k in range(len(plan.leaves))]
-        # No reset value: so the flip-flops' synchronous reset is free to write the 0 of an error.
-        self.payloads = [
-            Signal(leaf_shape(leaf), name=f"payload_{k}", reset_less=True)
-            for k, leaf in enumerate(plan.leaves)
-        ]
-        for port, payload in zip(self.streams, self.payloads, strict=True):
-            m.d.comb += Value.cast(port.payload).eq(Value.cast(payload))
-        for port in (*self.streams, mover.status):
+        m = Module()
+        order, status = self.orders.payload, self.status
+        take = Signal()
+        m.d.comb += self.orders.ready.eq(take)
+        for port in (*self.leaves.values(), status):
             with m.If(port.ready):
                 m.d.sync += port.valid.eq(0)
-        # The words "items" and "map", and one bit for each good byte of them.
-        self.word: dict[str, Signal] = {}
-        self.good: dict[str, Signal] = {}
-        self._read()
-        self.length_good, self.last = self._kept("length_good"), self._kept("last")
-        self.final, self.ends = self._kept("final"), Signal(name="ends_now")
-        self.writers = list(self._writers())
-        self._serve()
-        self._carry()
-        for writer in chain.from_iterable(self.writers):
+        words = self._read(m, take)
+        writers = self._writers(m, take)
+
+        # The status of a packet is sent with its last order.
+        ends, ends_now, status_now = Signal(), Signal(), Signal.like(order.status)
+        m.d.comb += ends.eq(self.orders.valid & order.ends)
+        with m.If(take):
+            m.d.sync += [ends_now.eq(ends), status_now.eq(order.status)]
+            with m.If(ends_now):
+                m.d.sync += [status.valid.eq(1), status.payload.eq(status_now)]
+
+        # Take the next order when all of this one is written. Most leaves cannot transfer in two
+        # cycles in a row. If their consumers are always ready, their registers are free whenever a
+        # state needs them. That one of them is not is registered (`slow`), and costs a cycle. Only
+        # leaves that may transfer in every cycle look at `ready` combinationally.
+        repeated = self.program.repeated_leaves
+        waits = [
+            self._wants(m, take, leaf, [each for each in writers if each.transfer.leaf == leaf])
+            & _is_full(self.leaves[leaf])
+            for leaf in sorted(repeated)
+        ]
+        others = [each for each in writers if each.transfer.leaf not in repeated]
+        # Reasons for `slow`, as an order is taken and later.
+        first = [each.chosen & _is_full(self.leaves[each.transfer.leaf]) for each in others]
+        later = [each.blocked & ~self.leaves[each.transfer.leaf].ready for each in others]
+        if self.program.ends_at_once:
+            # A packet may end in every cycle.
+            waits.append(ends_now & _is_full(status))
+        else:
+            first.append(ends & _is_full(status))
+            later.append(ends_now & _is_full(status))
+        slow = Signal()
+        if first:
+            m.d.sync += slow.eq(Mux(take, any_of(first), any_of(later)))
+        m.d.comb += take.eq(~slow & ~any_of(waits))
+
+        for writer in writers:
             with m.If(writer.go):
-                m.d.sync += self.streams[writer.leaf].valid.eq(1)
-                self._write(writer)
+                m.d.sync += self.leaves[writer.transfer.leaf].valid.eq(1)
+                words.write(m, writer)
+        return m
 
-    def _kept(self, name: str) -> Signal:
-        """Return a register with a field of the order that is executed."""
-        kept = Signal.like(getattr(self.order, name), name=f"{name}_now")
-        with self.m.If(self.take):
-            self.m.d.sync += kept.eq(getattr(self.order, name))
-        return kept
-
-    # Words.
-
-    def _read(self) -> None:
-        """Read the words of the order."""
-        m, plan, order, bus = self.m, self.plan, self.order, self.plan.bus_bytes
-        sizes = geometry(plan)
-        counted = [plan.runs[s.run].counted for s in plan.steps if isinstance(s, RunStep)]
+    def _read(self, m: Module, take: Value) -> _Words:
+        """Read the words of the order that is taken, and keep its other fields."""
+        program, order = self.program, self.orders.payload
+        bus, ring = self.plan.bus_bytes, Ring(self.plan)
+        # First byte, slot of the next beat, possible lanes, and good bytes of each word.
         ports = {}
-        # A step takes the rest of each counted run.
-        if any(s.rest is not None or s.bytes > bus for s in plan.steps):
-            ports["items"] = (order.items_at, sizes.item_lanes, order.items_bytes)
-        if not all(counted) or any(s.bytes for s in plan.steps):
-            ports["map"] = (order.map_at, sizes.map_lanes, order.map_bytes)
-        lanes = self._memories({name: (at, starts) for name, (at, starts, _) in ports.items()})
-        for name, (at, starts, size) in ports.items():
-            lane = self.ring.lane(at)
-            word = rotate(m, Cat(lanes[name]), lane, starts, f"{name}_rotated")
-            self.word[name] = Signal(8 * bus, name=f"{name}_word", reset_less=True)
-            self.good[name] = Signal(bus, name=f"{name}_good", reset_less=True)
-            with m.If(self.take):
-                m.d.sync += [
-                    self.word[name].eq(word),
-                    self.good[name].eq(Cat(size > k for k in range(bus))),
-                ]
-
-    def _memories(self, ports: dict[str, tuple[Value, tuple[int, ...]]]) -> dict[str, list[Value]]:
-        """Make a memory for each lane, which each word reads at its own address."""
-        m, ring, beat = self.m, self.ring, self.c.beat
-        found: dict[str, list[Value]] = {name: [] for name in ports}
-        order = self.order
-        following = {"items": order.items_next, "map": order.map_next}
-        for k in range(self.plan.bus_bytes):
+        if program.items.used:
+            ports["items"] = order.items_at, order.items_next, program.items, order.items_bytes
+        if program.map.used:
+            ports["map"] = order.map_at, order.map_next, program.map, order.map_bytes
+        lanes: dict[str, list[Value]] = {name: [] for name in ports}
+        for k in range(bus):
             memory = LutMemory(m, f"lane_{k}", 8, ring.depth)
             write = memory.write
             m.d.comb += [
-                write.addr.eq(beat.at),
-                write.data.eq(beat.data[8 * k : 8 * k + 8]),
-                write.en.eq(beat.valid),
+                write.addr.eq(self.beat.at),
+                write.data.eq(self.beat.data[8 * k : 8 * k + 8]),
+                write.en.eq(self.beat.valid),
             ]
-            for name, (at, starts) in ports.items():
+            for name, (at, following, word, _) in ports.items():
                 read = memory.reader(name)
                 # Lanes before the first byte's are read from the next beat.
                 address: Value = at[ring.lane_bits :]
-                if any(start > k for start in starts):
-                    address = Mux(ring.lane(at) > k, following[name], address)
+                if any(start > k for start in word.lanes):
+                    address = Mux(ring.lane(at) > k, following, address)
                 m.d.comb += read.addr.eq(address)
-                found[name].append(read.data)
-        return found
+                lanes[name].append(read.data)
+        words = _Words(m, self, take)
+        for name, (at, _, word, size) in ports.items():
+            bits = rotate(m, Cat(lanes[name]), ring.lane(at), word.lanes, f"{name}_rotated")
+            words.keep(m, take, name, bits, size)
+        words.carry(m, take)
+        return words
 
-    # Service.
+    def _writers(self, m: Module, take: Value) -> list[_Writer]:
+        """Serve the transfers of each state in wire order, each as soon as its register is free.
 
-    def _writers(self) -> Iterator[list[_Writer]]:
-        """Yield the transfers of each step, in wire order."""
-        number = count()
-        for index, step in enumerate(self.plan.steps):
-            writers = []
-            for slot, (leaf, part) in enumerate(transfers(self.plan, step)):
-                k = next(number)
+        A consumer may take a leaf only after an earlier leaf, or after a leaf of the next message.
+        So a state must not wait until all its leaves are free; it remembers which are written.
+        """
+        order, found = self.orders.payload, list[_Writer]()
+        for state in self.program.states:
+            earlier: list[Value] = []
+            for transfer in state.transfers:
                 active, blocked, go = (
-                    Signal(name=f"{what}_{k}") for what in ("active", "blocked", "go")
+                    Signal(name=f"{what}_{len(found)}") for what in ("active", "blocked", "go")
                 )
-                writers.append(
+                chosen = self.orders.valid & ~order.blank & (order.step == state.number)
+                if transfer.run is not None and transfer.run.counted:
+                    chosen = chosen & order.items
+                port = self.leaves[transfer.leaf]
+                is_repeated = transfer.leaf in self.program.repeated_leaves
+                m.d.sync += active.eq(Mux(take, chosen, active & ~go))
+                m.d.comb += [
+                    blocked.eq(active & (_is_full(port) if is_repeated else port.valid)),
+                    go.eq(active & ~blocked & ~any_of(earlier)),
+                ]
+                earlier.append(blocked)
+                found.append(
                     _Writer(
-                        step=index,
-                        slot=slot,
-                        leaf=leaf,
-                        part=part,
+                        state=state,
+                        transfer=transfer,
+                        chosen=chosen,
                         active=active,
                         blocked=blocked,
                         go=go,
                     )
                 )
-            yield writers
+        return found
 
-    def _serve(self) -> None:
-        """Write the transfers of a step in wire order, each as soon as its register is free.
-
-        A consumer may take a leaf only after an earlier leaf, or after a leaf of the next message.
-        So a step must not wait until all its leaves are free; it remembers which are written.
-
-        Most leaves cannot transfer in two cycles in a row. If their consumers are always ready,
-        their registers are free whenever a step needs them. That one of them is not is registered
-        (`slow`), and costs a cycle. Only leaves that may transfer in every cycle look at `ready`
-        combinationally.
-        """
-        m, c = self.m, self.c
-        repeated = repeated_leaves(self.plan)
-        # Reasons to wait: combinational ones, and those of `slow` as an order is taken and later.
-        now, first, later = list[Value](), list[Value](), list[Value]()
-        wanted: dict[int, list[tuple[Value, Value]]] = {}
-        for writers in self.writers:
-            for writer in writers:
-                port = self.streams[writer.leaf]
-                chosen = self._schedule(writer, writers)
-                if writer.leaf in repeated:
-                    m.d.comb += writer.blocked.eq(writer.active & _is_full(port))
-                    wanted.setdefault(writer.leaf, []).append((chosen, writer.go))
-                else:
-                    m.d.comb += writer.blocked.eq(writer.active & port.valid)
-                    first.append(chosen & _is_full(port))
-                    later.append(writer.blocked & ~port.ready)
-        now += [
-            self._wants(leaf, cases) & _is_full(self.streams[leaf])
-            for leaf, cases in wanted.items()
-        ]
-        ends = c.orders.valid & self.order.ends
-        start = self.plan.steps[self.plan.start.step or 0]
-        if start.exits.default.step is None:
-            # A packet may end in every cycle.
-            now.append(self.ends & _is_full(c.status))
-        else:
-            first.append(ends & _is_full(c.status))
-            later.append(self.ends & _is_full(c.status))
-        slow = Signal(name="slow")
-        if first:
-            m.d.sync += slow.eq(Mux(self.take, any_of(first), any_of(later)))
-        m.d.comb += self.take.eq(~slow & ~any_of(now))
-        self._report(ends)
-
-    def _schedule(self, writer: _Writer, writers: Sequence[_Writer]) -> Value:
-        """Write a transfer after the earlier ones of its step; return if the next order has it.
-
-        Parameters
-        ----------
-        writers : sequence of _Writer
-            All of the step, in wire order.
-        """
-        m, order = self.m, self.order
-        chosen = self.c.orders.valid & ~order.blank & (order.step == writer.step)
-        if writer.part is None and self._run(writer).counted:
-            chosen = chosen & order.items
-        earlier = [each.blocked for each in writers[: writer.slot]]
-        m.d.sync += writer.active.eq(Mux(self.take, chosen, writer.active & ~writer.go))
-        m.d.comb += writer.go.eq(writer.active & ~writer.blocked & ~any_of(earlier))
-        return chosen
-
-    def _wants(self, leaf: int, cases: Sequence[tuple[Value, Value]]) -> Signal:
-        """Return a register: the order still has to write the leaf.
-
-        Parameters
-        ----------
-        cases : sequence of (Value, Value)
-            Of each writer of the leaf: the next order has the transfer; the transfer is written.
-        """
+    def _wants(self, m: Module, take: Value, leaf: int, writers: list[_Writer]) -> Signal:
+        """Return a register: the order that is executed still has to write the leaf."""
         wants = Signal(name=f"want_{leaf}")
-        chosen, go = (any_of([case[k] for case in cases]) for k in range(2))
-        self.m.d.sync += wants.eq(Mux(self.take, chosen, wants & ~go))
+        chosen = any_of([each.chosen for each in writers])
+        go = any_of([each.go for each in writers])
+        m.d.sync += wants.eq(Mux(take, chosen, wants & ~go))
         return wants
 
-    def _report(self, ends: Value) -> None:
-        """Send the status of a packet with the last order of the packet."""
-        m, port = self.m, self.c.status
-        status = self._kept("status")
-        with m.If(self.take):
-            m.d.sync += self.ends.eq(ends)
-            with m.If(self.ends):
-                m.d.sync += [port.valid.eq(1), port.payload.eq(status)]
 
-    def _run(self, writer: _Writer) -> Run:
-        """Return the run of which the writer writes a word or the rest."""
-        step = self.plan.steps[writer.step]
-        index = step.run if isinstance(step, RunStep) else step.rest
-        assert index is not None
-        return self.plan.runs[index]
+class _Words:
+    """The order that is executed: its two words, and what leaves get of them.
 
-    # Values.
+    A word has one bit for each byte that is good. A value is 0 unless its last byte is good: then
+    those before it are good, too.
+    """
 
-    def _byte(self, step: Step, at: int) -> tuple[Value, Value]:
-        """Return a byte of a step's map, and whether the byte is good."""
+    def __init__(self, m: Module, mover: Mover, take: Value):
+        self.plan, self.program, self.orders = mover.plan, mover.program, mover.orders
+        self.word: dict[str, Signal] = {}
+        self.good: dict[str, Signal] = {}
+        order = mover.orders.payload
+        self.length_good, self.last = Signal(), Signal()
+        self.final = Signal.like(order.final)
+        with m.If(take):
+            m.d.sync += [
+                self.length_good.eq(order.length_good),
+                self.last.eq(order.last),
+                self.final.eq(order.final),
+            ]
+        self.carried = Signal(8 * self.program.carried_bytes, reset_less=True)
+        # No reset value: so the flip-flops' synchronous reset is free to write the 0 of an error.
+        self.payloads = {
+            leaf: Signal(
+                leaf_shape(self.plan.leaves[leaf]), name=f"payload_{leaf}", reset_less=True
+            )
+            for leaf in mover.leaves
+        }
+        for leaf, port in mover.leaves.items():
+            m.d.comb += Value.cast(port.payload).eq(Value.cast(self.payloads[leaf]))
+
+    def keep(self, m: Module, take: Value, name: str, bits: Value, size: Value) -> None:
+        """Store a word, of which so many bytes are good."""
         bus = self.plan.bus_bytes
-        name = "items" if step.bytes > bus > at else "map"
+        self.word[name] = Signal(8 * bus, name=f"{name}_word", reset_less=True)
+        self.good[name] = Signal(bus, name=f"{name}_good", reset_less=True)
+        with m.If(take):
+            m.d.sync += [
+                self.word[name].eq(bits),
+                self.good[name].eq(Cat(size > k for k in range(bus))),
+            ]
+
+    def _byte(self, state: DeserializerState, at: int) -> tuple[Value, Value]:
+        """Return a byte of a state's map, and whether the byte is good."""
+        bus = self.plan.bus_bytes
+        name = "items" if state.two_word_map and bus > at else "map"
         at %= bus
         return self.word[name][8 * at : 8 * at + 8], self.good[name][at]
 
-    def _carry(self) -> None:
-        """Store the bytes of a transfer that continues in the next step."""
-        m, plan = self.m, self.plan
-        most = max((part.first for step in plan.steps for part in step.parts), default=0)
-        self.carried = Signal(8 * most, name="carried", reset_less=True)
-        for index, step in enumerate(plan.steps):
-            cut = [part for part in step.parts if not part.completes]
-            if not cut:
+    def carry(self, m: Module, take: Value) -> None:
+        """Store the bytes of a transfer that continues in a later state."""
+        order = self.orders.payload
+        for state in self.program.states:
+            part = state.cut
+            if part is None:
                 continue
-            (part,) = cut
-            here = Signal(name=f"cut_{index}")
-            with m.If(self.take):
-                chosen = ~self.order.blank & (self.order.step == index)
-                m.d.sync += here.eq(self.c.orders.valid & chosen)
-            size = plan.leaves[part.leaf].item_bytes
+            here = Signal(name=f"cut_{state.number}")
+            with m.If(take):
+                chosen = ~order.blank & (order.step == state.number)
+                m.d.sync += here.eq(self.orders.valid & chosen)
+            size = self.plan.leaves[part.leaf].item_bytes
             for k in range(part.bytes):
-                value, _ = self._byte(step, part.at + k)
-                # An item that ends in this step is zeroed here: items before an error keep theirs.
+                value, _ = self._byte(state, part.at + k)
+                # An item that ends in this state is zeroed here: items before an error keep theirs.
                 end = (part.first + k) // size * size + size
                 if end <= part.first + part.bytes:
-                    _, good = self._byte(step, part.at + end - part.first - 1)
+                    _, good = self._byte(state, part.at + end - part.first - 1)
                     value = Mux(good, value, 0)
                 at = 8 * (part.first + k)
-                with m.If(self.take & here):
+                with m.If(take & here):
                     m.d.sync += self.carried[at : at + 8].eq(value)
 
-    def _whole(self, writer: _Writer, begin: int, end: int) -> tuple[Value, Value]:
-        """Return bytes of a transfer that is complete with this step, and whether they are good."""
-        part, step = writer.part, self.plan.steps[writer.step]
-        assert part is not None
+    def _whole(
+        self, state: DeserializerState, part: Part, begin: int, end: int
+    ) -> tuple[Value, Value]:
+        """Return bytes of a transfer that is complete with a state, and whether they are good."""
         carried = max(begin, min(end, part.first))
-        here = [self._byte(step, part.at + k - part.first) for k in range(carried, end)]
+        here = [self._byte(state, part.at + k - part.first) for k in range(carried, end)]
         value = Cat(self.carried[8 * begin : 8 * carried], *(byte for byte, _ in here))
-        # The last byte is good only if those before it are.
         return value, here[-1][1] if here else Const(1)
 
-    def _write(self, writer: _Writer) -> None:
-        m, plan = self.m, self.plan
-        leaf, payload, part = plan.leaves[writer.leaf], self.payloads[writer.leaf], writer.part
-        if part is None:
-            self._write_word(writer)
-        elif leaf.kind == "items":
-            self._write_items(writer, part)
+    def write(self, m: Module, writer: _Writer) -> None:
+        """Write a transfer to the register of its leaf; the caller's `m.If` says when."""
+        transfer, part, run = writer.transfer, writer.transfer.part, writer.transfer.run
+        leaf, payload = self.plan.leaves[transfer.leaf], self.payloads[transfer.leaf]
+        size = leaf.item_bytes
+        if run is not None:
+            # A word or the rest of a run.
+            name = "items" if run.counted else "map"
+            m.d.sync += payload.last.eq(self.last & run.last)
+            for lane in range(leaf.lanes):
+                value = self.word[name][8 * lane * size : 8 * (lane + 1) * size]
+                good = self.good[name][(lane + 1) * size - 1]
+                _put(m, payload.data[lane], value, good, leaf.type)
+            return
+        assert part is not None
+        if leaf.kind == "items":
+            # A transfer of static size.
+            last: Value = Const(part.end is not None)
+            if isinstance(part.end, LoopEnd):
+                last = self.final[part.end.level]
+            m.d.sync += payload.last.eq(last)
+            for lane in range(leaf.lanes):
+                value, good = Const(0), Const(1)
+                if (lane + 1) * size <= part.size:
+                    value, good = self._whole(writer.state, part, lane * size, (lane + 1) * size)
+                _put(m, payload.data[lane], value, good, leaf.type)
         elif leaf.kind == "trigger":
             m.d.sync += payload.eq(1)
         else:
-            value, good = self._whole(writer, 0, part.size)
+            value, good = self._whole(writer.state, part, 0, part.size)
             if leaf.kind == "length":
-                value = value - plan.has_nul(plan.begins[writer.leaf])
-                good = good & self.length_good
-            self._put(payload, value, good, leaf.type)
+                value, good = value - transfer.counts_nul, good & self.length_good
+            _put(m, payload, value, good, leaf.type)
 
-    def _write_word(self, writer: _Writer) -> None:
-        """Write a word or the rest of a run."""
-        leaf, payload = self.plan.leaves[writer.leaf], self.payloads[writer.leaf]
-        run = self._run(writer)
-        name, size = "items" if run.counted else "map", leaf.item_bytes
-        self.m.d.sync += payload.last.eq(self.last & run.last)
-        for lane in range(leaf.lanes):
-            value = self.word[name][8 * lane * size : 8 * (lane + 1) * size]
-            self._put(payload.data[lane], value, self.good[name][(lane + 1) * size - 1], leaf.type)
 
-    def _write_items(self, writer: _Writer, part: Part) -> None:
-        """Write a transfer of static size."""
-        leaf, payload = self.plan.leaves[writer.leaf], self.payloads[writer.leaf]
-        size = leaf.item_bytes
-        last: Value = Const(part.end is not None)
-        if isinstance(part.end, LoopEnd):
-            last = self.final[part.end.level]
-        self.m.d.sync += payload.last.eq(last)
-        for lane in range(leaf.lanes):
-            value, good = Const(0), Const(1)
-            if (lane + 1) * size <= part.size:
-                value, good = self._whole(writer, lane * size, (lane + 1) * size)
-            self._put(payload.data[lane], value, good, leaf.type)
-
-    def _put(self, target: Value, value: Value, good: Value, type_: str) -> None:
-        """Write a value, or 0 if it is not good."""
-        if type_ == "bool":
-            value = value.any()
-        with self.m.If(good):
-            self.m.d.sync += Value.cast(target).eq(value)
-        with self.m.Else():
-            self.m.d.sync += Value.cast(target).eq(0)
+def _put(m: Module, target: Value, value: Value, good: Value, type_: str) -> None:
+    """Write a value, or 0 if it is not good."""
+    if type_ == "bool":
+        value = value.any()
+    with m.If(good):
+        m.d.sync += Value.cast(target).eq(value)
+    with m.Else():
+        m.d.sync += Value.cast(target).eq(0)
 
 
 def _is_full(port: stream.Interface) -> Value:

@@ -8,49 +8,13 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.collect import words_layout
 from firm_hdl.gateware.memories import LutMemory
-from firm_hdl.gateware.positions import Ring, known_lane_bits, rotate
+from firm_hdl.gateware.positions import Ring, constant_low_lane_bits, rotate
 from firm_hdl.gateware.signatures import PacketSignature
-from firm_hdl.plan import Plan
-from firm_hdl.plan.geometry import geometry, may_end_empty, most_beats
+from firm_hdl.gateware.words import words_layout
+from firm_hdl.program import SerializerProgram, WordLanes
 
 __all__ = ["Packer"]
-
-
-class Packer(wiring.Component):
-    """Write words to a ring of beats, and send the beats that are complete.
-
-    A pipeline of three cycles. The first one computes the positions of both words and rotates the
-    words to their lanes. The second one writes the words to the ring, which has separate memories
-    for each of the two words. The third one sends a beat. Throughput two words in and one beat out
-    per cycle; latency 3 cycles.
-
-    Parameters
-    ----------
-    plan : Plan
-
-    Members
-    -------
-    words : In(stream.Signature(words_layout(plan)))
-        `ready` is a register.
-    packets : Out(PacketSignature(bus_bytes))
-    error : Out(1)
-        The packet is marked with an error. Set only with the last beat of the packet.
-    """
-
-    def __init__(self, plan: Plan):
-        self.plan = plan
-        super().__init__(
-            {
-                "words": In(stream.Signature(words_layout(plan))),
-                "packets": Out(PacketSignature(plan.bus_bytes)),
-                "error": Out(1),
-            }
-        )
-
-    def elaborate(self, platform: object) -> Module:
-        return _PackerLogic(self).m
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,81 +26,160 @@ class _Placed:
     size: Signal
 
 
-class _PackerLogic:
-    """The packer's logic, built by one method for each part of it."""
+class Packer(wiring.Component):
+    """Write words to a ring of beats, and send the beats that are complete.
 
-    def __init__(self, packer: Packer):
-        self.c, self.plan = packer, packer.plan
-        self.ring = ring = Ring(packer.plan)
-        self.m = m = Module()
-        # Beats before `complete` can be sent; `first` is the next one.
-        self.complete, self.first = (
-            Signal(ring.beat_bits, name=name) for name in ("complete", "first")
+    Throughput two words in and one beat out per cycle; latency 3 cycles::
+
+        cycle          | 0                  | 1            | 2          | 3
+        words          | valid, ready       |              |            |
+        they are       | placed and rotated | written      |            |
+        beat           |                    | complete     | read       | packets.valid
+
+    Parameters
+    ----------
+    program : SerializerProgram
+
+    Members
+    -------
+    words : In(stream.Signature(words_layout(plan)))
+        `ready` is a register.
+    packets : Out(PacketSignature(bus_bytes))
+    error : Out(1)
+        The packet is marked with an error. Set only with the last beat of the packet.
+    """
+
+    def __init__(self, program: SerializerProgram):
+        self.program, self.plan, self.ring = program, program.plan, Ring(program.plan)
+        super().__init__(
+            {
+                "words": In(stream.Signature(words_layout(program.plan))),
+                "packets": Out(PacketSignature(program.plan.bus_bytes)),
+                "error": Out(1),
+            }
         )
-        self.reads, self.writes = Signal(name="reads"), Signal(name="writes")
-        self.takes = Signal(name="takes")
-        m.d.comb += self.takes.eq(packer.words.valid & packer.words.ready)
-        m.d.sync += self.writes.eq(self.takes)
-        self._place()
-        self._reserve_room()
-        self._send(self._beat())
 
-    # First cycle.
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        plan, program, ring, bus = self.plan, self.program, self.ring, self.plan.bus_bytes
+        words, packets = self.words.payload, self.packets
+        # Words are taken in this cycle; they are written in this cycle; a beat is read.
+        takes, writes, reads = Signal(), Signal(), Signal()
+        m.d.comb += takes.eq(self.words.valid & self.words.ready)
+        m.d.sync += writes.eq(takes)
 
-    def _place(self) -> None:
-        """Compute the positions of the words, and rotate them."""
-        m, ring, plan = self.m, self.ring, self.plan
-        words, bus = self.c.words.payload, plan.bus_bytes
-        self.at = ring.position("at")
-        self.end = ring.position("end")
-        base, map_at, map_end = (ring.position(name) for name in ("base", "map_at", "map_end"))
+        # First cycle: the positions of both words, from the start of the state on (`at`).
+        at, base, map_at, map_end, end = (
+            ring.position(name) for name in ("at", "base", "map_at", "map_end", "end")
+        )
         phase: Value | int = plan.header_bytes
         if bus < 8:
             phase = Signal(3, name="phase", init=plan.header_bytes % 8)
         m.d.comb += [
-            base.eq(self._rounded(self.at, words.to_map, words.map_mask, phase, Const(0))),
-            self.end.eq(self._rounded(base, words.to_end, words.end_mask, phase, words.last)),
-            map_at.eq(Cat(ring.lane(base), ring.beat(base) + words.lead)),
+            base.eq(self._rounded(m, at, words.to_map, words.map_mask, phase, Const(0))),
+            end.eq(self._rounded(m, base, words.to_end, words.end_mask, phase, words.last)),
+            map_at.eq(Cat(ring.lane(base), ring.beat(base) + words.two_word_map)),
             map_end.eq(map_at + words.map_bytes),
         ]
-        sizes = geometry(plan)
-        items_at = Mux(words.lead, base, self.at)
-        self.placed = {
-            "items": self._rotated("items", items_at, words.items_bytes, sizes.item_lanes),
-            "map": self._rotated("map", map_at, words.map_bytes, sizes.map_lanes),
+        items_at = Mux(words.two_word_map, base, at)
+        placed = {
+            "items": self._rotated(m, "items", takes, items_at, words.items_bytes, program.items),
+            "map": self._rotated(m, "map", takes, map_at, words.map_bytes, program.map),
         }
-        # The first beat that these words do not complete; whether the packet ends.
-        self.complete_next = Signal(ring.beat_bits, name="complete_next")
-        self.ends_packet = Signal(name="ends_packet")
-        self.last_bytes = Signal(range(bus + 1), name="last_bytes")
-        self.failed, self.waits = Signal(name="failed"), Signal(name="waits")
-        # The packet may end without another byte: then a beat that is just full is held back. A
-        # step of an empty packet has no beat to hold.
-        holds_last = may_end_empty(plan)
-        sent = Mux(words.last | words.empty, self.end, self.end - 1) if holds_last else self.end
-        done = ring.beat(sent)
+        # The first beat that these words do not complete. The packet may end without another byte:
+        # then a beat that is just full is held back. A state of an empty packet has none to hold.
+        complete_next = Signal(ring.beat_bits)
+        ends_packet, failed, waits = Signal(), Signal(), Signal()
+        last_bytes = Signal(range(bus + 1))
+        sent = Mux(words.last | words.empty, end, end - 1)
+        done = ring.beat(sent if program.may_end_without_bytes else end)
         full = Cat(ring.lane(map_end), Const(0, 1)) - 1
-        with m.If(self.takes):
+        with m.If(takes):
             m.d.sync += [
-                self.at.eq(self.end),
-                self.complete_next.eq(done),
-                self.ends_packet.eq(words.last),
-                self.failed.eq(words.error),
-                self.waits.eq(words.waits),
-                self.last_bytes.eq(Mux(words.empty, 0, full[: ring.lane_bits] + 1)),
+                at.eq(end),
+                complete_next.eq(done),
+                ends_packet.eq(words.last),
+                failed.eq(words.error),
+                waits.eq(words.waits),
+                last_bytes.eq(Mux(words.empty, 0, full[: ring.lane_bits] + 1)),
             ]
-            if not isinstance(phase, int):
+            if isinstance(phase, Signal):
                 with m.If(words.last):
-                    m.d.sync += phase.eq(self.end + plan.header_bytes)
+                    m.d.sync += phase.eq(end + plan.header_bytes)
+
+        # `words.ready` is high only if the ring has room for the largest state after these words.
+        # `bound`: the last beat in which a state may start.
+        bound = Signal(ring.beat_bits, init=ring.depth - program.most_beats)
+        newest, room = Signal(ring.beat_bits), Signal(ring.beat_bits)
+        ready = Signal(init=1)
+        m.d.comb += [
+            newest.eq(ring.beat(at) + Mux(takes, words.max_beats, 0)),
+            room.eq(bound - newest),
+            self.words.ready.eq(ready),
+        ]
+        m.d.sync += ready.eq(~room[-1])
+        with m.If(reads):
+            m.d.sync += bound.eq(bound + 1)
+
+        # Second cycle: write the words. Beats before `complete` can be sent; beats of constants
+        # only are held until the first leaf is taken.
+        complete, first = Signal(ring.beat_bits), Signal(ring.beat_bits)
+        slot = (complete_next - 1)[: ring.beat_bits - 1]
+        layout = data.StructLayout({"count": range(bus + 1), "error": 1})
+        ends = LutMemory(m, "ends", layout, ring.depth)
+        write, read = ends.write, ends.reader()
+        # By slot: whether the beat is the last one of its packet.
+        last, is_last = Signal(ring.depth), Signal()
+        m.d.comb += [
+            write.addr.eq(slot),
+            write.data.count.eq(last_bytes),
+            write.data.error.eq(failed),
+            write.en.eq(writes & ends_packet),
+        ]
+        with m.If(writes & ~waits):
+            m.d.sync += complete.eq(complete_next)
+            with m.If(ends_packet):
+                m.d.sync += last.bit_select(slot, 1).eq(1)
+
+        # Third cycle: read the next beat, and send it.
+        beat = self._beat(m, placed, writes, reads, first)
+        payload = Signal(packets.payload.shape(), name="payload", reset_less=True)
+        error = Signal(reset_less=True)
+        m.d.comb += [
+            read.addr.eq(first),
+            reads.eq((complete != first) & (~packets.valid | packets.ready)),
+            is_last.eq((last >> first[:-1])[0]),
+            Value.cast(packets.payload).eq(Value.cast(payload)),
+            self.error.eq(error),
+        ]
+        with m.If(packets.ready):
+            m.d.sync += packets.valid.eq(0)
+        with m.If(reads):
+            m.d.sync += [
+                packets.valid.eq(1),
+                first.eq(first + 1),
+                Value.cast(payload.data).eq(beat),
+                payload.last.eq(is_last),
+                payload.count.eq(Mux(is_last, read.data.count, bus)),
+                error.eq(is_last & read.data.error),
+                last.bit_select(first[:-1], 1).eq(0),
+            ]
+        return m
 
     def _rounded(
-        self, value: Value, distance: Value, mask: Value, phase: Value | int, last: Value
+        self,
+        m: Module,
+        value: Value,
+        distance: Value,
+        mask: Value,
+        phase: Value | int,
+        last: Value,
     ) -> Value:
         """Return a position after a distance, with low bits cleared by a mask.
 
         Alignment counts from `phase`. The end of a packet (`last`) is rounded up to a whole beat.
         """
-        m, size = self.m, len(value)
+        size = len(value)
         total = Signal(size)
         m.d.comb += total.eq(value + distance)
         if isinstance(phase, int):
@@ -145,77 +188,73 @@ class _PackerLogic:
         m.d.comb += pad.eq((phase - total) & mask)
         return Mux(last, total & ~Cat(mask, Const(0, size - len(mask))), total + pad)[:size]
 
-    def _rotated(self, name: str, start: Value, size: Value, lanes: tuple[int, ...]) -> _Placed:
+    def _rotated(
+        self, m: Module, name: str, takes: Value, start: Value, size: Value, where: WordLanes
+    ) -> _Placed:
         """Rotate a word so that its first byte is in the lane of its position."""
-        m, ring, bus = self.m, self.ring, self.plan.bus_bytes
-        word = rotate(
-            m,
-            getattr(self.c.words.payload, name),
-            ring.lane(start),
-            lanes,
-            f"{name}_rotated",
-            back=True,
-        )
+        ring, bus, word = self.ring, self.plan.bus_bytes, getattr(self.words.payload, name)
+        rotated = rotate(m, word, ring.lane(start), where.lanes, f"{name}_rotated", back=True)
         register = ring.position(f"{name}_start")
-        first, known = known_lane_bits(lanes, bus)
+        first, constant = constant_low_lane_bits(where.lanes, bus)
         placed = _Placed(
             Signal(8 * bus, name=f"{name}_placed", reset_less=True),
-            Cat(Const(first, known), register[known:]),
+            Cat(Const(first, constant), register[constant:]),
             Signal(range(bus + 1), name=f"{name}_size"),
         )
-        with m.If(self.takes):
-            m.d.sync += [placed.data.eq(word), register.eq(start), placed.size.eq(size)]
+        with m.If(takes):
+            m.d.sync += [placed.data.eq(rotated), register.eq(start), placed.size.eq(size)]
         return placed
 
-    def _reserve_room(self) -> None:
-        """Make `words.ready` high only if the ring has room for the largest step."""
-        m, ring = self.m, self.ring
-        # The last beat in which a step may start.
-        bound = Signal(ring.beat_bits, name="bound", init=ring.depth - most_beats(self.plan))
-        newest, room = (Signal(ring.beat_bits, name=name) for name in ("newest", "room"))
-        ready = Signal(name="ready", init=1)
-        m.d.comb += [
-            newest.eq(ring.beat(self.at) + Mux(self.takes, self.c.words.payload.max_beats, 0)),
-            room.eq(bound - newest),
-            self.c.words.ready.eq(ready),
-        ]
-        m.d.sync += ready.eq(~room[-1])
-        with m.If(self.reads):
-            m.d.sync += bound.eq(bound + 1)
+    def _beat(
+        self, m: Module, placed: dict[str, _Placed], writes: Value, reads: Value, first: Value
+    ) -> Value:
+        """Write words to the ring, and return the bytes of the beat `first`.
 
-    # Second cycle.
-
-    def _beat(self) -> Value:
-        """Write words to the ring, and return the bytes of the next beat to send."""
-        plan = self.plan
-        sizes = geometry(plan)
-        units = {"items": sizes.item_unit, "map": sizes.map_unit}
+        The ring has separate memories for the two words. Bytes that neither word wrote are padding.
+        """
+        program, bus = self.program, self.plan.bus_bytes
+        units = {"items": program.items.unit, "map": program.map.unit}
         # Without padding, a byte that is not of items is of a map, or after the packet's end.
-        padded = bool(plan.header_bytes) or sizes.aligns
-        words = {
-            name: [self._lanes(name, k, unit, has_flags=padded or name == "items") for k in starts]
-            for name, unit in units.items()
-            for starts in [range(0, plan.bus_bytes, unit)]
-        }
+        padded = bool(self.plan.header_bytes) or program.aligns
+        # By word and lane: the bytes of the beat, and whether the word wrote them.
+        lanes: dict[str, list[tuple[Value, Value]]] = {"items": [], "map": []}
+        for name, unit in units.items():
+            for k in range(0, bus, unit):
+                where = (name, k, unit, placed[name], writes)
+                used, slot, bytes_ = self._write_lanes(m, *where, first)
+                written: Value = Const(1, 1)
+                if padded or name == "items":
+                    written = self._written(m, f"{name}_{k}", used, slot, reads, first)
+                lanes[name].append((bytes_, written))
         # Groups of lanes, as many as the smaller unit, with the memories of both words.
         size = min(units.values())
         found = []
-        for k in range(0, plan.bus_bytes, size):
+        for k in range(0, bus, size):
             (a, a_has), (b, b_has) = (
-                (word[k // unit][0][8 * (k % unit) :][: 8 * size], word[k // unit][1])
-                for unit, word in zip(units.values(), words.values(), strict=True)
+                (lanes[name][k // unit][0][8 * (k % unit) :][: 8 * size], lanes[name][k // unit][1])
+                for name, unit in units.items()
             )
             found.append(Mux(a_has, a, 0) | Mux(b_has, b, 0) if padded else Mux(a_has, a, b))
         return Cat(found)
 
-    def _lanes(self, name: str, k: int, unit: int, *, has_flags: bool) -> tuple[Value, Value]:
+    def _write_lanes(
+        self,
+        m: Module,
+        name: str,
+        k: int,
+        unit: int,
+        placed: _Placed,
+        writes: Value,
+        first: Value,
+    ) -> tuple[Value, Value, Value]:
         """Write lanes of a word, from lane k on.
 
         Returns
         -------
-        These lanes of the next beat to send, and whether this word wrote them.
+        Whether the word has these lanes, the slot of the beat to which they are written, and the
+        same lanes of the beat `first`.
         """
-        m, ring, placed = self.m, self.ring, self.placed[name]
+        ring, bus = self.ring, self.plan.bus_bytes
         memory = LutMemory(m, f"{name}_{k}", 8 * unit, ring.depth)
         write, read = memory.write, memory.reader()
         index = Signal(max(1, ring.lane_bits), name=f"{name}_index_{k}")
@@ -224,64 +263,27 @@ class _PackerLogic:
         lane = ring.lane(placed.start)
         m.d.comb += [
             index.eq(k - lane if ring.lane_bits else 0),
-            used.eq(self.writes & (index < placed.size)),
+            used.eq(writes & (index < placed.size)),
             # Lanes before the first byte are of the next beat.
-            slot.eq(ring.slot(placed.start) + (lane > k if k < self.plan.bus_bytes - unit else 0)),
+            slot.eq(ring.slot(placed.start) + (lane > k if k < bus - unit else 0)),
             write.addr.eq(slot),
             write.data.eq(placed.data[8 * k : 8 * (k + unit)]),
             write.en.eq(used),
-            read.addr.eq(self.first),
+            read.addr.eq(first),
         ]
-        if not has_flags:
-            return read.data, Const(1, 1)
-        # By slot: whether this word wrote these lanes of the beat. A shift of `used` would simulate
-        # faster, but takes 2 % more cells.
-        has = Signal(ring.depth, name=f"{name}_has_{k}")
-        for beat in range(ring.depth):
-            with m.If(self.reads & (self.first[:-1] == beat)):
+        return used, slot, read.data
+
+    def _written(
+        self, m: Module, name: str, used: Value, slot: Value, reads: Value, first: Value
+    ) -> Value:
+        """Return whether lanes of the beat `first` were written."""
+        # By slot. A shift of `used` would simulate faster, but takes 2 % more cells.
+        has = Signal(self.ring.depth, name=f"{name}_has")
+        for beat in range(self.ring.depth):
+            with m.If(reads & (first[:-1] == beat)):
                 m.d.sync += has[beat].eq(0)
             with m.Elif(used & (slot == beat)):
                 m.d.sync += has[beat].eq(1)
-        written = Signal(name=f"{name}_written_{k}")
-        m.d.comb += written.eq((has >> self.first[:-1])[0])
-        return read.data, written
-
-    # Third cycle.
-
-    def _send(self, beat: Value) -> None:
-        m, ring, packets = self.m, self.ring, self.c.packets
-        slot = (self.complete_next - 1)[: ring.beat_bits - 1]
-        layout = data.StructLayout({"count": range(self.plan.bus_bytes + 1), "error": 1})
-        ends = LutMemory(m, "ends", layout, ring.depth)
-        write, read = ends.write, ends.reader()
-        m.d.comb += [
-            write.addr.eq(slot),
-            write.data.count.eq(self.last_bytes),
-            write.data.error.eq(self.failed),
-            write.en.eq(self.writes & self.ends_packet),
-            read.addr.eq(self.first),
-            self.reads.eq((self.complete != self.first) & (~packets.valid | packets.ready)),
-        ]
-        # By slot: whether the beat is the last one of its packet.
-        last, is_last = Signal(ring.depth, name="last"), Signal(name="is_last")
-        m.d.comb += is_last.eq((last >> self.first[:-1])[0])
-        # Beats of constants only are held until the first leaf is taken.
-        with m.If(self.writes & ~self.waits):
-            m.d.sync += self.complete.eq(self.complete_next)
-            with m.If(self.ends_packet):
-                m.d.sync += last.bit_select(slot, 1).eq(1)
-        payload = Signal(packets.payload.shape(), name="payload", reset_less=True)
-        error = Signal(name="error_now", reset_less=True)
-        m.d.comb += [Value.cast(packets.payload).eq(Value.cast(payload)), self.c.error.eq(error)]
-        with m.If(packets.ready):
-            m.d.sync += packets.valid.eq(0)
-        with m.If(self.reads):
-            m.d.sync += [
-                packets.valid.eq(1),
-                self.first.eq(self.first + 1),
-                Value.cast(payload.data).eq(beat),
-                payload.last.eq(is_last),
-                payload.count.eq(Mux(is_last, read.data.count, self.plan.bus_bytes)),
-                error.eq(is_last & read.data.error),
-                last.bit_select(self.first[:-1], 1).eq(0),
-            ]
+        written = Signal(name=f"{name}_written")
+        m.d.comb += written.eq((has >> first[:-1])[0])
+        return written

@@ -8,16 +8,18 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.memories import LutMemory
-from firm_hdl.gateware.parse import Buffer, Sequencer, verdict_layout
+from firm_hdl.gateware.parse import Buffer, Checker, verdict_layout
 from firm_hdl.gateware.positions import Ring, beat_layout
 from firm_hdl.gateware.signatures import PacketSignature, StatusSignature
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan, check_bus_bytes
 from firm_hdl.plan.outline import outline
+from firm_hdl.program import deserializer_program
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = [
     "Parser",
+    "PlanParser",
     "parser_plan",
 ]
 
@@ -54,7 +56,50 @@ def parser_plan(
     )
 
 
-class Parser(Component):
+class PlanParser(Component):
+    """A :class:`Parser` of a plan that :func:`parser_plan` made.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+
+    def __init__(self, plan: Plan):
+        self.plan = plan
+        super().__init__(
+            {
+                "packets": In(PacketSignature(plan.bus_bytes)),
+                "status": Out(StatusSignature),
+                "sizes": Out(sizes_layout()),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        program = deserializer_program(self.plan, has_leaves=False)
+        m.submodules.buffer = buffer = Buffer(self.plan)
+        m.submodules.checker = checker = Checker(program)
+        m.submodules.packet_sizes = sizes = PacketSizes(self.plan)
+        m.submodules.verdicts = verdicts = VerdictQueue()
+        wiring.connect(m, wiring.flipped(self.packets), buffer.packets)
+        wiring.connect(m, buffer.arrival, checker.arrival)
+        m.d.comb += [
+            checker.may_end.eq(verdicts.has_room),
+            buffer.freed.eq(checker.oldest),
+            sizes.beat.eq(buffer.arrival.beat),
+            sizes.next.eq(verdicts.moves),
+            verdicts.came.eq(checker.verdict),
+            verdicts.ready.eq(self.status.ready),
+            self.status.valid.eq(verdicts.first.ends),
+            self.status.payload.eq(verdicts.first.status),
+            self.sizes.trailing.eq(verdicts.first.trailing),
+        ]
+        with m.If(verdicts.moves):
+            m.d.sync += self.sizes.packet.eq(sizes.bytes)
+        return m
+
+
+class Parser(PlanParser):
     """Judge packets, without extracting their messages.
 
     Each packet ends in one transfer on `status`, the same as from a :class:`Deserializer` with the
@@ -98,53 +143,7 @@ class Parser(Component):
         bus_bytes: int = 8,
         max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
     ):
-        self._init(parser_plan(message, wire, bus_bytes, max_message_bytes))
-
-    def _init(self, plan: Plan) -> None:
-        self.plan = plan
-        super().__init__(
-            {
-                "packets": In(PacketSignature(plan.bus_bytes)),
-                "status": Out(StatusSignature),
-                "sizes": Out(sizes_layout()),
-            }
-        )
-
-    @classmethod
-    def of_plan(cls, plan: Plan) -> Parser:
-        """Make the parser of a plan by :func:`parser_plan`."""
-        parser = cls.__new__(cls)
-        parser._init(plan)
-        return parser
-
-    def elaborate(self, platform: object) -> Module:
-        m = Module()
-        m.submodules.buffer = buffer = Buffer(self.plan)
-        m.submodules.sequencer = sequencer = Sequencer(self.plan, has_leaves=False)
-        m.submodules.packet_sizes = sizes = PacketSizes(self.plan)
-        m.submodules.verdicts = verdicts = VerdictQueue()
-        m.d.comb += [
-            buffer.packets.payload.eq(self.packets.payload),
-            buffer.packets.valid.eq(self.packets.valid),
-            self.packets.ready.eq(buffer.packets.ready),
-            sequencer.beat.eq(buffer.beat),
-            sequencer.limit.eq(buffer.limit),
-            sequencer.ended.eq(buffer.ended),
-            sequencer.following.eq(buffer.following),
-            sequencer.may_end.eq(verdicts.has_room),
-            buffer.next.eq(sequencer.next),
-            buffer.freed.eq(sequencer.oldest),
-            sizes.beat.eq(buffer.beat),
-            sizes.next.eq(verdicts.moves),
-            verdicts.came.eq(sequencer.verdict),
-            verdicts.ready.eq(self.status.ready),
-            self.status.valid.eq(verdicts.first.ends),
-            self.status.payload.eq(verdicts.first.status),
-            self.sizes.trailing.eq(verdicts.first.trailing),
-        ]
-        with m.If(verdicts.moves):
-            m.d.sync += self.sizes.packet.eq(sizes.bytes)
-        return m
+        super().__init__(parser_plan(message, wire, bus_bytes, max_message_bytes))
 
 
 class VerdictQueue(wiring.Component):

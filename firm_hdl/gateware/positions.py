@@ -9,14 +9,14 @@ from amaranth.lib import data
 
 from firm_hdl.plan import Plan
 from firm_hdl.plan.geometry import ring_beats
+from firm_hdl.program import align_addend
 
 __all__ = [
     "Ring",
-    "align_addend",
     "align_up",
     "any_of",
     "beat_layout",
-    "known_lane_bits",
+    "constant_low_lane_bits",
     "pick",
     "rotate",
     "sum_of_three",
@@ -91,14 +91,6 @@ def beat_layout(plan: Plan) -> data.StructLayout:
             "valid": 1,
         }
     )
-
-
-def align_addend(align: int, phase: int, shift: int = 0) -> int:
-    """Return the addend after which clearing the low bits rounds up; see `align_up`.
-
-    Parameters are those of `align_up`, with a constant phase.
-    """
-    return align - 1 - phase % align + (phase % align + shift) // align * align
 
 
 def align_up(
@@ -194,7 +186,7 @@ def rotate(
         at = 8 * ((-lane if back else lane) % count)
         return Cat(value, value)[at : at + len(value)]
 
-    first, known = known_lane_bits(lanes, count)
+    first, known = constant_low_lane_bits(lanes, count)
     now = turned(value, first)
     for bit in reversed(range(known, count.bit_length() - 1)):
         result = Signal(len(value), name=f"{name}_{bit}")
@@ -203,7 +195,7 @@ def rotate(
     return now
 
 
-def known_lane_bits(lanes: Sequence[int], bus_bytes: int) -> tuple[int, int]:
+def constant_low_lane_bits(lanes: Sequence[int], bus_bytes: int) -> tuple[int, int]:
     """Return the low bits that are equal in all lanes: their value and their number."""
     common = bus_bytes
     while any(lane % common != lanes[0] % common for lane in lanes):

@@ -8,9 +8,10 @@ leaf until it is taken. An array of several transfers is collected in registers.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import ClassVar
 
 from amaranth.hdl import Cat, Module, Signal, Value
-from amaranth.lib import data, stream
+from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
@@ -26,22 +27,23 @@ __all__ = ["RecordReader", "RecordWriter"]
 
 
 class _Adapter(Component):
+    _reads: ClassVar[bool]
+    """Whether the record is an output."""
+
     def __init__(
         self,
         message: Message,
         *,
-        wire: Wire | None,
-        bus_bytes: int,
-        fields: Iterable[str] | None,
-        reads: bool,
+        wire: Wire | None = None,
+        bus_bytes: int = 8,
+        fields: Iterable[str] | None = None,
     ):
-        self._reads = reads
         self.plan = build_plan(lay_out(message, wire), bus_bytes=bus_bytes)
         self.tree = member_tree(leaf.path for leaf in self.plan.leaves)
         self._record = Record(message, self.plan, fields)
-        inner, outer = (In, Out) if reads else (Out, In)
+        inner, outer = (In, Out) if self._reads else (Out, In)
         signature = {
-            "message": inner(MessageSignature.of_plan(message, self.plan, self.tree)),
+            "message": inner(MessageSignature(message, plan=self.plan)),
             "record": outer(stream.Signature(self._record.layout)),
         }
         rest = self._rest(self.tree)
@@ -70,11 +72,7 @@ class _Adapter(Component):
         for _, path in rest.leaves():
             ends = (_member(self.message, path), _member(self.rest, path))
             source, sink = ends if self._reads else ends[::-1]
-            m.d.comb += [
-                sink.payload.eq(source.payload),
-                sink.valid.eq(source.valid),
-                source.ready.eq(sink.ready),
-            ]
+            wiring.connect(m, wiring.flipped(source), wiring.flipped(sink))
 
 
 def _member(interface: object, path: tuple[str, ...]) -> stream.Interface:
@@ -112,15 +110,7 @@ class RecordReader(_Adapter):
         The leaves that are not in the record, connected through; absent if the record has all.
     """
 
-    def __init__(
-        self,
-        message: Message,
-        *,
-        wire: Wire | None = None,
-        bus_bytes: int = 8,
-        fields: Iterable[str] | None = None,
-    ):
-        super().__init__(message, wire=wire, bus_bytes=bus_bytes, fields=fields, reads=True)
+    _reads = True
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -192,15 +182,7 @@ class RecordWriter(_Adapter):
     message : Out(MessageSignature(message, bus_bytes))
     """
 
-    def __init__(
-        self,
-        message: Message,
-        *,
-        wire: Wire | None = None,
-        bus_bytes: int = 8,
-        fields: Iterable[str] | None = None,
-    ):
-        super().__init__(message, wire=wire, bus_bytes=bus_bytes, fields=fields, reads=False)
+    _reads = False
 
     def elaborate(self, platform: object) -> Module:
         m = Module()

@@ -83,6 +83,11 @@ class Record:
         self._leaves = {leaf.path: leaf for leaf in plan.leaves}
         self._choice = _Choice.of(fields)
         members = self._chosen(message, ())
+        if not message.fields and fields is None:
+            # Its one leaf says that the message came.
+            whole = self._value(message, (), ())
+            assert isinstance(whole, data.StructLayout)
+            members = {name: field_.shape for name, field_ in whole}
         if self._choice.unknown:
             names = ", ".join(repr(".".join(name)) for name in sorted(self._choice.unknown))
             raise ValueError(

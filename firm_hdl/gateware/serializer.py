@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from amaranth.hdl import Module
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.collect import Collector
+from firm_hdl.gateware.collector import Collector
 from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.packer import Packer
@@ -17,6 +18,7 @@ from firm_hdl.gateware.signatures import (
 )
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, build_plan
+from firm_hdl.program import serializer_program
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["Serializer"]
@@ -74,7 +76,7 @@ class Serializer(Component):
         self.tree = member_tree(leaf.path for leaf in self.plan.leaves)
         super().__init__(
             {
-                "message": In(MessageSignature.of_plan(message, self.plan, self.tree)),
+                "message": In(MessageSignature(message, plan=self.plan)),
                 "packets": Out(PacketSignature(bus_bytes)),
                 "packet_error": Out(1),
                 "status": Out(StatusSignature),
@@ -83,20 +85,13 @@ class Serializer(Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
+        program = serializer_program(self.plan)
         m.submodules.collector = collector = Collector(
-            self.plan, leaf_streams(self.message, self.tree)
+            program, leaf_streams(self.message, self.tree)
         )
-        m.submodules.packer = packer = Packer(self.plan)
-        m.d.comb += [
-            packer.words.payload.eq(collector.words.payload),
-            packer.words.valid.eq(collector.words.valid),
-            collector.words.ready.eq(packer.words.ready),
-            self.packets.payload.eq(packer.packets.payload),
-            self.packets.valid.eq(packer.packets.valid),
-            packer.packets.ready.eq(self.packets.ready),
-            self.packet_error.eq(packer.error),
-            self.status.payload.eq(collector.status.payload),
-            self.status.valid.eq(collector.status.valid),
-            collector.status.ready.eq(self.status.ready),
-        ]
+        m.submodules.packer = packer = Packer(program)
+        wiring.connect(m, collector.words, packer.words)
+        wiring.connect(m, packer.packets, wiring.flipped(self.packets))
+        wiring.connect(m, collector.status, wiring.flipped(self.status))
+        m.d.comb += self.packet_error.eq(packer.error)
         return m

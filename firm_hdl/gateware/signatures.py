@@ -131,6 +131,8 @@ class MessageSignature(wiring.Signature):
         number of lanes of `items`.
     wire : "ros1", "cdr" or None
         Wire format; it decides the leaf of an empty message. `None`: that of the message's dialect.
+    plan : Plan or None
+        A plan of the message, if there is one; its bus width and wire format count then.
 
     Attributes
     ----------
@@ -139,19 +141,18 @@ class MessageSignature(wiring.Signature):
     wire : Wire
     """
 
-    def __init__(self, message: Message, bus_bytes: int = 8, wire: Wire | None = None):
-        longest = (1 << 32) - 1
-        plan = build_plan(lay_out(message, wire), bus_bytes=bus_bytes, max_message_bytes=longest)
-        self._init(message, plan, member_tree(leaf.path for leaf in plan.leaves))
-
-    @classmethod
-    def of_plan(cls, message: Message, plan: Plan, tree: MemberTree) -> MessageSignature:
-        """Make the signature of a message from its plan and the tree of its member names."""
-        signature = cls.__new__(cls)
-        signature._init(message, plan, tree)
-        return signature
-
-    def _init(self, message: Message, plan: Plan, tree: MemberTree) -> None:
+    def __init__(
+        self,
+        message: Message,
+        bus_bytes: int = 8,
+        wire: Wire | None = None,
+        *,
+        plan: Plan | None = None,
+    ):
+        if plan is None:
+            layout, longest = lay_out(message, wire), (1 << 32) - 1
+            plan = build_plan(layout, bus_bytes=bus_bytes, max_message_bytes=longest)
+        tree = member_tree(leaf.path for leaf in plan.leaves)
         self.message, self.bus_bytes, self.wire = message, plan.bus_bytes, plan.wire
         super().__init__(_members(plan.leaves, tree))
 

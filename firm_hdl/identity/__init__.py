@@ -7,7 +7,7 @@ the same definition.
 from __future__ import annotations
 
 from firm_hdl.identity.md5 import md5sum
-from firm_hdl.identity.proto import TooLargeError, proto
+from firm_hdl.identity.proto import proto
 from firm_hdl.identity.rihs import type_description, type_hash
 
-__all__ = ["TooLargeError", "md5sum", "proto", "type_description", "type_hash"]
+__all__ = ["md5sum", "proto", "type_description", "type_hash"]

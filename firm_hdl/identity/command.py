@@ -4,25 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from contextlib import suppress
+from itertools import chain
+from typing import TypeVar
 
 from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.names import ACTION_SERVICES
 from firm_hdl.identity.md5 import md5sum
-from firm_hdl.identity.proto import TooLargeError, proto
+from firm_hdl.identity.proto import proto
 from firm_hdl.identity.rihs import type_hash
-from firm_hdl.model import Action, Dialect, Interface, Message, Service
+from firm_hdl.model import Action, Dialect, Interface
 
-__all__ = ["hash_lines", "load_interfaces", "md5_lines", "proto_texts"]
+__all__ = ["hash_lines", "md5_lines", "of_each", "proto_texts"]
+
+_T = TypeVar("_T")
 
 
 def md5_lines(library: Library, names: Iterable[str]) -> tuple[list[str], DefinitionError | None]:
     """List md5 sums, each with the name of its type. An action gives the sums of its messages.
 
-    Returns
-    -------
-    tuple of list and DefinitionError or None
-        The lines of the types that could be loaded, and the errors of the others.
+    Results are those of `of_each`.
 
     Raises
     ------
@@ -30,22 +31,17 @@ def md5_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defini
         If the distribution is of ROS 2.
     """
     _require(library, "ros1", "md5 sums are for ROS 1; for ROS 2, use 'firm-hdl hash'")
-    summed: list[Message | Service] = []
 
-    def on_loaded(interface: Interface) -> None:
-        summed.extend(interface.messages if isinstance(interface, Action) else (interface,))
+    def lines(interface: Interface) -> list[str]:
+        summed = interface.messages if isinstance(interface, Action) else (interface,)
+        return [f"{md5sum(item)}  {item.name}" for item in summed]
 
-    wrong = _each(library, names, on_loaded)
-    return [f"{md5sum(item)}  {item.name}" for item in summed], wrong
+    found, wrong = of_each(library, names, lines)
+    return list(chain.from_iterable(found)), wrong
 
 
 def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], DefinitionError | None]:
-    """List type hashes, each with the name of its type.
-
-    Returns
-    -------
-    tuple of list and DefinitionError or None
-        The lines of the types that have a hash, and the errors of the others.
+    """List type hashes, each with the name of its type. Results are those of `of_each`.
 
     Raises
     ------
@@ -53,89 +49,62 @@ def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defin
         If the distribution is of ROS 1.
     """
     _require(library, "ros2", "type hashes are for ROS 2; for ROS 1, use 'firm-hdl md5'")
-    lines: list[str] = []
 
-    def on_loaded(interface: Interface) -> None:
+    def line(interface: Interface) -> str:
         try:
-            lines.append(f"{type_hash(interface)}  {interface.name}")
+            return f"{type_hash(interface)}  {interface.name}"
         except ValueError as error:
             problem = Diagnostic(message=f"{library.distro}: {error}")
             raise DefinitionError([problem]) from None
 
-    wrong = _each(library, names, on_loaded)
-    return lines, wrong
+    return of_each(library, names, line)
 
 
 def proto_texts(
     library: Library, names: Iterable[str], *, quotes: bool
 ) -> tuple[dict[str, str], DefinitionError | None]:
-    """Give the texts of `proto` for types, each with a line end after its last line.
+    """Give the texts of `proto` by type, and the errors of the types that have none.
 
-    Returns
-    -------
-    tuple of dict and DefinitionError or None
-        The texts by name of type, and the errors of the other types. A text that would be too long
-        is an error, too.
+    Each text has a line end after its last line.
     """
-    texts: dict[str, str] = {}
 
-    def on_loaded(interface: Interface) -> None:
-        try:
-            texts[interface.name] = proto(interface, quotes=quotes) + "\n"
-        except TooLargeError as error:
-            raise DefinitionError([Diagnostic(message=str(error))]) from None
+    def text(interface: Interface) -> tuple[str, str]:
+        return interface.name, proto(interface, quotes=quotes) + "\n"
 
-    wrong = _each(library, names, on_loaded)
-    return texts, wrong
+    found, wrong = of_each(library, names, text)
+    return dict(found), wrong
 
 
-def _each(
-    library: Library, names: Iterable[str], on_loaded: Callable[[Interface], None]
-) -> DefinitionError | None:
-    try:
-        load_interfaces(library, names, on_loaded=on_loaded)
-    except DefinitionError as error:
-        return error
-    return None
-
-
-def load_interfaces(
-    library: Library,
-    names: Iterable[str],
-    *,
-    on_loaded: Callable[[Interface], None] | None = None,
-) -> list[Interface]:
-    """Load messages, services and actions, each once.
+def of_each(
+    library: Library, names: Iterable[str], make: Callable[[Interface], _T]
+) -> tuple[list[_T], DefinitionError | None]:
+    """Load messages, services and actions, each once, and make something of each.
 
     Parameters
     ----------
     library : Library
     names : iterable of str
         As for `Library.interface`; also the services that ROS 2 derives from an action.
-    on_loaded : callable or None
-        Called with each interface that could be loaded. It may raise DefinitionError, too.
+    make : callable
+        May raise DefinitionError, too.
 
-    Raises
-    ------
-    DefinitionError
-        With the errors of all names.
+    Returns
+    -------
+    tuple of list and DefinitionError or None
+        What was made, and the errors of all other types.
     """
-    interfaces: dict[tuple[type, str], Interface] = {}
+    made: dict[tuple[type, str], _T] = {}
     problems: dict[str, Diagnostic] = {}
     for name in names:
         try:
             interface = _interface(library, name)
             # In ROS 1, a message and a service may have the same name.
             key = type(interface), interface.name
-            if key not in interfaces and on_loaded is not None:
-                on_loaded(interface)
+            if key not in made:
+                made[key] = make(interface)
         except DefinitionError as error:
             problems.update((str(problem), problem) for problem in error.diagnostics)
-        else:
-            interfaces[key] = interface
-    if problems:
-        raise DefinitionError(problems.values())
-    return list(interfaces.values())
+    return list(made.values()), DefinitionError(problems.values()) if problems else None
 
 
 def _interface(library: Library, name: str) -> Interface:
@@ -152,4 +121,4 @@ def _interface(library: Library, name: str) -> Interface:
 def _require(library: Library, dialect: Dialect, message: str) -> None:
     if library.dialect != dialect:
         message = f"{library.distro}: {message}"
-        raise DefinitionError([Diagnostic(message=message)])
+        raise DefinitionError.of(message)

@@ -6,12 +6,11 @@ print the request. For an action, the goal is printed, as ROS 2 does.
 
 from __future__ import annotations
 
-from firm_hdl.identity.proto_errors import TooLargeError
 from firm_hdl.identity.proto_ros1 import ros1_proto
 from firm_hdl.identity.proto_ros2 import ros2_proto
 from firm_hdl.model import Action, Interface, Message, Service
 
-__all__ = ["TooLargeError", "proto"]
+__all__ = ["proto"]
 
 
 def proto(interface: Interface, *, quotes: bool = True) -> str:
@@ -30,7 +29,7 @@ def proto(interface: Interface, *, quotes: bool = True) -> str:
 
     Raises
     ------
-    TooLargeError
+    DefinitionError
         If the text would be too long.
     """
     match interface:

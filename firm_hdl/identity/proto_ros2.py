@@ -15,7 +15,7 @@ from typing import Any
 
 import yaml
 
-from firm_hdl.identity.proto_errors import TooLargeError
+from firm_hdl.errors import DefinitionError
 from firm_hdl.model import Array, Field, Message, Primitive, Sequence, String, Value, closure
 
 __all__ = ["ros2_proto"]
@@ -51,7 +51,7 @@ def _size(message: Message, sizes: dict[str, _Size]) -> _Size:
 
     Raises
     ------
-    TooLargeError
+    DefinitionError
         If the text would be too long.
     """
     characters = lines = 0
@@ -60,10 +60,11 @@ def _size(message: Message, sizes: dict[str, _Size]) -> _Size:
         characters += each.characters
         lines += each.lines
     if characters > _MAX_CHARACTERS:
-        raise TooLargeError(
+        problem = (
             f"{message.name} has an example of {characters} characters, which is more than "
             f"{_MAX_CHARACTERS}"
         )
+        raise DefinitionError.of(problem)
     return _Size(characters=characters, lines=lines) if lines else _Size(characters=3, lines=1)
 
 

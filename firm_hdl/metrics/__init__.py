@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from firm_hdl.metrics.analysis import Analyses, Metrics, metrics_of
-from firm_hdl.metrics.features import FEATURES
-from firm_hdl.metrics.report import FORMATS, report
+from firm_hdl.metrics.analysis import FEATURES, Analyses, Metrics, metrics_of
+from firm_hdl.metrics.command import FORMATS, report
 
 __all__ = ["FEATURES", "FORMATS", "Analyses", "Metrics", "metrics_of", "report"]

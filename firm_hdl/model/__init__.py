@@ -6,9 +6,17 @@ attributes that are computed when first read and then cached, as in a reference 
 each attribute is an equation over the node and its children.
 """
 
-from firm_hdl.model.closure import closure, rebuilt
-from firm_hdl.model.interfaces import Action, Interface, Service
-from firm_hdl.model.message import Constant, Field, Message, is_fixed_size
+from firm_hdl.model.message import (
+    Action,
+    Constant,
+    Field,
+    Interface,
+    Message,
+    Service,
+    closure,
+    is_fixed_size,
+    map_messages,
+)
 from firm_hdl.model.types import (
     EMPTY_MEMBER,
     IDL_PRIMITIVES,
@@ -25,7 +33,7 @@ from firm_hdl.model.types import (
     Wire,
     element_of,
     idl_primitives,
-    spelled,
+    type_text,
 )
 
 __all__ = [
@@ -52,6 +60,6 @@ __all__ = [
     "element_of",
     "idl_primitives",
     "is_fixed_size",
-    "rebuilt",
-    "spelled",
+    "map_messages",
+    "type_text",
 ]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TypeAlias
 
 from firm_hdl.errors import Span
 from firm_hdl.model.types import (
@@ -20,7 +22,17 @@ from firm_hdl.model.types import (
     element_of,
 )
 
-__all__ = ["Constant", "Field", "Message", "is_fixed_size"]
+__all__ = [
+    "Action",
+    "Constant",
+    "Field",
+    "Interface",
+    "Message",
+    "Service",
+    "closure",
+    "is_fixed_size",
+    "map_messages",
+]
 
 _LENGTH = re.compile(r"\[(0\d{1,18})\]\s*\Z")
 
@@ -197,3 +209,140 @@ def is_fixed_size(kind: FieldType) -> bool:
             return not isinstance(kind, Sequence)
         case String():
             return False
+
+
+def closure(roots: Iterable[Message], *, parts_first: bool = True) -> list[Message]:
+    """List messages and all messages in them, each once and after those in its fields.
+
+    The stack is explicit, because definitions may nest deeper than Python's recursion limit.
+    Messages of the same name count as the same type, as in one library.
+
+    Parameters
+    ----------
+    parts_first : bool
+        False lists each message when it is first met: a message before those in its fields, depth
+        first, in the order of the fields.
+    """
+    met: dict[str, Message] = {}
+    done: list[Message] = []
+    for root in roots:
+        stack: list[tuple[Message, Iterator[Message]]] = []
+        if root.name not in met:
+            met[root.name] = root
+            stack.append((root, iter(root.children)))
+        while stack:
+            message, children = stack[-1]
+            child = next((c for c in children if c.name not in met), None)
+            if child is None:
+                stack.pop()
+                done.append(message)
+            else:
+                met[child.name] = child
+                stack.append((child, iter(child.children)))
+    return done if parts_first else list(met.values())
+
+
+def map_messages(message: Message, change: Callable[[Message], Message]) -> Message:
+    """Return a message type with every message in it changed: each once, nested messages first.
+
+    Parameters
+    ----------
+    change : callable
+        Returns the changed message. Messages in its argument have been changed already.
+    """
+    made: dict[str, Message] = {}
+
+    def changed(kind: FieldType) -> FieldType:
+        inner = element_of(kind)
+        if not isinstance(inner, Message):
+            return kind
+        new = made[inner.name]
+        return replace(kind, element=new) if isinstance(kind, Array | Sequence) else new
+
+    for part in closure([message]):
+        fields = tuple(replace(item, type=changed(item.type)) for item in part.fields)
+        made[part.name] = change(replace(part, fields=fields))
+    return made[message.name]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Service:
+    """A service type.
+
+    Attributes
+    ----------
+    name : str
+        Full name: ``std_srvs/srv/SetBool`` in ROS 2, ``std_srvs/SetBool`` in ROS 1.
+    dialect : "ros1" or "ros2"
+    request, response : Message
+        Named ``<name>_Request`` and ``<name>_Response`` in ROS 2; in ROS 1, without underscore.
+    event : Message or None
+        ``<name>_Event``, which ROS 2 publishes for introspection since iron.
+    comment : str
+        The comment at the head of the file.
+    text : str
+        The definition as it was read.
+    """
+
+    name: str
+    dialect: Dialect
+    request: Message
+    response: Message
+    event: Message | None = None
+    comment: str = field(default="", compare=False)
+    text: str = field(default="", compare=False, repr=False)
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def messages(self) -> tuple[Message, ...]:
+        """All messages that the service has on a wire."""
+        return (self.request, self.response, *(() if self.event is None else (self.event,)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Action:
+    """An action type.
+
+    Attributes
+    ----------
+    name : str
+        Full name: ``tf2_msgs/action/LookupTransform`` in ROS 2, ``tf2_msgs/LookupTransform`` in
+        ROS 1.
+    dialect : "ros1" or "ros2"
+    goal, result, feedback : Message
+        What the definition declares.
+    services : tuple of Service
+        In ROS 2 ``<name>_SendGoal`` and ``<name>_GetResult``; none in ROS 1.
+    wrappers : tuple of Message
+        In ROS 2 ``<name>_FeedbackMessage``; in ROS 1 ``<name>ActionGoal``, ``<name>ActionResult``,
+        ``<name>ActionFeedback`` and ``<name>Action``.
+    comment : str
+        The comment at the head of the file.
+    text : str
+        The definition as it was read.
+    """
+
+    name: str
+    dialect: Dialect
+    goal: Message
+    result: Message
+    feedback: Message
+    services: tuple[Service, ...] = ()
+    wrappers: tuple[Message, ...] = ()
+    comment: str = field(default="", compare=False)
+    text: str = field(default="", compare=False, repr=False)
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def messages(self) -> tuple[Message, ...]:
+        """All messages that the action has on a wire."""
+        served = (message for service in self.services for message in service.messages)
+        return (self.goal, self.result, self.feedback, *served, *self.wrappers)
+
+
+Interface: TypeAlias = "Message | Service | Action"
+"""What a definition file declares."""

@@ -24,7 +24,7 @@ __all__ = [
     "Wire",
     "element_of",
     "idl_primitives",
-    "spelled",
+    "type_text",
 ]
 
 Dialect: TypeAlias = Literal["ros1", "ros2"]
@@ -162,7 +162,7 @@ class Array:
     count: int
 
     def __str__(self) -> str:
-        return spelled(self, str(self.element))
+        return type_text(self, str(self.element))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -173,7 +173,7 @@ class Sequence:
     bound: int | None = None
 
     def __str__(self) -> str:
-        return spelled(self, str(self.element))
+        return type_text(self, str(self.element))
 
 
 FieldType: TypeAlias = "Primitive | String | Array | Sequence | Message"
@@ -188,7 +188,7 @@ def element_of(kind: FieldType) -> Primitive | String | Message:
     return kind.element if isinstance(kind, Array | Sequence) else kind
 
 
-def spelled(kind: FieldType, name: str) -> str:
+def type_text(kind: FieldType, name: str) -> str:
     """Write a type as ``.msg`` files do, with `name` for the type of its elements."""
     match kind:
         case Array(count=count):

@@ -66,6 +66,8 @@ def accelerator_signature(description: Description, **others: wiring.Member) -> 
 def load_accelerator(description: Description) -> Any:
     """Make the accelerator that a description names: its class is called with the description.
 
+    An accelerator in VHDL or Verilog becomes a :class:`firm_hdl.node.hdl.HdlAccelerator`.
+
     The module is searched in the folder of the description first, then where Python searches.
 
     Raises
@@ -74,6 +76,10 @@ def load_accelerator(description: Description) -> Any:
         At the name in the description, if there is no such module or class, or it cannot be made,
         or its ports do not match. A :class:`UserError` of the class gives its own text as reason.
     """
+    if description.hdl is not None:
+        from firm_hdl.node.hdl import HdlAccelerator
+
+        return HdlAccelerator(description)
     module, _, path = description.accelerator.partition(":")
     # Python remembers what it found in a folder by its name, and "." is another one later.
     folder = os.path.abspath(description.folder)

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import PurePath
 from typing import Any
 
 import firm_hdl
 from firm_hdl import rtlil
-from firm_hdl.errors import UserError
+from firm_hdl.errors import DefinitionError, Diagnostic, UserError
 from firm_hdl.export.design import (
     BuiltDesign,
     core_file,
@@ -30,16 +31,20 @@ from firm_hdl.names.identifiers import identifier
 from firm_hdl.node.accelerator import conflicts_reported
 from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_core, bench_files, link_script
 from firm_hdl.node.description import Description
+from firm_hdl.node.hdl.copies import AcceleratorFiles, accelerator_files
 from firm_hdl.node.node import Node
 from firm_hdl.node.records import MessagePort, message_ports, record_files, struct_files
 from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodePort, NodeTop, node_ports
-from firm_hdl.node.units import check_units
 from firm_hdl.vhdl.convert import convert
 
-__all__ = ["build_node"]
+__all__ = ["build_node", "check_units"]
 
 SUMMARY = "summary.txt"
+
+_OF_VHDL = ("_tb.vhd", "firm_hdl_bench_pkg.vhd", "bench_files.txt", "run_ghdl.sh")
+_OF_VERILOG = ("_tb.v", "run_iverilog.sh")
+"""How files of benches end, by the language of the simulator."""
 
 _UNDRIVEN = """
 // Outputs of parts that the node does not use are wires without a driver.
@@ -76,65 +81,10 @@ def build_node(
         name, or the folder cannot be written.
     """
     name = identifier(description.node)
+    if description.hdl is not None and description.hdl.entity.lower() == name.lower():
+        # Both would be one entity.
+        name += "_node"
     folder = design_folder(out, name)
-    design = _designed(description, name, accelerator, stimuli)
-    facts, script = facts_of(description), design.script
-    return write_design(
-        folder,
-        inputs=inputs_of_design(
-            {
-                "node": description.node,
-                "facts": facts,
-                # The accelerator's code is part of the circuit; packets of the benches are not.
-                "frames_sha256": None if script is None else digest(script.text),
-            },
-            design.rtlil,
-        ),
-        facts={
-            **facts,
-            "records": _records(design),
-            "bench": None if script is None else _bench(name),
-            "clock": "aclk",
-            "reset": "aresetn",
-        },
-        ports=[asdict(port) for port in design.ports],
-        make_files=lambda: _files(design),
-        force=force,
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Design:
-    """What all files are made of.
-
-    Attributes
-    ----------
-    description : Description
-    name : str
-        Name of the entity and of the folder.
-    rtlil : str
-        The circuit.
-    ports : sequence of NodePort
-    messages : sequence of MessagePort
-        The message ports with records; empty if there are none.
-    reason : str
-        Why there are none.
-    script : LinkScript or None
-        Frames of the benches, if there are some.
-    """
-
-    description: Description
-    name: str
-    rtlil: str
-    ports: Sequence[NodePort]
-    messages: Sequence[MessagePort]
-    reason: str
-    script: LinkScript | None
-
-
-def _designed(
-    description: Description, name: str, accelerator: Any, stimuli: Stimuli | None
-) -> _Design:
     node = Node(description, accelerator)
     try:
         ports = node_ports(node)
@@ -151,33 +101,60 @@ def _designed(
             reason = str(error)
     with conflicts_reported(description), search_put_off():
         circuit = rtlil.rtlil_of(NodeTop(node), name=name)
-    return _Design(
-        description=description,
-        name=name,
-        rtlil=circuit,
-        ports=ports,
-        messages=messages,
-        reason=reason,
-        script=link_script(description, stimuli, has_accelerator=has_accelerator),
+    script = link_script(description, stimuli, has_accelerator=has_accelerator)
+    own = accelerator_files(node.accelerator)
+    facts = facts_of(description)
+    return write_design(
+        folder,
+        inputs=inputs_of_design(
+            {
+                "node": description.node,
+                "facts": facts,
+                # The accelerator's code is part of the circuit; packets of the benches are not.
+                "frames_sha256": None if script is None else digest(script.text),
+                "accelerator_files": {**own.texts, **own.headers},
+            },
+            circuit,
+        ),
+        facts={
+            **facts,
+            "records": _records(name, messages, reason),
+            "accelerator_files": own.facts(),
+            "bench": None if script is None else _bench(name, own.language),
+            "clock": "aclk",
+            "reset": "aresetn",
+        },
+        ports=[asdict(port) for port in ports],
+        make_files=lambda: _files(description, name, circuit, ports, messages, script, own),
+        force=force,
     )
 
 
-def _files(design: _Design) -> dict[str, str]:
+def _files(
+    description: Description,
+    name: str,
+    circuit: str,
+    ports: Sequence[NodePort],
+    messages: Sequence[MessagePort],
+    script: LinkScript | None,
+    own: AcceleratorFiles,
+) -> dict[str, str]:
     """Write the design and its benches in each language."""
-    description, name, ports = design.description, design.name, design.ports
-    script = design.script
     header = (
         f"{name}: a node of ROS {description.distro}, made by firm-hdl {firm_hdl.__version__}\n"
     )
     module = verilog_module(name)
-    node = convert(design.rtlil, name=name, header=header)
+    netlist = rtlil.netlist_of(circuit)
+    node = convert(netlist, name=name, header=header)
     vhdl_ports = node.entities[name].ports
     records: dict[str, str] = {}
     structs: dict[str, str] = {}
-    if design.messages:
-        records = record_files(name, ports, design.messages, vhdl_ports=vhdl_ports, header=header)
-        structs = struct_files(name, module, ports, design.messages, header=header)
-    vhdl = {**node.files, **records}
+    if messages:
+        records = record_files(name, ports, messages, vhdl_ports=vhdl_ports, header=header)
+        structs = struct_files(name, module, ports, messages, header=header)
+    is_vhdl = own.language == "vhdl"
+    inside = {file.removeprefix("vhdl/"): text for file, text in own.texts.items()}
+    vhdl = {**(inside if is_vhdl else {}), **node.files, **records}
     benches: dict[str, str] = {}
     if script is not None:
         benches = bench_files(
@@ -189,37 +166,45 @@ def _files(design: _Design) -> dict[str, str]:
             vhdl_ports=vhdl_ports,
             vhdl_files=list(vhdl),
             header=header,
+            more=list(own.texts),
         )
+        # A simulator reads one language.
+        other = () if not own.language else _OF_VERILOG if is_vhdl else _OF_VHDL
+        benches = {file: text for file, text in benches.items() if not file.endswith(other)}
     owners = {"the node": node.files, "its messages": records, "its structs": structs}
+    if own.language:
+        owners["its accelerator"] = {f"{own.entity}.vhd": ""}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     return {
-        **verilog_file(design.rtlil, name=name, header=header),
+        **verilog_file(netlist, name=name, header=header),
         "waivers.vlt": waivers([module]) + _UNDRIVEN.format(file=f"{module}.v"),
         **{f"systemverilog/{file}": text for file, text in structs.items()},
+        **({} if is_vhdl else own.texts),
+        **own.headers,
         **vhdl_folder(vhdl),
         SUMMARY: summary(description) + "\n",
         **core_file(
             name,
-            vhdl,
+            {**node.files, **records},
             kind="node",
             description=f"Node {description.node} of ROS {description.distro}",
             more=None if script is None else bench_core(name),
+            change=own.core,
         ),
         **benches,
     }
 
 
-def _records(design: _Design) -> dict[str, Any]:
-    """Describe the message ports with records and structs for the manifest."""
-    if not design.messages:
-        return {"built": False, "reason": design.reason}
-    name = design.name
+def _records(name: str, messages: Sequence[MessagePort], reason: str) -> dict[str, Any]:
+    """Describe the message ports with records and structs, or why there are none."""
+    if not messages:
+        return {"built": False, "reason": reason}
     return {
         "built": True,
         "entity": f"{name}_records",
         "module": f"{name}_sv",
         "sv_files": "systemverilog/files.f",
-        "ports": [_record(each) for each in design.messages],
+        "ports": [_record(each) for each in messages],
     }
 
 
@@ -239,14 +224,62 @@ def _record(port: MessagePort) -> dict[str, Any]:
     }
 
 
-def _bench(name: str) -> dict[str, str]:
-    """Describe the benches for the manifest."""
-    return {
-        "frames": FRAMES,
+def _bench(name: str, language: str) -> dict[str, str]:
+    """Describe the benches for the manifest: those that read the language of the accelerator."""
+    vhdl = {
         "vhdl": f"{name}_tb",
         "vhdl_files": "vhdl/bench_files.txt",
         "run_ghdl": "vhdl/run_ghdl.sh",
+    }
+    verilog = {
         "verilog": f"{name}_tb",
         "verilog_file": f"{name}_tb.v",
         "run_iverilog": "run_iverilog.sh",
     }
+    return {
+        "frames": FRAMES,
+        **(vhdl if language in ("", "vhdl") else {}),
+        **(verilog if language != "vhdl" else {}),
+    }
+
+
+_SUFFIXES = (".vhd", ".sv")
+
+
+def check_units(
+    description: Description, name: str, *, top: str, files: Mapping[str, Iterable[str]]
+) -> None:
+    """Refuse a name of a node if two design units would have one name.
+
+    VHDL ignores the case of names (IEEE Std 1076-2008, 15.4.2), and units of VHDL and of
+    SystemVerilog may be in one library. So the names of all of them differ in more than case.
+
+    Parameters
+    ----------
+    name : str
+        Name that the outermost entity is to have.
+    top : str
+        Name that this entity has in VHDL.
+    files : mapping of str to iterable of str
+        Names of files by what they belong to, such as ``"the messages"``. Those with another
+        suffix than ``.vhd`` and ``.sv`` do not count.
+
+    Raises
+    ------
+    DefinitionError
+        At the name of the node in the description.
+    """
+    if top != name:
+        raise _refused(description, f"the VHDL of every node uses the name '{name}' itself")
+    owners: dict[str, str] = {}
+    for owner, names in files.items():
+        for unit in (PurePath(each).stem for each in names if each.endswith(_SUFFIXES)):
+            first = owners.setdefault(unit.lower(), owner)
+            if first != owner:
+                what = f"{first} and {owner} would both have a unit with the name '{unit}'"
+                raise _refused(description, what)
+
+
+def _refused(description: Description, reason: str) -> DefinitionError:
+    message = f"{reason}; give the node another name"
+    return DefinitionError([Diagnostic(message=message, span=description.node_span)])

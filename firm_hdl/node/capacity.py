@@ -53,9 +53,9 @@ def rate_problems(description: Description) -> Iterator[str]:
     for direction, way in _WAYS.items():
         least, most, names = 0.0, 0.0, []
         for topic in description.topics:
-            store = topic.store(direction)
-            if store is None or topic.rate_hz is None:
+            if topic.rate_hz is None or not topic.has(direction):
                 continue
+            store = topic.store(direction)
             sizes = metrics_of(store.message, description.wire)
             shortest = sizes.min_bytes or 0
             longest = min(most_bytes(description, direction, store), sizes.max_bytes or shortest)

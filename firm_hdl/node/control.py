@@ -230,10 +230,10 @@ def registers(description: Description) -> tuple[Register, ...]:
     for name in NODE_COUNTERS:
         add("node", "node", name, 0)
     for topic in description.topics:
-        if topic.store("in") is not None:
+        if topic.has("in"):
             for name in (*GATE_COUNTERS, *_BYTES):
                 add(topic.name, "in", name, topic.id)
-        if topic.store("out") is not None:
+        if topic.has("out"):
             for name in (*FIFO_COUNTERS, *_BYTES):
                 add(topic.name, "out", name, topic.id)
     return tuple(found)

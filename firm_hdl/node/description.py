@@ -13,12 +13,16 @@ from typing import Literal, TypeAlias
 
 from firm_hdl.errors import Span
 from firm_hdl.model import Message, Wire
+from firm_hdl.plan import Plan, build_plan
+from firm_hdl.wire import lay_out
 
 __all__ = [
     "CONTROL_TOPIC",
     "LINKS",
+    "SERVICE_PARTS",
     "Description",
     "Direction",
+    "Hdl",
     "Kind",
     "Link",
     "Qos",
@@ -32,10 +36,15 @@ Kind: TypeAlias = Literal["subscribe", "publish", "serve"]
 Direction: TypeAlias = Literal["in", "out"]
 """The way of packets: `in` from the host to the node, `out` from the node to the host."""
 
+Language: TypeAlias = Literal["vhdl", "verilog", "systemverilog"]
+
 LinkKind: TypeAlias = Literal["stream", "udp", "uart"]
 
 LINKS: tuple[LinkKind, ...] = ("stream", "udp", "uart")
 """All links."""
+
+SERVICE_PARTS: dict[Direction, str] = {"in": "request", "out": "response"}
+"""What a service has in each direction."""
 
 CONTROL_TOPIC = 0
 """The id of control messages. Topics are numbered from 1 on."""
@@ -125,9 +134,13 @@ class Topic:
     rate_hz: float | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
 
-    def store(self, direction: Direction) -> Store | None:
-        """Return the packets of a direction; `None` if the topic has none there."""
-        return dict(self.stores).get(direction)
+    def store(self, direction: Direction) -> Store:
+        """Return the packets of a direction, in which the topic has some."""
+        return dict(self.stores)[direction]
+
+    def has(self, direction: Direction) -> bool:
+        """Whether the topic has packets in a direction."""
+        return direction in dict(self.stores)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -168,6 +181,24 @@ class Link:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Hdl:
+    """An accelerator in another language than Amaranth.
+
+    Attributes
+    ----------
+    language : "vhdl", "verilog" or "systemverilog"
+    files : tuple of str
+        Files in compile order, relative to the folder of the description.
+    entity : str
+        Name of the entity or module.
+    """
+
+    language: Language
+    files: tuple[str, ...]
+    entity: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Description:
     """A node: its name, its topics, its link and its accelerator.
 
@@ -187,7 +218,10 @@ class Description:
     topics : tuple of Topic
         In the order of their ids.
     accelerator : str
-        ``module:Class``; empty if the message ports come out of the node.
+        ``module:Class``, or what `hdl` is, for people; empty if the message ports come out of the
+        node.
+    hdl : Hdl or None
+        The files of an accelerator that is not in Amaranth.
     folder : str
         The folder of the file, in which the module of the accelerator is searched, too.
     accelerator_span, node_span : Span or None
@@ -203,6 +237,7 @@ class Description:
     link: Link
     topics: tuple[Topic, ...]
     accelerator: str = ""
+    hdl: Hdl | None = None
     folder: str = field(default="", compare=False)
     accelerator_span: Span | None = field(default=None, compare=False, repr=False)
     node_span: Span | None = field(default=None, compare=False, repr=False)
@@ -234,11 +269,18 @@ class Description:
                 found.append((topic, partner))
         return tuple(found)
 
+    def plan(self, store: Store) -> Plan:
+        """Return the plan of the converters and the gate of some packets."""
+        return build_plan(
+            lay_out(store.message, self.wire),
+            bus_bytes=self.bus_bytes,
+            max_message_bytes=store.max_message_bytes,
+        )
+
     def _stores(self, direction: Direction) -> Iterator[tuple[Topic, Store]]:
         for topic in self.topics:
-            store = topic.store(direction)
-            if store is not None:
-                yield topic, store
+            if topic.has(direction):
+                yield topic, topic.store(direction)
 
     @property
     def fingerprint(self) -> int:

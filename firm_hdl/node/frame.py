@@ -22,7 +22,6 @@ __all__ = [
     "Header",
     "decode_header",
     "encode_header",
-    "header_table",
 ]
 
 
@@ -162,13 +161,3 @@ def decode_header(frame: bytes) -> Header:
         raise FrameError(f"version is {version:#04x}, not {VERSION:#04x}")
     flags = values.pop("flags")
     return Header(**values, last=bool(flags & FLAG_LAST), start=bool(flags & FLAG_START))
-
-
-def header_table() -> str:
-    """Return the header as a table in Markdown, as ``docs/reference/frame.md`` has it."""
-    lines = ["| Byte | Bytes | Field | Meaning |", "| --- | --- | --- | --- |"]
-    lines += [
-        f"| {_OFFSETS[each.name]} | {each.bytes} | `{each.name}` | {each.meaning} |"
-        for each in HEADER
-    ]
-    return "\n".join(lines)

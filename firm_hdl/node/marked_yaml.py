@@ -38,10 +38,10 @@ _MOST_DIGITS = 64
 """Most characters of a number. None that is in range needs more."""
 
 _MOST_SHOWN = 400
+"""Most characters of a message, which may quote any text."""
 
 _MOST_LEVELS = 100
 _TOO_DEEP = "nested too deep"
-"""Most characters of a message, which may quote any text."""
 
 
 class Marked:

@@ -2,19 +2,37 @@
 
 from __future__ import annotations
 
+import keyword
 import os
+import re
 from codecs import BOM_UTF8
 from collections.abc import Iterable
+from dataclasses import replace
 from difflib import get_close_matches
+from functools import cache
+from ipaddress import AddressValueError, IPv4Address
 from pathlib import Path
 from typing import Any
+
+import yaml
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
 from firm_hdl.files import read_file
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS, Library, open_library
-from firm_hdl.model import WIRE_OF
-from firm_hdl.node.description import Description, Kind, Link, Topic
-from firm_hdl.node.link_reading import NODE_BUS_BYTES, read_link, with_memory
+from firm_hdl.metrics import metrics_of
+from firm_hdl.model import WIRE_OF, Action, Interface, Message, Service
+from firm_hdl.names.keywords import KEYWORDS
+from firm_hdl.node.description import (
+    LINKS,
+    Description,
+    Direction,
+    Hdl,
+    Kind,
+    Link,
+    Qos,
+    Store,
+    Topic,
+)
 from firm_hdl.node.marked_yaml import Entry, Marked, parse
 from firm_hdl.node.names import (
     MOST_TOPIC_CHARACTERS,
@@ -23,9 +41,10 @@ from firm_hdl.node.names import (
     node_problem,
     topic_problem,
 )
-from firm_hdl.node.topics import TOPIC_KEYS, TopicReader, in_keys, port_of
+from firm_hdl.plan import BUS_BYTES
+from firm_hdl.wire import refusals
 
-__all__ = ["read_description", "read_description_text"]
+__all__ = ["LINK_OPTIONS", "NODE_BUS_BYTES", "read_description", "read_description_text"]
 
 MOST_BYTES = 1 << 18
 """Largest file that is read: a thousand topics need less."""
@@ -37,6 +56,8 @@ KINDS: tuple[Kind, ...] = ("subscribe", "publish", "serve")
 
 _KEYS = ("node", "namespace", "distro", "paths", "bags", "bus_bytes", "clock_mhz", "link", "remap")
 KEYS = (*_KEYS, *KINDS, "accelerator")
+
+LANGUAGES = ("vhdl", "verilog", "systemverilog")
 
 
 def read_description(
@@ -143,7 +164,9 @@ class _Reader:
         self._check_remap(names)
         if not topics and not self.marked.noted:
             self.marked.error_at_start(f"a node needs a topic: {', '.join(KINDS)}")
-        accelerator = known["accelerator"].checked(_class_problem) if "accelerator" in known else ""
+        accelerator, hdl = "", None
+        if "accelerator" in known:
+            accelerator, hdl = self._accelerator(known["accelerator"])
         self.marked.check()
         return Description(
             **given,
@@ -154,12 +177,41 @@ class _Reader:
             link=with_memory(link, topics, known.get("link")),
             topics=tuple(topics),
             accelerator=accelerator,
+            hdl=hdl,
             folder=self.folder,
             accelerator_span=(
                 self.marked.span(known["accelerator"].value) if accelerator else None
             ),
             node_span=self.marked.span(known["node"].value),
         )
+
+    def _accelerator(self, entry: Entry) -> tuple[str, Hdl | None]:
+        """Read the name of a class, or the files of an accelerator in another language."""
+        if not isinstance(entry.value, yaml.MappingNode):
+            return entry.checked(_class_problem), None
+        marked = self.marked
+        given = marked.mapping(entry.value, "'accelerator'")
+        known = marked.known(given, (*LANGUAGES, "entity"), "an accelerator")
+        languages = [each for each in known.values() if each.name in LANGUAGES]
+        if len(languages) != 1:
+            if given.keys() <= known.keys():
+                entry.error(f"an accelerator has the files of one of {', '.join(LANGUAGES)}")
+            return "", None
+        (language,) = languages
+        files = language.texts()
+        for file in files:
+            if problem := _path_problem(file):
+                language.error(problem)
+        if not files:
+            language.error(f"'{language.name}' has no file")
+            return "", None
+        entity = os.path.splitext(os.path.basename(files[-1]))[0]
+        if "entity" in known:
+            entity = known["entity"].checked(_entity_problem)
+        elif problem := _entity_problem(entity):
+            language.error(f"{problem}: name the 'entity'")
+        hdl = Hdl(language=language.name, files=tuple(files), entity=entity)  # type: ignore[arg-type]
+        return f"{entity} ({', '.join(files)})", hdl
 
     def _library(self, known: dict[str, Entry]) -> Library:
         """Open the definitions; without them, no type can be checked, so errors are final."""
@@ -312,5 +364,334 @@ def _class_problem(text: str) -> str:
     module, colon, name = text.partition(":")
     words = [*module.split("."), *name.split(".")]
     if not colon or not all(word.isidentifier() for word in words) or len(text) > 255:
-        return "an accelerator is named as 'module:Class', such as 'wheels.core:Wheels'"
+        return (
+            "an accelerator is named as 'module:Class', such as 'wheels.core:Wheels', or as "
+            "{vhdl: wheels.vhd, entity: wheels}"
+        )
     return ""
+
+
+def _entity_problem(text: str) -> str:
+    if text.lower() in KEYWORDS:
+        return f"'{text}' is a keyword of VHDL or SystemVerilog"
+    is_name = re.fullmatch("[A-Za-z][A-Za-z0-9_]*", text) and len(text) <= 255
+    return "" if is_name else f"'{text}' is no name of an entity or a module"
+
+
+NODE_BUS_BYTES = tuple(width for width in BUS_BYTES if width <= 16)
+"""Bus widths of a node: the header of a frame, 16 bytes, has to fill whole beats."""
+
+LINK_OPTIONS: dict[str, tuple[str, ...]] = {
+    "stream": (),
+    "udp": ("memory_bytes", "packets", "datagram_bytes", "data_bytes", "port", "host", "host_port"),
+    "uart": ("memory_bytes", "packets", "baud"),
+}
+"""The options of each kind of link."""
+
+_LIMITS: dict[str, tuple[int, int]] = {
+    "memory_bytes": (64, 1 << 26),
+    "packets": (1, 1 << 12),
+    # A datagram of IPv4 has at most 65,507 bytes.
+    "datagram_bytes": (32, 65_507),
+    "data_bytes": (1, 16),
+    "port": (1, 65_535),
+    "host_port": (1, 65_535),
+    "baud": (1, 100_000_000),
+}
+"""Least and most of each option."""
+
+_LEAST_CYCLES = 4
+"""Cycles per bit of a UART: fewer do not find the middle of a bit."""
+
+_MOST_DEVIATION = 0.02
+"""How far the rate of the node may be off. Its receiver allows for that, and for 2 % of the other
+side besides; what the node sends is off so much."""
+
+
+def read_link(marked: Marked, entry: Entry, clock_hz: float) -> Link:
+    """Read ``link``: the name of a kind, or a mapping with ``kind`` and its options."""
+    entries: dict[str, Entry] = {}
+    if isinstance(entry.value.value, str):
+        kind = entry.choice(LINKS, None)
+    else:
+        entries = marked.mapping(entry.value, "'link'")
+        if "kind" not in entries:
+            entry.error_at_key(f"'link' needs a 'kind': {', '.join(LINKS)}")
+            return Link(kind="stream")
+        kind = entries.pop("kind").choice(LINKS, None)
+    if kind is None:
+        return Link(kind="stream")
+    known = marked.known(entries, LINK_OPTIONS[kind], f"a link of kind '{kind}'")
+    given: dict[str, Any] = {"kind": kind}
+    for name, (least, most) in _LIMITS.items():
+        if name in known:
+            given[name] = known[name].integer(least, least, most)
+    if "host" in known:
+        given["host"] = known["host"].checked(_address_problem)
+    elif "host_port" in known:
+        known["host_port"].error_at_key("'host_port' counts only beside a 'host'")
+    link = Link(**given)
+    _check(link, known, entry, clock_hz)
+    return link
+
+
+def _check(link: Link, known: dict[str, Entry], entry: Entry, clock_hz: float) -> None:
+    """Check what limits alone do not say."""
+    if link.memory_bytes & (link.memory_bytes - 1):
+        known["memory_bytes"].error(f"'memory_bytes' must be a power of two: {link.memory_bytes}")
+    if link.data_bytes not in NODE_BUS_BYTES:
+        known["data_bytes"].error(f"'data_bytes' must be 1, 2, 4, 8 or 16, not {link.data_bytes}")
+    if link.datagram_bytes % 16:
+        near = link.datagram_bytes // 16 * 16
+        known["datagram_bytes"].error(f"'datagram_bytes' must be a multiple of 16, such as {near}")
+    if link.kind == "uart":
+        _check_baud(link, known.get("baud", entry), clock_hz)
+
+
+def _check_baud(link: Link, place: Entry, clock_hz: float) -> None:
+    """Check that a bit is a number of cycles, as nearly as a UART needs."""
+    mhz = clock_hz / 1e6
+    if clock_hz < _LEAST_CYCLES * link.baud:
+        place.error(f"a bit takes {_LEAST_CYCLES} cycles at least, which {mhz:g} MHz has not")
+        return
+    found = clock_hz / round(clock_hz / link.baud)
+    if abs(found / link.baud - 1) > _MOST_DEVIATION:
+        place.error(
+            f"a clock of {mhz:g} MHz gives {found:.0f} baud, which is more than "
+            f"{100 * _MOST_DEVIATION:g} % off"
+        )
+
+
+def with_memory(link: Link, topics: list[Topic], entry: Entry | None) -> Link:
+    """Give the link's memory the size of the largest one behind it, unless one is named."""
+    stores = [topic.store("in") for topic in topics if topic.has("in")]
+    if not stores or (entry is not None and _names_memory(entry)):
+        return link
+    return replace(link, memory_bytes=max(1 << 10, *(each.memory_bytes for each in stores)))
+
+
+def _names_memory(entry: Entry) -> bool:
+    pairs = entry.value.value
+    return not isinstance(pairs, str) and any(key.value == "memory_bytes" for key, _ in pairs)
+
+
+def _address_problem(text: str) -> str:
+    try:
+        IPv4Address(text)
+    except AddressValueError:
+        return f"'{text}' is not an IPv4 address, such as 192.168.1.10"
+    return ""
+
+
+_QOS: dict[str, tuple[str, ...]] = {
+    "reliability": ("reliable", "best_effort"),
+    "durability": ("volatile", "transient_local"),
+    "history": ("keep_last", "keep_all"),
+}
+_STORE = ("max_message_bytes", "memory_bytes", "packets")
+_OF_TOPICS = ("type", "port", *_QOS, "depth", *_STORE, "when_full", "rate_hz")
+
+TOPIC_KEYS: dict[Kind, tuple[str, ...]] = {
+    "subscribe": _OF_TOPICS,
+    "publish": _OF_TOPICS,
+    "serve": ("type", "port", *_STORE, "rate_hz"),
+}
+"""The keys of a topic, by what the node does with it."""
+
+USUAL_MEMORY_BYTES = 1 << 14
+"""Memory of a topic whose messages have no largest size, unless the description names one."""
+
+USUAL_PACKETS = 16
+
+MOST_MEMORY_BYTES = 1 << 26
+
+# Names that Amaranth or Python keep for themselves; see `firm_hdl.gateware.members`.
+_RESERVED = frozenset({"signature", "metadata", "elaborate", "clk", "rst", *keyword.kwlist})
+_PORT = re.compile(r"[A-Za-z](?:_?[A-Za-z0-9]+)*")
+
+
+def port_of(
+    name: str, entry: Entry | None, topic: Entry, taken: dict[tuple[str, str], str], kind: Kind
+) -> str:
+    """Name the member of a topic: as the description says, or after the complete name.
+
+    Parameters
+    ----------
+    entry : Entry or None
+        The value of ``port``.
+    taken : dict
+        The topic of each port in lower case, by kind and port; this one is added.
+    """
+    place = topic.error_at_key if entry is None else entry.error
+    # A port is part of names in VHDL, which has neither '__' nor an underscore at either end.
+    port = "_".join(re.findall("[A-Za-z0-9]+", name)) if entry is None else entry.text("port")
+    hint = "; name one with 'port'" if entry is None else ""
+    if not _PORT.fullmatch(port):
+        rule = "letters, digits and single underscores, a letter first and no underscore last"
+        place(f"'{port}' cannot be the name of a port, which has {rule}{hint}")
+    elif port in _RESERVED:
+        place(f"'{port}' cannot be the name of a port, because Python or Amaranth use it{hint}")
+    elif (kind, port.lower()) in taken:
+        other = taken[kind, port.lower()]
+        place(f"the port '{port}' is already that of '{other}'{hint}")
+    taken.setdefault((kind, port.lower()), name)
+    return port
+
+
+class TopicReader:
+    """Read the options of topics.
+
+    Parameters
+    ----------
+    library : Library
+        The definitions of all types.
+    bus_bytes : int
+    link : Link
+        It decides whether a subscription may hold what comes.
+    """
+
+    def __init__(self, marked: Marked, library: Library, bus_bytes: int, link: Link) -> None:
+        self.marked, self.library, self.bus_bytes, self.link = marked, library, bus_bytes, link
+        # Many topics may have one type.
+        self._metrics_of, self._hash_of = cache(metrics_of), cache(library.definition_hash)
+
+    def topic(
+        self,
+        entry: Entry,
+        options: dict[str, Entry],
+        kind: Kind,
+        name: str,
+        written: str,
+        port: str,
+        number: int,
+    ) -> Topic | None:
+        """Read a topic; `None` if it has no type that can be used."""
+        if "type" not in options:
+            entry.error_at_key(f"'{written}' has no 'type'")
+            return None
+        interface = self._interface(options["type"], kind)
+        qos = self._qos(options)
+        if interface is None:
+            return None
+        stores = tuple(
+            (direction, store)
+            for direction, message in _directions(kind, interface)
+            if (store := self._store(message, direction, kind, options)) is not None
+        )
+        rate = options["rate_hz"].number(None, 1e-3, 1e9) if "rate_hz" in options else None
+        return Topic(
+            id=number,
+            kind=kind,
+            name=name,
+            written=written,
+            port=port,
+            type=interface.name,
+            definition_hash=self._hash_of(interface),
+            stores=stores,
+            qos=qos,
+            rate_hz=rate,
+            span=self.marked.span(entry.key),
+        )
+
+    def _interface(self, entry: Entry, kind: Kind) -> Interface | None:
+        name = entry.text()
+        if not name:
+            return None
+        try:
+            found = self.library.interface(name)
+        except DefinitionError as error:
+            # What is wrong in a definition has its own place; a type that is not there has none.
+            for problem in map(in_keys, error.diagnostics):
+                if problem.span is None:
+                    entry.error(problem.message)
+                else:
+                    self.marked.note(problem)
+            return None
+        if kind == "serve" and not isinstance(found, Service):
+            what = "an action" if isinstance(found, Action) else "a message"
+            entry.error(f"'{found.name}' is {what}, and a service is served")
+            return None
+        if kind != "serve" and not isinstance(found, Message):
+            what = "an action" if isinstance(found, Action) else "a service"
+            where = "; put it below 'serve'" if isinstance(found, Service) else ""
+            entry.error(f"'{found.name}' is {what}, and a topic has a message{where}")
+            return None
+        wrong = [each for _, message in _directions(kind, found) for each in refusals(message)]
+        for problem in wrong:
+            self.marked.note(problem)
+        return None if wrong else found
+
+    def _qos(self, options: dict[str, Entry]) -> Qos:
+        given: dict[str, Any] = {}
+        for name, choices in _QOS.items():
+            if name not in options:
+                continue
+            if self.library.dialect == "ros1" and name != "durability":
+                options[name].error_at_key(f"ROS 1 has no '{name}'")
+            given[name] = options[name].choice(choices, choices[0])
+        if "depth" in options:
+            given["depth"] = options["depth"].integer(10, 1, 1 << 20)
+        return Qos(**given)
+
+    def _store(
+        self, message: Message, direction: Direction, kind: Kind, options: dict[str, Entry]
+    ) -> Store | None:
+        figures = self._metrics_of(message)
+        least, most = figures.min_bytes or 0, figures.max_bytes
+        memory = _memory_bytes(least, most, self.bus_bytes)
+        if "memory_bytes" in options:
+            entry = options["memory_bytes"]
+            memory = entry.integer(memory, 2 * self.bus_bytes, MOST_MEMORY_BYTES)
+            if memory & (memory - 1):
+                entry.error(f"'memory_bytes' must be a power of two, not {memory}")
+                return None
+        if memory < least:
+            place = options.get("memory_bytes", options["type"])
+            place.error(f"a {message.name} has {least} bytes at least, and the memory has {memory}")
+            return None
+        # Longer packets have no room, so lengths beyond the memory need not be judged.
+        longest = max(least, memory)
+        if "max_message_bytes" in options:
+            entry = options["max_message_bytes"]
+            longest = entry.integer(longest, max(1, least), (1 << 32) - 1)
+        packets = USUAL_PACKETS
+        if "packets" in options:
+            packets = options["packets"].integer(packets, 1, 1 << 12)
+        return Store(
+            message=message,
+            max_message_bytes=longest,
+            memory_bytes=memory,
+            packets=packets,
+            when_full=self._when_full(options.get("when_full"), kind, direction),
+        )
+
+    def _when_full(self, entry: Entry | None, kind: Kind, direction: Direction) -> Any:
+        # A subscription that waits would hold the packets of all others, which come by one router.
+        usual = "drop" if direction == "in" else "wait"
+        if entry is None:
+            return usual
+        policy = entry.choice(("wait", "drop"), usual)
+        if policy == "wait" and kind == "subscribe" and self.link.kind != "stream":
+            entry.error(f"a link of kind '{self.link.kind}' cannot be held; use 'drop'")
+        return policy
+
+
+def in_keys(problem: Diagnostic) -> Diagnostic:
+    """Name keys of a description where a problem of its definitions names options of commands."""
+    message = problem.message.replace("--depends", "'paths'").replace("--distro", "'distro'")
+    return replace(problem, message=message)
+
+
+def _directions(kind: Kind, interface: Interface) -> tuple[tuple[Direction, Message], ...]:
+    """List the messages of a topic, with the way that they go."""
+    if isinstance(interface, Service):
+        return ("in", interface.request), ("out", interface.response)
+    assert isinstance(interface, Message)
+    return (("in" if kind == "subscribe" else "out", interface),)
+
+
+def _memory_bytes(least: int, most: int | None, bus_bytes: int) -> int:
+    """Choose a memory: for two of the largest messages, if that is not too much."""
+    room = min(2 * most, USUAL_MEMORY_BYTES) if most is not None else USUAL_MEMORY_BYTES
+    wanted = max(room, 2 * least, 64, 2 * bus_bytes)
+    return min(1 << (wanted - 1).bit_length(), MOST_MEMORY_BYTES)

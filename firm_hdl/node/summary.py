@@ -11,19 +11,15 @@ from typing import Any, TypeAlias
 
 from firm_hdl.estimates import Estimate, estimates_of
 from firm_hdl.metrics import Metrics, metrics_of
-from firm_hdl.model import Message
 from firm_hdl.node.capacity import rate_problems, size_problems
 from firm_hdl.node.control import IDENTITY, registers
-from firm_hdl.node.description import Description, Direction, Store, Topic
+from firm_hdl.node.description import SERVICE_PARTS, Description, Direction, Store, Topic
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
-from firm_hdl.node.link_reading import LINK_OPTIONS
-from firm_hdl.plan import build_plan
+from firm_hdl.node.reading import LINK_OPTIONS
 from firm_hdl.plan.timing import Cost, timing
-from firm_hdl.wire import lay_out
 
-__all__ = ["facts_of", "summary"]
+__all__ = ["facts_of", "summary", "warnings_of"]
 
-_SERVICES = {"in": "request", "out": "response"}
 
 _Figures: TypeAlias = tuple[Metrics, Cost, Mapping[str, Estimate]]
 """Of a message: its sizes, its hardest packet, and the measured converters that are near."""
@@ -40,13 +36,9 @@ def facts_of(description: Description) -> dict[str, Any]:
 
     # Many topics may have one type, and planning takes its time.
     @cache
-    def figures_of(message: Message, max_message_bytes: int) -> _Figures:
-        plan = build_plan(
-            lay_out(message, description.wire),
-            bus_bytes=description.bus_bytes,
-            max_message_bytes=max_message_bytes,
-        )
-        metrics = metrics_of(message, description.wire)
+    def figures_of(store: Store) -> _Figures:
+        plan = description.plan(store)
+        metrics = metrics_of(store.message, description.wire)
         return metrics, timing(plan).hardest, estimates_of(plan)
 
     return {
@@ -71,7 +63,7 @@ def facts_of(description: Description) -> dict[str, Any]:
     }
 
 
-def _topic(topic: Topic, figures_of: Callable[[Message, int], _Figures]) -> dict[str, Any]:
+def _topic(topic: Topic, figures_of: Callable[[Store], _Figures]) -> dict[str, Any]:
     qos = topic.qos
     return {
         "id": topic.id,
@@ -88,9 +80,7 @@ def _topic(topic: Topic, figures_of: Callable[[Message, int], _Figures]) -> dict
             "depth": qos.depth,
         },
         "packets": {
-            direction: _store(
-                topic, direction, store, figures_of(store.message, store.max_message_bytes)
-            )
+            direction: _store(topic, direction, store, figures_of(store))
             for direction, store in topic.stores
         },
     }
@@ -120,7 +110,7 @@ def _store(topic: Topic, direction: Direction, store: Store, figures: _Figures) 
 def summary(description: Description) -> str:
     """Describe a node on a page of text, as ``firm-hdl node info`` prints it."""
     facts = facts_of(description)
-    warnings = [f"warning: {line}" for line in _warnings(description, facts)]
+    warnings = [f"warning: {line}" for line in warnings_of(description, facts)]
     lines = [*_head(description, facts), "", *_table(facts), "", *_totals(facts)]
     return "\n".join([*lines, *([""] if warnings else []), *warnings])
 
@@ -153,7 +143,7 @@ def _table(facts: dict[str, Any]) -> Iterator[str]:
 def _rows(facts: dict[str, Any]) -> Iterator[list[str]]:
     for topic in facts["topics"]:
         for direction, store in topic["packets"].items():
-            kind = _SERVICES[direction] if topic["kind"] == "serve" else topic["kind"]
+            kind = SERVICE_PARTS[direction] if topic["kind"] == "serve" else topic["kind"]
             least, most = store["min_bytes"], store["max_bytes"]
             size = f"{least}" if least == most else f"{least}-{'' if most is None else most}"
             rate, clock = topic["rate_hz"], store["clock_hz"]
@@ -196,7 +186,7 @@ def _totals(facts: dict[str, Any]) -> Iterator[str]:
     yield "cycles: of the packet that is hardest for its converter, of those that were tried"
 
 
-def _warnings(description: Description, facts: dict[str, Any]) -> Iterator[str]:
+def warnings_of(description: Description, facts: dict[str, Any]) -> Iterator[str]:
     """Yield what the node cannot carry: rates and sizes."""
     for topic in facts["topics"]:
         for store in topic["packets"].values():

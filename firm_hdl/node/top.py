@@ -14,7 +14,7 @@ from firm_hdl.export.top import MAX_INPUT_BITS, add_domain
 from firm_hdl.names.identifiers import flat_names
 from firm_hdl.node.node import Node
 
-__all__ = ["NodeTop", "node_ports"]
+__all__ = ["NodeTop", "node_ports", "parts_of"]
 
 Path = tuple[str, ...]
 
@@ -148,13 +148,19 @@ def _named(node: Node) -> list[tuple[NodePort, _Part]]:
     ]
 
 
-def _parts(node: Node) -> Iterator[_Part]:
+def _parts(node: wiring.Component) -> Iterator[_Part]:
     for path, member, value in node.signature.flatten(node):
         names = tuple(str(name) for name in path)
         is_frames = names[:2] in (("link", "frames_in"), ("link", "frames_out"))
         for inner, each in _fields(names, value):
             is_count = is_frames and inner[-1] == "count"
             yield _Part(inner, member.flow, each, is_count)
+
+
+def parts_of(component: wiring.Component) -> Iterator[tuple[Path, Value]]:
+    """Yield the members of a component as :func:`node_ports` divides and names those of a node."""
+    for part in _parts(component):
+        yield part.path, part.value
 
 
 def _fields(path: Path, value: Any) -> Iterator[tuple[Path, Value]]:

@@ -23,19 +23,18 @@ from firm_hdl.plan.ir import (
     Exits,
     Fixed,
     Jump,
-    Leaf,
     LoopEnd,
     MapStep,
     Pad,
     Part,
-    Plan,
     Run,
     RunStep,
     Slice,
     Step,
 )
 from firm_hdl.plan.limits import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, check_bus_bytes
-from firm_hdl.plan.yaml import from_yaml, to_yaml
+from firm_hdl.plan.tree import Leaf, Plan
+from firm_hdl.plan.yaml import to_yaml
 
 __all__ = [
     "BUS_BYTES",
@@ -72,6 +71,5 @@ __all__ = [
     "check_bus_bytes",
     "decode",
     "encode",
-    "from_yaml",
     "to_yaml",
 ]

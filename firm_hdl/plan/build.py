@@ -8,39 +8,36 @@ rest: the step after the run takes it together with its own bytes.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 from firm_hdl.model import Primitive
 from firm_hdl.plan.cut import split, step_sizes
-from firm_hdl.plan.ir import (
-    RUN_COUNTER,
-    ArrayEnd,
-    Begin,
-    BeginLoop,
-    BeginRun,
-    Claim,
+from firm_hdl.plan.limits import (
+    DEFAULT_MAX_MESSAGE_BYTES,
+    charges_of,
+    check_bus_bytes,
+    check_max_message_bytes,
+    most_items,
+)
+from firm_hdl.plan.tree import (
+    Charge,
+    Constant,
+    Count,
     Fixed,
-    Jump,
+    Item,
     Leaf,
     LeafKind,
-    LoopEnd,
-    MapStep,
+    Length,
+    Loop,
     Pad,
     Part,
     Plan,
     Run,
-    RunStep,
     Slice,
     Step,
 )
-from firm_hdl.plan.limits import (
-    DEFAULT_MAX_MESSAGE_BYTES,
-    check_bus_bytes,
-    check_max_message_bytes,
-    claims_of,
-    most_items,
-)
-from firm_hdl.plan.link import END, NOWHERE, BodyEnd, BodyStart, Load, Mark, link
 from firm_hdl.wire import (
     ConstantLength,
     Gap,
@@ -88,36 +85,22 @@ def build_plan(
         isinstance(node, RunNode | LoopNode) and isinstance(node.length, LengthField)
         for node in walk(layout.nodes)
     )
-    claims = claims_of(layout, max_message_bytes)
-    builder = _Builder(layout, bus_bytes, max_message_bytes, has_lengths, claims)
-    start, steps = builder.build()
+    charges = charges_of(layout, max_message_bytes)
+    builder = _Builder(layout, bus_bytes, max_message_bytes, has_lengths, charges)
+    items = builder.build()
     return Plan(
         message=layout.message.name,
         wire=layout.rules.wire,
         bus_bytes=bus_bytes,
         max_message_bytes=max_message_bytes,
-        header_bytes=layout.rules.header_bytes,
-        max_trailing_bytes=layout.rules.max_trailing_bytes,
         leaves=tuple(builder.leaves),
-        runs=tuple(builder.runs),
-        levels=builder.levels,
-        start=start,
-        steps=steps,
+        items=items,
     )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Count:
-    """A number of elements that a length decides: its leaf, its largest legal value, its claim."""
-
-    length: int
-    limit: int
-    claim: Claim | None
 
 
 @dataclass(slots=True)
 class _Builder:
-    """The state of planning: the program so far, and the open segment.
+    """The state of planning: the leaves and items so far, and the open segment.
 
     Attributes
     ----------
@@ -125,49 +108,43 @@ class _Builder:
         As for :func:`build_plan`.
     has_lengths : bool
         Whether the message has any length.
-    claims : dict of Path to Claim
+    charges : dict of Path to Charge
         What lengths claim, by the path of the string or sequence.
-    leaves, runs : list
+    leaves : list of Leaf
         In wire order.
-    levels : int
-        Number of loop counters.
-    program : list of Step or Mark
-        In wire order. Steps get their exits and bodies at the end, from `link`.
+    open : list of list of Item
+        The items of the message so far, and those of the body of each open loop.
     segment : list of Slice
         Values that have not been cut into steps.
     segment_align : int
         Alignment of the segment's first step that the circuit computes; 1: no such alignment.
     rest : int or None
-        The run whose rest the next step takes.
-    depth : int
-        Number of open loops.
+        The leaf of items whose rest the next step takes.
     """
 
     layout: Layout
     bus_bytes: int
     max_message_bytes: int
     has_lengths: bool
-    claims: dict[Path, Claim]
+    charges: dict[Path, Charge]
     leaves: list[Leaf] = field(default_factory=list)
-    runs: list[Run] = field(default_factory=list)
-    levels: int = 0
-    program: list[Step | Mark] = field(default_factory=list)
+    open: list[list[Item]] = field(default_factory=lambda: [[]])
     segment: list[Slice] = field(default_factory=list)
     segment_align: int = 1
     rest: int | None = None
-    depth: int = 0
 
-    def build(self) -> tuple[Jump, tuple[Step, ...]]:
-        """Return the jump to the first step, and all steps."""
+    def build(self) -> tuple[Item, ...]:
         rules = self.layout.rules
         if rules.header_bytes:
-            self.segment.append(Fixed(at=0, data=rules.encapsulation, check=True))
-            options = bytes(rules.option_bytes)
-            self.segment.append(Fixed(at=len(rules.encapsulation), data=options, check=False))
+            self.segment.append(Fixed(data=rules.encapsulation, check=True))
+            self.segment.append(Fixed(data=bytes(rules.option_bytes), check=False))
         self.nodes(self.layout.nodes)
         self.flush()
         self.flush_rest()
-        return link(self.program)
+        return tuple(self.open[0])
+
+    def add(self, item: Item) -> None:
+        self.open[-1].append(item)
 
     # Nodes to segments.
 
@@ -194,33 +171,33 @@ class _Builder:
         self.leaves.append(Leaf(path=path, kind=kind, type=name, signed=signed, lanes=lanes))
         return len(self.leaves) - 1
 
-    @property
-    def segment_bytes(self) -> int:
-        return self.segment[-1].at + self.segment[-1].bytes if self.segment else 0
-
     def gap(self, gap: Gap) -> None:
         """Add padding to the segment. If the circuit computes it, a new segment starts."""
         if gap.bytes is None:
             self.flush()
             self.segment_align = gap.align
         elif gap.bytes:
-            self.segment.append(Pad(at=self.segment_bytes, bytes=gap.bytes))
+            self.segment.append(Pad(bytes=gap.bytes))
 
-    def value(self, leaf: int, size: int, end: ArrayEnd | LoopEnd | None = None) -> None:
-        at = self.segment_bytes
-        self.segment.append(Part(at=at, bytes=size, leaf=leaf, first=0, size=size, end=end))
+    def value(self, leaf: int, size: int, last: Literal["always", "in loop"] | None = None) -> None:
+        self.segment.append(Part(bytes=size, leaf=leaf, first=0, size=size, last=last))
 
     def lanes(self, item: Primitive) -> int:
         return max(1, self.bus_bytes // item.bytes)
 
-    def length(self, node: RunNode | LoopNode, length: LengthField) -> _Count:
-        """Add a length to the segment; return its leaf, limit and claim."""
+    def length(self, node: RunNode | LoopNode, length: LengthField) -> Length:
+        """Add a length to the segment, and return the count that it gives."""
         self.gap(length.gap)
         leaf = self.leaf(node.path, "length", LENGTH)
         self.value(leaf, LENGTH.bytes)
         most = most_items(self.layout, node, self.max_message_bytes)
         limit = most if length.bound is None else min(length.bound, most)
-        return _Count(length=leaf, limit=limit, claim=self.claims.get(node.path))
+        return Length(
+            leaf=leaf,
+            limit=limit,
+            nul=isinstance(node, RunNode) and node.terminated,
+            charge=self.charges.get(node.path),
+        )
 
     def counted_run(self, node: RunNode, length: LengthField) -> None:
         """Plan a string or a sequence of primitives: a length, then a run or a loop."""
@@ -229,21 +206,17 @@ class _Builder:
         if node.item.bytes > self.bus_bytes:
             self.item_loop(node, items, count)
         else:
-            run = self.new_run(items, terminated=node.terminated)
+            self.flush()
             align = node.item_gap.align if node.item_gap.bytes != 0 else 1
-            leaf, limit, claim = count.length, count.limit, count.claim
-            self.flush(
-                BeginRun(length=leaf, limit=limit, run=run, align=align, claim=claim, body=END)
-            )
-            self.program.append(RunStep(run=run, exits=NOWHERE))
-            self.rest = run
+            self.add(Run(leaf=items, count=count, align=align))
+            self.rest = items
 
     def array(self, node: RunNode, count: int) -> None:
         """Plan an array of primitives: values of a segment, a run, or a loop."""
         items = self.leaf(node.path, "items", node.item, self.lanes(node.item))
         size = node.item.bytes
         if size > self.bus_bytes and count > 1:
-            self.item_loop(node, items, count)
+            self.item_loop(node, items, Constant(count))
             return
         self.gap(node.item_gap)
         lanes = self.lanes(node.item)
@@ -254,87 +227,72 @@ class _Builder:
             if remaining > lanes:
                 self.value(items, lanes * size)
                 remaining -= lanes
-            self.value(items, remaining * size, ArrayEnd())
+            self.value(items, remaining * size, "always")
             return
         self.flush()
         self.flush_rest()
-        run = self.new_run(items, counted=False, last=not tail)
-        self.program.append(Load(counter=RUN_COUNTER, count=full * lanes))
-        self.program.append(RunStep(align=self.take_align(), run=run, exits=NOWHERE))
+        words, align = Constant(full * lanes), self.take_align()
+        self.add(Run(leaf=items, count=words, align=align, has_tail=tail > 0))
         if tail:
-            self.value(items, tail * size, ArrayEnd())
+            self.value(items, tail * size, "always")
 
-    def new_run(
-        self, items: int, *, counted: bool = True, terminated: bool = False, last: bool = True
-    ) -> int:
-        self.runs.append(Run(items=items, counted=counted, terminated=terminated, last=last))
-        return len(self.runs) - 1
-
-    def item_loop(self, node: RunNode, items: int, count: int | _Count) -> None:
+    def item_loop(self, node: RunNode, items: int, count: Count) -> None:
         """Plan items wider than the bus: a loop over single items, some steps each."""
-        level = self.enter_loop(count)
+        self.enter_loop()
         # Only the first item has padding, but the loop may align each item, as later items are
         # aligned already. The gap of the layout is that of the first item, so it cannot be static.
         if node.item_gap.bytes is None or node.item_gap.bytes:
             self.segment_align = node.item_gap.align
-        self.value(items, node.item.bytes, LoopEnd(level=level))
-        self.leave_loop()
+        self.value(items, node.item.bytes, "in loop")
+        self.leave_loop(count)
 
     def loop(self, node: LoopNode) -> None:
         match node.length:
             case LengthField() as length:
-                self.enter_loop(self.length(node, length))
-            case ConstantLength(count=count):
-                self.enter_loop(count)
+                count: Count = self.length(node, length)
+            case ConstantLength(count=number):
+                count = Constant(number)
+        self.enter_loop()
         self.nodes(node.body)
-        self.leave_loop()
+        self.leave_loop(count)
 
-    def enter_loop(self, count: int | _Count) -> int:
-        level = self.depth
-        self.depth += 1
-        self.levels = max(self.levels, self.depth)
-        if isinstance(count, int):
-            self.flush()
-            # The body's first step is also reached from the body's end, where no such rest is left.
-            self.flush_rest()
-            self.program.append(Load(counter=level, count=count))
-        else:
-            leaf, limit, claim = count.length, count.limit, count.claim
-            self.flush(BeginLoop(length=leaf, limit=limit, level=level, claim=claim, body=END))
-        self.program.append(BodyStart(level=level))
-        return level
+    def enter_loop(self) -> None:
+        self.flush(before_loop=True)
+        # The body's first step is also reached from the body's end, where no such rest is left.
+        self.flush_rest()
+        self.open.append([])
 
-    def leave_loop(self) -> None:
+    def leave_loop(self, count: Count) -> None:
         """End the body of the innermost loop."""
         self.flush()
-        self.depth -= 1
         self.join_rest()
-        self.program.append(BodyEnd(level=self.depth))
+        body = tuple(self.open.pop())
+        self.add(Loop(count=count, body=body))
 
     def join_rest(self) -> None:
         """Give the rest of a body's last run to the body's first step, or to a step of its own."""
         if self.rest is None:
             return
-        place = self.body_start(self.depth)
-        first = self.program[place]
-        # A step has room for a rest and one bus word.
-        if (
-            isinstance(first, MapStep)
-            and first.bytes <= self.bus_bytes
-            and first.rest in (None, self.rest)
-        ):
-            self.program[place] = replace(first, rest=self.rest)
-        else:
+        joined = self.joined(self.open[-1], self.rest)
+        if joined is None:
             self.flush_rest()
+        else:
+            # The step after the loop takes the rest of the last element.
+            self.open[-1] = list(joined)
 
-    def body_start(self, level: int) -> int:
-        """Return the place of the first step of the body of the innermost open loop."""
-        place = len(self.program) - 1
-        while self.program[place] != BodyStart(level=level):
-            place -= 1
-        while isinstance(self.program[place], Mark):
-            place += 1
-        return place
+    def joined(self, items: Sequence[Item], rest: int) -> tuple[Item, ...] | None:
+        """Return items whose first step takes a rest; `None` if this step cannot."""
+        first: Item | None = items[0]
+        match first:
+            case Loop():
+                body = self.joined(first.body, rest)
+                first = None if body is None else replace(first, body=body)
+            # A step has room for a rest and one bus word.
+            case Step() if first.bytes <= self.bus_bytes and first.rest in (None, rest):
+                first = replace(first, rest=rest)
+            case _:
+                first = None
+        return None if first is None else (first, *items[1:])
 
     # Segments to steps.
 
@@ -346,36 +304,27 @@ class _Builder:
     def flush_rest(self) -> None:
         """Take the rest of a run in a step of its own."""
         if self.rest is not None:
-            self.program.append(MapStep(rest=self.rest, exits=NOWHERE))
+            self.add(Step(rest=self.rest))
             self.rest = None
 
-    def flush(self, begin: Begin | None = None) -> None:
-        """Cut the segment into steps. The last step starts `begin`."""
+    def flush(self, *, before_loop: bool = False) -> None:
+        """Cut the segment into steps."""
         if not self.segment:
-            assert begin is None
             return
-        # A short last step would cost a cycle in each iteration, or in each short packet.
-        may_be_wide = self.depth > 0 or not self.has_lengths
-        if not self.program:
+        is_first = self.open == [[]]
+        # A short last step would cost a cycle in each element, before a loop, or in short packets.
+        may_be_wide = len(self.open) > 1 or before_loop or not self.has_lengths
+        if is_first:
             may_be_wide |= self.layout.min_bytes <= 16 * self.bus_bytes
         sizes = step_sizes(
             self.segment,
             self.bus_bytes,
-            at_start=not self.program,
+            at_start=is_first,
             may_be_wide=may_be_wide,
             has_rest=self.rest is not None,
         )
         align = self.take_align()
         for index, slices in enumerate(split(self.segment, sizes)):
-            self.program.append(
-                MapStep(
-                    rest=self.rest,
-                    align=align if index == 0 else 1,
-                    bytes=sizes[index],
-                    slices=slices,
-                    begin=begin if index == len(sizes) - 1 else None,
-                    exits=NOWHERE,
-                )
-            )
+            self.add(Step(rest=self.rest, align=align if index == 0 else 1, slices=slices))
             self.rest = None
         self.segment = []

@@ -1,41 +1,34 @@
 """The invariants of every plan, checked without knowing how the plan was built.
 
-A plan that passes can be transcribed without further checks: each byte is mapped once, every jump
-is sound, each loop ends at the level where it starts, and the rest of each run is taken.
-:mod:`firm_hdl.plan.offsets` checks the offsets in the packet. Problems are sentences for people; an
-empty list means a good plan.
+A plan that passes can be transcribed without further checks: each transfer is whole, each length
+counts what follows it, and the rest of each run is taken. :mod:`firm_hdl.plan.offsets` checks the
+offsets in the packet. Problems are sentences for people; an empty list means a good plan.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 from firm_hdl.model import PRIMITIVE_OF
-from firm_hdl.plan.conform import against_layout, check_claims
-from firm_hdl.plan.ir import (
-    RUN_COUNTER,
-    Begin,
-    BeginLoop,
-    BeginRun,
+from firm_hdl.plan.conform import against_layout
+from firm_hdl.plan.limits import BUS_BYTES
+from firm_hdl.plan.offsets import check_offsets
+from firm_hdl.plan.tree import (
     Fixed,
-    IntoBody,
-    Jump,
+    Item,
     Leaf,
-    LoopAgain,
-    LoopEnd,
-    MapStep,
-    Next,
-    Pad,
+    Length,
+    Loop,
     Part,
     Plan,
-    RunStep,
+    Run,
     Slice,
-    successors,
+    Step,
+    numbered,
+    walk,
 )
-from firm_hdl.plan.limits import BUS_BYTES
-from firm_hdl.plan.offsets import Span, check_offsets, loop_spans
 from firm_hdl.wire import RULES, Layout
 
 __all__ = ["check"]
@@ -43,38 +36,22 @@ __all__ = ["check"]
 
 def check(plan: Plan, layout: Layout | None = None) -> list[str]:
     """Return the problems of a plan: by itself and, if a layout is given, as a plan of it."""
-    problems: list[str] = []
     # Each stage relies on the invariants that the stages before it have checked.
-    for stage in (_tables, _steps, _header, _transfers, _flow, _rests, check_claims, check_offsets):
-        problems.extend(stage(plan))
+    for stage in (_tables, _items, _neighbours, _header, _transfers, _rests, check_offsets):
+        problems = list(stage(plan))
         if problems:
             return problems
-    return [] if layout is None else list(against_layout(plan, layout))
+    return [] if layout is None else against_layout(plan, layout)
 
 
 def _tables(plan: Plan) -> Iterator[str]:
     if plan.bus_bytes not in BUS_BYTES:
         yield f"a bus cannot have {plan.bus_bytes} bytes"
         return
-    rules = RULES[plan.wire]
-    wanted = (rules.header_bytes, rules.max_trailing_bytes)
-    if (plan.header_bytes, plan.max_trailing_bytes) != wanted:
-        yield f"header or trailing bytes are not those of {plan.wire}"
     if len({leaf.path for leaf in plan.leaves}) != len(plan.leaves):
         yield "two leaves have one path"
     for leaf in plan.leaves:
         yield from (f"leaf {leaf}: {problem}" for problem in _leaf(leaf, plan.bus_bytes))
-    if len({run.items for run in plan.runs}) != len(plan.runs):
-        yield "two runs have the same items"
-    for index, run in enumerate(plan.runs):
-        if run.items not in range(len(plan.leaves)) or plan.leaves[run.items].kind != "items":
-            yield f"run {index}: its leaf is not of kind 'items'"
-        elif plan.leaves[run.items].item_bytes > plan.bus_bytes:
-            yield f"run {index}: items are wider than the bus"
-        elif run.terminated and plan.leaves[run.items].item_bytes != 1:
-            yield f"run {index}: a NUL follows items that are not bytes"
-        elif run.terminated and not run.counted:
-            yield f"run {index}: a NUL follows items of a constant count"
 
 
 def _leaf(leaf: Leaf, bus_bytes: int) -> Iterator[str]:
@@ -90,68 +67,59 @@ def _leaf(leaf: Leaf, bus_bytes: int) -> Iterator[str]:
     special = {"length": "uint32", "trigger": "bool"}.get(leaf.kind, leaf.type)
     if leaf.type != special:
         yield f"a {leaf.kind} is of type {special}, not {leaf.type}"
-    item = leaf.primitive
-    lanes = max(1, bus_bytes // item.bytes) if leaf.kind == "items" else 1
+    lanes = max(1, bus_bytes // leaf.primitive.bytes) if leaf.kind == "items" else 1
     if leaf.lanes != lanes:
         yield f"{leaf.lanes} lanes, not {lanes}"
 
 
-# Each step by itself.
+# Each step, run and loop by itself.
 
 
-def _steps(plan: Plan) -> Iterator[str]:
-    if not plan.steps:
+def _items(plan: Plan) -> Iterator[str]:
+    if not plan.items:
         yield "there are no steps"
-    for index, step in enumerate(plan.steps):
-        problems = _run(plan, step.run) if isinstance(step, RunStep) else _map(plan, step)
+    for index, _, item in _in_order(plan.items, 0):
+        problems: Iterator[str] = iter(())
+        match item:
+            case Step():
+                problems = _step(plan, item)
+            case Run():
+                problems = _run(plan, item)
+            case Loop():
+                problems = _loop(item)
         yield from (f"step {index}: {problem}" for problem in problems)
-        if step.align not in (1, 2, 4, 8):
-            yield f"step {index}: alignment to {step.align}"
 
 
-def _header(plan: Plan) -> Iterator[str]:
-    rules = RULES[plan.wire]
-    slices = [item for step in plan.steps for item in step.slices]
-    fixed = [item for item in slices if isinstance(item, Fixed)]
-    if fixed != slices[: len(fixed)]:
-        yield "fixed bytes follow the header"
-    got = [(byte, item.check) for item in fixed for byte in item.data]
-    want = [(byte, True) for byte in rules.encapsulation] + [(0, False)] * rules.option_bytes
-    if got != want:
-        yield f"the header is not that of {plan.wire}"
+def _in_order(items: Sequence[Item], first: int) -> Iterator[tuple[int, Item | None, Item | None]]:
+    """Yield each item with its number and the item before it in the same body, if any.
+
+    The end of a body is an item, too: `None`, with the number of the last item.
+    """
+    index, before = first, None
+    for index, item in numbered(items, first):
+        yield index, before, item
+        if isinstance(item, Loop):
+            yield from _in_order(item.body, index)
+        before = item
+    yield index, before, None
 
 
-def _run(plan: Plan, run: int, *, counted: bool = False) -> Iterator[str]:
-    if run not in range(len(plan.runs)):
-        yield f"there is no run {run}"
-    elif counted and not plan.runs[run].counted:
-        yield f"{_items(plan, run)} has a constant count, which neither begins nor has a rest"
-
-
-def _items(plan: Plan, run: int) -> Leaf:
-    return plan.items_leaf(run)
-
-
-def _map(plan: Plan, step: MapStep) -> Iterator[str]:
+def _step(plan: Plan, step: Step) -> Iterator[str]:
     wrong = [problem for item in step.slices for problem in _slice(plan, item)]
     if wrong:
         yield from wrong
         return
-    at = 0
-    for item in step.slices:
-        if item.at != at:
-            yield f"byte {min(at, item.at)} is not mapped exactly once"
-        at = item.at + item.bytes
-    if at != step.bytes:
-        yield f"the map has {at} bytes, the step {step.bytes}"
+    if step.align not in (1, 2, 4, 8):
+        yield f"alignment to {step.align}"
+    words = 2
     if step.rest is not None:
-        yield from _run(plan, step.rest, counted=True)
-        if step.bytes > plan.bus_bytes:
-            yield f"the map after a rest has {step.bytes} bytes, more than a bus word"
+        words = 1
+        if step.rest not in range(len(plan.leaves)) or plan.leaves[step.rest].kind != "items":
+            yield f"there are no items {step.rest} to have a rest"
     elif not step.slices:
         yield "there is nothing to do"
-    if step.bytes > 2 * plan.bus_bytes:
-        yield f"the map has {step.bytes} bytes, more than two bus words"
+    if step.bytes > words * plan.bus_bytes:
+        yield f"the map has {step.bytes} bytes, more than {words} bus words"
     for before, part in pairwise(step.parts):
         if not before.completes:
             yield f"{plan.leaves[before.leaf]} is cut by the next part"
@@ -160,19 +128,12 @@ def _map(plan: Plan, step: MapStep) -> Iterator[str]:
     for item in step.slices[1:]:
         if isinstance(item, Part) and item.first:
             yield f"{plan.leaves[item.leaf]} continues after other bytes"
-    lengths = [part.leaf for part in step.parts if plan.leaves[part.leaf].kind == "length"]
-    done = [part.leaf for part in step.parts if part.completes and part.leaf in lengths]
-    counted = [] if step.begin is None else [step.begin.length]
-    if done != counted or (done and step.slices[-1] is not step.parts[-1]):
-        yield "a length must be complete in the step that starts what it counts, and in no other"
-    if step.begin is not None:
-        yield from _begin(plan, step.begin)
 
 
 def _slice(plan: Plan, item: Slice) -> Iterator[str]:
-    if isinstance(item, Pad | Fixed):
+    if not isinstance(item, Part):
         if item.bytes < 1:
-            yield f"the slice at byte {item.at} is empty"
+            yield "a slice is empty"
         return
     if item.leaf not in range(len(plan.leaves)):
         yield f"there is no leaf {item.leaf}"
@@ -184,210 +145,184 @@ def _slice(plan: Plan, item: Slice) -> Iterator[str]:
         yield f"a transfer of {leaf} has {item.size} bytes"
     if item.first < 0 or item.first + item.bytes > item.size or (size and item.bytes < 1):
         yield f"{leaf} has no bytes {item.first} to {item.first + item.bytes - 1}"
-    if item.end is not None and leaf.kind != "items":
+    if item.last is not None and leaf.kind != "items":
         yield f"{leaf} has a mark of its end, which only items have"
 
 
-def _begin(plan: Plan, begin: Begin) -> Iterator[str]:
-    if begin.limit < 0:
-        yield f"a count has the limit {begin.limit}"
-    if isinstance(begin, BeginLoop):
+def _run(plan: Plan, run: Run) -> Iterator[str]:
+    if run.leaf not in range(len(plan.leaves)) or plan.leaves[run.leaf].kind != "items":
+        yield f"leaf {run.leaf} of a run is not of kind 'items'"
         return
-    yield from _run(plan, begin.run, counted=True)
-    if begin.align not in (1, 2, 4, 8):
-        yield f"alignment of items to {begin.align}"
+    leaf = plan.leaves[run.leaf]
+    if leaf.item_bytes > plan.bus_bytes:
+        yield f"{leaf} are wider than the bus"
+    if run.align not in (1, 2, 4, 8):
+        yield f"alignment to {run.align}"
+    if run.count.nul and leaf.item_bytes != 1:
+        yield f"a NUL follows {leaf}, which are not bytes"
+    if isinstance(run.count, Length):
+        yield from _limit(run.count)
+        if run.has_tail:
+            yield f"{leaf} are counted, and have a tail"
+    elif run.count.number < 1 or run.count.number % leaf.lanes:
+        yield f"{run.count.number} items do not fill words of {leaf.lanes}"
+
+
+def _loop(loop: Loop) -> Iterator[str]:
+    if not loop.body:
+        yield "a loop without a body"
+    if loop.count.nul:
+        yield "a NUL follows a loop"
+    if isinstance(loop.count, Length):
+        yield from _limit(loop.count)
+    elif loop.count.number < 1:
+        yield f"a loop of {loop.count.number} elements"
+
+
+def _limit(length: Length) -> Iterator[str]:
+    if length.limit < 0:
+        yield f"a count has the limit {length.limit}"
+
+
+# What two items in a row have to agree about.
+
+
+def _neighbours(plan: Plan) -> Iterator[str]:
+    for index, before, item in _in_order(plan.items, 0):
+        where = f"step {index}" if item is not None else f"the end of step {index}"
+        problems = [*_length(plan, before, item), *_joint(plan, before, item)]
+        yield from (f"{where}: {problem}" for problem in problems)
+
+
+def _length(plan: Plan, before: Item | None, item: Item | None) -> Iterator[str]:
+    """Check that a length is complete where what it counts starts, and nowhere else."""
+    last = before.slices[-1:] if isinstance(before, Step) else ()
+    complete = [part.leaf for part in last if isinstance(part, Part) and _is_length(plan, part)]
+    counted = []
+    if not isinstance(item, Step | None) and isinstance(item.count, Length):
+        counted = [item.count.leaf]
+    if complete != counted:
+        yield "a length is complete at the end of the step before what it counts, and only there"
+    if isinstance(item, Step) and any(
+        _is_length(plan, part) for part in item.slices[:-1] if isinstance(part, Part)
+    ):
+        yield "a length is complete in the middle of a step"
+
+
+def _is_length(plan: Plan, part: Part) -> bool:
+    return part.completes and plan.leaves[part.leaf].kind == "length"
+
+
+def _joint(plan: Plan, before: Item | None, item: Item | None) -> Iterator[str]:
+    """Check that a transfer that a step's end cuts continues in the next step and only there."""
+    last = before.slices[-1:] if isinstance(before, Step) else ()
+    first = item.slices[:1] if isinstance(item, Step) else ()
+    cut = [part for part in last if isinstance(part, Part) and not part.completes]
+    goes_on = [part for part in first if isinstance(part, Part) and part.first]
+    wanted = [replace(part, first=part.first + part.bytes) for part in cut]
+    if wanted != [replace(part, bytes=cut[0].bytes if cut else 0) for part in goes_on]:
+        yield "the parts of a transfer do not join"
+    elif goes_on and isinstance(item, Step) and (item.align != 1 or item.rest is not None):
+        yield "a transfer is interrupted"
+    if isinstance(before, Run) and before.has_tail:
+        tail = [part.leaf for part in first if isinstance(part, Part)]
+        if tail != [before.leaf]:
+            yield f"the tail of {plan.leaves[before.leaf]} does not follow"
+
+
+def _header(plan: Plan) -> Iterator[str]:
+    rules = RULES[plan.wire]
+    slices = [each for item in walk(plan.items) if isinstance(item, Step) for each in item.slices]
+    fixed = [item for item in slices if isinstance(item, Fixed)]
+    if fixed != slices[: len(fixed)]:
+        yield "fixed bytes follow the header"
+    got = [(byte, item.check) for item in fixed for byte in item.data]
+    want = [(byte, True) for byte in rules.encapsulation] + [(0, False)] * rules.option_bytes
+    if got != want:
+        yield f"the header is not that of {plan.wire}"
 
 
 # The transfers of each leaf.
 
 
 def _transfers(plan: Plan) -> Iterator[str]:
+    transfers: dict[int, list[Run | Part]] = {}
     order: list[int] = []
-    parts: dict[int, list[Part]] = {}
-    runs: dict[int, set[int]] = {}
-    for step in plan.steps:
-        for part in step.parts:
-            order.append(part.leaf)
-            if part.completes:
-                parts.setdefault(part.leaf, []).append(part)
-        owner = step if isinstance(step, RunStep) else step.begin
-        if isinstance(owner, RunStep | BeginRun):
-            order.append(plan.runs[owner.run].items)
-            runs.setdefault(plan.runs[owner.run].items, set()).add(owner.run)
-    for now, leaf in zip([-1, *order], order, strict=False):
-        if leaf not in (now, now + 1):
-            yield f"leaf {plan.leaves[leaf]} is out of order"
-    for index, path in enumerate(plan.leaves):
-        ends = _ends(plan, index, parts.get(index, []), sorted(runs.get(index, ())))
-        yield from (f"leaf {path}: {problem}" for problem in ends)
-    yield from _joints(plan)
+    for item in walk(plan.items):
+        found: Sequence[Run | Part] = ()
+        if isinstance(item, Run):
+            found = [item]
+        elif isinstance(item, Step):
+            found = [part for part in item.parts if part.completes]
+        for each in found:
+            order.append(each.leaf)
+            transfers.setdefault(each.leaf, []).append(each)
+    for now, after in pairwise([-1, *order]):
+        if after not in (now, now + 1):
+            yield f"leaf {plan.leaves[after]} is out of order"
+    for index, leaf in enumerate(plan.leaves):
+        given = transfers.get(index, [])
+        yield from (f"leaf {leaf}: {problem}" for problem in _ends(leaf, given))
+    if any(
+        part.last == "in loop"
+        for item in plan.items
+        if isinstance(item, Step)
+        for part in item.parts
+    ):
+        yield "an item is the last of a loop, and in none"
 
 
-def _ends(plan: Plan, leaf: int, parts: list[Part], runs: list[int]) -> Iterator[str]:
-    """Check the transfers of a leaf: parts, each of a whole transfer, after at most one run."""
-    most = 2 if plan.leaves[leaf].kind == "items" and not runs else 1
-    if len(parts) > most or len(runs) > 1 or not (parts or runs):
-        yield f"{len(parts)} transfers and {len(runs)} runs"
+def _ends(leaf: Leaf, transfers: Sequence[Run | Part]) -> Iterator[str]:
+    """Check the transfers of a leaf: one, or the full words of an array and its tail."""
+    if not 1 <= len(transfers) <= 1 + (leaf.kind == "items"):
+        yield f"{len(transfers)} transfers"
         return
-    if runs and plan.runs[runs[0]].last != (not parts):
-        yield "its run and its tail disagree about its end"
-    if plan.leaves[leaf].kind != "items" or not parts:
-        return
-    first, last = parts[0], parts[-1]
-    if last.end is None:
-        yield "its last transfer has no mark of its end"
-    elif isinstance(last.end, LoopEnd) and (runs or len(parts) > 1):
-        yield "the last of several transfers is in a loop"
-    if len(parts) > 1:
-        word = plan.leaves[leaf].lanes * plan.leaves[leaf].item_bytes
-        if first.end is not None or first.size != word:
-            yield "its first transfer is not a full word, or has a mark of its end"
+    *words, last = transfers
+    if isinstance(last, Run):
+        if words or last.has_tail:
+            yield "its last transfer is not marked"
+    elif leaf.kind == "items" and (last.last is None or (words and last.last != "always")):
+        yield "its last transfer is not marked"
+    for word in words:
+        if isinstance(word, Part) and (word.last or word.size != leaf.lanes * leaf.item_bytes):
+            yield "its first transfer is not a full word, or is marked as the last one"
+        elif isinstance(word, Run) and not word.has_tail:
+            yield "its run has no tail, and a part follows"
 
 
-def _joints(plan: Plan) -> Iterator[str]:
-    """Check that a transfer that a step's end cuts continues in the next step and only there."""
-    for index, step in enumerate(plan.steps):
-        first = step.slices[0] if step.slices else None
-        before = plan.steps[index - 1] if index else None
-        cut = before.slices[-1] if before is not None and before.slices else None
-        open_cut = isinstance(cut, Part) and not cut.completes
-        goes_on = isinstance(first, Part) and first.first > 0
-        if open_cut or goes_on:
-            assert before is not None or not open_cut
-            straight = before is not None and before.exits.repeats == () and before.begin is None
-            fits = (
-                isinstance(cut, Part)
-                and isinstance(first, Part)
-                and (cut.leaf, cut.size, cut.end) == (first.leaf, first.size, first.end)
-                and cut.first + cut.bytes == first.first
-                and step.align == 1
-            )
-            if not straight or not fits:
-                yield f"step {index}: the parts of a transfer do not join"
-    last = plan.steps[-1].slices[-1:]
-    if any(isinstance(item, Part) and not item.completes for item in last):
-        yield "the last transfer is cut"
+# The rests of runs.
 
-
-# Control flow.
-
-State = tuple[int, ...]
-
-
-@dataclass(slots=True)
-class _Walk:
-    """Follow all jumps. A state is the first steps of the open loops, outermost first."""
-
-    plan: Plan
-    states: dict[int, State] = field(default_factory=dict)
-    # For the body of a run: what loaded the counter, a jump ("constant") or the start of a run.
-    loaded: dict[int, int | str | None] = field(default_factory=dict)
-    counts: dict[tuple[int | str, int | None], int] = field(default_factory=dict)
-    todo: list[int] = field(default_factory=list)
-    problems: list[str] = field(default_factory=list)
-
-    def jump(
-        self, jump: Jump, state: State, expected: int, where: str, run: int | None = None
-    ) -> None:
-        """Follow a jump from a state, and check that it leads to the expected step."""
-        loaded: int | str | None = run
-        for counter, count in jump.enter:
-            if count < 1 or count != self.counts.setdefault((counter, jump.step), count):
-                self.problems.append(f"{where}: loads a count of {count}")
-            if counter == RUN_COUNTER:
-                if loaded is not None:
-                    self.problems.append(f"{where}: the counter of the run is loaded twice")
-                loaded = "constant"
-            elif counter != len(state) or len(state) >= self.plan.levels:
-                self.problems.append(f"{where}: loop {counter} inside {len(state)} loops")
-            else:
-                state = (*state, expected)
-        target = len(self.plan.steps) if jump.step is None else jump.step
-        if target != expected:
-            self.problems.append(f"{where}: goes to step {target}, not {expected}")
-        elif jump.step is None:
-            if state or loaded is not None:
-                self.problems.append(f"{where}: ends within a loop or a run")
-        elif target >= len(self.plan.steps):
-            self.problems.append(f"{where}: there is no step {target}")
-        elif target not in self.states:
-            self.states[target] = state
-            self.loaded[target] = loaded
-            self.todo.append(target)
-        elif (state, loaded) != (self.states[target], self.loaded[target]):
-            self.problems.append(f"{where}: step {target} is also reached with other open loops")
-
-    def step(self, index: int, spans: dict[Span, int]) -> None:
-        step, state, where = self.plan.steps[index], self.states[index], f"step {index}"
-        loads: int | str | None = None
-        if isinstance(step, RunStep):
-            loads = step.run if self.plan.runs[step.run].counted else "constant"
-        if self.loaded[index] != loads:
-            problem = "the counter of the run is not loaded, or needlessly loaded"
-            self.problems.append(f"{where}: {problem}")
-        elif isinstance(step, RunStep) and loads == "constant":
-            count, leaf = self.counts[RUN_COUNTER, index], _items(self.plan, step.run)
-            if count % leaf.lanes:
-                self.problems.append(f"{where}: {count} items do not fill words of {leaf.lanes}")
-        for part in step.parts:
-            if isinstance(part.end, LoopEnd) and part.end.level != len(state) - 1:
-                self.problems.append(f"{where}: loop {part.end.level} is not the innermost")
-        after = index + 1
-        for way, jump in successors(step):
-            match way:
-                case IntoBody(begin=BeginLoop(level=level)):
-                    if level != len(state):
-                        self.problems.append(f"{where}: loop {level} inside {len(state)} loops")
-                    self.jump(jump, (*state, after), after, f"{where}, body")
-                    after = spans.get((len(state), after), after) + 1
-                case IntoBody(begin=BeginRun(run=run)):
-                    self.jump(jump, state, after, f"{where}, body", run)
-                    after += 1
-                case LoopAgain(level=level):
-                    if level != len(state) - 1:
-                        problem = f"{where}: loop {level} ends inside {len(state)} loops"
-                        self.problems.append(problem)
-                        return
-                    self.jump(jump, state, state[-1], f"{where}, loop {level} again")
-                    state = state[:-1]
-                case Next():
-                    self.jump(jump, state, after, f"{where}, next")
-
-
-def _flow(plan: Plan) -> list[str]:
-    walker = _Walk(plan)
-    spans = loop_spans(plan)
-    walker.jump(plan.start, (), 0, "start")
-    while walker.todo and not walker.problems:
-        walker.step(walker.todo.pop(), spans)
-    if walker.problems:
-        return walker.problems
-    missed = [index for index in range(len(plan.steps)) if index not in walker.states]
-    depth = max(map(len, walker.states.values()))
-    if depth != plan.levels:
-        walker.problems.append(f"{plan.levels} loop counters, of which {depth} are used")
-    return walker.problems + [f"step {index}: is never reached" for index in missed]
+NO_REST = -1
+"""In place of the leaf of a run: no run has left a rest."""
 
 
 def _rests(plan: Plan) -> Iterator[str]:
     """Check that the step after a run takes its rest, and no other step does."""
-    # The runs whose rest may be left at each step. `None`: the start, or no run.
-    left: dict[int | None, set[int | None]] = {plan.start.step: {None}}
-    for step in plan.steps:
-        run: int | None = None
-        if isinstance(step, RunStep):
-            run = step.run if plan.runs[step.run].counted else None
-        elif isinstance(step.begin, BeginRun):
-            run = step.begin.run
-        for way, jump in successors(step):
-            # Only the step that starts a run leads to the body of the run.
-            if run is None or not isinstance(way, IntoBody):
-                left.setdefault(jump.step, set()).add(run)
-    for index, step in enumerate(plan.steps):
-        runs = left.get(index, set())
-        if step.rest is not None and step.rest not in runs:
-            yield f"step {index}: {_items(plan, step.rest)} has no rest here"
-        for run in sorted(run for run in runs if run not in (None, step.rest)):
-            yield f"step {index}: does not take the rest of {_items(plan, run)}"
-    for run in sorted(run for run in left.get(None, ()) if run is not None):
-        yield f"the end: no step takes the rest of {_items(plan, run)}"
+    problems: dict[str, None] = {}
+
+    def follow(items: Sequence[Item], first: int, left: set[int]) -> set[int]:
+        for index, item in numbered(items, first):
+            rest = item.rest if isinstance(item, Step) and item.rest is not None else NO_REST
+            if rest not in {*left, NO_REST}:
+                problems[f"step {index}: {plan.leaves[rest]} has no rest here"] = None
+            if isinstance(item, Loop):
+                after = follow(item.body, index, left | _left(item.body[-1]))
+                left = left | after if isinstance(item.count, Length) else after
+                continue
+            for run in left - {NO_REST, rest}:
+                problems[f"step {index}: does not take the rest of {plan.leaves[run]}"] = None
+            left = _left(item)
+        return left
+
+    for run in follow(plan.items, 0, {NO_REST}) - {NO_REST}:
+        problems[f"the end: no step takes the rest of {plan.leaves[run]}"] = None
+    yield from problems
+
+
+def _left(item: Item) -> set[int]:
+    """Return the runs whose rest may be left after an item, by their leaves."""
+    if isinstance(item, Loop):
+        return _left(item.body[-1]) | ({NO_REST} if isinstance(item.count, Length) else set())
+    if isinstance(item, Run) and isinstance(item.count, Length):
+        return {item.leaf}
+    return {NO_REST}

@@ -1,102 +1,133 @@
-"""Check that a plan belongs to a layout: its leaves, bounds and constant counts, and its claims."""
+"""Check that a plan belongs to a layout: its leaves, bounds and counts, and what lengths claim."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+from typing import TypeAlias
 
-from firm_hdl.plan.ir import RUN_COUNTER, BeginLoop, BeginRun, Claim, LoopEnd, Plan, RunStep
-from firm_hdl.plan.limits import counted_from
-from firm_hdl.plan.offsets import loop_spans
-from firm_hdl.wire import (
-    RULES,
-    ConstantLength,
-    Layout,
-    LengthField,
-    LoopNode,
-    Path,
-    RunNode,
-    Scalar,
-    Trigger,
-    walk,
-)
+from firm_hdl.plan.limits import charged_from
+from firm_hdl.plan.tree import Charge, Constant, Item, Plan, Run, Step
+from firm_hdl.wire import Layout, LengthField, LoopNode, Node, Path, RunNode, Scalar, Trigger, walk
 
-__all__ = ["against_layout", "check_claims"]
+__all__ = ["against_layout"]
 
-Row = tuple[tuple[str, ...], str, str]
+Number: TypeAlias = "int | tuple[int | None, bool]"
+"""A constant count; or for a length its limit, `None` for none, and whether it counts a NUL."""
+
+
+@dataclass(slots=True)
+class _Row:
+    """A leaf, items or a loop.
+
+    Attributes
+    ----------
+    what : str
+        A leaf with its kind and type; or "loop".
+    count : Number or None
+        Number of items or elements.
+    body : list of _Row
+        The element of a loop.
+    """
+
+    what: str
+    count: Number | None = None
+    body: list[_Row] | None = None
 
 
 def against_layout(plan: Plan, layout: Layout) -> list[str]:
     """Return the differences between a plan, which is sound by itself, and a layout."""
-    comparison = _Comparison(plan)
-    comparison.problems += (
-        [f"the plan is of {plan.message} on {plan.wire}"]
-        if (plan.message, plan.wire) != (layout.message.name, layout.rules.wire)
-        else []
-    )
-    for node in walk(layout.nodes):
+    if (plan.message, plan.wire) != (layout.message.name, layout.rules.wire):
+        return [f"the plan is of {plan.message} on {plan.wire}"]
+    wanted = list(_of_layout(layout.nodes, plan.bus_bytes))
+    return list(_compare(_of_plan(plan, plan.items), wanted)) or list(_charges(plan, layout))
+
+
+def _leaf(path: Path, kind: str, of: str, last: str = "") -> str:
+    return f"{'.'.join(path)} ({kind}, {of}{last})"
+
+
+def _of_plan(plan: Plan, items: Sequence[Item]) -> list[_Row]:
+    rows: list[_Row] = []
+    for item in items:
+        if isinstance(item, Step):
+            for part in item.parts:
+                leaf = plan.leaves[part.leaf]
+                what = _leaf(leaf.path, leaf.kind, leaf.type)
+                if not part.completes:
+                    continue
+                if leaf.kind != "items":
+                    rows.append(_Row(what))
+                    continue
+                count = part.size // leaf.item_bytes
+                if part.last == "in loop":
+                    rows.append(_Row(_leaf(leaf.path, leaf.kind, leaf.type, " of a loop"), count))
+                elif rows and rows[-1].what == what and isinstance(rows[-1].count, int):
+                    # The last transfer of an array, after others.
+                    rows[-1].count += count
+                else:
+                    rows.append(_Row(what, count))
+            continue
+        given = item.count
+        number: Number
+        number = given.number if isinstance(given, Constant) else (given.limit, given.nul)
+        if isinstance(item, Run):
+            leaf = plan.leaves[item.leaf]
+            rows.append(_Row(_leaf(leaf.path, leaf.kind, leaf.type), number))
+        else:
+            rows.append(_Row("loop", number, _of_plan(plan, item.body)))
+    return rows
+
+
+def _of_layout(nodes: Sequence[Node], bus_bytes: int) -> Iterator[_Row]:
+    for node in nodes:
         match node:
             case Scalar():
-                comparison.leaves.append((node.path, "scalar", node.type.name))
+                yield _Row(_leaf(node.path, "scalar", node.type.name))
+                continue
             case Trigger():
-                comparison.leaves.append(((*node.path, "trigger"), "trigger", "bool"))
-            case RunNode():
-                comparison.run(node)
-            case LoopNode(length=LengthField() as length):
-                comparison.length(node.path, length, terminated=False)
-            case LoopNode(length=ConstantLength(count=count)):
-                comparison.counts.append(count)
-    if comparison.leaves != [(leaf.path, leaf.kind, leaf.type) for leaf in plan.leaves]:
-        comparison.problems.append("leaves are not those of the layout")
-    if comparison.counts != _loop_counts(plan):
-        comparison.problems.append("constant loops are not those of the layout")
-    if not comparison.problems:
-        comparison.problems += _claims(plan, layout)
-    return comparison.problems
-
-
-def check_claims(plan: Plan) -> Iterator[str]:
-    """Check what the lengths of a plan claim, as far as this follows from the plan alone."""
-    least_bytes = counted_from(plan.max_message_bytes)
-    outer = _outermost(plan)
-    begins = {index: step.begin for index, step in enumerate(plan.steps) if step.begin is not None}
-    saved = {begin.claim.saved for begin in begins.values() if begin.claim}
-    if len(saved) > 1 or not saved <= {0, 2 * (RULES[plan.wire].max_align - 1)}:
-        yield f"lengths save {', '.join(map(str, sorted(saved)))} bytes"
-    shared = {outer[index] for index, begin in begins.items() if begin.claim and index in outer}
-    for index, begin in begins.items():
-        claim, most = begin.claim, plan.max_count(begin)
-        item = plan.item_bytes(begin.run) if isinstance(begin, BeginRun) else 0
-        where = f"step {index}: {plan.leaves[begin.length]}"
-        if claim is None:
-            if index in shared or (index in outer and most * item >= least_bytes):
-                yield f"{where} claims nothing"
+                yield _Row(_leaf((*node.path, "trigger"), "trigger", "bool"))
+                continue
+        count: Number
+        if isinstance(node.length, LengthField):
+            yield _Row(_leaf((*node.path, "length"), "length", "uint32"))
+            count = (node.length.bound, isinstance(node, RunNode) and node.terminated)
+        else:
+            count = node.length.count
+        if isinstance(node, LoopNode):
+            yield _Row("loop", count, list(_of_layout(node.body, bus_bytes)))
             continue
-        if claim.bytes < 1 or item not in (0, claim.bytes):
-            yield f"{where} claims {claim.bytes} bytes for each item"
-        elif claim.least != -(-least_bytes // claim.bytes):
-            yield f"{where} is counted from {claim.least}"
-        is_inside = index in outer and begins[outer[index]].claim is not None
-        is_outermost = index in shared
-        if is_inside is is_outermost or is_outermost is (claim.total is None):
-            yield f"{where} has a budget, or renews it, at the wrong place"
-        elif claim.total is not None:
-            room = plan.max_message_bytes - plan.header_bytes
-            if not most * claim.bytes - claim.saved <= claim.total <= room:
-                yield f"{where} has a budget of {claim.total} bytes"
+        path = (*node.path, "items")
+        # Items wider than the bus are planned as a loop over single items.
+        if node.item.bytes > bus_bytes and count != 1:
+            item = _Row(_leaf(path, "items", node.item.name, " of a loop"), 1)
+            yield _Row("loop", count, [item])
+        else:
+            yield _Row(_leaf(path, "items", node.item.name), count)
 
 
-def _outermost(plan: Plan) -> dict[int, int]:
-    """Return, for each step inside a sequence of messages, the step that begins the outermost."""
-    spans, outer = loop_spans(plan), dict[int, int]()
-    for index, step in enumerate(plan.steps):
-        if isinstance(step.begin, BeginLoop) and index not in outer:
-            first = step.begin.body.step or 0
-            last = spans.get((step.begin.level, first), first)
-            outer.update(dict.fromkeys(range(first, last + 1), index))
-    return outer
+def _compare(rows: Sequence[_Row], wanted: Sequence[_Row]) -> Iterator[str]:
+    before = "the start"
+    for row, want in zip_longest(rows, wanted):
+        if row is None or want is None or row.what != want.what:
+            have, lacks = (each.what if each else "nothing" for each in (row, want))
+            yield f"after {before}: {have}, not {lacks}"
+            return
+        where = before if want.what == "loop" else want.what
+        match row.count, want.count:
+            case (limit, nul), (bound, wants_nul):
+                if bound is not None and limit is not None and limit > bound:
+                    yield f"{where}: may have {limit} elements, more than {bound}"
+                if nul != wants_nul:
+                    yield f"{where}: a NUL must be in both plan and layout, or in neither"
+            case count, wants if count != wants:
+                yield f"{where}: {count} elements, not {wants}"
+        yield from _compare(row.body or (), want.body or ())
+        before = want.what
 
 
-def _claims(plan: Plan, layout: Layout) -> Iterator[str]:
+def _charges(plan: Plan, layout: Layout) -> Iterator[str]:
     """Compare what lengths claim with the layout: paths tell which length is inside which."""
     nodes = {
         node.path: node
@@ -105,96 +136,24 @@ def _claims(plan: Plan, layout: Layout) -> Iterator[str]:
     }
     loops = {path: node for path, node in nodes.items() if isinstance(node, LoopNode)}
     is_padded = any(node.repeated_bytes > node.min_body_bytes for node in loops.values())
-    saved = 2 * (layout.rules.max_align - 1) if is_padded else 0
-    least_bytes = counted_from(plan.max_message_bytes)
-    wanted: dict[Path, Claim] = {}
-    for leaf, begin in plan.begins.items():
-        path = plan.leaves[leaf].path[:-1]
-        node = nodes[path]
+    credit = 2 * (layout.rules.max_align - 1) if is_padded else 0
+    least_bytes = charged_from(plan.max_message_bytes)
+
+    def charge(node: RunNode | LoopNode, budget: int | None = None) -> Charge:
         each = max(1, node.item.bytes if isinstance(node, RunNode) else node.repeated_bytes)
+        start = -(-least_bytes // each)
+        return Charge(bytes=each, charged_from=start, padding_credit=credit, budget=budget)
+
+    lengths = {plan.leaves[leaf].path[:-1]: length for leaf, length in plan.lengths.items()}
+    wanted: dict[Path, Charge] = {}
+    for path, length in lengths.items():
         around = [loop for loop in loops if loop == path[: len(loop)] and loop != path]
-        least = -(-least_bytes // each)
-        if not around or plan.max_count(begin) < least:
-            continue
-        outermost = min(around, key=len)
-        wanted[path] = Claim(bytes=each, least=least, saved=saved)
-        each = max(1, loops[outermost].repeated_bytes)
-        total = plan.max_message_bytes - layout.min_bytes
-        least = -(-least_bytes // each)
-        wanted[outermost] = Claim(bytes=each, least=least, saved=saved, total=total)
-    for leaf, begin in plan.begins.items():
-        path = plan.leaves[leaf].path[:-1]
-        if begin.claim != wanted.get(path):
+        inner = charge(nodes[path])
+        if around and length.most >= inner.charged_from:
+            wanted[path] = inner
+            outermost = min(around, key=len)
+            budget = plan.max_message_bytes - layout.min_bytes
+            wanted[outermost] = charge(loops[outermost], budget)
+    for path, length in lengths.items():
+        if length.charge != wanted.get(path):
             yield f"{'.'.join(path)} claims other bytes than in the layout"
-
-
-class _Comparison:
-    def __init__(self, plan: Plan):
-        self.plan = plan
-        self.leaves: list[Row] = []
-        self.counts: list[int] = []
-        self.problems: list[str] = []
-        self.totals = _totals(plan)
-        self.begins = plan.begins
-        self.loop_ends = {
-            part.leaf for step in plan.steps for part in step.parts if isinstance(part.end, LoopEnd)
-        }
-
-    def length(self, path: Path, length: LengthField, *, terminated: bool) -> None:
-        name, bound = ".".join(path), length.bound
-        begin = self.begins.get(len(self.leaves))
-        self.leaves.append(((*path, "length"), "length", "uint32"))
-        if begin is None:
-            self.problems.append(f"{name} has no length")
-        elif bound is not None and begin.limit > bound:
-            self.problems.append(f"{name} may have more than {bound} elements")
-        elif self.plan.has_nul(begin) != terminated:
-            self.problems.append(f"{name} must have a NUL in both plan and layout, or in neither")
-
-    def run(self, node: RunNode) -> None:
-        name = ".".join(node.path)
-        # Items wider than the bus are planned as a loop over single items.
-        is_loop = node.item.bytes > self.plan.bus_bytes
-        match node.length:
-            case LengthField() as length:
-                self.length(node.path, length, terminated=node.terminated)
-            case ConstantLength(count=count):
-                is_loop &= count > 1
-                self.counts += [count] if is_loop else []
-                total = self.totals.get(len(self.leaves))
-                if total != (1 if is_loop else count):
-                    self.problems.append(f"{name} has {total} items, not {count}")
-        if (len(self.leaves) in self.loop_ends) != is_loop:
-            kind = "a loop" if is_loop else "an array"
-            self.problems.append(f"the last item of {name} must be that of {kind}")
-        self.leaves.append(((*node.path, "items"), "items", node.item.name))
-
-
-def _loop_counts(plan: Plan) -> list[int]:
-    """Return the counts of all loops of constant count, in wire order, outer ones first."""
-    counts = {
-        (jump.step, counter): count
-        for jump in plan.jumps()
-        for counter, count in jump.enter
-        if isinstance(counter, int) and jump.step is not None
-    }
-    return [counts[key] for key in sorted(counts)]
-
-
-def _totals(plan: Plan) -> dict[int, int]:
-    """Return the number of items of each leaf with a constant one: of parts and constant runs."""
-    totals: dict[int, int] = {}
-    runs: dict[int, int] = {}
-    for step in plan.steps:
-        for part in step.parts:
-            if part.completes and plan.leaves[part.leaf].kind == "items":
-                count = part.size // plan.leaves[part.leaf].item_bytes
-                totals[part.leaf] = totals.get(part.leaf, 0) + count
-    for jump in plan.jumps():
-        target = None if jump.step is None else plan.steps[jump.step]
-        for counter, count in jump.enter:
-            if counter == RUN_COUNTER and isinstance(target, RunStep):
-                runs[target.run] = count
-    for run, count in runs.items():
-        totals[plan.runs[run].items] = totals.get(plan.runs[run].items, 0) + count
-    return totals

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import accumulate
 
-from firm_hdl.plan.ir import Fixed, Pad, Part, Slice
+from firm_hdl.plan.tree import Fixed, Pad, Part, Slice, size_of
 
 __all__ = ["cut", "split", "step_sizes"]
 
@@ -31,7 +32,7 @@ def step_sizes(
     """
     sizes: list[int] = []
     for piece in _pieces(segment):
-        total = piece[-1].at + piece[-1].bytes
+        total = size_of(piece)
         if sizes or not at_start:
             is_wide = may_be_wide and (bool(sizes) or not has_rest or total > 2 * bus_bytes)
             sizes += cut(piece, bus_bytes, 2 * bus_bytes if is_wide else bus_bytes)
@@ -43,18 +44,13 @@ def step_sizes(
 
 
 def _pieces(segment: list[Slice]) -> list[list[Slice]]:
-    """Divide a segment between transfers of the same leaf; each piece starts at 0."""
-    pieces: list[list[Slice]] = []
+    """Divide a segment between transfers of the same leaf."""
+    pieces: list[list[Slice]] = [[]]
     previous: Slice | None = None
-    start = 0
     for item in segment:
-        is_second = (
-            isinstance(previous, Part) and isinstance(item, Part) and previous.leaf == item.leaf
-        )
-        if is_second or not pieces:
+        if isinstance(previous, Part) and isinstance(item, Part) and previous.leaf == item.leaf:
             pieces.append([])
-            start = item.at
-        pieces[-1].append(replace(item, at=item.at - start))
+        pieces[-1].append(item)
         previous = item
     return pieces
 
@@ -64,8 +60,8 @@ def cut(segment: list[Slice], bus_bytes: int, last_bytes: int) -> list[int]:
 
     Steps take up to a bus word, the last one up to `last_bytes`.
     """
-    borders = {item.at for item in segment}
-    total = segment[-1].at + segment[-1].bytes
+    borders = set(accumulate(item.bytes for item in segment))
+    total = size_of(segment)
     sizes: list[int] = []
     start = 0
     while total - start > last_bytes:
@@ -81,27 +77,30 @@ def cut(segment: list[Slice], bus_bytes: int, last_bytes: int) -> list[int]:
 
 def split(segment: list[Slice], sizes: list[int]) -> list[tuple[Slice, ...]]:
     """Distribute slices over steps, splitting those that cross a border."""
-    steps: list[list[Slice]] = [[] for _ in sizes]
-    index, start = 0, 0
+    steps: list[list[Slice]] = [[]]
+    ends = iter(sizes)
+    room = next(ends)
     for item in segment:
         done = 0
         while True:
-            while index < len(sizes) - 1 and item.at + done >= start + sizes[index]:
-                start += sizes[index]
-                index += 1
-            size = min(item.bytes - done, start + sizes[index] - item.at - done)
-            steps[index].append(_piece(item, done, size, item.at + done - start))
+            # A slice without bytes is in the step after a border, unless that is the end.
+            if not room and (following := next(ends, None)) is not None:
+                steps.append([])
+                room = following
+            size = min(item.bytes - done, room)
+            steps[-1].append(_piece(item, done, size))
             done += size
+            room -= size
             if done == item.bytes:
                 break
     return [tuple(step) for step in steps]
 
 
-def _piece(item: Slice, first: int, size: int, at: int) -> Slice:
+def _piece(item: Slice, first: int, size: int) -> Slice:
     match item:
         case Pad():
-            return Pad(at=at, bytes=size)
+            return Pad(bytes=size)
         case Fixed():
-            return Fixed(at=at, data=item.data[first : first + size], check=item.check)
+            return Fixed(data=item.data[first : first + size], check=item.check)
         case Part():
-            return replace(item, at=at, bytes=size, first=first)
+            return replace(item, bytes=size, first=first)

@@ -16,7 +16,8 @@ from math import ceil, inf
 
 from firm_hdl.plan.geometry import first_step, may_end_empty, most_beats, only_ends, ring_beats
 from firm_hdl.plan.interpret import Visit, decode
-from firm_hdl.plan.ir import BeginRun, Plan, RunStep
+from firm_hdl.plan.ir import BeginRun, RunStep
+from firm_hdl.plan.tree import Plan
 
 __all__ = [
     "Packet",

@@ -6,25 +6,15 @@ answers this question: a converter executes steps, and a packet decides only wha
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from firm_hdl.plan.interpret import Edge
-from firm_hdl.plan.ir import (
-    RUN_COUNTER,
-    Begin,
-    BeginLoop,
-    BeginRun,
-    IntoBody,
-    LoopAgain,
-    Next,
-    Plan,
-    RunStep,
-    Step,
-    successors,
-)
 from firm_hdl.plan.offsets import paddings
+from firm_hdl.plan.tree import Item, Length, Loop, Plan, Run, Step, numbered, walk
 
 __all__ = ["edges"]
+
+NEXT = ("next",)
 
 
 def edges(plan: Plan) -> frozenset[Edge]:
@@ -34,74 +24,64 @@ def edges(plan: Plan) -> frozenset[Edge]:
     most one element, or all of the body of a run that is at most a bus word long.
     :attr:`firm_hdl.plan.Decoded.edges` has the decisions of one packet.
     """
-    padding = paddings(plan)
-    counts = _max_counts(plan)
-    return frozenset(
-        Edge(index, way)
-        for index, step in enumerate(plan.steps)
-        for way in _ways(plan, index, step, padding.get(index, frozenset()), counts)
-    )
+    found = set(_ways(plan, plan.items, 0, 0, NEXT))
+    for index, counts in paddings(plan).items():
+        found.update(Edge(index, f"padding {count}") for count in counts)
+    # Runs of which a packet can have any item.
+    filled = {run.leaf for run in walk(plan.items) if isinstance(run, Run) and run.count.most}
+    for index, item in _steps(plan.items, 0):
+        if isinstance(item, Step) and item.rest is not None:
+            found.add(Edge(index, "no rest"))
+            if item.rest in filled:
+                found.add(Edge(index, "rest"))
+    return frozenset(found)
 
 
-MaxCounts = dict[tuple["int | str", int], int]
+def _steps(items: Sequence[Item], first: int) -> Iterator[tuple[int, Step | Run]]:
+    """Yield all steps and runs with their numbers."""
+    for index, item in numbered(items, first):
+        if isinstance(item, Loop):
+            yield from _steps(item.body, index)
+        else:
+            yield index, item
 
 
 def _ways(
-    plan: Plan, index: int, step: Step, padding: frozenset[int], counts: MaxCounts
-) -> Iterator[str]:
-    if isinstance(step, RunStep) and not counts.get((RUN_COUNTER, index), 0):
-        return
-    if step.rest is not None:
-        yield "no rest"
-        if counts.get(("rest", step.rest), 0):
-            yield "rest"
-    yield from (f"padding {count}" for count in padding)
-    if isinstance(step, RunStep) and counts[RUN_COUNTER, index] > _once(plan, step):
-        yield "again"
-    for way, jump in successors(step):
-        match way:
-            case IntoBody(begin=begin):
-                if _may_need_body(plan, begin):
-                    yield "body"
-            case LoopAgain(level=level):
-                if jump.step is not None and counts.get((level, jump.step), 0) > 1:
-                    yield f"loop {level} again"
-            case Next():
-                yield "next"
+    plan: Plan, items: Sequence[Item], first: int, level: int, after: Sequence[str]
+) -> Iterator[Edge]:
+    """Yield what may follow each step of items inside `level` loops.
 
-
-def _max_counts(plan: Plan) -> MaxCounts:
-    """Return the largest count of each loop and body of a run, by counter and first step.
-
-    Also that of each run that a length counts, by "rest" and the index of the run.
+    Parameters
+    ----------
+    after : sequence of str
+        What may follow the last item.
     """
-    counts: MaxCounts = {}
-
-    def note(counter: int | str, step: int | None, count: int) -> None:
-        if step is not None:
-            counts[counter, step] = count
-
-    for jump in plan.jumps():
-        for counter, count in jump.enter:
-            note(counter, jump.step, count)
-    for step in plan.steps:
-        match step.begin:
-            case BeginLoop() as begin:
-                note(begin.level, begin.body.step, begin.limit)
-            case BeginRun() as begin:
-                note("rest", begin.run, plan.max_count(begin))
-                if _may_need_body(plan, begin):
-                    note(RUN_COUNTER, begin.body.step, plan.max_count(begin))
-    return counts
-
-
-def _once(plan: Plan, step: RunStep) -> int:
-    """Return the largest count for which the body of a run takes one cycle."""
-    lanes = plan.items_leaf(step.run).lanes
-    return lanes + plan.word(step.run) if plan.runs[step.run].counted else lanes
+    ends = [NEXT] * (len(items) - 1) + [after]
+    for place, (index, item) in enumerate(numbered(items, first)):
+        ways = ends[place]
+        match item:
+            case Step():
+                following = items[place + 1] if place + 1 < len(items) else item
+                if not isinstance(following, Step) and isinstance(following.count, Length):
+                    ways = ends[place + 1]
+                    if _may_need_body(plan, following):
+                        ways = ["body", *ways]
+                yield from (Edge(index, way) for way in ways)
+            case Run():
+                if _may_need_body(plan, item):
+                    yield from (Edge(index, way) for way in ways)
+                    lanes = plan.leaves[item.leaf].lanes
+                    if item.count.most > lanes + _kept(plan, item):
+                        yield Edge(index, "again")
+            case Loop():
+                again = [f"loop {level} again"] if item.count.most > 1 else []
+                yield from _ways(plan, item.body, index, level + 1, [*again, *ways])
 
 
-def _may_need_body(plan: Plan, begin: Begin) -> bool:
-    if isinstance(begin, BeginLoop):
-        return begin.limit > 0
-    return plan.max_count(begin) > plan.word(begin.run)
+def _kept(plan: Plan, run: Run) -> int:
+    """Return the items of a run that its words may leave as the rest."""
+    return plan.word_count(run) if isinstance(run.count, Length) else 0
+
+
+def _may_need_body(plan: Plan, item: Run | Loop) -> bool:
+    return item.count.most > (_kept(plan, item) if isinstance(item, Run) else 0)

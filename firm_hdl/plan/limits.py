@@ -16,8 +16,8 @@ With padding, a loop claims for each element what the shortest one after another
 have up to a - 1 bytes less. And items that a length inside adds may save padding after them: a part
 that starts later never ends earlier, and a part that starts `a` bytes later ends `a` bytes later;
 so c bytes more in a part are at least c - (a - 1) bytes more in the whole. So each length claims
-2 (a - 1) bytes less than its items have (`Claim.saved`). If no element has padding, none is
-claimed, and nothing is saved.
+2 (a - 1) bytes less than its items have (`Charge.padding_credit`). If no element has padding, none
+is claimed, and there is no credit.
 
 A length that claims only a few bytes is not counted, because the check takes some cycles. So each
 level of nesting can claim as much beyond the budget. A length that is not nested, and counts no
@@ -29,16 +29,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from firm_hdl.plan.ir import Claim
+from firm_hdl.plan.tree import Charge
 from firm_hdl.wire import ConstantLength, Layout, LengthField, LoopNode, Node, Path, RunNode, walk
 
 __all__ = [
     "BUS_BYTES",
     "DEFAULT_MAX_MESSAGE_BYTES",
+    "charged_from",
+    "charges_of",
     "check_bus_bytes",
     "check_max_message_bytes",
-    "claims_of",
-    "counted_from",
     "most_items",
 ]
 
@@ -48,7 +48,7 @@ BUS_BYTES = (1, 2, 4, 8, 16, 32, 64)
 DEFAULT_MAX_MESSAGE_BYTES = 1 << 24
 
 
-def counted_from(max_message_bytes: int) -> int:
+def charged_from(max_message_bytes: int) -> int:
     """Return the least bytes that a nested length must claim to be counted in the budget.
 
     A counted length costs a deserializer some cycles, which are few compared with 4,096 bytes: 512
@@ -111,25 +111,25 @@ def most_items(layout: Layout, node: RunNode | LoopNode, max_message_bytes: int)
     room = max_message_bytes - layout.min_bytes
     if isinstance(node, RunNode):
         return max(0, (room - node.terminated) // node.item.bytes)
-    padded = (room + _saved(layout)) // max(1, node.repeated_bytes)
+    padded = (room + _credit(layout)) // max(1, node.repeated_bytes)
     return max(0, min(room // max(1, node.min_body_bytes), padded))
 
 
-def claims_of(layout: Layout, max_message_bytes: int) -> dict[Path, Claim]:
+def charges_of(layout: Layout, max_message_bytes: int) -> dict[Path, Charge]:
     """Return what the lengths of a layout claim, by the path of the string or sequence.
 
     Lengths that are not counted are left out: those that cannot claim enough bytes, and those that
     do not share a budget.
     """
-    saved = _saved(layout) if any(map(_claims_padding, walk(layout.nodes))) else 0
-    total = max_message_bytes - layout.min_bytes
-    least_bytes = counted_from(max_message_bytes)
+    credit = _credit(layout) if any(map(_claims_padding, walk(layout.nodes))) else 0
+    budget = max_message_bytes - layout.min_bytes
+    least_bytes = charged_from(max_message_bytes)
 
-    def claim(node: RunNode | LoopNode) -> Claim:
+    def charge(node: RunNode | LoopNode) -> Charge:
         each = node.item.bytes if isinstance(node, RunNode) else max(1, node.repeated_bytes)
-        return Claim(bytes=each, least=-(-least_bytes // each), saved=saved)
+        return Charge(bytes=each, charged_from=-(-least_bytes // each), padding_credit=credit)
 
-    claims: dict[Path, Claim] = {}
+    charges: dict[Path, Charge] = {}
     for outermost in _outermost(layout.nodes):
         inner = {}
         for node in walk(outermost.body):
@@ -137,12 +137,12 @@ def claims_of(layout: Layout, max_message_bytes: int) -> dict[Path, Claim]:
                 bound, nul = node.length.bound, isinstance(node, RunNode) and node.terminated
                 most = most_items(layout, node, max_message_bytes)
                 most = nul + (most if bound is None else min(bound, most))
-                if most >= claim(node).least:
-                    inner[node.path] = claim(node)
+                if most >= charge(node).charged_from:
+                    inner[node.path] = charge(node)
         if inner:
-            claims[outermost.path] = replace(claim(outermost), total=total)
-            claims |= inner
-    return claims
+            charges[outermost.path] = replace(charge(outermost), budget=budget)
+            charges |= inner
+    return charges
 
 
 def _claims_padding(node: Node) -> bool:
@@ -152,7 +152,7 @@ def _claims_padding(node: Node) -> bool:
     return node.repeated_bytes > node.min_body_bytes
 
 
-def _saved(layout: Layout) -> int:
+def _credit(layout: Layout) -> int:
     """Return how many bytes fewer than its items a length claims, if padding is claimed."""
     return 2 * (layout.rules.max_align - 1)
 

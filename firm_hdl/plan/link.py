@@ -1,122 +1,170 @@
-"""Link steps: where the control flow of a plan goes from each step.
+"""Link a plan for gateware: where the control flow goes from each step.
 
-:mod:`firm_hdl.plan.build` makes a program: steps in wire order, and marks between them where loops
-start and end, and where counters of constant counts are loaded. Marks take no cycle. So they become
-parts of the jumps between steps.
+The circuits are made from steps with jumps between them. A jump says which counters of constant
+runs and loops are loaded on the way.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import TypeAlias
+from dataclasses import dataclass, field
 
-from firm_hdl.plan.ir import BeginLoop, Exits, Jump, Step
+from firm_hdl.plan import tree
+from firm_hdl.plan.ir import (
+    RUN_COUNTER,
+    ArrayEnd,
+    BeginLoop,
+    BeginRun,
+    Claim,
+    Exits,
+    Fixed,
+    Jump,
+    LoopEnd,
+    MapStep,
+    Pad,
+    Part,
+    Run,
+    RunStep,
+    Slice,
+    Step,
+)
+from firm_hdl.plan.ir.plan import Linked
 
-__all__ = ["END", "NOWHERE", "BodyEnd", "BodyStart", "Load", "Mark", "link"]
-
-END = Jump(step=None)
-"""The jump to the end of the packet; also in place of a jump that is not linked yet."""
-
-NOWHERE = Exits(default=END)
-"""The exits of a step that is not linked yet."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Load:
-    """A position where a loop or run of constant count starts: its counter is loaded.
-
-    Attributes
-    ----------
-    counter : int or RUN_COUNTER
-        The level of a loop, or the counter of the items of a run.
-    count : int
-        Elements or items.
-    """
-
-    counter: int | str
-    count: int
+__all__ = ["link"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BodyStart:
-    """A position where the body of a loop starts."""
-
-    level: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BodyEnd:
-    """A position where the body of a loop ends."""
-
-    level: int
-
-
-Mark: TypeAlias = Load | BodyStart | BodyEnd
-"""A position between steps."""
+def link(plan: tree.Plan) -> Linked:
+    """Link the steps of a plan."""
+    linker = _Linker(plan)
+    end = Exits(default=Jump(step=None))
+    linker.block(plan.items, 0, 0, end)
+    return Linked(
+        plan=plan,
+        runs=tuple(linker.runs),
+        start=_enter(plan.items, 0, 0),
+        steps=tuple(linker.steps),
+    )
 
 
-def link(program: Sequence[Step | Mark]) -> tuple[Jump, tuple[Step, ...]]:
-    """Return the jump to the first step of a program, and its steps with bodies and exits."""
-    linker = _Linker(program)
-    return linker.jump_to(0), linker.steps()
+def _enter(items: Sequence[tree.Item], index: int, level: int) -> Jump:
+    """Return the jump to the first step of items."""
+    first = items[0]
+    loads: list[tuple[int | str, int]] = []
+    while isinstance(first, tree.Loop):
+        assert isinstance(first.count, tree.Constant)
+        loads.append((level, first.count.number))
+        level += 1
+        first = first.body[0]
+    if isinstance(first, tree.Run):
+        assert isinstance(first.count, tree.Constant)
+        loads.append((RUN_COUNTER, first.count.number))
+    return Jump(enter=tuple(loads), step=index)
 
 
+@dataclass(slots=True)
 class _Linker:
-    """A program, with the places of its steps and loops."""
+    plan: tree.Plan
+    runs: list[Run] = field(default_factory=list)
+    # Index of each run by the leaf of its items.
+    numbers: dict[int, int] = field(init=False)
+    steps: list[Step] = field(default_factory=list)
 
-    def __init__(self, program: Sequence[Step | Mark]):
-        self.program = program
-        places = [place for place, item in enumerate(program) if not isinstance(item, Mark)]
-        # Index of the step at each place of the program that is a step.
-        self.numbers = {place: index for index, place in enumerate(places)}
-        # The start of each loop's body by the loop's end, and the end by the loop's start.
-        self.bodies: dict[int, int] = {}
-        self.ends: dict[int, int] = {}
-        open_loops: list[int] = []
-        for place, item in enumerate(program):
-            if isinstance(item, BodyStart):
-                open_loops.append(place)
-            elif isinstance(item, BodyEnd):
-                start = open_loops.pop()
-                self.bodies[place] = start + 1
-                self.ends[start] = place
+    def __post_init__(self) -> None:
+        runs = [item for item in tree.walk(self.plan.items) if isinstance(item, tree.Run)]
+        self.numbers = {run.leaf: number for number, run in enumerate(runs)}
+        self.runs = [
+            Run(
+                items=run.leaf,
+                counted=isinstance(run.count, tree.Length),
+                terminated=run.count.nul,
+                last=not run.has_tail,
+            )
+            for run in runs
+        ]
 
-    def jump_to(self, place: int) -> Jump:
-        """Return the jump to the next step from a place of the program where no loop ends."""
-        enter: list[tuple[int | str, int]] = []
-        while place < len(self.program):
-            item = self.program[place]
-            if not isinstance(item, Mark):
-                break
-            assert not isinstance(item, BodyEnd)
-            if isinstance(item, Load):
-                enter.append((item.counter, item.count))
-            place += 1
-        return Jump(enter=tuple(enter), step=self.numbers.get(place))
+    def block(self, items: Sequence[tree.Item], index: int, level: int, after: Exits) -> None:
+        """Link items inside `level` loops; `after` are the exits behind the last one."""
+        for place, item in enumerate(items):
+            rest = items[place + 1 :]
+            exits = after
+            if rest:
+                following = rest[0]
+                is_counted = not isinstance(following, tree.Step) and isinstance(
+                    following.count, tree.Length
+                )
+                if not is_counted:
+                    exits = Exits(default=_enter(rest, index + item.steps, level))
+                elif rest[1:]:
+                    number = index + item.steps + following.steps
+                    exits = Exits(default=_enter(rest[1:], number, level))
+            match item:
+                case tree.Step():
+                    begin = self.begin(rest[0], index + 1, level) if rest else None
+                    self.steps.append(self.step(item, level, begin, exits))
+                case tree.Run():
+                    align = item.align if isinstance(item.count, tree.Constant) else 1
+                    run = self.numbers[item.leaf]
+                    self.steps.append(RunStep(align=align, run=run, exits=exits))
+                case tree.Loop():
+                    again = (level, _enter(item.body, index, level + 1))
+                    around = Exits(repeats=(again, *exits.repeats), default=exits.default)
+                    self.block(item.body, index, level + 1, around)
+            index += item.steps
 
-    def exits_at(self, place: int) -> Exits:
-        """Return the exits of a step or run that ends before a place of the program."""
-        repeats: list[tuple[int, Jump]] = []
-        while place < len(self.program):
-            item = self.program[place]
-            if not isinstance(item, BodyEnd):
-                break
-            repeats.append((item.level, self.jump_to(self.bodies[place])))
-            place += 1
-        return Exits(repeats=tuple(repeats), default=self.jump_to(place))
+    def begin(self, item: tree.Item, index: int, level: int) -> BeginRun | BeginLoop | None:
+        if isinstance(item, tree.Step) or isinstance(item.count, tree.Constant):
+            return None
+        count = item.count
+        claim = None
+        if charge := count.charge:
+            claim = Claim(
+                bytes=charge.bytes,
+                least=charge.charged_from,
+                saved=charge.padding_credit,
+                total=charge.budget,
+            )
+        length, limit = count.leaf, count.limit
+        if isinstance(item, tree.Loop):
+            body = _enter(item.body, index, level + 1)
+            return BeginLoop(length=length, limit=limit, level=level, claim=claim, body=body)
+        return BeginRun(
+            length=length,
+            limit=limit,
+            run=self.numbers[item.leaf],
+            align=item.align,
+            claim=claim,
+            body=Jump(step=index),
+        )
 
-    def steps(self) -> tuple[Step, ...]:
-        """Return the steps of the program, linked."""
-        found: list[Step] = []
-        for place, item in enumerate(self.program):
-            if isinstance(item, Mark):
-                continue
-            after = place + 1
-            if item.begin is not None:
-                # The body follows: of a loop, the steps up to its end; of a run, one step.
-                body = self.jump_to(after)
-                item = replace(item, begin=replace(item.begin, body=body))
-                after = self.ends[after] + 1 if isinstance(item.begin, BeginLoop) else after + 1
-            found.append(replace(item, exits=self.exits_at(after)))
-        return tuple(found)
+    def step(
+        self, step: tree.Step, level: int, begin: BeginRun | BeginLoop | None, exits: Exits
+    ) -> MapStep:
+        slices: list[Slice] = []
+        for at, item in step.places:
+            match item:
+                case tree.Pad():
+                    slices.append(Pad(at=at, bytes=item.bytes))
+                case tree.Fixed():
+                    slices.append(Fixed(at=at, data=item.data, check=item.check))
+                case tree.Part():
+                    end: ArrayEnd | LoopEnd | None = None
+                    if item.last:
+                        end = ArrayEnd() if item.last == "always" else LoopEnd(level=level - 1)
+                    slices.append(
+                        Part(
+                            at=at,
+                            bytes=item.bytes,
+                            leaf=item.leaf,
+                            first=item.first,
+                            size=item.size,
+                            end=end,
+                        )
+                    )
+        return MapStep(
+            rest=None if step.rest is None else self.numbers[step.rest],
+            align=step.align,
+            bytes=step.bytes,
+            slices=tuple(slices),
+            begin=begin,
+            exits=exits,
+        )

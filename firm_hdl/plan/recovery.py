@@ -9,14 +9,13 @@ lengths can claim together. The worst packet claims what has the most steps per 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil
-from typing import TypeAlias
+from typing import NamedTuple
 
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, BeginLoop, Claim, Plan, RunStep
-from firm_hdl.plan.offsets import Span, loop_spans
+from firm_hdl.plan.tree import Charge, Constant, Item, Length, Loop, Plan, Run, Step
 
 __all__ = ["Recovery", "recovery"]
 
@@ -36,8 +35,13 @@ FEW = 2
 _ALIGNMENTS = 8
 """Offsets that differ by this many bytes, the largest alignment, have the same padding."""
 
-_Region: TypeAlias = tuple[int, int, int]
-"""A range of steps inside loops: the first one, the last one, and the number of loops."""
+
+class _Tail(NamedTuple):
+    """The items of a body from one of them on, and how often they are repeated."""
+
+    items: tuple[Item, ...]
+    start: int = 0
+    times: int = 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,31 +70,22 @@ class _Level:
 
     Attributes
     ----------
-    most : int
-        Largest legal count on the wire.
+    item : Run or Loop
+    count : Length
     steps : Fraction
         Steps of an element whose lengths are 0, or of an item.
-    begin : Begin
-    body : _Region
-        The steps of an element, or of a word.
     offset : int
         The offset behind the length, if the sequences around have one element each, and all other
         lengths are 0. It counts from the end of the header.
-    after : tuple of _Region and int
-        What follows the sequence in the packet, and how often.
+    after : tuple of _Tail
+        What follows the sequence in the packet.
     """
 
-    most: int
+    item: Run | Loop
+    count: Length
     steps: Fraction
-    begin: Begin
-    body: _Region
     offset: int
-    after: tuple[tuple[_Region, int], ...]
-
-    @property
-    def claim(self) -> Claim | None:
-        """What the length claims, if it is counted."""
-        return self.begin.claim
+    after: tuple[_Tail, ...]
 
 
 def recovery(plan: Plan, shortest_cycles: int) -> Recovery:
@@ -102,100 +97,72 @@ def recovery(plan: Plan, shortest_cycles: int) -> Recovery:
     shortest_cycles : int
         Cycles of the shortest packet.
     """
-    steps = _Steps(plan)
-    whole = (0, len(plan.steps) - 1, 0)
-    chains = list(steps.chains(whole, -plan.header_bytes, (), ()))
+    empty = _Empty(plan)
+    chains = list(empty.chains(plan.items, -plan.header_bytes, (), ()))
     worst = max(map(_most_steps, chains), default=Fraction(0))
-    legal = [chain[-1] for chain in chains if all(level.most for level in chain)]
-    longest = max(map(steps.longest, legal), default=0)
+    legal = [chain[-1] for chain in chains if all(level.count.most for level in chain)]
+    longest = max(map(empty.longest, legal), default=0)
     return Recovery(
-        cycles=ERROR_CYCLES + steps.of_region(*whole) + ceil(worst) + END_CYCLES,
+        cycles=ERROR_CYCLES + empty.steps(plan.items) + ceil(worst) + END_CYCLES,
         longest_packet=shortest_cycles + longest,
     )
 
 
 @dataclass(slots=True)
-class _Steps:
-    """The steps of a plan, if every length is 0."""
+class _Empty:
+    """The steps and bytes of a plan, if every length is 0."""
 
     plan: Plan
-    spans: dict[Span, int] = field(init=False)
-    # Constant counts by level (or "run") and first step.
-    counts: dict[tuple[int | str, int], int] = field(default_factory=dict)
-    # Bytes of regions, for each offset of their start modulo `_ALIGNMENTS`.
-    sizes: dict[_Region, tuple[int, ...]] = field(default_factory=dict)
+    # By the items of a body: the bytes of each tail of it, for each offset of its start modulo
+    # `_ALIGNMENTS`.
+    sizes: dict[int, list[tuple[int, ...]]] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        self.spans = loop_spans(self.plan)
-        for jump in self.plan.jumps():
-            for counter, count in jump.enter:
-                if jump.step is not None:
-                    self.counts[counter, jump.step] = count
-
-    def places(self, first: int, last: int, depth: int) -> Iterator[tuple[int, int, int]]:
-        """Yield the parts of a range of steps: the first step, the last one, and a constant count.
-
-        A part is a loop of constant count, or one step with the body of what it begins.
-        """
-        index = first
-        while index <= last:
-            if (depth, index) in self.counts:
-                end = self.spans.get((depth, index), last)
-                yield index, end, self.counts[depth, index]
-            else:
-                begin, end = self.plan.steps[index].begin, index
-                if isinstance(begin, BeginLoop):
-                    end = self.spans.get((depth, index + 1), index + 1)
-                elif begin is not None:
-                    end = index + 1
-                yield index, end, 0
-            index = end + 1
-
-    def of_region(self, first: int, last: int, depth: int) -> int:
-        """Return the number of steps of a range that is inside `depth` loops."""
+    def steps(self, items: Sequence[Item]) -> int:
+        """Return the number of steps of items."""
         total = 0
-        for index, end, count in self.places(first, last, depth):
-            step = self.plan.steps[index]
-            if count:
-                total += count * self.of_region(index, end, depth + 1)
-            elif isinstance(step, RunStep):
-                lanes = self.plan.items_leaf(step.run).lanes
-                total += self.counts[RUN_COUNTER, index] // lanes
-            else:
-                total += 1
+        for item in items:
+            match item:
+                case Step():
+                    total += 1
+                case Run(count=Constant(number)):
+                    total += number // self.plan.leaves[item.leaf].lanes
+                case Loop(count=Constant(number)):
+                    total += number * self.steps(item.body)
         return total
 
-    def skip(self, region: _Region, offset: int) -> int:
-        """Return the offset behind a range of steps that starts at an offset."""
-        first, last, depth = region
-        if first > last:
-            return offset
-        if region not in self.sizes:
-            # From the end, so that the sizes of all ends of the range are known, too.
-            found = (0,) * _ALIGNMENTS
-            for place in reversed(list(self.places(*region))):
-                ends = [self.skip_place(place, depth, start) for start in range(_ALIGNMENTS)]
-                found = tuple(
-                    end - start + found[end % _ALIGNMENTS] for start, end in enumerate(ends)
+    def skip(self, tail: _Tail, offset: int) -> int:
+        """Return the offset behind a tail, taken once, that starts at an offset."""
+        items = tail.items
+        if id(items) not in self.sizes:
+            tables = [(0,) * _ALIGNMENTS]
+            for item in reversed(items):
+                ends = [self.skip_item(item, start) for start in range(_ALIGNMENTS)]
+                behind = tables[-1]
+                tables.append(
+                    tuple(end - at + behind[end % _ALIGNMENTS] for at, end in enumerate(ends))
                 )
-                self.sizes[place[0], last, depth] = found
-        return offset + self.sizes[region][offset % _ALIGNMENTS]
+            self.sizes[id(items)] = tables[::-1]
+        return offset + self.sizes[id(items)][tail.start][offset % _ALIGNMENTS]
 
-    def skip_place(self, place: tuple[int, int, int], depth: int, offset: int) -> int:
-        index, end, count = place
-        if count:
-            return self.repeat((index, end, depth + 1), count, offset)
-        step = self.plan.steps[index]
-        offset += -offset % step.align
-        if isinstance(step, RunStep):
-            items = self.counts[RUN_COUNTER, index]
-            return offset + items * self.plan.item_bytes(step.run)
-        return offset + step.bytes
+    def skip_item(self, item: Item, offset: int) -> int:
+        match item:
+            case Step():
+                return offset + -offset % item.align + item.bytes
+            case Run(count=Constant(number)):
+                return self.skip_run(item, number, offset)
+            case Loop(count=Constant(number)):
+                return self.repeat(_Tail(item.body, times=number), offset)
+            case _:
+                return offset
 
-    def repeat(self, region: _Region, count: int, offset: int) -> int:
-        """Return the offset behind a range of steps that is repeated."""
+    def skip_run(self, run: Run, count: int, offset: int) -> int:
+        return offset + -offset % run.align + count * self.plan.leaves[run.leaf].item_bytes
+
+    def repeat(self, tail: _Tail, offset: int) -> int:
+        """Return the offset behind a tail."""
         # Where an element starts as one before it, the elements between them are a period.
         seen: dict[int, tuple[int, int]] = {}
+        count = tail.times
         while count:
             count -= 1
             left, start = seen.setdefault(offset % _ALIGNMENTS, (count, offset))
@@ -204,52 +171,43 @@ class _Steps:
                 offset += rounds * (offset - start)
                 seen.clear()
             else:
-                offset = self.skip(region, offset)
+                offset = self.skip(tail, offset)
         return offset
 
     def chains(
         self,
-        region: _Region,
+        items: tuple[Item, ...],
         offset: int,
         around: tuple[_Level, ...],
-        after: tuple[tuple[_Region, int], ...],
+        after: tuple[_Tail, ...],
     ) -> Iterator[tuple[_Level, ...]]:
-        """Yield each sequence of a range after the sequences around it, outermost first.
+        """Yield each sequence in items after the sequences around it, outermost first.
 
         Parameters
         ----------
-        region : _Region
+        items : tuple of Item
         offset : int
-            Where the range starts.
+            Where the items start.
         around : tuple of _Level
-        after : tuple of _Region and int
-            What follows the range, and how often.
+        after : tuple of _Tail
+            What follows the items.
         """
-        _, last, depth = region
-        for place in self.places(*region):
-            index, end, count = place
-            begin = self.plan.steps[index].begin
-            rest = (((end + 1, last, depth), 1), *after)
-            body = (index, end, depth + 1)
-            if count:
-                yield from self.chains(body, offset, around, ((body, count - 1), *rest))
-            offset = self.skip_place(place, depth, offset)
-            if begin is not None and not count:
-                body = (index + 1, end, depth + 1)
-                chain = (*around, self.level(begin, body, offset, rest))
-                yield chain
-                if isinstance(begin, BeginLoop):
-                    yield from self.chains(body, offset, chain, rest)
-
-    def level(
-        self, begin: Begin, body: _Region, offset: int, after: tuple[tuple[_Region, int], ...]
-    ) -> _Level:
-        if isinstance(begin, BeginLoop):
-            steps = Fraction(self.of_region(*body))
-        else:
-            steps = Fraction(1, self.plan.items_leaf(begin.run).lanes)
-        most = self.plan.max_count(begin)
-        return _Level(most=most, steps=steps, begin=begin, body=body, offset=offset, after=after)
+        for place, item in enumerate(items, 1):
+            rest = (_Tail(items, place), *after)
+            match item:
+                case Loop(count=Constant(number)):
+                    others = _Tail(item.body, times=number - 1)
+                    yield from self.chains(item.body, offset, around, (others, *rest))
+                case Run(count=Length() as count):
+                    steps = Fraction(1, self.plan.leaves[item.leaf].lanes)
+                    level = _Level(item=item, count=count, steps=steps, offset=offset, after=rest)
+                    yield (*around, level)
+                case Loop(count=Length() as count):
+                    steps = Fraction(self.steps(item.body))
+                    level = _Level(item=item, count=count, steps=steps, offset=offset, after=rest)
+                    yield (*around, level)
+                    yield from self.chains(item.body, offset, (*around, level), rest)
+            offset = self.skip_item(item, offset)
 
     def longest(self, level: _Level) -> int:
         """Return the cycles of the longest legal packet with many elements in one sequence.
@@ -257,46 +215,46 @@ class _Steps:
         The packet has `max_message_bytes`, or the sequence its largest length. The cycles of the
         shortest packet are not counted.
         """
-        if level.most <= FEW:
-            return ceil(level.most * level.steps)
+        most = level.count.most
+        if most <= FEW:
+            return ceil(most * level.steps)
         size = self.size(level, FEW)
         each = self.size(level, FEW + 1) - size
         if not each:
-            return ceil(level.most * level.steps)
-        count = min(level.most, FEW + max(0, self.plan.max_message_bytes - size) // each)
+            return ceil(most * level.steps)
+        count = min(most, FEW + max(0, self.plan.max_message_bytes - size) // each)
         return ceil(count * max(level.steps, Fraction(each, self.plan.bus_bytes)))
 
     def size(self, level: _Level, count: int) -> int:
         """Return the bytes of a packet in which a sequence has some elements."""
-        begin = level.begin
-        if isinstance(begin, BeginLoop):
-            offset = self.repeat(level.body, count, level.offset)
+        if isinstance(level.item, Loop):
+            offset = self.repeat(_Tail(level.item.body, times=count), level.offset)
         else:
-            offset = level.offset + -level.offset % begin.align
-            offset += count * self.plan.item_bytes(begin.run)
-        for region, times in level.after:
-            offset = self.repeat(region, times, offset)
+            offset = self.skip_run(level.item, count, level.offset)
+        for tail in level.after:
+            offset = self.repeat(tail, offset)
         return offset + self.plan.header_bytes
 
 
 def _most_steps(chain: tuple[_Level, ...]) -> Fraction:
     """Return the largest number of steps that sequences inside each other can have claimed.
 
-    Each sequence has either claimed too little to be counted, or a part of the budget; the bound is
+    Each sequence has either claimed too little to be charged, or a part of the budget; the bound is
     the sum of both.
     """
     steps, budget = Fraction(0), 0
-    counted: list[tuple[Fraction, int, Claim, _Level]] = []
+    charged: list[tuple[Fraction, _Level, Charge]] = []
     for level in chain:
-        if level.claim is None:
-            steps += level.most * level.steps
+        charge = level.count.charge
+        if charge is None:
+            steps += level.count.most * level.steps
         else:
-            budget = (level.claim.total or budget) + level.claim.saved
-            counted.append((level.steps / level.claim.bytes, level.most, level.claim, level))
-    for rate, most, claim, level in sorted(counted, key=lambda each: -each[0]):
-        taken = min(budget, most * claim.bytes)
+            budget = (charge.budget or budget) + charge.padding_credit
+            charged.append((level.steps / charge.bytes, level, charge))
+    for rate, level, charge in sorted(charged, key=lambda each: -each[0]):
+        taken = min(budget, level.count.most * charge.bytes)
         budget -= taken
-        # All that the level may claim is taken, or it may also have claimed some bytes uncounted.
-        extra = min(claim.least - 1, most - taken // claim.bytes)
+        # All that the level may claim is taken, or it may also have claimed some bytes uncharged.
+        extra = min(charge.charged_from - 1, level.count.most - taken // charge.bytes)
         steps += taken * rate + extra * level.steps
     return steps

@@ -6,26 +6,23 @@ except for names give equal circuits, and verifying one of them verifies all.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import itertools
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from firm_hdl.plan.ir import (
-    RUN_COUNTER,
-    ArrayEnd,
-    Begin,
-    BeginLoop,
+from firm_hdl.plan.tree import (
+    Constant,
+    Count,
     Fixed,
-    IntoBody,
-    Jump,
-    LoopAgain,
-    LoopEnd,
-    Next,
+    Item,
+    Leaf,
+    Loop,
     Pad,
     Part,
     Plan,
-    RunStep,
+    Run,
+    Slice,
     Step,
-    successors,
 )
 
 __all__ = ["constructs", "shape"]
@@ -43,72 +40,67 @@ def shape(plan: Plan) -> Plan:
 
 def constructs(plan: Plan) -> frozenset[str]:
     """Name the constructs of a plan, for choosing types that cover all constructs."""
-    found = {f"wire {plan.wire}", f"{min(plan.levels, 3)} loop levels", *_jump("start", plan.start)}
+    found = {f"wire {plan.wire}", f"{min(plan.levels, 3)} loop levels"}
     for leaf in plan.leaves:
         found.add(f"leaf {leaf.kind} {'signed ' if leaf.signed else ''}{leaf.type}")
-    for run in plan.runs:
-        size = plan.leaves[run.items].item_bytes
-        words = [f"run of {size} bytes", "counted" if run.counted else "constant count"]
-        words += ["NUL"] if run.terminated else []
-        words += [] if run.last else ["with tail"]
-        found.add(", ".join(words))
-    for step in plan.steps:
-        found.update(_step(plan, step))
+    found.update(_block(plan, plan.items, "packet"))
     return frozenset(found)
+
+
+def _block(plan: Plan, items: Sequence[Item], around: str) -> Iterator[str]:
+    """Name the constructs of items, and what is first, last and next to each other."""
+    names = [f"start of {around}", *(_name(item) for item in items), f"end of {around}"]
+    yield from map(" then ".join, itertools.pairwise(names))
+    for item in items:
+        match item:
+            case Step():
+                yield from _step(plan, item)
+            case Run():
+                yield _run(plan.leaves[item.leaf], item)
+            case Loop():
+                yield from _block(plan, item.body, _name(item))
+
+
+def _name(item: Item) -> str:
+    match item:
+        case Step():
+            return "step"
+        case Run():
+            return f"run, {_count(item.count)}"
+        case Loop():
+            return f"loop, {_count(item.count)}"
+
+
+def _count(count: Count) -> str:
+    return "constant count" if isinstance(count, Constant) else "counted"
+
+
+def _run(leaf: Leaf, run: Run) -> str:
+    words = [f"run of {leaf.item_bytes} bytes", _count(run.count), f"aligned to {run.align}"]
+    words += ["NUL"] if run.count.nul else []
+    words += ["with tail"] if run.has_tail else []
+    return ", ".join(words)
 
 
 def _step(plan: Plan, step: Step) -> Iterator[str]:
     yield f"align {step.align}"
     if step.rest is not None:
         yield f"rest of a run{'' if step.slices else ' alone'}"
-    if isinstance(step, RunStep):
-        yield "words of a run"
-    elif step.bytes > plan.bus_bytes:
+    if step.bytes > plan.bus_bytes:
         yield "map of two words"
-    for item in step.slices:
-        match item:
-            case Pad():
-                yield f"padding of {item.bytes}"
-            case Fixed():
-                yield f"fixed bytes, {'checked' if item.check else 'ignored'}"
-            case Part():
-                yield _part(plan, item)
-    if step.begin is not None:
-        yield _begin(plan, step.begin)
-    yield f"{min(len(step.exits.repeats), 3)} loops may repeat"
-    for way, jump in successors(step):
-        yield from _jump({IntoBody: "body", LoopAgain: "repeat", Next: "next"}[type(way)], jump)
+    yield from (_slice(plan, item) for item in step.slices)
 
 
-def _part(plan: Plan, part: Part) -> str:
-    leaf = plan.leaves[part.leaf]
-    if part.bytes == part.size:
-        which = "whole"
-    else:
-        which = "first part" if not part.first else "last part" if part.completes else "inner part"
-    text = f"{which} of {leaf.kind}, {leaf.item_bytes} bytes each"
-    match part.end:
-        case ArrayEnd():
-            return f"{text}, last"
-        case LoopEnd():
-            return f"{text}, last by its loop"
-        case None:
-            return text
-
-
-def _begin(plan: Plan, begin: Begin) -> str:
-    if isinstance(begin, BeginLoop):
-        return "begin loop, counted by a length"
-    words = ["run, counted by a length"]
-    words += ["NUL"] if plan.has_nul(begin) else []
-    words += [f"aligned to {begin.align}"] if begin.align != 1 else []
-    return f"begin {', '.join(words)}"
-
-
-def _jump(what: str, jump: Jump) -> Iterator[str]:
-    yield f"{what} {'ends the packet' if jump.step is None else 'goes on'}"
-    loops = sum(counter != RUN_COUNTER for counter, _ in jump.enter)
-    if loops:
-        yield f"{what} enters {loops} loops"
-    if loops < len(jump.enter):
-        yield f"{what} enters a run"
+def _slice(plan: Plan, item: Slice) -> str:
+    match item:
+        case Pad():
+            return f"padding of {item.bytes}"
+        case Fixed():
+            return f"fixed bytes, {'checked' if item.check else 'ignored'}"
+        case Part():
+            leaf = plan.leaves[item.leaf]
+            which = "first part" if not item.first else "last part" if item.completes else "part"
+            if item.bytes == item.size:
+                which = "whole"
+            text = f"{which} of {leaf.kind}, {leaf.item_bytes} bytes each"
+            return f"{text}, last {item.last}" if item.last else text

@@ -90,7 +90,7 @@ def timing(plan: Plan) -> Timing:
                 hardest = cost
     return Timing(
         bus_bytes=bus,
-        steps=len(plan.steps),
+        steps=sum(item.steps for item in plan.items),
         shortest=shortest,
         hardest=hardest,
         recovery=recovery(plan, shortest.cycles),
@@ -128,7 +128,7 @@ def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cos
         raise _TooLongError
 
     runs = {leaf.path[:-1] for leaf in plan.leaves if leaf.kind == "items"}
-    limits = {leaf: begin.limit for leaf, begin in plan.begins.items()}
+    limits = {leaf: length.limit for leaf, length in plan.lengths.items()}
     streams: dict[int, Iterable[Payload]] = {}
     for index, leaf in enumerate(plan.leaves):
         payload: Payload = 0
@@ -157,23 +157,33 @@ def clock_mhz(cost: Cost, bits_per_second: float) -> float:
 def describe(name: str, plan: Plan, figures: Timing) -> str:
     """Describe in a few lines the cycles of a converter and the clock that a line rate needs."""
     short, hard = figures.shortest, figures.hardest
-    varies = any(leaf.kind == "length" for leaf in plan.leaves)
-    rows = [("every packet", short)]
-    if varies:
-        long = Cost(bytes=plan.bus_bytes, beats=1, steps=1, cycles=1)
-        rows = [("long strings or arrays", long)] if _has_long(plan) else []
+    if any(leaf.kind == "length" for leaf in plan.leaves):
+        packet = "shortest packet"
         which = "the shortest" if hard is short else _cost_text(hard)
-        rows.append((f"the hardest packet tried ({which})", hard))
-    lines = [
-        f"{name} on {plan.wire}, {8 * plan.bus_bytes}-bit bus: {counted(figures.steps, 'step')}; "
-        f"{'shortest ' if varies else ''}packet {_cost_text(short)}"
-    ]
+        rows = [(f"of the hardest packets that were tried ({which})", hard)]
+        if _has_long(plan):
+            long = Cost(bytes=plan.bus_bytes, beats=1, steps=1, cycles=1)
+            rows.insert(0, ("of long strings or arrays", long))
+    else:
+        packet, rows = "every packet", [("of these packets", short)]
+    wire = "ROS 1" if plan.wire == "ros1" else "CDR, as in ROS 2"
+    table = [("clock that keeps up with a full line", list(LINE_RATES))]
     for what, cost in rows:
-        clocks = ", ".join(
-            f"{rate} {clock_mhz(cost, bits):.1f} MHz" for rate, bits in LINE_RATES.items()
-        )
-        lines.append(f"    clock for {what}: {clocks}")
-    return "\n".join(lines)
+        clocks = [f"{clock_mhz(cost, bits):.1f} MHz" for bits in LINE_RATES.values()]
+        table.append((f"    {what}", clocks))
+    width = max(len(what) for what, _ in table)
+    return "\n".join(
+        [
+            f"{name} ({wire}) on a bus of {counted(plan.bus_bytes, 'byte')} per clock cycle",
+            f"    {packet}: {counted(short.bytes, 'byte')} in "
+            f"{counted(short.beats, 'beat')} (words of the bus) and "
+            f"{counted(short.cycles, 'clock cycle')}",
+            *(
+                f"    {what.ljust(width)}{''.join(cell.rjust(13) for cell in cells)}"
+                for what, cells in table
+            ),
+        ]
+    )
 
 
 def recovery_text(figures: Timing) -> str:
@@ -182,7 +192,7 @@ def recovery_text(figures: Timing) -> str:
     micros = found.cycles / RECOVERY_MHZ
     time = f"{micros:.2f} us" if micros < 1000 else f"{micros / 1000:.1f} ms"
     return (
-        f"    recovery from a bad packet: at most {counted(found.cycles, 'cycle')} ({time} at "
+        f"    after a damaged packet: ready within {counted(found.cycles, 'cycle')} ({time} at "
         f"{RECOVERY_MHZ} MHz); the longest legal packet takes {found.longest_packet}"
     )
 

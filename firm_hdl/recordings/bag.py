@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from collections.abc import Collection, Iterator
 from io import BytesIO
 from typing import BinaryIO
 
@@ -15,7 +15,7 @@ from firm_hdl.recordings.limits import (
     UnreadableError,
     word_of,
 )
-from firm_hdl.recordings.topics import Schema, Topic
+from firm_hdl.recordings.topics import RecordingFile, Schema, Topic
 
 __all__ = ["MAGIC", "BagFile"]
 
@@ -27,28 +27,11 @@ _MOST_FIELDS = 100
 _MESSAGE, _BAG, _CHUNK, _CONNECTION = b"\x02", b"\x03", b"\x05", b"\x07"
 
 
-class BagFile:
-    """An open bag.
-
-    Parameters
-    ----------
-    file : binary file
-    size : int
-        Its number of bytes.
-    budget : Budget
-
-    Attributes
-    ----------
-    topics : dict of int to Topic
-        The connections by their numbers.
-    schemas : list of Schema
-
-    Raises
-    ------
-    UnreadableError
-    """
+class BagFile(RecordingFile):
+    """An open bag; a topic is a connection."""
 
     def __init__(self, file: BinaryIO, size: int, budget: Budget) -> None:
+        super().__init__()
         self._file, self._size, self._budget = file, size, budget
         start = Cursor(file, size)
         if start.take(len(MAGIC) + len(_VERSION)) != MAGIC + _VERSION:
@@ -61,14 +44,11 @@ class BagFile:
             raise UnreadableError("it is encrypted")
         if not index:
             raise UnreadableError("it has no index, which 'rosbag reindex' makes")
-        self.schemas: list[Schema] = []
-        self.topics: dict[int, Topic] = {}
         for header, data in self._records(index):
             if header.get(b"op") == _CONNECTION:
                 self._add(_number(header, b"conn"), word_of(header.get(b"topic")), _fields(data))
 
-    def messages(self, numbers: Container[int]) -> Iterator[tuple[int, int, bytes]]:
-        """Yield connection, time in nanoseconds and bytes of each message of some connections."""
+    def messages(self, numbers: Collection[int]) -> Iterator[tuple[int, int, bytes]]:
         for header, data in self._records(len(MAGIC) + len(_VERSION)):
             if header.get(b"op") == _MESSAGE and (conn := _number(header, b"conn")) in numbers:
                 nanoseconds, seconds = divmod(_number(header, b"time"), 1 << 32)

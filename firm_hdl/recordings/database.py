@@ -7,7 +7,7 @@ have endlessly many rows, so the steps of SQLite and the bytes of messages are c
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator
 from typing import Any, BinaryIO
 
 import apsw
@@ -21,7 +21,7 @@ from firm_hdl.recordings.limits import (
     UnreadableError,
     word_of,
 )
-from firm_hdl.recordings.topics import Schema, Topic
+from firm_hdl.recordings.topics import RecordingFile, Schema, Topic
 
 __all__ = ["MAGIC", "Database"]
 
@@ -33,33 +33,15 @@ _PLAIN = " OR ".join(f"sql LIKE 'CREATE {kind} %'" for kind in ("TABLE", "INDEX"
 _STEPS, _MIN_CALLS = 1000, 2000
 
 
-class Database:
+class Database(RecordingFile):
     """An open database.
 
     SQLite reads from the given file alone. So that file need not have a name, and neither a journal
     nor a lock beside it is looked for.
-
-    Parameters
-    ----------
-    file : binary file
-    size : int
-        Its number of bytes.
-    budget : Budget
-
-    Attributes
-    ----------
-    topics : dict of int to Topic
-        By the numbers that messages refer to.
-    schemas : list of Schema
-    distro : str
-        The distribution that the database names as its origin; empty if there is none.
-
-    Raises
-    ------
-    UnreadableError
     """
 
     def __init__(self, file: BinaryIO, size: int, budget: Budget) -> None:
+        super().__init__()
         self._budget, self._calls = budget, _MIN_CALLS + size // _STEPS
         self._vfs = _Vfs(file, size)
         self._connection = apsw.Connection(
@@ -74,12 +56,10 @@ class Database:
             raise
 
     def close(self) -> None:
-        """Close the database, but not the file."""
         self._connection.close()
         self._vfs.unregister()
 
-    def messages(self, numbers: Iterable[int]) -> Iterator[tuple[int, int, bytes]]:
-        """Yield number, time in nanoseconds and bytes of each message of some topics."""
+    def messages(self, numbers: Collection[int]) -> Iterator[tuple[int, int, bytes]]:
         # SQLite does not enforce the types of columns.
         topics = ", ".join(str(number) for number in numbers if isinstance(number, int))
         query = f"SELECT topic_id, timestamp, data FROM messages WHERE topic_id IN ({topics})"
@@ -101,13 +81,11 @@ class Database:
         if not {("topics", "type"), ("messages", "data")} <= self._columns:
             raise UnreadableError("it is a database without the tables of a recording")
         # Since iron, there are hashes and definitions.
-        self.topics: dict[int, Topic] = {}
         for number, *texts in self._texts(
             "topics", "id", "name", "type", "serialization_format", "type_description_hash"
         ):
             name, type_, encoding, digest = map(word_of, texts)
             self.topics[number] = Topic(name=name, type=type_, encoding=encoding, digest=digest)
-        self.schemas: list[Schema] = []
         for _, type_, encoding, data in self._texts(
             "message_definitions", "id", "topic_type", "encoding", "encoded_message_definition"
         ):

@@ -7,13 +7,13 @@ index are read like others, and a wrong index does no harm.
 from __future__ import annotations
 
 from binascii import crc32
-from collections.abc import Container, Iterator
+from collections.abc import Collection, Iterator
 from contextlib import suppress
 from io import BytesIO
 from typing import BinaryIO
 
 from firm_hdl.recordings.limits import Budget, Cursor, UnreadableError
-from firm_hdl.recordings.topics import Schema, Topic
+from firm_hdl.recordings.topics import RecordingFile, Schema, Topic
 
 __all__ = ["MAGIC", "McapFile"]
 
@@ -27,28 +27,11 @@ _DIGEST = "topic_type_hash"
 _MAX_METADATA_BYTES = 1 << 20
 
 
-class McapFile:
-    """An open MCAP file.
-
-    Parameters
-    ----------
-    file : binary file
-    size : int
-        Its number of bytes.
-    budget : Budget
-
-    Attributes
-    ----------
-    topics : dict of int to Topic
-        The channels by their numbers.
-    schemas : list of Schema
-
-    Raises
-    ------
-    UnreadableError
-    """
+class McapFile(RecordingFile):
+    """An open MCAP file; a topic is a channel."""
 
     def __init__(self, file: BinaryIO, size: int, budget: Budget) -> None:
+        super().__init__()
         self._file, self._budget = file, budget
         footer = size - len(_FOOTER) - 20 - len(MAGIC)
         file.seek(max(0, footer))
@@ -67,13 +50,11 @@ class McapFile:
         if not channels or any(each[0] and each[0] not in schemas for each in channels.values()):
             self._read(len(MAGIC), self._end, schemas, channels)
         self.schemas = list(schemas.values())
-        self.topics: dict[int, Topic] = {}
         for number, (schema, name, encoding, digest) in channels.items():
             type_ = schemas[schema].type if schema in schemas else ""
             self.topics[number] = Topic(name=name, type=type_, encoding=encoding, digest=digest)
 
-    def messages(self, numbers: Container[int]) -> Iterator[tuple[int, int, bytes]]:
-        """Yield channel, time in nanoseconds and bytes of each message of some channels."""
+    def messages(self, numbers: Collection[int]) -> Iterator[tuple[int, int, bytes]]:
         for kind, record in self._records(len(MAGIC), self._end):
             if kind == _MESSAGE and (channel := record.number(2)) in numbers:
                 _, time, _ = record.number(4), record.number(8), record.number(8)

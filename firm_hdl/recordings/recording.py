@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Container, Iterator
 from contextlib import closing, contextmanager
 from pathlib import PurePath
-from typing import BinaryIO, Literal, TypeAlias
+from typing import BinaryIO, Literal
 
 import yaml
 
@@ -15,11 +15,9 @@ from firm_hdl.errors import DefinitionError, Diagnostic
 from firm_hdl.files import check_file, read_file
 from firm_hdl.recordings import bag, database, mcap
 from firm_hdl.recordings.limits import MAX_TOPICS, Budget, UnreadableError
-from firm_hdl.recordings.topics import Schema, Topic
+from firm_hdl.recordings.topics import RecordingFile, Schema, Topic
 
 __all__ = ["Recording"]
-
-_File: TypeAlias = "bag.BagFile | mcap.McapFile | database.Database"
 
 _MAX_METADATA_BYTES = 1 << 20
 
@@ -65,8 +63,7 @@ class Recording:
                 if len(topics) > MAX_TOPICS:
                     raise UnreadableError(f"it has more than {MAX_TOPICS} topics")
                 has_bag = has_bag or isinstance(file, bag.BagFile)
-                if isinstance(file, database.Database):
-                    self.distro = self.distro or file.distro
+                self.distro = self.distro or file.distro
         self.topics, self.schemas = list(topics), list(schemas)
         # Files of MCAP may be of ROS 1, too.
         encodings = {schema.encoding for schema in self.schemas}
@@ -117,7 +114,7 @@ class Recording:
                 raise UnreadableError(f"it is compressed by {compression!r}, and only zstd is read")
             self._compression = mode.lower()
 
-    def _opened(self) -> Iterator[tuple[_File, Budget]]:
+    def _opened(self) -> Iterator[tuple[RecordingFile, Budget]]:
         """Open one file after the other."""
         for path in self._files:
             try:
@@ -152,19 +149,21 @@ class Recording:
         raise DefinitionError([Diagnostic(message=message)])
 
 
-def _read(file: BinaryIO, budget: Budget) -> Iterator[tuple[_File, Budget]]:
+def _read(file: BinaryIO, budget: Budget) -> Iterator[tuple[RecordingFile, Budget]]:
     """Read the definitions of an open file. Its first bytes tell its kind."""
     size = file.seek(0, os.SEEK_END)
     file.seek(0)
     start = file.read(16)
     file.seek(0)
     budget.begin_file()
-    if start.startswith(bag.MAGIC):
-        yield bag.BagFile(file, size, budget), budget
-    elif start.startswith(mcap.MAGIC):
-        yield mcap.McapFile(file, size, budget), budget
-    elif start.startswith(database.MAGIC):
-        with closing(database.Database(file, size, budget)) as opened:
-            yield opened, budget
-    else:
-        raise UnreadableError("it does not begin like a .bag, an .mcap or a .db3 file")
+    kinds: dict[bytes, type[bag.BagFile | mcap.McapFile | database.Database]] = {
+        bag.MAGIC: bag.BagFile,
+        mcap.MAGIC: mcap.McapFile,
+        database.MAGIC: database.Database,
+    }
+    for magic, kind in kinds.items():
+        if start.startswith(magic):
+            with closing(kind(file, size, budget)) as opened:
+                yield opened, budget
+            return
+    raise UnreadableError("it does not begin like a .bag, an .mcap or a .db3 file")

@@ -1,10 +1,12 @@
-"""What a recording says of its topics and of their types."""
+"""What a file of a recording says of its topics and of their types, whatever its format."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
-__all__ = ["Schema", "Topic"]
+__all__ = ["RecordingFile", "Schema", "Topic"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,3 +46,33 @@ class Topic:
     type: str
     encoding: str
     digest: str
+
+
+class RecordingFile(ABC):
+    """An open file of a recording.
+
+    It is made of a binary file, its number of bytes, and the `Budget` of the recording. All that
+    cannot be read is an `UnreadableError`, from each method, too.
+
+    Attributes
+    ----------
+    topics : dict of int to Topic
+        By the numbers that messages refer to.
+    schemas : list of Schema
+    distro : str
+        The distribution that the file names as its origin; empty if there is none.
+    """
+
+    distro = ""
+
+    def __init__(self) -> None:
+        self.topics: dict[int, Topic] = {}
+        self.schemas: list[Schema] = []
+
+    @abstractmethod
+    def messages(self, numbers: Collection[int]) -> Iterator[tuple[int, int, bytes]]:
+        """Yield number, time in nanoseconds and bytes of each message of some topics."""
+
+    def close(self) -> None:
+        """Close what was opened beside the file, which stays open."""
+        return

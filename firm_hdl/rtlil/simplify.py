@@ -17,6 +17,7 @@ from firm_hdl.rtlil.ir import (
     Bits,
     Case,
     Cell,
+    Design,
     Module,
     Process,
     Slice,
@@ -27,11 +28,26 @@ from firm_hdl.rtlil.ir import (
     join,
     spec_width,
 )
+from firm_hdl.rtlil.read import parse
 
-__all__ = ["simplified"]
+__all__ = ["netlist_of", "simplified"]
 
 _CLOCKED = ("$memrd_v2", "$memwr_v2", "$check", "$print")
 _OUTPUTS = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA", "$tribuf": "Y"}
+
+
+def netlist_of(text: str) -> Design:
+    """Read RTLIL as Amaranth prints it, and simplify it.
+
+    Raises
+    ------
+    ValueError
+        If Amaranth 0.5 prints no such text, or the design is empty.
+    """
+    design = parse(text)
+    if not design.modules:
+        raise ValueError("The design is empty: it has no module with anything in it")
+    return Design(modules={module.name: simplified(module) for module in design.modules.values()})
 
 
 def simplified(module: Module) -> Module:

@@ -10,9 +10,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from firm_hdl.rtps.budget import Budget
-from firm_hdl.rtps.fragments import fragment_count
-from firm_hdl.rtps.wire.numbers import NumberSet
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import Data, DataFrag, NumberSet, fragment_count
 
 __all__ = ["MOST_SAMPLE_BYTES", "Backlog", "Waiting"]
 

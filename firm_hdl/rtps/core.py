@@ -13,12 +13,11 @@ from firm_hdl.rtps.backlog import MOST_SAMPLE_BYTES
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData
 from firm_hdl.rtps.events import Arrived, Event, Sample
-from firm_hdl.rtps.outgoing import Outgoing
+from firm_hdl.rtps.peers import Outgoing
 from firm_hdl.rtps.qos import Durability, Qos
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.sedp import Local, Sedp
-from firm_hdl.rtps.settings import Settings
-from firm_hdl.rtps.spdp import Spdp
+from firm_hdl.rtps.spdp import Settings, Spdp
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import (
     SPDP_WRITER,
@@ -28,14 +27,22 @@ from firm_hdl.rtps.wire.guid import (
     user_reader,
     user_writer,
 )
-from firm_hdl.rtps.wire.infos import InfoDestination
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.message import Received
 from firm_hdl.rtps.wire.octets import MalformedError
 from firm_hdl.rtps.wire.parameters import ParameterList, identity
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
-from firm_hdl.rtps.wire.samples import NO_PARAMETERS, Data, DataFrag
-from firm_hdl.rtps.wire.submessages import Submessage
+from firm_hdl.rtps.wire.submessages import (
+    NO_PARAMETERS,
+    AckNack,
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    HeartbeatFrag,
+    InfoDestination,
+    NackFrag,
+    Submessage,
+)
 from firm_hdl.rtps.writer import HistoryFullError, Writer
 
 __all__ = ["Core"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from firm_hdl.rtps.backlog import MOST_SAMPLE_BYTES
 from firm_hdl.rtps.discovery import EndpointData
@@ -11,6 +11,9 @@ from firm_hdl.rtps.events import Sample
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire.guid import Guid, SampleIdentity
 from firm_hdl.rtps.writer import Writer
+
+if TYPE_CHECKING:
+    from firm_hdl.rtps.participant import Participant
 
 __all__ = [
     "ClosedError",
@@ -20,7 +23,6 @@ __all__ = [
     "OnIncompatible",
     "OnMatch",
     "OnSample",
-    "Owner",
 ]
 
 # The encapsulation header of a serialized sample (10.2).
@@ -33,29 +35,6 @@ OnIncompatible: TypeAlias = Callable[[EndpointData, tuple[str, ...]], None]
 
 class ClosedError(RuntimeError):
     """A participant or a writer was used after it was closed."""
-
-
-class Owner(Protocol):
-    """What endpoints need of their participant; see its methods of the same names."""
-
-    def matched(self, guid: Guid) -> tuple[EndpointData, ...]:
-        """Return the endpoints that an endpoint is matched with."""
-
-    def remove(self, *guids: Guid) -> None:
-        """Remove endpoints."""
-
-    def wait_until(self, condition: Callable[[], bool], timeout: float) -> bool:
-        """Wait for a condition."""
-
-    def write(
-        self,
-        writer: Writer,
-        payload: bytes,
-        related: SampleIdentity | None,
-        timeout: float,
-        to: Collection[Guid] | None,
-    ) -> int:
-        """Write a sample."""
 
 
 class Endpoint:
@@ -73,7 +52,7 @@ class Endpoint:
         Called with another endpoint whose policies do not fit, and the names of those.
     """
 
-    def __init__(self, participant: Owner, guid: Guid, topic: str, type_name: str):
+    def __init__(self, participant: Participant, guid: Guid, topic: str, type_name: str):
         self._participant = participant
         self.guid = guid
         self.topic = topic
@@ -104,7 +83,7 @@ class Endpoint:
 class DataWriter(Endpoint):
     """A writer of a user; see :meth:`Participant.writer`."""
 
-    def __init__(self, participant: Owner, writer: Writer, topic: str, type_name: str):
+    def __init__(self, participant: Participant, writer: Writer, topic: str, type_name: str):
         super().__init__(participant, writer.guid, topic, type_name)
         self._writer = writer
 
@@ -164,7 +143,7 @@ class DataReader(Endpoint):
 
     def __init__(
         self,
-        participant: Owner,
+        participant: Participant,
         reader: Reader,
         topic: str,
         type_name: str,

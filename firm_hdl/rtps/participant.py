@@ -13,7 +13,6 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Callable, Collection
-from types import TracebackType
 from typing import TypeAlias
 
 from firm_hdl.rtps.backlog import MOST_SAMPLE_BYTES
@@ -28,16 +27,55 @@ from firm_hdl.rtps.endpoints import (
     OnSample,
 )
 from firm_hdl.rtps.events import Arrived, Event, Incompatible, Matched, Unmatched
-from firm_hdl.rtps.pacing import Pacer
 from firm_hdl.rtps.qos import Durability, Qos
-from firm_hdl.rtps.settings import Settings
+from firm_hdl.rtps.spdp import Settings
 from firm_hdl.rtps.transport import Transport, address_of
 from firm_hdl.rtps.wire.guid import Guid, SampleIdentity, new_prefix
 from firm_hdl.rtps.wire.locators import Address, Ports
 from firm_hdl.rtps.wire.octets import MOST_NAME_BYTES
 from firm_hdl.rtps.writer import FRAGMENT_BYTES, HistoryFullError, Writer
 
-__all__ = ["Participant"]
+__all__ = ["Pacer", "Participant"]
+
+# A socket of Linux holds 212,992 bytes by default, and counts a datagram of 1,400 bytes as 2,304.
+_BURST_BYTES = 64 << 10
+# After a pause, as much may be sent at once: a pause for each datagram would cost more than that.
+_CHUNK_BYTES = 16 << 10
+
+
+class Pacer:
+    """A token bucket.
+
+    Parameters
+    ----------
+    bytes_per_second : float
+        The rate in the long run. A burst of 64 KiB passes at once.
+    """
+
+    def __init__(self, bytes_per_second: float):
+        if bytes_per_second <= 0:
+            raise ValueError(f"Rate must be positive, not {bytes_per_second}")
+        self._rate = bytes_per_second
+        self._tokens = float(_BURST_BYTES)
+        self._at = 0.0
+        self._needed = 0.0
+
+    def wait(self, now: float) -> float:
+        """Return the seconds until the next datagram may be sent; 0 or less means now."""
+        if now > self._at:
+            self._tokens = min(_BURST_BYTES, self._tokens + (now - self._at) * self._rate)
+            self._at = now
+        # A datagram may be larger than what is left: the debt is paid before the next one.
+        if self._tokens > self._needed:
+            self._needed = 0.0
+            return 0.0
+        self._needed = float(_CHUNK_BYTES)
+        return (self._needed - self._tokens) / self._rate
+
+    def note(self, size: int) -> None:
+        """Note that a datagram of `size` bytes was sent."""
+        self._tokens -= size
+
 
 _LOG = logging.getLogger("firm_hdl.rtps")
 # Seconds. A write in another thread may make a heartbeat due that soon.
@@ -85,7 +123,7 @@ class Participant:
     TransportError
         The interface has no address, or sockets cannot be opened.
     ValueError
-        The domain is out of range.
+        The domain is out of range, or the name or the user data is too long for peers.
     """
 
     def __init__(
@@ -104,6 +142,8 @@ class Participant:
         on_event: OnEvent | None = None,
         transport: Transport | None = None,
     ):
+        _check_name("participant", name, least=0)
+        _check_user_data(user_data)
         host = address_of(interface)
         self._transport = transport or Transport(domain, host)
         self._on_event = on_event
@@ -149,12 +189,7 @@ class Participant:
     def __enter__(self) -> Participant:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     @property
@@ -476,18 +511,9 @@ class Participant:
 
 def _checked(topic: str, type_name: str, qos: Qos | None, user_data: bytes) -> Qos:
     """Check what an endpoint is made of; return its policies."""
-    for what, name in (("topic", topic), ("type", type_name)):
-        if not isinstance(name, str):
-            raise TypeError(f"the name of a {what} is a str, not {name!r}")
-        if not 0 < len(name.encode()) <= MOST_NAME_BYTES:
-            raise ValueError(
-                f"the name of a {what} has from 1 to {MOST_NAME_BYTES} bytes, "
-                f"not {len(name.encode())}"
-            )
-    if not isinstance(user_data, bytes):
-        raise TypeError(f"user data is bytes, not {user_data!r}")
-    if len(user_data) > MOST_USER_DATA:
-        raise ValueError(f"user data has at most {MOST_USER_DATA} bytes, not {len(user_data)}")
+    _check_name("topic", topic)
+    _check_name("type", type_name)
+    _check_user_data(user_data)
     if qos is not None and not isinstance(qos, Qos):
         hint = f": Qos(depth={qos}) is one with a depth" if isinstance(qos, int) else ""
         raise TypeError(f"qos is a Qos, not {qos!r}{hint}")
@@ -495,3 +521,21 @@ def _checked(topic: str, type_name: str, qos: Qos | None, user_data: bytes) -> Q
     if qos.durability > Durability.TRANSIENT_LOCAL:
         raise ValueError(f"no writer or reader of firm-hdl is {qos.durability.name}")
     return qos
+
+
+def _check_name(what: str, name: object, *, least: int = 1) -> None:
+    """Check a name. Peers refuse one of too many bytes, with all that is announced beside it."""
+    if not isinstance(name, str):
+        raise TypeError(f"the name of a {what} is a str, not {name!r}")
+    size = len(name.encode())
+    if not least <= size <= MOST_NAME_BYTES:
+        raise ValueError(
+            f"the name of a {what} has from {least} to {MOST_NAME_BYTES} bytes, not {size}"
+        )
+
+
+def _check_user_data(data: object) -> None:
+    if not isinstance(data, bytes):
+        raise TypeError(f"user data is bytes, not {data!r}")
+    if len(data) > MOST_USER_DATA:
+        raise ValueError(f"user data has at most {MOST_USER_DATA} bytes, not {len(data)}")

@@ -8,13 +8,15 @@ may ask for them again, but not without end (:mod:`firm_hdl.rtps.writer`).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from firm_hdl.rtps.discovery import ParticipantData
 from firm_hdl.rtps.wire.locators import Address, distance
+from firm_hdl.rtps.wire.submessages import Submessage
 
-__all__ = ["Peer", "Route"]
+__all__ = ["Outgoing", "Peer", "Route", "Send"]
 
 # Bytes that a peer may cost for each byte that came from it, and how many are kept for later.
 _PER_BYTE, _MOST_CREDIT = 3, 1 << 20
@@ -147,3 +149,29 @@ class Route:
         """Return where to send, and whether that is known to be the peer's; see `Peer.ways`."""
         data = self.peer.data
         return self.peer.ways(self.own or (data.discovery if self.discovery else data.user))
+
+
+@dataclass(frozen=True, slots=True)
+class Outgoing:
+    """One datagram.
+
+    Attributes
+    ----------
+    route : Route
+        The way that it goes.
+    prefix : bytes
+        GUID prefix of the participant that it is for.
+    submessages : tuple
+        Its content, without the INFO_DST that names the participant.
+    is_answer : bool
+        Whether the peer has made us send it, so that it costs credit (:mod:`firm_hdl.rtps.peers`).
+    """
+
+    route: Route
+    prefix: bytes
+    submessages: tuple[Submessage, ...]
+    is_answer: bool = True
+
+
+Send: TypeAlias = Callable[[Outgoing], None]
+"""Takes a datagram. It is sent later, or lost."""

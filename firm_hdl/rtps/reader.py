@@ -13,14 +13,20 @@ from typing import TypeAlias
 from firm_hdl.rtps.backlog import MOST_SAMPLE_BYTES, Backlog
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.discovery import EndpointData
-from firm_hdl.rtps.outgoing import Outgoing, Send
-from firm_hdl.rtps.peers import Route
+from firm_hdl.rtps.peers import Outgoing, Route, Send
 from firm_hdl.rtps.qos import Qos
 from firm_hdl.rtps.wire.guid import Guid
-from firm_hdl.rtps.wire.numbers import NumberSet
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
-from firm_hdl.rtps.wire.samples import Data, DataFrag
-from firm_hdl.rtps.wire.submessages import Submessage
+from firm_hdl.rtps.wire.submessages import (
+    AckNack,
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    HeartbeatFrag,
+    NackFrag,
+    NumberSet,
+    Submessage,
+)
 
 __all__ = ["Deliver", "Reader"]
 

@@ -13,8 +13,7 @@ from dataclasses import dataclass, field
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.discovery import EndpointData, check_owner, key_of, key_payload
 from firm_hdl.rtps.events import Event, Incompatible, Matched, PeerFound, PeerLost, Unmatched
-from firm_hdl.rtps.outgoing import Send
-from firm_hdl.rtps.peers import Peer, Route
+from firm_hdl.rtps.peers import Peer, Route, Send
 from firm_hdl.rtps.qos import Durability, Qos
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.spdp import DISPOSED
@@ -28,7 +27,7 @@ from firm_hdl.rtps.wire.guid import (
 )
 from firm_hdl.rtps.wire.octets import MalformedError
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import Data
 from firm_hdl.rtps.writer import Writer
 
 __all__ = ["Local", "Sedp"]

@@ -4,18 +4,60 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import islice
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from firm_hdl.rtps.discovery import ParticipantData, check_owner, key_of, key_payload
 from firm_hdl.rtps.peers import Peer, Route
-from firm_hdl.rtps.settings import Settings
 from firm_hdl.rtps.wire.guid import PARTICIPANT, SPDP_READER, SPDP_WRITER, Guid
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.samples import NO_PARAMETERS, Data
+from firm_hdl.rtps.wire.submessages import NO_PARAMETERS, Data
+from firm_hdl.rtps.writer import FRAGMENT_BYTES
 
-__all__ = ["DISPOSED", "Listener", "Spdp", "Tell"]
+if TYPE_CHECKING:
+    from firm_hdl.rtps.sedp import Sedp
+
+__all__ = ["DISPOSED", "Settings", "Spdp"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settings:
+    """What a participant is and does.
+
+    Attributes
+    ----------
+    own : ParticipantData
+        What it announces.
+    host : str
+        Its IPv4 address.
+    targets : tuple of Address
+        Where announcements go, besides known peers.
+    seldom : tuple of Address
+        Where they go at first, and seldom after that: addresses where a peer may be.
+    period : float
+        Seconds between announcements.
+    fragment_bytes : int
+        Larger samples are sent in fragments of this size: from 256 to 65,000.
+    memory_bytes : int
+        Memory for samples that cannot be delivered yet.
+    """
+
+    own: ParticipantData
+    host: str
+    targets: tuple[Address, ...]
+    seldom: tuple[Address, ...] = ()
+    period: float = 1.0
+    fragment_bytes: int = FRAGMENT_BYTES
+    memory_bytes: int = 128 << 20
+
+    def __post_init__(self) -> None:
+        if not 256 <= self.fragment_bytes <= 65_000:
+            raise ValueError(
+                f"Fragments must have from 256 to 65000 bytes, not {self.fragment_bytes}"
+            )
+
 
 DISPOSED = b"\0\0\0\x03"
 """Status of an instance that its writer disposed of and left (9.6.4.9), always big-endian."""
@@ -46,19 +88,6 @@ Tell: TypeAlias = Callable[[Address, Data], None]
 """Sends a submessage to whoever is at an address."""
 
 
-class Listener(Protocol):
-    """Who is told of peers."""
-
-    def on_peer(self, peer: Peer, now: float) -> None:
-        """A peer is new, or says something else of itself."""
-
-    def on_peer_lost(self, prefix: bytes, expired: bool) -> None:
-        """A peer left, or its lease expired, or it gave way to another one."""
-
-    def rank(self, prefix: bytes) -> int:
-        """Return 2 for a peer that is matched with us, 1 for one with endpoints, and 0."""
-
-
 class Spdp:
     """The announcer of a participant, and the participants that it heard of.
 
@@ -66,8 +95,8 @@ class Spdp:
     ----------
     settings : Settings
         What it announces, and where.
-    listener : Listener
-        Who is told of peers.
+    listener : Sedp
+        Who is told of peers, and knows how much each one is to us.
     tell : Tell
         Sends announcements.
     counters : Counter
@@ -77,7 +106,7 @@ class Spdp:
     def __init__(
         self,
         settings: Settings,
-        listener: Listener,
+        listener: Sedp,
         tell: Tell,
         counters: Counter[str] | None = None,
     ):

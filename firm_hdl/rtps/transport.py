@@ -16,6 +16,8 @@ __all__ = ["Transport", "TransportError", "address_of"]
 _IP_MULTICAST_ALL = 49
 # Linux, <linux/sockios.h>: the IPv4 address of an interface.
 _SIOCGIFADDR = 0x8915
+# Linux, <linux/if.h>: IFNAMSIZ, without the final zero.
+_MOST_INTERFACE_BYTES = 15
 _RECEIVE_BUFFER_BYTES = 4 << 20
 
 
@@ -45,14 +47,19 @@ def address_of(interface: str | None) -> str:
             except OSError:
                 return "127.0.0.1"
             return str(probe.getsockname()[0])
-    with suppress(OSError):
+    # A name with a NUL is a `ValueError`.
+    with suppress(OSError, ValueError):
         return socket.inet_ntoa(socket.inet_pton(socket.AF_INET, interface))
+    name = interface.encode()
+    # The system would take the first bytes for the name of another interface.
+    if len(name) > _MOST_INTERFACE_BYTES or b"\0" in name:
+        raise TransportError(f"interface '{interface}' has no IPv4 address")
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             # Only systems with interfaces of this kind have the module.
             import fcntl
 
-            request = struct.pack("256s", interface.encode()[:15])
+            request = struct.pack("256s", name)
             return socket.inet_ntoa(fcntl.ioctl(probe, _SIOCGIFADDR, request)[20:24])
         except (OSError, ImportError) as problem:
             raise TransportError(f"interface '{interface}' has no IPv4 address") from problem

@@ -11,17 +11,23 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 from firm_hdl.rtps.discovery import EndpointData
-from firm_hdl.rtps.fragments import fragment, fragment_count
-from firm_hdl.rtps.outgoing import Outgoing, Send
-from firm_hdl.rtps.peers import Route
+from firm_hdl.rtps.peers import Outgoing, Route, Send
 from firm_hdl.rtps.qos import Durability, Qos
 from firm_hdl.rtps.wire.guid import Guid
-from firm_hdl.rtps.wire.infos import InfoTimestamp
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import ParameterList
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, NackFrag
-from firm_hdl.rtps.wire.samples import NO_PARAMETERS, Data
-from firm_hdl.rtps.wire.submessages import Submessage
+from firm_hdl.rtps.wire.submessages import (
+    NO_PARAMETERS,
+    AckNack,
+    Data,
+    Gap,
+    Heartbeat,
+    InfoTimestamp,
+    NackFrag,
+    NumberSet,
+    Submessage,
+    fragment,
+    fragment_count,
+)
 
 __all__ = ["FRAGMENT_BYTES", "Change", "HistoryFullError", "Writer"]
 

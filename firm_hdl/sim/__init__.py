@@ -8,10 +8,9 @@ circuit many times.
 from __future__ import annotations
 
 from firm_hdl.gateware.signatures import leaf_streams
-from firm_hdl.sim.bench import DeadlineError
+from firm_hdl.sim.bench import DeadlineError, RunOptions
 from firm_hdl.sim.design import ClockDomainError
 from firm_hdl.sim.harness import Harness
-from firm_hdl.sim.job import RunOptions
 from firm_hdl.sim.loopback import Decoding, Encoding, Loopback, decode, encode, loopback
 from firm_hdl.sim.messages import MessagePort
 from firm_hdl.sim.record import RunResult, leaf_name

@@ -10,7 +10,7 @@ testbench per stream, which matters for thousands of cases. For users' own testb
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from typing import TypeVar
@@ -20,14 +20,22 @@ from amaranth.lib import stream
 from amaranth.sim import Simulator, SimulatorContext
 
 from firm_hdl.garbage import search_put_off
+from firm_hdl.gateware.limits import check_integer
 from firm_hdl.sim.design import check_connections, check_domains
-from firm_hdl.sim.drive import Drive, Inputs
-from firm_hdl.sim.job import Job
 from firm_hdl.sim.levels import divided
-from firm_hdl.sim.stalls import check_stalls, stalls_of
+from firm_hdl.sim.stalls import StallPlan, check_stalls, stalls_of
 from firm_hdl.sim.watch import StreamRules
 
-__all__ = ["RESET_CYCLES", "Bench", "DeadlineError", "Ports", "in_chunks"]
+__all__ = [
+    "RESET_CYCLES",
+    "Bench",
+    "DeadlineError",
+    "Job",
+    "Ports",
+    "RunOptions",
+    "in_chunks",
+]
+
 
 T = TypeVar("T")
 
@@ -37,6 +45,68 @@ HALF_PERIOD = 5e-7
 LIMIT = 1_000_000
 RESET_CYCLES = 2
 """Cycles of a reset between two runs of a bench that keeps its state."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """The conditions of a run.
+
+    Attributes
+    ----------
+    stalls : Stalls, mapping or None
+        Stalls of all streams, or of streams by name.
+    deadline : int
+        Most cycles in a row without any transfer, in addition to the longest stall.
+    limit : int or None
+        Most cycles in total. `None`: 1,000,000; for a :class:`.Harness`, many more than any valid
+        packets take.
+    settle : int
+        Cycles without any transfer after which a finished run ends.
+    vcd : path or None
+        File for a waveform, which makes the run slow.
+    observe : callable or None
+        Called with the values of the bench's probes, before the first clock edge and then in each
+        cycle after all signals have settled.
+    """
+
+    stalls: StallPlan = None
+    deadline: int = 1000
+    limit: int | None = None
+    settle: int = 4
+    vcd: str | os.PathLike[str] | None = None
+    observe: Callable[[list[int]], None] | None = None
+
+    def __post_init__(self) -> None:
+        check_stalls(self.stalls)
+        check_integer("deadline=", self.deadline)
+        check_integer("settle=", self.settle)
+        if self.limit is not None:
+            check_integer("limit=", self.limit)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """One run of a bench.
+
+    Attributes
+    ----------
+    sources : dict of str to iterable of int
+        Payloads to send, as bits, by the name of the stream.
+    takes : dict of str to callable
+        Functions by the name of a stream. They are called at each transfer of the stream, with the
+        cycle and the payload's bits.
+    finished : callable
+        Returns whether everything expected has come; called after each cycle with a transfer.
+    outstanding : callable
+        Returns a text of what has not come yet, for the error.
+    options : RunOptions
+    """
+
+    sources: dict[str, Iterable[int]]
+    takes: dict[str, Callable[[int, int], None]]
+    finished: Callable[[], bool]
+    outstanding: Callable[[], str]
+    options: RunOptions = RunOptions()
 
 
 class DeadlineError(AssertionError):
@@ -118,6 +188,8 @@ class Bench:
         for name, value in ports.payloads.items():
             self.payloads[self.names.index(name)] = value
         self.words: list[Signal] = []
+        # By source: the word and the bit where its payload starts.
+        self.places: dict[str, tuple[int, int]] = {}
         self.job: Job | None = None
         self.cycles = 0
         self._keeps_state = keeps_state
@@ -178,33 +250,25 @@ class Bench:
         self.handshakes = Signal(2 * len(self.ports))
         bits = [port.valid for port in self.ports] + [port.ready for port in self.ports]
         m.d.comb += self.handshakes.eq(Cat(_gathered(m, chunk) for chunk in in_chunks(bits)))
-        # The first word starts with all control bits. Payloads of the sources fill it and the
-        # other words.
+        # The first word starts with all control bits, from bit 0 up: `ready` of the sinks, then the
+        # gates, then `valid` of the sources. Payloads of the sources fill it and the other words.
         control = [port.ready for port in self.sinks.values()]
         control += [] if self.gates is None else [self.gates]
         control += [port.valid for port in self.sources.values()]
         layout: list[list[Value]] = [control]
-        places: dict[str, tuple[int, int]] = {}
         sizes = [sum(map(len, control))]
         for name, port in self.sources.items():
             payload = Value.cast(port.payload)
             if sizes[-1] + len(payload) > WORD_BITS:
                 layout.append([])
                 sizes.append(0)
-            places[name] = len(layout) - 1, sizes[-1]
+            self.places[name] = len(layout) - 1, sizes[-1]
             layout[-1].append(payload)
             sizes[-1] += len(payload)
         for index, (parts, size) in enumerate(zip(layout, sizes, strict=True)):
             word = Signal(size, name=f"word_{index}")
             m.d.comb += Cat(*parts).eq(word)
             self.words.append(word)
-        self._inputs = Inputs(
-            sinks=tuple(self.sinks),
-            gates=tuple(self.taps) if self.gates is not None else (),
-            sources=places,
-            first_source=len(self.ports) - len(self.sources),
-            words=len(self.words),
-        )
         return m
 
     async def _testbench(self, ctx: SimulatorContext) -> None:
@@ -232,7 +296,7 @@ class Bench:
 
     async def _run_job(self, ctx: SimulatorContext) -> None:
         assert self.job is not None
-        drive = Drive(self._inputs, self.job)
+        drive = _Drive(self, self.job)
         watch = _Watch(self, self.job, ctx)
         observe = self.job.options.observe
         if observe is not None:
@@ -283,6 +347,99 @@ def _gathered(m: Module, bits: Sequence[Value]) -> Signal:
     part.d.comb += gathered.eq(together)
     m.submodules += part
     return gathered
+
+
+@dataclass(slots=True)
+class _Source:
+    """A stream on which the bench sends: the offered payload, and the payloads after it."""
+
+    valid: int
+    word: int
+    at: int
+    payloads: Iterator[int]
+    stalled: Iterator[bool] | None
+    payload: int = 0
+
+
+class _Drive:
+    """The inputs of a run: the values of the bench's words in each cycle."""
+
+    def __init__(self, bench: Bench, job: Job):
+        self.words = [0] * len(bench.words)
+        self.always, self.changing = 0, []
+        taken = [*bench.sinks, *(bench.taps if bench.gates is not None else ())]
+        self.gates = (1 << len(taken)) - (1 << len(bench.sinks))
+        for index, name in enumerate(taken):
+            if stalls := stalls_of(job.options.stalls, name):
+                self.changing.append((1 << index, stalls.cycles(name)))
+            else:
+                self.always |= 1 << index
+        # Sources are the last ones in bit masks of ports.
+        self.first = len(bench.ports) - len(bench.sources)
+        self.sources = []
+        for index, (name, (word, at)) in enumerate(bench.places.items()):
+            stalls = stalls_of(job.options.stalls, name)
+            source = _Source(
+                valid=1 << (len(taken) + index),
+                word=word,
+                at=at,
+                payloads=iter(job.sources.get(name, ())),
+                stalled=stalls.cycles(name) if stalls else None,
+            )
+            self.sources.append(source)
+        self.idle = list(self.sources)
+        self.control = 0
+
+    def next(self, fired: int, held: int) -> int:
+        """Go to the next cycle; return the words that change, as a bit mask.
+
+        Parameters
+        ----------
+        fired : int
+            Bit mask of the ports that transferred in this cycle.
+        held : int
+            Bit mask of the ports whose offered transfer was not taken.
+        """
+        held &= self.gates & self.control
+        control = self.control
+        changed = 0
+        fired >>= self.first
+        while fired:
+            low = fired & -fired
+            source = self.sources[low.bit_length() - 1]
+            fired ^= low
+            control &= ~source.valid
+            self.idle.append(source)
+        if self.idle:
+            control, changed = self._offer(control)
+        control |= self.always
+        for bit, stalled in self.changing:
+            control = control & ~bit if next(stalled) else control | bit
+        control |= held
+        if control != self.control:
+            self.words[0] ^= control ^ self.control
+            self.control = control
+            changed |= 1
+        return changed
+
+    def _offer(self, control: int) -> tuple[int, int]:
+        """Let every idle source offer its next payload, unless it is stalled or has no more."""
+        changed = 0
+        idle = []
+        for source in self.idle:
+            if source.stalled is not None and next(source.stalled):
+                idle.append(source)
+                continue
+            payload = next(source.payloads, None)
+            if payload is None:
+                continue
+            if payload != source.payload:
+                self.words[source.word] ^= (payload ^ source.payload) << source.at
+                source.payload = payload
+                changed |= 1 << source.word
+            control |= source.valid
+        self.idle = idle
+        return control, changed
 
 
 class _Watch:

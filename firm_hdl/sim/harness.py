@@ -19,8 +19,7 @@ from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.model import Message
 from firm_hdl.plan import Payload, Plan
-from firm_hdl.sim.bench import Bench, Ports, in_chunks
-from firm_hdl.sim.job import Job, RunOptions
+from firm_hdl.sim.bench import Bench, Job, Ports, RunOptions, in_chunks
 from firm_hdl.sim.payloads import all_beats, as_packets, beats_of, encoder_of
 from firm_hdl.sim.record import Recorder, RunResult, leaf_name
 from firm_hdl.sim.stalls import StallPlan, stalls_of

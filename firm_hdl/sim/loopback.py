@@ -1,23 +1,23 @@
 """Run converters as functions: packets in, packets out; every stream in between is checked.
 
 `loopback` runs a deserializer connected to a serializer. `decode` and `encode` run one of the two
-alone. Each function builds its circuit and runs it once. To run one circuit many times, use
-:class:`firm_hdl.sim.Harness`.
+alone. Each function builds its circuit and runs it once. The results are those of a harness, and
+unpack as what matters most. To run one circuit many times, use :class:`firm_hdl.sim.Harness`.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import TypeVar
 
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Payload, Plan
+from firm_hdl.sim.bench import RunOptions
 from firm_hdl.sim.harness import Harness
-from firm_hdl.sim.job import RunOptions
 from firm_hdl.sim.payloads import as_packets
 from firm_hdl.sim.record import RunResult, leaf_name
 from firm_hdl.sim.stalls import StallPlan, stalls_of
@@ -29,72 +29,31 @@ __all__ = ["Decoding", "Encoding", "Loopback", "decode", "encode", "loopback"]
 T = TypeVar("T", "Loopback", "Decoding", "Encoding")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Loopback:
+class Loopback(RunResult):
     """The result of a loopback. Unpacks as ``packets, statuses``.
 
-    Attributes
-    ----------
-    packets : list of bytes
-        Packets of the serializer.
-    statuses : list of Status
-        Statuses of the deserializer.
-    sent_statuses : list of Status
-        Statuses of the serializer.
-    packet_errors : list of bool
-        For each packet of the serializer, whether `packet_error` was set.
-    transfers : dict of int to list
-        Payloads of each leaf's stream, by the index of the leaf, over all packets.
-    cycles : int
-        Cycles from the first beat in to the last beat out, both included.
-    beats_in, beats_out : int
-        Beats of the packets in and out.
+    `cycles` are those from the first beat in to the last beat out.
     """
-
-    packets: list[bytes]
-    statuses: list[Status]
-    sent_statuses: list[Status]
-    packet_errors: list[bool]
-    transfers: dict[int, list[Payload]]
-    cycles: int
-    beats_in: int
-    beats_out: int
 
     def __iter__(self) -> Iterator[list[bytes] | list[Status]]:
         return iter((self.packets, self.statuses))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Decoding:
+class Decoding(RunResult):
     """The result of a deserializer. Unpacks as ``transfers, statuses``.
 
-    Attributes are as for :class:`Loopback`; `cycles` ends with the last transfer of a leaf.
+    `cycles` end with the last transfer of a leaf. There are no packets.
     """
-
-    transfers: dict[int, list[Payload]]
-    statuses: list[Status]
-    cycles: int
-    beats_in: int
 
     def __iter__(self) -> Iterator[dict[int, list[Payload]] | list[Status]]:
         return iter((self.transfers, self.statuses))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Encoding:
+class Encoding(RunResult):
     """The result of a serializer. Unpacks as ``packets, statuses``.
 
-    Attributes are as for :class:`Loopback`; `cycles` starts with the first transfer of a leaf.
-    `not_taken` has the number of offered transfers that were never taken, by leaf; other leaves are
-    absent.
+    `cycles` start with the first transfer of a leaf.
     """
-
-    packets: list[bytes]
-    statuses: list[Status]
-    packet_errors: list[bool]
-    cycles: int
-    beats_out: int
-    not_taken: dict[int, int]
 
     def __iter__(self) -> Iterator[list[bytes] | list[Status]]:
         return iter((self.packets, self.statuses))
@@ -148,7 +107,7 @@ def loopback(
     names = [leaf_name(rx.plan, leaf) for leaf in range(len(rx.plan.leaves))]
     gated = any(stalls_of(stalls, name) for name in names)
     harness = Harness(rx, tx, message=message, gated=gated)
-    return _select(Loopback, harness.run_packets(packets, options))
+    return _as(Loopback, harness.run_packets(packets, options))
 
 
 def decode(
@@ -171,7 +130,7 @@ def decode(
     packets = list(as_packets(packets))
     rx = Deserializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
     harness = Harness(rx, None, message=message)
-    return _select(Decoding, harness.run_packets(packets, options))
+    return _as(Decoding, harness.run_packets(packets, options))
 
 
 def encode(
@@ -203,12 +162,11 @@ def encode(
     tx = Serializer(message, wire=wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
     harness = Harness(None, tx, message=message)
     messages = [_as_transfers(tx.plan, message, value) for value in values]
-    return _select(Encoding, harness.run_messages(messages, options))
+    return _as(Encoding, harness.run_messages(messages, options))
 
 
-def _select(kind: type[T], result: RunResult) -> T:
-    """Return the observations of a run that have a field in `kind`."""
-    return kind(**{item.name: getattr(result, item.name) for item in fields(kind)})
+def _as(kind: type[T], result: RunResult) -> T:
+    return kind(**{item.name: getattr(result, item.name) for item in fields(result)})
 
 
 def _as_transfers(plan: Plan, message: Message, value: object) -> Mapping[int, list[Payload]]:

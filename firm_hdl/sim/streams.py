@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Any
 
 from amaranth.hdl import Value
@@ -141,8 +140,8 @@ async def receive(
         left = count - len(payloads)
         return f"{left} of {count} transfers" if left > 0 else ""
 
-    receiver = _Receiver(port, port.payload, count, stalls, deadline, name, domain)
-    await receiver.run(ctx, payloads.append, expected)
+    options = (count, stalls, deadline, name, domain)
+    await _receive(ctx, port, port.payload, payloads.append, expected, *options)
     return payloads
 
 
@@ -198,8 +197,8 @@ async def receive_packets(
         collector.take(beat)
 
     bits = Value.cast(port.payload)
-    receiver = _Receiver(port, bits, count, stalls, deadline, name, domain)
-    await receiver.run(ctx, take, expected)
+    options = (count, stalls, deadline, name, domain)
+    await _receive(ctx, port, bits, take, expected, *options)
     return collector.packets
 
 
@@ -223,50 +222,39 @@ async def receive_statuses(
     )
 
 
-@dataclass(slots=True)
-class _Receiver:
-    """A stream that a testbench receives from.
-
-    Attributes
-    ----------
-    payload : value
-        What to read at each transfer.
-    count, stalls, deadline, name, domain
-        As for :func:`receive`.
-    """
-
-    port: stream.Interface
-    payload: Any
-    count: int
-    stalls: Stalls
-    deadline: int
-    name: str
-    domain: Domain
-
-    async def run(
-        self, ctx: SimulatorContext, take: Callable[[Any], object], expected: Callable[[], str]
-    ) -> None:
-        """Receive until `expected` returns an empty text; call `take` with each payload."""
-        check_integer("The number to receive", self.count)
-        check_integer("deadline=", self.deadline)
-        if self.count < 0:
-            raise ValueError(f"The number to receive must be at least 0, not {self.count}")
-        check_stalls(self.stalls, [self.name])
-        check_domain(ctx, {self.name: self.port}, self.domain, sends=False)
-        stalls = stalls_of(self.stalls, self.name)
-        stalled = stalls.cycles(self.name)
-        ready = quiet = 0
-        while expected():
-            if ready == (stall := next(stalled)):
-                ready = not stall
-                ctx.set(self.port.ready, ready)
-            _, _, valid, payload = await ctx.tick(self.domain).sample(self.port.valid, self.payload)
-            if valid and ready:
-                take(payload)
-                quiet = 0
-            else:
-                quiet += 1
-            if quiet > self.deadline + stalls.longest:
-                what = f"No transfer on stream {self.name!r} in {quiet} cycles"
-                raise DeadlineError(f"{what}; outstanding: {expected()}{what_waits(ctx)}")
-        ctx.set(self.port.ready, 0)
+async def _receive(
+    ctx: SimulatorContext,
+    port: stream.Interface,
+    payload: Any,
+    take: Callable[[Any], object],
+    expected: Callable[[], str],
+    count: int,
+    stalls: Stalls,
+    deadline: int,
+    name: str,
+    domain: Domain,
+) -> None:
+    """Receive until `expected` returns an empty text; call `take` with each value of `payload`."""
+    check_integer("The number to receive", count)
+    check_integer("deadline=", deadline)
+    if count < 0:
+        raise ValueError(f"The number to receive must be at least 0, not {count}")
+    check_stalls(stalls, [name])
+    check_domain(ctx, {name: port}, domain, sends=False)
+    found = stalls_of(stalls, name)
+    stalled = found.cycles(name)
+    ready = quiet = 0
+    while expected():
+        if ready == (stall := next(stalled)):
+            ready = not stall
+            ctx.set(port.ready, ready)
+        _, _, valid, value = await ctx.tick(domain).sample(port.valid, payload)
+        if valid and ready:
+            take(value)
+            quiet = 0
+        else:
+            quiet += 1
+        if quiet > deadline + found.longest:
+            what = f"No transfer on stream {name!r} in {quiet} cycles"
+            raise DeadlineError(f"{what}; outstanding: {expected()}{what_waits(ctx)}")
+    ctx.set(port.ready, 0)

@@ -16,7 +16,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from amaranth.hdl import Cat, Value
+from amaranth.hdl import Cat, Shape, Value
 from amaranth.lib import data, stream
 from amaranth.sim import SimulatorContext
 
@@ -26,6 +26,7 @@ __all__ = [
     "PacketRules",
     "StreamRuleError",
     "StreamRules",
+    "bus_bytes_of",
     "check_packet_stream",
     "check_stream",
     "watch",
@@ -124,9 +125,14 @@ def check_stream(port: Any, name: str) -> None:
 def bus_bytes_of(port: Any) -> int:
     """Return the bytes of a beat of a packet stream, and 0 for any other stream."""
     shape = port.payload.shape()
-    if isinstance(shape, data.StructLayout) and list(shape.members) == ["data", "count", "last"]:
-        return int(shape["data"].shape.length)
-    return 0
+    if not isinstance(shape, data.StructLayout) or list(shape.members) != ["data", "count", "last"]:
+        return 0
+    lanes = shape.members["data"]
+    if not isinstance(lanes, data.ArrayLayout) or Shape.cast(lanes.elem_shape).width != 8:
+        return 0
+    counts = Shape.cast(shape.members["count"]).width
+    fits = counts == lanes.length.bit_length() and Shape.cast(shape.members["last"]).width == 1
+    return lanes.length if fits else 0
 
 
 def check_packet_stream(port: Any, name: str) -> int:

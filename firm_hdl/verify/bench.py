@@ -23,9 +23,9 @@ from firm_hdl.cases.make import Case
 from firm_hdl.cases.stimuli import stimulus_cases
 from firm_hdl.cases.user_oracle import check_wire, judge_of
 from firm_hdl.cases.wide_oracle import WideOracle
-from firm_hdl.export import backend
 from firm_hdl.export.build import BuildError, Built, build, check_size, plan_of
 from firm_hdl.export.manifest import MANIFEST
+from firm_hdl.export.options import Options as BuildOptions
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
 from firm_hdl.jobs.processes import ToolError, made_by, run_tool
 from firm_hdl.jobs.programs import find_ghdl, version_of
@@ -101,7 +101,7 @@ def _packets_and_transfers(
         [test.type],
         folder,
         library=library,
-        options=backend.Options(wire=options.wire, bus_bytes=test.bus_bytes),
+        options=BuildOptions(wire=options.wire, bus_bytes=test.bus_bytes),
         stimuli=lambda *_: [case.packet for case in cases],
     )
     vhdl, entities = _analyse(built[0], ghdl)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from firm_hdl.arguments import (
@@ -19,12 +20,13 @@ from firm_hdl.arguments import (
     positive,
     seconds,
 )
-from firm_hdl.errors import Diagnostic
+from firm_hdl.errors import Diagnostic, UserError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.node import Description
 from firm_hdl.plan import BUS_BYTES
+from firm_hdl.terminal import stage
 from firm_hdl.verify.board.description import described_board
 from firm_hdl.verify.systems.options import (
     CLIENT_NAMES,
@@ -67,17 +69,50 @@ def run_verify(given: argparse.Namespace) -> int:
         and the errors in the others are printed at the end.
     """
     request = _request(given)
+    stage("verify: reads definitions")
     try:
         # Report a type that cannot be used before simulators and oracles are imported.
         work = resolve(request)
         if given.write_node is not None:
             return _write_node(work, given.write_node)
     except UnknownTypeError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
+        raise UserError(str(error)) from None
+    stage("verify: finds tools and libraries")
     from firm_hdl.verify.run import run_workload
 
-    return run_workload(work)
+    if not getattr(given, "as_json", False):
+        return run_workload(work)
+    given.document["errors"] += [each.facts() for each in work.problems.values()]
+    with TemporaryDirectory(prefix="firm-hdl-") as folder:
+        results = request.results or str(Path(folder, "results.jsonl"))
+        status = run_workload(replace(work, request=replace(work.request, results=results)))
+        given.document |= _facts(results)
+    return status
+
+
+def _facts(results: str) -> dict[str, Any]:
+    """Return what is in a file of results, as values of JSON."""
+    from firm_hdl.verify.report.summary import count, outcomes_of
+    from firm_hdl.verify.results.file import read_results
+
+    found = read_results(results)
+    outcomes = outcomes_of([found])
+    counts = count(outcomes)
+    return {
+        "verdict": "failed" if found.failure else counts.verdict,
+        "failure": found.failure or None,
+        "counts": asdict(counts),
+        "tests": [
+            {
+                **asdict(each.test),
+                "same": list(each.test.distros),
+                "verdict": each.verdict.name,
+                "cases": getattr(each.verdict, "cases", 0),
+                "details": list(getattr(each.verdict, "details", ())),
+            }
+            for each in outcomes
+        ],
+    }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -185,6 +220,8 @@ def _request(given: argparse.Namespace) -> Request:
     is_all = given.all or (bool(given.bag) and not given.types)
     if bool(given.types) == is_all and not (given.node and not is_all):
         given.usage_error("name types, or all of them with --all")
+    if getattr(given, "as_json", False) and (given.sut or given.write_node):
+        given.usage_error("--json is for test systems: not with --sut or --write-node")
     if given.report is not None and given.results is None:
         given.usage_error("--report needs --results")
     if given.depends and not (given.path or given.bag):

@@ -14,6 +14,7 @@ import sys
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
+from firm_hdl.errors import UserError
 from firm_hdl.export.build import BuildError
 from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.jobs.processes import unwound_when_terminated
@@ -48,6 +49,8 @@ def run_workload(work: Workload) -> int:
 
     Raises
     ------
+    UserError
+        If a tool, a library or a file cannot be used.
     DefinitionError
         If a definition that is named cannot be used. Without names, the usable types are tested,
         and the errors in the others are printed at the end.
@@ -69,8 +72,7 @@ def run_workload(work: Workload) -> int:
         ProgramMissingError,
         UnknownTypeError,
     ) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
+        raise UserError(str(error)) from None
     for problem in work.problems:
         print(problem, file=sys.stderr)
     return 1 if failure(found, is_named=request.is_named, refused=len(work.problems)) else 0

@@ -1,7 +1,7 @@
-"""Write any Amaranth design as Verilog for every simulator: `convert`. Independent of ROS."""
+"""Write any Amaranth design as Verilog: `convert`. Independent of ROS."""
 
 from __future__ import annotations
 
-from firm_hdl.verilog.yosys import convert, is_out_of_memory, out_of_memory
+from firm_hdl.verilog.convert import convert
 
-__all__ = ["convert", "is_out_of_memory", "out_of_memory"]
+__all__ = ["convert"]

@@ -118,7 +118,7 @@ class Cells:
                 return values.logic(ports["A"]) if ports["A"] else atom("'0'")
             return prefix(_REDUCTIONS[kind], values.unsigned(ports["A"]))
         if kind == "$mux":
-            return call("mux", *(values.logic(trim(ports[port], 1)) for port in "SBA"))
+            return self._chosen_bit(*(trim(ports[port], 1) for port in "SBA"))
         operands = [self._low_bit(ports[port]) for port in ("A", "B") if port in ports]
         if kind == "$not":
             return prefix("not", operands[0])
@@ -131,6 +131,18 @@ class Cells:
         if kind == "$neg":
             return operands[0]
         return call("lsb", self._vector(cell, 1))
+
+    def _chosen_bit(self, select: Spec, b: Spec, a: Spec) -> Expression:
+        """Write a multiplexer of one bit; with a constant, it is an `and` or an `or`."""
+        values, s = self._values, self._values.logic(select)
+        for constant, other, is_on in (
+            (values.constant(a), b, True),
+            (values.constant(b), a, False),
+        ):
+            if constant is not None:
+                s = s if bool(constant) != is_on else prefix("not", s)
+                return infix("or" if constant else "and", s, values.logic(other))
+        return call("mux", s, values.logic(b), values.logic(a))
 
     def _low_bit(self, spec: Spec) -> Expression:
         return self._values.logic(trim(spec, 1)) if spec else atom("'0'")

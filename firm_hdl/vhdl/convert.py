@@ -16,15 +16,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from firm_hdl.rtlil.ir import Cell, Design, Module
-from firm_hdl.rtlil.read import parse
-from firm_hdl.rtlil.simplify import simplified
+from firm_hdl.rtlil.simplify import netlist_of
 from firm_hdl.rtlil.write import rtlil_of
 from firm_hdl.vhdl.declare import fixed_names, part_names
 from firm_hdl.vhdl.module import EntityNames, ModuleWriter
 from firm_hdl.vhdl.names import AMS, Scope
 from firm_hdl.vhdl.package import PACKAGE, PACKAGE_NAME
 
-__all__ = ["EntityNames", "Vhdl", "convert"]
+__all__ = ["EntityNames", "Netlist", "Vhdl", "convert"]
 
 _REFUSED = {
     "$anyconst": "AnyConst",
@@ -67,7 +66,8 @@ def convert(
     Parameters
     ----------
     design : elaboratable or str
-        An Amaranth component or other elaboratable, or RTLIL text of `amaranth.back.rtlil`.
+        An Amaranth component or other elaboratable, RTLIL text of `amaranth.back.rtlil`, or a
+        netlist that was read already.
     name : str
         Name of the outermost entity; the names of inner entities are this name and their path.
     ports, platform
@@ -90,35 +90,68 @@ def convert(
         If the design has a construct that VHDL cannot express, such as `AnyConst`, or the text is
         not RTLIL that Amaranth 0.5 prints.
     """
-    netlist = _read(rtlil_of(design, name=name, ports=ports, platform=platform))
-    prefix = netlist.top.name
-    entities = Scope([PACKAGE_NAME]).give_all(
-        {module: name + module.removeprefix(prefix) for module in netlist.modules}
-    )
-    port_names = _port_names(netlist, entities)
+    netlist = Netlist.of(design, name=name, ports=ports, platform=platform)
+    entities, port_names, top = netlist.entities, netlist.port_names, netlist.design.top
     remark = "".join(f"-- {line}".rstrip() + "\n" for line in header.splitlines())
     files = {f"{PACKAGE_NAME}.vhd": PACKAGE}
     names: dict[str, EntityNames] = {}
-    for module in _bottom_up(netlist):
+    for module in netlist.bottom_up():
         writer = ModuleWriter(
             module,
             entities=entities,
             port_names=port_names,
-            modules=netlist.modules,
-            vectors=module is netlist.top and not unsigned_ports,
+            modules=netlist.design.modules,
+            vectors=module is top and not unsigned_ports,
         )
         files[f"{entities[module.name]}.vhd"] = remark + writer.text()
-        names[module.name] = writer.names()
-    return Vhdl(top=entities[netlist.top.name], files=files, entities=names)
+        names[module.name] = writer.entity_names()
+    return Vhdl(top=entities[top.name], files=files, entities=names)
 
 
-def _read(text: str) -> Design:
-    """Read and simplify a netlist; refuse constructs that VHDL cannot express."""
-    netlist = parse(text)
-    if not netlist.modules:
-        raise ValueError("The design is empty: it has no module with anything in it")
-    _refuse(netlist)
-    return Design(modules={module.name: simplified(module) for module in netlist.modules.values()})
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Netlist:
+    """A design with the names of its modules and their ports, which are the same in all languages.
+
+    Attributes
+    ----------
+    design : Design
+        Simplified.
+    entities : mapping of str to str
+        Identifiers of all modules.
+    port_names : mapping
+        Identifiers of ports, by module and wire.
+    """
+
+    design: Design
+    entities: Mapping[str, str]
+    port_names: Mapping[str, dict[str, str]]
+
+    @classmethod
+    def of(cls, design: Any, *, name: str, ports: Any, platform: Any) -> Netlist:
+        """Read a design; parameters and errors are those of :func:`convert`."""
+        if not isinstance(design, Design):
+            design = netlist_of(rtlil_of(design, name=name, ports=ports, platform=platform))
+        _refuse(design)
+        prefix = design.top.name
+        entities = Scope([PACKAGE_NAME]).give_all(
+            {module: name + module.removeprefix(prefix) for module in design.modules}
+        )
+        return cls(design=design, entities=entities, port_names=_port_names(design, entities))
+
+    def bottom_up(self) -> list[Module]:
+        """Order modules so that each module comes after those that it instantiates."""
+        order: dict[str, Module] = {}
+        stack = [(self.design.top, False)]
+        while stack:
+            module, visited = stack.pop()
+            if visited:
+                order.setdefault(module.name, module)
+                continue
+            stack.append((module, True))
+            for item in reversed(module.items):
+                if isinstance(item, Cell) and item.kind in self.design.modules:
+                    stack.append((self.design.modules[item.kind], False))
+        return list(order.values())
 
 
 def _port_names(netlist: Design, entities: Mapping[str, str]) -> dict[str, dict[str, str]]:
@@ -145,27 +178,11 @@ def _names_of_ports(module: Module, scope: Scope) -> dict[str, str]:
     return {port: given[port] for port in dict.fromkeys([*first, *ports])}
 
 
-def _bottom_up(netlist: Design) -> list[Module]:
-    """Order modules so that each module comes after those that it instantiates."""
-    order: dict[str, Module] = {}
-    stack = [(netlist.top, False)]
-    while stack:
-        module, visited = stack.pop()
-        if visited:
-            order.setdefault(module.name, module)
-            continue
-        stack.append((module, True))
-        for item in reversed(module.items):
-            if isinstance(item, Cell) and item.kind in netlist.modules:
-                stack.append((netlist.modules[item.kind], False))
-    return list(order.values())
-
-
 def _refuse(netlist: Design) -> None:
     for module in netlist.modules.values():
         for item in module.items:
             if isinstance(item, Cell) and item.kind in _REFUSED:
                 raise ValueError(
                     f"module {module.name!r} has {_REFUSED[item.kind]} ({item.kind}), whose value "
-                    "only a formal tool chooses; VHDL has no equivalent"
+                    "only a formal tool chooses; no other tool has an equivalent"
                 )

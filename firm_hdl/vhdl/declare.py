@@ -22,6 +22,7 @@ __all__ = [
     "fixed_names",
     "initial_value",
     "part_names",
+    "remark_of",
 ]
 
 _INTERNAL = ("init", "src", "generator", "top", "enum_base_type")
@@ -299,6 +300,18 @@ def initial_value(wire: Wire | None, width: int) -> str:
     if width == 1:
         return bit_literal(text)
     return literal(text) if "1" in text else "(others => '0')"
+
+
+def remark_of(wire: Wire) -> str:
+    """Describe the sign and the enumeration of a wire; empty if it has neither."""
+    remarks = ["signed"] if wire.signed and wire.width > 1 else []
+    values = [
+        f"{int(key[11:], 2)} {enumeration(wire, key[11:])}"
+        for key in wire.attributes
+        if key.startswith("enum_value_")
+    ]
+    remarks += [", ".join(values)] if 0 < len(values) <= 8 else []
+    return "; ".join(remarks)
 
 
 def enumeration(wire: Wire, bits: str) -> str:

@@ -13,7 +13,7 @@ from firm_hdl.rtlil.evaluate import constant
 from firm_hdl.rtlil.ir import Bits, Cell, Chunk, Slice, Spec, bits_of, spec_width
 from firm_hdl.vhdl.cells import Cells
 from firm_hdl.vhdl.text import Expression, atom, bit_literal, call, chain, infix, literal
-from firm_hdl.vhdl.uses import trim
+from firm_hdl.vhdl.uses import int_parameter, trim
 
 __all__ = ["Declared", "Values", "short_constants"]
 
@@ -167,6 +167,11 @@ class Values:
         if spec_width(spec) == 1:
             return call("to_integer", self.logic(spec))
         return call("to_integer", self.unsigned(spec))
+
+    def edge(self, cell: Cell) -> str:
+        """Write the clock edge of a cell as a condition."""
+        function = "rising_edge" if int_parameter(cell, "CLK_POLARITY") else "falling_edge"
+        return f"{function}({self.logic(cell.ports['CLK']).text})"
 
     def constant(self, spec: Spec, *, signed: bool = False) -> int | None:
         """Return the number of a constant value, else `None`."""

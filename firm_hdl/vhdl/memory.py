@@ -17,18 +17,12 @@ from firm_hdl.vhdl.expr import Declared, Values
 from firm_hdl.vhdl.text import Expression, atom, chain, infix, literal
 from firm_hdl.vhdl.uses import enable_runs, int_parameter
 
-__all__ = ["MemoryText", "edge", "memory_id"]
+__all__ = ["MemoryText", "memory_id"]
 
 
 def memory_id(cell: Cell) -> str:
     """Name the memory that a port belongs to."""
     return str(cell.parameters["MEMID"]).removeprefix("\\")
-
-
-def edge(values: Values, cell: Cell) -> str:
-    """Write the clock edge of a cell as a condition."""
-    function = "rising_edge" if int_parameter(cell, "CLK_POLARITY") else "falling_edge"
-    return f"{function}({values.logic(cell.ports['CLK']).text})"
 
 
 class MemoryText:
@@ -54,41 +48,41 @@ class MemoryText:
         values: Values,
         targets: Mapping[str, Declared],
     ) -> None:
-        self._memory = memory
-        self._name = name
-        self._values = values
-        self._targets = targets
-        self._writes = [cell for cell in ports if cell.kind == "$memwr_v2"]
-        self._reads = [cell for cell in ports if cell.kind == "$memrd_v2"]
-        self._contents = [cell for cell in ports if cell.kind == "$meminit_v2"]
+        self.memory = memory
+        self.name = name
+        self.values = values
+        self.targets = targets
+        self.writes = [cell for cell in ports if cell.kind == "$memwr_v2"]
+        self.reads = [cell for cell in ports if cell.kind == "$memrd_v2"]
+        self.contents = [cell for cell in ports if cell.kind == "$meminit_v2"]
 
     @property
     def type_name(self) -> str:
         """The array type."""
-        return f"{self._name}_array"
+        return f"{self.name}_array"
 
     def declarations(self) -> Iterator[str]:
         """Yield lines for the declarative part."""
-        width = self._memory.width
+        width = self.memory.width
         element = f"unsigned({width - 1} downto 0)"
-        yield f"type {self.type_name} is array (0 to {self._memory.size - 1}) of {element};"
-        words = self._words()
+        yield f"type {self.type_name} is array (0 to {self.memory.size - 1}) of {element};"
+        words = self.words()
         zero = "(others => '0')"
         used = [(i, word) for i, word in enumerate(words) if "1" in word]
         if not used:
-            yield f"signal {self._name} : {self.type_name} := (others => {zero});"
+            yield f"signal {self.name} : {self.type_name} := (others => {zero});"
             return
-        yield f"signal {self._name} : {self.type_name} := ("
+        yield f"signal {self.name} : {self.type_name} := ("
         for i, word in used:
-            last = i == self._memory.size - 1 == len(used) - 1
+            last = i == self.memory.size - 1 == len(used) - 1
             yield f"  {i} => {literal(word)}{'' if last else ','}"
-        if len(used) < self._memory.size:
+        if len(used) < self.memory.size:
             yield f"  others => {zero}"
         yield ");"
 
-    def _words(self) -> list[str]:
-        width, words = self._memory.width, []
-        for cell in self._contents:
+    def words(self) -> list[str]:
+        width, words = self.memory.width, []
+        for cell in self.contents:
             bits = bits_of(cell.ports["DATA"]) or ""
             if "1" not in bits:
                 # A memory of a megabyte is not cut into words.
@@ -98,61 +92,61 @@ class MemoryText:
 
     def processes(self) -> Iterator[str]:
         """Yield lines for the architecture body."""
-        if self._writes:
+        if self.writes:
             clocks = dict.fromkeys(
-                self._values.logic(cell.ports["CLK"]).text for cell in self._writes
+                self.values.logic(cell.ports["CLK"]).text for cell in self.writes
             )
             yield f"process ({', '.join(clocks)})"
             yield "begin"
             edges: dict[str, list[Cell]] = {}
-            for cell in self._writes:
-                edges.setdefault(edge(self._values, cell), []).append(cell)
+            for cell in self.writes:
+                edges.setdefault(self.values.edge(cell), []).append(cell)
             for condition, cells in edges.items():
                 yield f"  if {condition} then"
                 yield from (f"    {line}" for cell in cells for line in self._write(cell))
                 yield "  end if;"
             yield "end process;"
-        for cell in self._reads:
+        for cell in self.reads:
             yield ""
             if int_parameter(cell, "CLK_ENABLE"):
                 yield from self._clocked_read(cell)
             else:
                 yield self._direct_read(cell)
 
-    def _guard(self, address: Spec) -> Expression | None:
+    def guard(self, address: Spec) -> Expression | None:
         """Write the test that an address is in range, unless all addresses are."""
-        if self._memory.size >= 1 << spec_width(address):
+        if self.memory.size >= 1 << spec_width(address):
             return None
-        constant = self._values.constant(address)
+        constant = self.values.constant(address)
         if constant is not None:
-            return None if constant < self._memory.size else atom("false")
-        return infix("<", self._values.unsigned(address), atom(str(self._memory.size)))
+            return None if constant < self.memory.size else atom("false")
+        return infix("<", self.values.unsigned(address), atom(str(self.memory.size)))
 
     def _word(self, address: Spec) -> str:
-        constant = self._values.constant(address)
+        constant = self.values.constant(address)
         # The guard of a constant address out of range is false, but VHDL checks the index anyway.
-        number = "0" if (constant or 0) >= self._memory.size else self._values.number(address).text
-        return f"{self._name}({number})"
+        number = "0" if (constant or 0) >= self.memory.size else self.values.number(address).text
+        return f"{self.name}({number})"
 
     def _read_word(self, address: Spec) -> Expression:
         """Write the value of a word; like every value of one bit, a one-bit word is `std_logic`."""
-        return atom(self._word(address) + ("(0)" if self._memory.width == 1 else ""))
+        return atom(self._word(address) + ("(0)" if self.memory.width == 1 else ""))
 
     def _write(self, cell: Cell) -> Iterator[str]:
         address, data = cell.ports["ADDR"], cell.ports["DATA"]
-        guard = self._guard(address)
+        guard = self.guard(address)
         for bit, low, width in enable_runs(cell.ports["EN"]):
             if isinstance(bit, Bits) and bit.text != "1":
                 continue
-            tests = [] if isinstance(bit, Bits) else [self._values.boolean((bit,))]
+            tests = [] if isinstance(bit, Bits) else [self.values.boolean((bit,))]
             tests += [guard] if guard else []
             part = cut(data, low, width)
             value = (
-                self._values.logic(part) if width == 1 else self._values.unsigned(part, target=True)
+                self.values.logic(part) if width == 1 else self.values.unsigned(part, target=True)
             )
             line = f"{self._word(address)} <= (0 => {value.text});"
-            if self._memory.width > 1:
-                target = Declared(name=self._word(address), width=self._memory.width)
+            if self.memory.width > 1:
+                target = Declared(name=self._word(address), width=self.memory.width)
                 line = f"{target.part(low, width)} <= {value.text};"
             if tests:
                 yield f"if {chain('and', *tests).text} then"
@@ -162,8 +156,8 @@ class MemoryText:
                 yield line
 
     def _direct_read(self, cell: Cell) -> str:
-        target, address = self._target(cell), cell.ports["ADDR"]
-        guard = self._guard(address)
+        target, address = self.target(cell), cell.ports["ADDR"]
+        guard = self.guard(address)
         word = target.accept(self._read_word(address), target.width)
         if guard is None:
             return f"{target.name} <= {word};"
@@ -171,12 +165,12 @@ class MemoryText:
 
     def _clocked_read(self, cell: Cell) -> Iterator[str]:
         enable = cell.ports["EN"]
-        yield f"process ({self._values.logic(cell.ports['CLK']).text})"
+        yield f"process ({self.values.logic(cell.ports['CLK']).text})"
         yield "begin"
-        yield f"  if {edge(self._values, cell)} then"
-        constant = self._values.constant(enable)
+        yield f"  if {self.values.edge(cell)} then"
+        constant = self.values.constant(enable)
         if constant is None:
-            yield f"    if {self._values.boolean(enable).text} then"
+            yield f"    if {self.values.boolean(enable).text} then"
             yield from (f"      {line}" for line in self._read_statements(cell))
             yield "    end if;"
         elif constant:
@@ -185,8 +179,8 @@ class MemoryText:
         yield "end process;"
 
     def _read_statements(self, cell: Cell) -> Iterator[str]:
-        target, address = self._target(cell), cell.ports["ADDR"]
-        guard = self._guard(address)
+        target, address = self.target(cell), cell.ports["ADDR"]
+        guard = self.guard(address)
         line = f"{target.name} <= {target.accept(self._read_word(address), target.width)};"
         if guard is None:
             yield line
@@ -197,12 +191,12 @@ class MemoryText:
             yield f"  {target.name} <= {target.zero};"
             yield "end if;"
         mask = int_parameter(cell, "TRANSPARENCY_MASK")
-        for write in self._writes:
+        for write in self.writes:
             if mask >> int_parameter(write, "PORTID") & 1:
                 yield from self._bypass(cell, write)
 
     def _bypass(self, cell: Cell, write: Cell) -> Iterator[str]:
-        target, values = self._target(cell), self._values
+        target, values = self.target(cell), self.values
         read_at, write_at = cell.ports["ADDR"], write.ports["ADDR"]
         same: list[Expression] = []
         if values.constant(read_at) is not None and values.constant(write_at) is not None:
@@ -226,7 +220,7 @@ class MemoryText:
             else:
                 yield line
 
-    def _target(self, cell: Cell) -> Declared:
+    def target(self, cell: Cell) -> Declared:
         (chunk,) = cell.ports["DATA"]
         assert isinstance(chunk, Slice)
-        return self._targets[chunk.wire]
+        return self.targets[chunk.wire]

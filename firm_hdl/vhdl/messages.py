@@ -15,9 +15,9 @@ from firm_hdl.rtlil.ir import Cell, cut
 from firm_hdl.vhdl.expr import Values
 from firm_hdl.vhdl.uses import int_parameter
 
-__all__ = ["message"]
+__all__ = ["FIELD", "message"]
 
-_FIELD = re.compile(r"\{\{|\}\}|\{(\d+):(?:U|[<>=^].\d*([bodhHc])[-+ ]?#?_?([us]?))\}", re.DOTALL)
+FIELD = re.compile(r"\{\{|\}\}|\{(\d+):(?:U|[<>=^].\d*([bodhHc])[-+ ]?#?_?([us]?))\}", re.DOTALL)
 _FUNCTIONS = {"b": "to_string", "o": "to_ostring", "h": "to_hstring", "H": "to_hstring"}
 
 
@@ -56,7 +56,7 @@ def _report(cell: Cell, values: Values) -> str:
     template = str(cell.parameters.get("FORMAT", "")).removesuffix("\n")
     parts: list[str] = []
     plain, position, low = "", 0, 0
-    for match in _FIELD.finditer(template):
+    for match in FIELD.finditer(template):
         plain += template[position : match.start()]
         position = match.end()
         if match[1] is None:

@@ -22,13 +22,20 @@ _MAX_OPERANDS = 6
 _MAX_REPEATS = 3
 
 
-def graph_of(module: Module, modules: Mapping[str, Module]) -> Graph:
+def graph_of(
+    module: Module,
+    modules: Mapping[str, Module],
+    is_foldable: Callable[[Cell, int], bool] = lambda cell, width: True,
+) -> Graph:
     """Build the graph of a module.
 
     Parameters
     ----------
     modules : mapping of str to Module
         All modules of the design, by name.
+    is_foldable : callable
+        Whether the language can write the operator in an expression, given the bits of its result
+        that are read.
     """
     graph = Graph(
         module=module,
@@ -39,7 +46,7 @@ def graph_of(module: Module, modules: Mapping[str, Module]) -> Graph:
     )
     for run_pass in PASSES:
         graph = run_pass(graph)
-    return graph
+    return _fold(graph, is_foldable)
 
 
 def _drop_division_guards(graph: Graph) -> Graph:
@@ -228,7 +235,7 @@ def _uses_with_registers(graph: Graph) -> Iterator[Use]:
         yield Use(value, True)
 
 
-def _fold(graph: Graph) -> Graph:
+def _fold(graph: Graph, is_foldable: Callable[[Cell, int], bool]) -> Graph:
     """Find the generated wires whose expression can be written where they are read."""
     count: Counter[str] = Counter()
     fixed: set[str] = set()
@@ -246,6 +253,7 @@ def _fold(graph: Graph) -> Graph:
         and output(cell).startswith("$")
         and output(cell) not in graph.name_of
         and output(cell) not in fixed
+        and is_foldable(cell, graph.width[output(cell)])
     }
     folded: dict[str, Cell] = {}
     leaves: dict[str, int] = defaultdict(lambda: 1)
@@ -316,6 +324,5 @@ PASSES: tuple[Callable[[Graph], Graph], ...] = (
     _narrow,
     _adopt_names,
     _pair_registers,
-    _fold,
 )
 """The passes in order: each pass relies on those before it."""

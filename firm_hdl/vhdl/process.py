@@ -133,10 +133,12 @@ class Statements:
         Gives the comment for a choice of a `case`.
     """
 
+    true = "true"
+
     def __init__(self, values: Values, targets: Mapping[str, Declared], comment: Comment) -> None:
-        self._values = values
-        self._targets = targets
-        self._comment = comment
+        self.values = values
+        self.targets = targets
+        self.comment = comment
 
     def body(self, statements: tuple[Statement, ...]) -> Iterator[str]:
         """Yield the lines of statements."""
@@ -144,9 +146,9 @@ class Statements:
             if isinstance(statement, Assign):
                 yield from self.assign(statement)
             elif (plain := self._plain_cases(statement)) is not None:
-                yield from self._case(statement, plain)
+                yield from self.case(statement, plain)
             else:
-                yield from self._if(self.arms(statement))
+                yield from self.if_(self.arms(statement))
 
     def assign(self, statement: Assign) -> Iterator[str]:
         """Yield an assignment, one line for each chunk of its target."""
@@ -154,19 +156,19 @@ class Statements:
         for chunk in statement.target:
             assert isinstance(chunk, Slice)
             part = cut(statement.value, position, chunk.width)
-            target = self._targets[chunk.wire]
-            cell = self._values.folded(part)
+            target = self.targets[chunk.wire]
+            cell = self.values.folded(part)
             if cell is not None and cell.kind == "$mux":
-                yield from self._choose(chunk, cell)
+                yield from self.choose(chunk, cell)
                 position += chunk.width
                 continue
             value = self.value(part, whole=chunk.width == target.width)
             yield f"{target.part(chunk.low, chunk.width)} <= {target.accept(value, chunk.width)};"
             position += chunk.width
 
-    def _choose(self, chunk: Slice, cell: Cell) -> Iterator[str]:
+    def choose(self, chunk: Slice, cell: Cell) -> Iterator[str]:
         """Yield the assignment of a multiplexer as an `if`, which is easier to read."""
-        yield f"if {self._values.boolean(cell.ports['S']).text} then"
+        yield f"if {self.values.boolean(cell.ports['S']).text} then"
         for port, end in (("B", "else"), ("A", "end if;")):
             value = cut(cell.ports[port], 0, chunk.width)
             lines = self.assign(Assign(target=(chunk,), value=value))
@@ -176,11 +178,11 @@ class Statements:
     def value(self, spec: Spec, *, whole: bool = True) -> Expression:
         """Write the value of an assignment. `whole`: the target is a whole signal."""
         if spec_width(spec) == 1:
-            return self._values.logic(spec)
-        constant = self._values.constant(spec)
+            return self.values.logic(spec)
+        constant = self.values.constant(spec)
         if whole and constant == 0:
             return Expression("(others => '0')", "literal")
-        return self._values.unsigned(spec, target=True)
+        return self.values.unsigned(spec, target=True)
 
     def arms(self, switch: Switch) -> list[Arm]:
         """Turn a switch into a chain of conditions."""
@@ -200,7 +202,7 @@ class Statements:
             if chain_ and chain_[-1].body == case.body and chain_[-1].condition is not None:
                 tests.insert(0, chain_.pop().condition or tests[0])
                 tests = list(dict.fromkeys(tests))
-            chain_.append(Arm(chain("or", *tests), case.body))
+            chain_.append(Arm(self.any_of(*tests), case.body))
         while chain_ and not chain_[-1].body:
             chain_.pop()
         if len(chain_) == 1 and chain_[0].condition is not None:
@@ -219,7 +221,7 @@ class Statements:
         chain_ = self.arms(inner)
         if len(chain_) != 1 or chain_[0].condition is None:
             return arm
-        return Arm(chain("and", arm.condition, chain_[0].condition), chain_[0].body)
+        return Arm(self.all_of(arm.condition, chain_[0].condition), chain_[0].body)
 
     def _inverted(self, switch: Switch, body: tuple[Statement, ...]) -> list[Arm] | None:
         """Write an empty `if` with an `else` as an `if` with the inverted condition."""
@@ -235,25 +237,34 @@ class Statements:
             part = pattern[position - chunk.width : position]
             position -= chunk.width
             for low, bits in reversed(_tested_runs(part)):
-                tests.append(self._equal(cut((chunk,), low, len(bits)), bits))
-        return chain("and", *tests) if tests else atom("true")
+                tests.append(self.equal(cut((chunk,), low, len(bits)), bits))
+        return self.all_of(*tests) if tests else atom(self.true)
 
-    def _equal(self, spec: Spec, bits: str) -> Expression:
-        constant = self._values.constant(spec)
+    def all_of(self, *tests: Expression) -> Expression:
+        """Join conditions by `and`."""
+        return chain("and", *tests)
+
+    def any_of(self, *tests: Expression) -> Expression:
+        """Join conditions by `or`."""
+        return chain("or", *tests)
+
+    def equal(self, spec: Spec, bits: str) -> Expression:
+        """Write the test that a value has these bits."""
+        constant = self.values.constant(spec)
         if constant is not None:
             return atom("true" if constant == int(bits, 2) else "false")
         if len(bits) > 1:
-            return infix("=", self._values.unsigned(spec), atom(literal(bits)))
-        cell = self._values.folded(spec)
+            return infix("=", self.values.unsigned(spec), atom(literal(bits)))
+        cell = self.values.folded(spec)
         if cell is not None:
-            return self._values.cells.boolean(cell, inverted=bits == "0")
+            return self.values.cells.boolean(cell, inverted=bits == "0")
         if bits == "1":
-            return self._values.boolean(spec)
-        return infix("=", self._values.logic(spec), atom("'0'"))
+            return self.values.boolean(spec)
+        return infix("=", self.values.logic(spec), atom("'0'"))
 
     def _plain_cases(self, switch: Switch) -> list[tuple[list[str], Case]] | None:
         """Return the choices of an equivalent `case` statement, or `None` if none exists."""
-        if not self._values.is_name(switch.selector) or spec_width(switch.selector) < 2:
+        if not self.values.is_name(switch.selector) or spec_width(switch.selector) < 2:
             return None
         seen: set[str] = set()
         plain: list[tuple[list[str], Case]] = []
@@ -278,14 +289,15 @@ class Statements:
             return None
         return [*plain, ([], Case(patterns=(), body=otherwise))]
 
-    def _case(self, switch: Switch, plain: list[tuple[list[str], Case]]) -> Iterator[str]:
+    def case(self, switch: Switch, plain: list[tuple[list[str], Case]]) -> Iterator[str]:
+        """Yield a choice by the value of a signal."""
         (chunk,) = switch.selector
-        selector = self._values.unsigned(switch.selector).text
+        selector = self.values.unsigned(switch.selector).text
         yield f"case {selector} is"
         for patterns, case in plain:
             choices = " | ".join(literal(p) for p in sorted(patterns)) if patterns else "others"
             remark = " or ".join(
-                filter(None, (self._comment((chunk,), p) for p in sorted(patterns)))
+                filter(None, (self.comment((chunk,), p) for p in sorted(patterns)))
             )
             yield f"  when {choices} =>{f'  -- {remark}' if remark else ''}"
             yield from (f"    {line}" for line in self.body(case.body))
@@ -293,7 +305,8 @@ class Statements:
                 yield "    null;"
         yield "end case;"
 
-    def _if(self, chain_: list[Arm]) -> Iterator[str]:
+    def if_(self, chain_: list[Arm]) -> Iterator[str]:
+        """Yield a chain of conditions."""
         if chain_ and chain_[0].condition is None:
             yield from self.body(chain_[0].body)
             return
@@ -316,7 +329,7 @@ class Statements:
         first = body[0]
         if not isinstance(first, Assign) or len(body) > 2 or not self._is_whole(first):
             return None
-        default = self._accepted(first)
+        default = self.accepted(first)
         if len(body) == 1:
             return [(default, None)]
         switch = body[1]
@@ -328,7 +341,7 @@ class Statements:
                 return None
             inner = arm.body[0] if arm.body else first
             assert isinstance(inner, Assign)
-            value = self._accepted(inner)
+            value = self.accepted(inner)
             pairs.append((value, arm.condition.text if arm.condition else None))
         if not pairs or pairs[-1][1] is not None:
             pairs.append((default, None))
@@ -336,16 +349,17 @@ class Statements:
             del pairs[-2]
         return pairs if len(pairs) <= _MAX_CHOICES else None
 
-    def _accepted(self, statement: Assign) -> str:
+    def accepted(self, statement: Assign) -> str:
+        """Write the value of an assignment to a whole signal."""
         (chunk,) = statement.target
         assert isinstance(chunk, Slice)
-        return self._targets[chunk.wire].accept(self.value(statement.value), chunk.width)
+        return self.targets[chunk.wire].accept(self.value(statement.value), chunk.width)
 
     def _is_whole(self, statement: Statement) -> bool:
         if not isinstance(statement, Assign) or len(statement.target) != 1:
             return False
         (chunk,) = statement.target
-        return isinstance(chunk, Slice) and chunk.width == self._targets[chunk.wire].width
+        return isinstance(chunk, Slice) and chunk.width == self.targets[chunk.wire].width
 
 
 def _tested_runs(pattern: str) -> list[tuple[int, str]]:

@@ -21,14 +21,13 @@ from firm_hdl.rtlil.ir import (
 from firm_hdl.vhdl.declare import Names, initial_value
 from firm_hdl.vhdl.expr import Values
 from firm_hdl.vhdl.graph import Graph
-from firm_hdl.vhdl.memory import edge
 from firm_hdl.vhdl.process import Statements, flatten, merged
 
 __all__ = ["Registers"]
 
 
 @dataclass(frozen=True, slots=True)
-class _Register:
+class Register:
     wire: str
     cell: Cell
     body: tuple[Statement, ...]
@@ -36,7 +35,7 @@ class _Register:
 
 
 @dataclass(frozen=True, slots=True)
-class _Group:
+class Group:
     """Clock and reset of the registers of one process, as text."""
 
     edge: str
@@ -49,10 +48,10 @@ class Registers:
     """Writes the registers of a module."""
 
     def __init__(self, graph: Graph, values: Values, statements: Statements, names: Names) -> None:
-        self._graph = graph
-        self._values = values
-        self._statements = statements
-        self._names = names
+        self.graph = graph
+        self.values = values
+        self.statements = statements
+        self.names = names
 
     def summary(self) -> Iterator[str]:
         """Yield comments on clocks and resets."""
@@ -64,23 +63,23 @@ class Registers:
             yield f"{noun} at {group.edge}, {reset}."
 
     @cached_property
-    def _groups(self) -> dict[_Group, list[_Register]]:
-        groups: dict[_Group, list[_Register]] = defaultdict(list)
-        for wire, cell in self._graph.register_of.items():
-            register = self._register(wire, cell)
+    def _groups(self) -> dict[Group, list[Register]]:
+        groups: dict[Group, list[Register]] = defaultdict(list)
+        for wire, cell in self.graph.register_of.items():
+            register = self.register_of(wire, cell)
             asynchronous = cell.kind == "$adff"
             spec = cell.ports["ARST"] if asynchronous else register.reset
-            group = _Group(
-                edge=edge(self._values, cell),
-                clock=self._values.logic(cell.ports["CLK"]).text,
-                reset=self._values.boolean(spec).text if spec else "",
+            group = Group(
+                edge=self.values.edge(cell),
+                clock=self.values.logic(cell.ports["CLK"]).text,
+                reset=self.values.boolean(spec).text if spec else "",
                 asynchronous=asynchronous,
             )
             groups[group].append(register)
         return groups
 
-    def _register(self, wire: str, cell: Cell) -> _Register:
-        process = self._graph.next_state.get(wire)
+    def register_of(self, wire: str, cell: Cell) -> Register:
+        process = self.graph.next_state.get(wire)
         if process is None:
             whole = (Slice(wire, 0, spec_width(cell.ports["D"])),)
             body: tuple[Statement, ...] = (Assign(target=whole, value=cell.ports["D"]),)
@@ -93,9 +92,9 @@ class Registers:
             body = body[:-1]
         if not body:
             # Assign the register to itself: a process that only resets it would be a latch.
-            whole = (Slice(wire, 0, self._graph.width[wire]),)
+            whole = (Slice(wire, 0, self.graph.width[wire]),)
             body = (Assign(target=whole, value=whole),)
-        return _Register(wire, cell, body, reset)
+        return Register(wire, cell, body, reset)
 
     def _holds(self, statement: Statement, wire: str) -> bool:
         """Return whether a statement is the default of a register: to hold its value."""
@@ -106,7 +105,7 @@ class Registers:
             isinstance(chunk, Slice)
             and chunk.wire == wire
             and chunk.low == 0
-            and chunk.width == self._graph.width[wire]
+            and chunk.width == self.graph.width[wire]
             and len(statement.target) == 1
             and statement.target[0].width == chunk.width
         )
@@ -119,10 +118,10 @@ class Registers:
             return ()
         (chunk,) = statement.selector
         body = statement.cases[0].body
-        if not isinstance(chunk, Slice) or chunk.wire in self._graph.folded or len(body) != 1:
+        if not isinstance(chunk, Slice) or chunk.wire in self.graph.folded or len(body) != 1:
             return ()
         inner = body[0]
-        init = self._graph.module.wires[wire].attributes.get("init")
+        init = self.graph.module.wires[wire].attributes.get("init")
         if not isinstance(inner, Assign) or not isinstance(init, Bits):
             return ()
         return statement.selector if bits_of(inner.value) == init.text else ()
@@ -130,18 +129,32 @@ class Registers:
     def processes(self) -> Iterator[Iterator[str]]:
         """Yield one block for each process."""
         for group, registers in self._groups.items():
-            yield self._process(group, registers)
+            yield self.process(group, registers)
 
-    def _process(self, group: _Group, registers: list[_Register]) -> Iterator[str]:
-        label = self._names.scope.give(f"p_{group.clock.partition('(')[0]}")
-        sensitivity = group.clock
-        if group.asynchronous:
-            cell = registers[0].cell
-            sensitivity += f", {self._values.logic(cell.ports['ARST']).text}"
+    def merged(self, registers: list[Register]) -> tuple[Statement, ...]:
+        """Join the statements of registers."""
         body: tuple[Statement, ...] = ()
         for register in registers:
             body = merged(body, register.body)
-        lines = list(self._statements.body(body))
+        return body
+
+    def start_of(self, register: Register) -> str:
+        """Return the bits that a register has after a reset."""
+        if register.cell.kind == "$adff":
+            reset = register.cell.parameters["ARST_VALUE"]
+        else:
+            reset = self.graph.module.wires[register.wire].attributes["init"]
+        assert isinstance(reset, Bits)
+        return reset.text
+
+    def process(self, group: Group, registers: list[Register]) -> Iterator[str]:
+        label = self.names.scope.give(f"p_{group.clock.partition('(')[0]}")
+        sensitivity = group.clock
+        if group.asynchronous:
+            cell = registers[0].cell
+            sensitivity += f", {self.values.logic(cell.ports['ARST']).text}"
+        body = self.merged(registers)
+        lines = list(self.statements.body(body))
         start = [self._start(register) for register in registers]
         yield f"{label} : process ({sensitivity})"
         yield "begin"
@@ -163,12 +176,12 @@ class Registers:
         yield "  end if;"
         yield "end process;"
 
-    def _start(self, register: _Register) -> str:
-        declared = self._names.declared[register.wire]
-        wire = self._graph.module.wires[register.wire]
+    def _start(self, register: Register) -> str:
+        declared = self.names.declared[register.wire]
+        wire = self.graph.module.wires[register.wire]
         value = initial_value(wire, declared.width)
         if register.cell.kind == "$adff":
             reset = register.cell.parameters["ARST_VALUE"]
             assert isinstance(reset, Bits)
-            value = self._statements.value((reset,)).text
+            value = self.statements.value((reset,)).text
         return f"{declared.name} <= {value};"

@@ -32,6 +32,9 @@ _LEVELS = {
 }
 _ATOM = 9
 
+# Where a line is broken, in VHDL and in Verilog.
+_ENDS = (" and", " or", " xor", " &", ",", " else", " <=", " &&", " ||", " |", " ?", " :", " =")
+
 
 class Expression(NamedTuple):
     """An expression; its outermost `operator` decides whether it needs parentheses."""
@@ -103,16 +106,16 @@ def literal(bits: str) -> str:
     return f'x"{digits}"' if width % 4 == 0 else f'{width}x"{digits}"'
 
 
-def wrap(line: str) -> list[str]:
+def wrap(line: str, remark: str = "--") -> list[str]:
     """Break a line of code that is too long, at spaces outside of strings.
 
     If the line ends with a comment, the comment is written on its own line before the code.
     """
     indent = " " * (len(line) - len(line.lstrip()))
-    code, mark, comment = line.partition("  -- ")
+    code, mark, comment = line.partition(f"  {remark} ")
     if len(line) > COLUMNS and mark and code.strip():
-        return [f"{indent}-- {comment}", *wrap(code)]
-    if not code.strip() or code.lstrip().startswith("--"):
+        return [f"{indent}{remark} {comment}", *wrap(code, remark)]
+    if not code.strip() or code.lstrip().startswith(remark):
         return [line]
     lines: list[str] = []
     while len(line) > COLUMNS and (cut := _break(line, len(indent) + 4)):
@@ -130,6 +133,6 @@ def _break(line: str, start: int) -> int:
             quoted = not quoted
         elif character == " " and not quoted and index > start:
             any_space = index
-            if line[:index].endswith((" and", " or", " xor", " &", ",", " else", " <=")):
+            if line[:index].endswith(_ENDS):
                 best = index
     return best if best > COLUMNS // 2 else any_space

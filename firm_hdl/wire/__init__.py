@@ -1,8 +1,6 @@
 """Wire formats: from a message model to its layout."""
 
 from firm_hdl.model import Wire
-from firm_hdl.wire.cdr import CDR
-from firm_hdl.wire.formats import RULES
 from firm_hdl.wire.layout import (
     ConstantLength,
     Gap,
@@ -18,8 +16,7 @@ from firm_hdl.wire.layout import (
     walk,
 )
 from firm_hdl.wire.refusals import MAX_LEAVES, MAX_LEVELS, refusals, too_large
-from firm_hdl.wire.ros1 import ROS1
-from firm_hdl.wire.rules import WireRules
+from firm_hdl.wire.rules import CDR, ROS1, RULES, WireRules
 
 __all__ = [
     "CDR",

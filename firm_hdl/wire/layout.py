@@ -9,7 +9,7 @@ at run time.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from firm_hdl.errors import DefinitionError
@@ -26,9 +26,8 @@ from firm_hdl.model import (
 )
 from firm_hdl.wire import residues as rs
 from firm_hdl.wire.alignment import LENGTH, OCTET, Alignment
-from firm_hdl.wire.formats import RULES
 from firm_hdl.wire.refusals import refusals
-from firm_hdl.wire.rules import WireRules
+from firm_hdl.wire.rules import RULES, WireRules
 
 __all__ = [
     "ConstantLength",
@@ -194,7 +193,7 @@ def lay_out(message: Message, wire: Wire | None = None) -> Layout:
         message=message,
         rules=rules,
         nodes=nodes,
-        min_bytes=rules.header_bytes + builder.min_bytes(message),
+        min_bytes=rules.header_bytes + builder.unpadded.shortest(message, 0),
     )
 
 
@@ -217,15 +216,15 @@ def _number(primitive: Primitive) -> Primitive:
 class _Builder:
     rules: WireRules
     alignment: Alignment = field(init=False)
-    _min: dict[FieldType, int] = field(default_factory=dict)
+    # Padding depends on the offset. So lower bounds of sizes are those without any.
+    unpadded: Alignment = field(init=False)
 
     def __post_init__(self) -> None:
         self.alignment = Alignment(self.rules)
+        self.unpadded = Alignment(replace(self.rules, max_align=1))
 
     def gap(self, primitive: Primitive, at: int) -> Gap:
         return Gap(align=self.alignment.of(primitive), bytes=self.alignment.pad(primitive, at))
-
-    # Nodes.
 
     def message(self, message: Message, path: Path, at: int) -> tuple[Node, ...]:
         if not message.fields:
@@ -281,28 +280,6 @@ class _Builder:
             path=path,
             length=self.length(kind, at),
             body=self.field(kind.element, (*path, "item"), self.alignment.entry(kind, at)),
-            min_body_bytes=self.min_bytes(kind.element),
+            min_body_bytes=self.unpadded.shortest(kind.element, 0),
             repeated_bytes=self.alignment.repeated(kind.element),
         )
-
-    # Sizes.
-
-    def min_bytes(self, kind: FieldType) -> int:
-        """Return a lower bound of a value's size, without padding, which depends on the offset."""
-        if kind not in self._min:
-            self._min[kind] = self._min_bytes(kind)
-        return self._min[kind]
-
-    def _min_bytes(self, kind: FieldType) -> int:
-        match kind:
-            case Primitive():
-                return kind.bytes
-            case Message(fields=()):
-                return 0 if self.rules.empty_member is None else 1
-            case Message():
-                return sum(self.min_bytes(item.type) for item in kind.fields)
-            case Array():
-                return kind.count * self.min_bytes(kind.element)
-            case String() | Sequence():
-                # A CDR string of length 0 has no NUL.
-                return LENGTH.bytes

@@ -1,12 +1,12 @@
-"""The differences between wire formats, as data."""
+"""The wire formats, as data: their differences in a few numbers."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from firm_hdl.model import Wire
+from firm_hdl.model import EMPTY_MEMBER, Wire
 
-__all__ = ["WireRules"]
+__all__ = ["CDR", "ROS1", "RULES", "WireRules"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,3 +45,33 @@ class WireRules:
     def header_bytes(self) -> int:
         """Bytes of the encapsulation header; alignment counts from its end."""
         return len(self.encapsulation) + self.option_bytes
+
+
+# ROS 1: packed, little-endian. The format is that of genpy and roscpp: a message body without the
+# length that TCPROS puts first.
+ROS1 = WireRules(
+    wire="ros1",
+    encapsulation=b"",
+    option_bytes=0,
+    max_align=1,
+    terminated=False,
+    empty_member=None,
+    max_trailing_bytes=0,
+)
+
+# CDR as ROS 2 middlewares write it: XCDR version 1, little-endian, plain (no parameter list). OMG
+# DDS-XTypes 1.3: clause 7.4.1 defines XCDR1, and 7.6.2.1.2 the encapsulation. It is the identifier
+# ``00 01`` and two bytes of options. The low two bits of the options may hold the number of bytes
+# that pad the packet to a multiple of four. The one octet of an empty message is a rule of rosidl.
+CDR = WireRules(
+    wire="cdr",
+    encapsulation=b"\x00\x01",
+    option_bytes=2,
+    max_align=8,
+    terminated=True,
+    empty_member=EMPTY_MEMBER,
+    max_trailing_bytes=3,
+)
+
+RULES: dict[Wire, WireRules] = {rules.wire: rules for rules in (ROS1, CDR)}
+"""The rules of each wire format, by its name."""

@@ -11,8 +11,6 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from tqdm import tqdm
-
 from firm_hdl.arguments import add_jobs
 from firm_hdl.bench.compare import compared
 from firm_hdl.bench.devices import DEVICES
@@ -23,7 +21,7 @@ from firm_hdl.bench.tools import BenchError, versions
 from firm_hdl.files import write_file
 from firm_hdl.jobs import ProgramMissingError
 from firm_hdl.plan import DIRECTIONS
-from firm_hdl.terminal import printable_streams
+from firm_hdl.terminal import printable_streams, progress, stage
 from lab.bench.estimates import estimates_json
 from lab.bench.page import (
     area_table,
@@ -150,23 +148,22 @@ def _run(name: str, group: Group, jobs: int | None, cache: str | None) -> list[R
     """Run a group; return the results in the order of its tasks."""
     tasks: list[BenchTask] = list(group_tasks(group, cache=cache))
     found: dict[tuple[str, ...], Result] = {}
-    with tqdm(total=len(tasks), unit="converter", desc=name, disable=None) as progress:
+    with progress(name):
         for result in run_tasks(tasks, jobs):
             if group.devices:
-                with progress.external_write_mode():
-                    print(row(result, path=False), flush=True)
+                print(row(result, path=False), flush=True)
             found[_order(result)] = result
-            progress.update()
+            stage(f"{name}: converters", len(found), len(tasks))
     return [found[key] for key in sorted(found)]
 
 
 def _run_parts(jobs: int | None, cache: str | None) -> list[PartResult]:
     """Measure the packet parts; return the results in the order of the page."""
     found: dict[str, PartResult] = {}
-    with tqdm(total=len(PARTS), unit="part", desc="parts", disable=None) as progress:
+    with progress("parts"):
         for result in run_parts(cache=cache, jobs=jobs):
             found[f"{result.part.name}, {result.part.parameters}"] = result
-            progress.update()
+            stage("parts", len(found), len(PARTS))
     return [found[f"{part.name}, {part.parameters}"] for part in PARTS]
 
 

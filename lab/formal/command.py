@@ -10,8 +10,7 @@ from pathlib import Path
 
 from firm_hdl.arguments import positive
 from firm_hdl.equivalence.tools import find_tools
-from firm_hdl.jobs import ProgramMissingError, ToolError
-from firm_hdl.jobs.processes import in_processes
+from firm_hdl.jobs import ProgramMissingError, ToolError, run_each
 from firm_hdl.terminal import printable_streams
 from lab.formal.catalog import Proof
 from lab.formal.run import TIMEOUT, all_proofs, prove, refute
@@ -104,10 +103,10 @@ def _run(
     """Run proofs or twins, and print a line as each ends."""
     answers = {}
     tasks = [(key, (key, timeout)) for key in proofs]
-    for key, answer in in_processes(work, tasks, jobs):
+    for key, answer in run_each(work, tasks, jobs=jobs):
         proof, what = proofs[key], "twin" if work is refute else "proof"
         if isinstance(answer, Exception):
-            print(f"failed     {what}  {key}: {answer}", flush=True)
+            print(f"failed     {what}  {key}: {answer!r}", flush=True)
             continue
         answers[key] = answer
         found = f"{answer.cycles} cycles" if answer.result == "broken" else proof.claim.reach

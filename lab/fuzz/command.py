@@ -10,14 +10,13 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TextIO
 
-from tqdm import tqdm
-
 from firm_hdl.arguments import add_jobs, number_between, positive
 from firm_hdl.errors import DefinitionError
-from firm_hdl.jobs.processes import in_processes, unwound_when_terminated
+from firm_hdl.jobs import run_each
+from firm_hdl.jobs.processes import unwound_when_terminated
 from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.plan import BUS_BYTES
-from firm_hdl.terminal import printable_streams
+from firm_hdl.terminal import printable_streams, progress, stage
 from lab.fuzz.build import find_tools
 from lab.fuzz.circuits import CIRCUITS
 from lab.fuzz.report import HEAD, failure_text, line, summary
@@ -68,22 +67,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(tasks: Sequence[FuzzTask], jobs: int | None, results: TextIO | None) -> list[Outcome]:
     outcomes: list[Outcome] = []
     print(HEAD)
-    with tqdm(total=len(tasks), unit="circuit set", desc="fuzzing", disable=None) as progress:
+    with progress("fuzzing"):
         work = [(task, (task,)) for task in tasks]
-        for task, result in in_processes(run_task, work, 1 if len(tasks) == 1 else jobs):
+        for task, result in run_each(run_task, work, jobs=1 if len(tasks) == 1 else jobs):
             if isinstance(result, Exception):
-                failure = Failure(rule=f"the process failed: {result}")
+                failure = Failure(rule=f"the process failed: {result!r}")
                 wire = message_of(task.type).wire
                 result = Outcome(task=task, wire=wire, failures=(failure,))
             outcomes.append(result)
             if results is not None:
                 results.write(json.dumps(result.as_json()) + "\n")
                 results.flush()
-            with progress.external_write_mode():
-                print(line(result), flush=True)
-                for failure in result.failures:
-                    print(failure_text(result, failure), flush=True)
-            progress.update()
+            print(line(result), flush=True)
+            for failure in result.failures:
+                print(failure_text(result, failure), flush=True)
+            stage("fuzzing: circuit sets", len(outcomes), len(tasks))
     return outcomes
 
 

@@ -88,29 +88,6 @@ def test_interrupt_while_it_starts_is_no_traceback(module):
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "interrupted\n")
 
 
-def test_yosys_without_memory_says_how_much_it_needs(tmp_path):
-    done = run("build", "std_msgs/msg/Bool", memory=3 << 30, cwd=tmp_path)
-    assert done.returncode == 1
-    assert "Yosys ran out of memory; it reserves 4.1 GB of address space" in done.stderr
-    assert "this process may have 3.2 GB (see 'ulimit -v')" in done.stderr
-    assert not INTERNAL_ERROR.search(done.stderr), done.stderr
-    assert len(done.stderr.splitlines()) == 1, done.stderr
-    assert not list(tmp_path.rglob("*.v"))
-
-
-@pytest.mark.thorough  # Yosys is compiled, for half a minute of processor time.
-@pytest.mark.parametrize("home", ["/dev/null", "no room for WebAssembly"])
-def test_without_a_cache_a_type_is_built_all_the_same(tmp_path, monkeypatch, home):
-    if home != "/dev/null":
-        (tmp_path / ".cache" / "firm-hdl" / "programs").mkdir(parents=True)
-        (tmp_path / ".cache" / "firm-hdl" / "programs" / "wasmtime").write_text("a file")
-    monkeypatch.setitem(ENVIRONMENT, "HOME", home if home == "/dev/null" else str(tmp_path))
-    monkeypatch.setitem(ENVIRONMENT, "XDG_CACHE_HOME", "")
-    done = run("build", "std_msgs/msg/Bool", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert ("/dev/null: it is not a folder" in done.stderr) == (home == "/dev/null")
-
-
 # Runs command lines one by one; prints status and output of each, and the memory used so far.
 MEASURED = """
 import contextlib, io, json, resource, sys

@@ -20,34 +20,31 @@ DEFAULTS = {
     "build": (
         ["a/B"],
         {**ORIGINS, **PLAN, "types": ["a/B"], "out": "vhdl_out"}
-        | {"ports": "records", "force": False, "jobs": None},
+        | {"ports": "records", "extras": frozenset(), "force": False, "jobs": None},
     ),
-    "list": ([], ORIGINS),
+    "list": ([], {**ORIGINS, "only_path": False, "as_json": False}),
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
-    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B"}),
-    "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"]}),
+    "plan": (["a/B"], {**ORIGINS, **PLAN, "type": "a/B", "program": False}),
+    "info": (["a/B"], {**ORIGINS, **PLAN, "types": ["a/B"], "as_json": False}),
     "part": (
         ["gate", "a/B"],
         {**ORIGINS, **PLAN, "kind": "gate", "type": "a/B", "name": None, "force": False}
         | {"memory_bytes": 65536, "packets": 64, "when_full": "wait", "out": "parts_out"},
     ),
     "node": (
-        ["info", "n.yaml"],
-        {
-            "action": "info",
-            "file": "n.yaml",
-            "path": [],
-            "out": "node_out",
-            "force": False,
-            "sim": False,
-        }
+        ["run", "n.yaml"],
+        {"action": "run", "file": "n.yaml", "path": []}
         | {"board": "sim", "graph": None, "domain": None, "interface": None}
-        | {"seconds": None, "engine": "auto", "quiet": False},
+        | {"seconds": None, "engine": "auto", "quiet": False, "wave": None},
     ),
+    "doctor": ([], {"as_json": False}),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),
     "hash": ([], {**ORIGINS, "types": [], "all": False}),
     "proto": ([], {**ORIGINS, "types": [], "all": False, "no_quotes": False}),
-    "metrics": ([], {**ORIGINS, "types": [], "all": False, "format": "table", "wire": None}),
+    "metrics": (
+        [],
+        {**ORIGINS, "types": [], "all": False, "format": "table", "wire": None, "as_json": False},
+    ),
     "verify": (
         [],
         {"types": [], "all": False, "distro": None, "path": [], "depends": [], "bag": []}
@@ -56,7 +53,7 @@ DEFAULTS = {
         | {"stalls": True, "broken": True, "share_circuits": None, "vcd": None}
         | {"max_message_bytes": None, "sut": [], "reference": [], "results": None}
         | {"report": None, "executor": "processes", "board": None, "node": None}
-        | {"write_node": None, "engine": "auto", "silent_seconds": None},
+        | {"write_node": None, "engine": "auto", "silent_seconds": None, "as_json": False},
     ),
     "report": (
         ["r.jsonl"],
@@ -96,7 +93,7 @@ DEFAULTS = {
         {**ORIGINS, **PLAN, "types": [], "branches": False, "out": None, "check": None},
     ),
 }
-INTERNAL = ("run", "refuse", "usage_error", "default_of", "version")
+INTERNAL = ("command", "run", "refuse", "usage_error", "default_of", "version")
 
 
 def parsed(*words):
@@ -113,6 +110,15 @@ def is_refused(*words):
     with pytest.raises(SystemExit) as caught:
         _parser(words).parse_args(words)
     return caught.value.code == 2
+
+
+def test_other_actions_of_a_node_have_these_defaults():
+    info = {"action": "info", "file": "n.yaml", "path": []}
+    assert parsed("node", "info", "n.yaml") == {**info, "as_json": False, "members": False}
+    assert parsed("node", "new", "n.yaml") == {**info, "action": "new", "language": None}
+    build = {**info, "action": "build", "out": "node_out", "force": False}
+    assert parsed("node", "build", "n.yaml") == {**build, "sim": False, "engine": "auto"}
+    assert is_refused("node", "info", "n.yaml", "--board", "sim")
 
 
 def test_every_command_is_in_the_table():

@@ -11,12 +11,13 @@ import pytest
 from firm_hdl.cli import main
 from firm_hdl.equivalence import command as prove_command
 from firm_hdl.errors import DefinitionError, Diagnostic
-from firm_hdl.export.backend import Options
 from firm_hdl.export.build import BuildError
+from firm_hdl.export.options import Options
 from firm_hdl.export.top import DIRECTIONS
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.names import TypeName
-from firm_hdl.plan import build_plan, from_yaml
+from firm_hdl.plan import build_plan, to_yaml
+from firm_hdl.plan.compare import head_of
 from firm_hdl.wire import lay_out
 from tests.frontend.recordings import make_recording
 from tests.frontend.workspace import make_files
@@ -62,12 +63,13 @@ def test_plans_are_made_with_all_options(workdir, capsys, left_out):
     ]
     known = {"bus_bytes": 8, **options}
     assert main(["plan", "p/A", "--path", ".", *words]) == 0
-    plan = from_yaml(capsys.readouterr().out)
-    assert plan == planned("p/A", **known)
+    plan = planned("p/A", **known)
+    assert capsys.readouterr().out == to_yaml(plan)
     assert (plan.wire, plan.bus_bytes) == (known.get("wire", "cdr"), known["bus_bytes"])
     assert main(["info", "p/A", "--path", ".", *words]) == 0
     head = capsys.readouterr().out.splitlines()[0]
-    assert f"on {plan.wire}, {8 * plan.bus_bytes}-bit bus: {len(plan.steps)} step" in head
+    wire = {"ros1": "ROS 1", "cdr": "CDR, as in ROS 2"}[plan.wire]
+    assert head == f"p/msg/A ({wire}) on a bus of {plan.bus_bytes} bytes per clock cycle"
 
 
 def test_build_is_given_all_options(workdir, monkeypatch):
@@ -89,8 +91,8 @@ def proof_tasks(monkeypatch, arguments, status=0):
     """The tasks that `prove` starts."""
     seen = {}
 
-    def run_proofs(tasks, jobs, *, bar):
-        seen.update(tasks=list(tasks), jobs=jobs, bar=bar)
+    def run_proofs(tasks, jobs, *, with_summary):
+        seen.update(tasks=list(tasks), jobs=jobs, with_summary=with_summary)
         return status
 
     monkeypatch.setattr(prove_command, "run_proofs", run_proofs)
@@ -102,7 +104,7 @@ def proof_tasks(monkeypatch, arguments, status=0):
 def test_prove_is_given_all_options_and_gives_its_status(workdir, monkeypatch, status):
     words = [*WORDS, "--timeout", "7", "--jobs", "3", "--distro", "iron"]
     seen = proof_tasks(monkeypatch, ["p/A", "p/srv/S", "--path", ".", *words], status)
-    assert seen["jobs"] == 3 and seen["bar"] is False
+    assert seen["jobs"] == 3 and seen["with_summary"] is False
     names = ["p/msg/A", "p/srv/S_Request", "p/srv/S_Response", "p/srv/S_Event"]
     assert [(t.name, t.direction) for t in seen["tasks"]] == [
         (name, direction) for name in names for direction in DIRECTIONS
@@ -118,7 +120,7 @@ def test_prove_all_is_of_all_messages(workdir, monkeypatch, distro):
     make_files(workdir / "src", FILES)
     words = ["--path", "src", "--depends", "more", "--distro", distro]
     seen = proof_tasks(monkeypatch, ["--all", *words])
-    assert seen["bar"] is True
+    assert seen["with_summary"] is True
     library = Library(distro, ["src"])
     names = [name for name in library.interfaces() if name[:2] == "p/" and "Bad" not in name]
     messages = {each.name for name in names for each in library.interface(name).messages}
@@ -152,7 +154,7 @@ def test_sizes_of_messages_have_32_bits(workdir, capsys, number, is_good):
     words = ["plan", "p/A", "--path", ".", "--max-message-bytes", number]
     if is_good:
         assert main(words) == 0
-        assert from_yaml(capsys.readouterr().out).max_message_bytes == int(number, 0)
+        assert head_of(capsys.readouterr().out).max_message_bytes == int(number, 0)
     elif number == "1":
         assert main(words) == 1
     else:
@@ -163,7 +165,7 @@ def test_sizes_of_messages_have_32_bits(workdir, capsys, number, is_good):
 def test_plans_of_several_messages_are_kept_apart(workdir, capsys):
     assert main(["plan", "p/srv/S", "--path", "."]) == 0
     texts = capsys.readouterr().out.split("---\n")
-    assert [from_yaml(text).message for text in texts] == [
+    assert [head_of(text).message for text in texts] == [
         "p/srv/S_Request", "p/srv/S_Response", "p/srv/S_Event"
     ]  # fmt: skip
 
@@ -187,6 +189,8 @@ def test_sums_are_of_noetic_unless_a_recording_says_otherwise(workdir, capsys):
         (OSError(28, "No space left on device"), 1, "error: No space left on device\n"),
         (PermissionError(13, "Permission denied", "y"), 1, "error: 'y': Permission denied\n"),
         (OSError("odd"), 1, "error: odd\n"),
+        (MemoryError(), 1, "error: there is not enough memory for this\n"),
+        (RecursionError("deep"), 1, "error: the input nests too deeply\n"),
         (KeyboardInterrupt(), 130, "interrupted\n"),
     ],
 )

@@ -50,7 +50,7 @@ def test_status_says_whether_all_are_equal(
     monkeypatch.setattr(
         command, "run_tasks", lambda tasks, jobs: iter([(TASK, EQUAL), (TASK, attempt)])
     )
-    assert command.run_proofs([TASK, TASK], 1, bar=True) == status
+    assert command.run_proofs([TASK, TASK], 1, with_summary=True) == status
     out = capsys.readouterr().out
     assert f"{'2 equal' if status == 0 else '1 equal, 1 ' + attempt.result}" in out
     if attempt is UNEQUAL:
@@ -64,7 +64,7 @@ def test_a_line_names_the_converter_and_what_is_wrong(
     results = [(TASK, EQUAL), (other, UNEQUAL), (other, Attempt(proof=None, problem="no\nGHDL"))]
     monkeypatch.setattr(command, "find_tools", lambda: Tools(ghdl=(), yosys=()))
     monkeypatch.setattr(command, "run_tasks", lambda tasks, jobs: iter(results))
-    assert command.run_proofs([TASK] * 3, 1, bar=False) == 1
+    assert command.run_proofs([TASK] * 3, 1, with_summary=False) == 1
     assert capsys.readouterr().out.splitlines() == [
         "equal        1.0 s  a/msg/B serializer (lyrical, 8 bytes)",
         "unequal      2.0 s  a/msg/B deserializer (lyrical, ros1, 4 bytes)",
@@ -168,13 +168,15 @@ def test_options_of_the_command_reach_every_proof(
 ) -> None:
     asked: list[tuple[object, ...]] = []
     monkeypatch.setattr(
-        command, "run_proofs", lambda tasks, jobs, bar: asked.append((tasks, jobs, bar)) or 0
+        command,
+        "run_proofs",
+        lambda tasks, jobs, with_summary: asked.append((tasks, jobs, with_summary)) or 0,
     )
     options = ["--distro", "jazzy", "--path", str(tmp_path), "--bus-bytes", "4"]
     options += ["--max-message-bytes", "999", "--timeout", "7", "--jobs", "3"]
     assert main(["prove", "std_msgs/msg/Bool", "std_msgs/Int8", *options]) == 0
-    [(tasks, jobs, bar)] = asked
-    assert (jobs, bar) == (3, False)
+    [(tasks, jobs, with_summary)] = asked
+    assert (jobs, with_summary) == (3, False)
     assert tasks == [
         ProofTask(
             distro="jazzy",

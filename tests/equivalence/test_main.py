@@ -8,7 +8,7 @@ from firm_hdl.equivalence import __main__ as command
 def test_both_converters_of_covering_types_of_both_wires_are_proved(monkeypatch):
     seen = []
 
-    def run(tasks, jobs, *, bar):
+    def run(tasks, jobs, *, with_summary):
         seen.extend(tasks)
         assert jobs == 3
         return 1

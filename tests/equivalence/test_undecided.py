@@ -100,7 +100,7 @@ def test_summary_and_status_count_each_kind_of_result(
     monkeypatch.setattr(
         command, "run_tasks", lambda tasks, jobs: iter([(TASK, a) for a in attempts])
     )
-    assert command.run_proofs([TASK] * len(attempts), 1, bar=True) == status
+    assert command.run_proofs([TASK] * len(attempts), 1, with_summary=True) == status
     out = capsys.readouterr().out.splitlines()
     head = f"{len(results)} converters of {len({*results} and {1})} types: {message}"
     assert head in out

@@ -112,6 +112,8 @@ QUOTES = [
     ("tutorial/first-converter.md", "vhdl", "vhdl_motor/motor.vhd"),
     ("tutorial/robot.md", "yaml", "nodes/wheels/wheels.yaml"),
     ("tutorial/robot.md", "py", "nodes/wheels/wheels.py"),
+    ("howto/accelerator.md", "vhdl", "nodes/wheels_vhdl/wheels.vhd"),
+    ("howto/floats.md", "vhdl", "nodes/wheels_vhdl/float_fixed_pkg.vhd"),
     ("howto/systemverilog.md", "systemverilog", "sv_motor/motor.sv"),
     ("howto/verilog.md", "verilog", "cocotb_motor/motor.v"),
     ("howto/cocotb.md", "py", "cocotb_motor/test_motor.py"),

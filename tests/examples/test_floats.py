@@ -1,22 +1,22 @@
-"""The VHDL of the page "Floats and fixed point", in GHDL."""
+"""The functions of `float_fixed_pkg`, in GHDL."""
 
 from __future__ import annotations
 
 import math
-import re
 import struct
 import subprocess
 
-from tests.examples.test_examples import DOCS
+from tests.examples.test_examples import ROOT
 
+PACKAGE = ROOT / "examples" / "nodes" / "wheels_vhdl" / "float_fixed_pkg.vhd"
 BENCH = """\
 library ieee;
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
+use work.float_fixed_pkg.all;
 entity bench is
 end entity;
 architecture sim of bench is
-{function}
 begin
   process begin
 {checks}
@@ -25,24 +25,40 @@ begin
   end process;
 end architecture;
 """
-VALUES = (0.0, -0.0, 1.0, -1.0, 0.3, -2.75, 2**-20, 2**-21, 5e-324, 524_287.5, -524_287.0)
-TOO_LARGE = (524_288.0, -1e300, math.inf, -math.inf)
+VALUES = (
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    0.3,
+    -2.75,
+    2**-16,
+    2**-17,
+    5e-324,
+    32_767.5,
+    -32_767.0,
+    32_767.9,
+)
+TOO_LARGE = (32_768.0, 1e300, math.inf, -32_768.0, -1e300, -math.inf)
 
 
-def test_vhdl_makes_fixed_numbers_of_floats(ghdl, tmp_path):
-    page = (DOCS / "howto" / "floats.md").read_text(encoding="utf-8")
-    (function,) = re.findall(r"^```vhdl\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
-    expected = {value: math.trunc(value * 2**20) for value in VALUES}
-    expected |= {value: int(math.copysign(2**39 - 1, value)) for value in TOO_LARGE}
+def test_vhdl_makes_fixed_numbers_of_floats_and_back(ghdl, tmp_path):
+    expected = {value: math.trunc(value * 2**16) for value in VALUES}
+    expected |= {value: 2**31 - 1 if value > 0 else -(2**31) for value in TOO_LARGE}
     expected[math.nan] = 0
-    checks = [
-        f'    assert from_float64(x"{struct.pack(">d", value).hex()}") = '
-        f'signed\'(x"{fixed & (1 << 40) - 1:010x}") report "{value}" severity failure;'
-        for value, fixed in expected.items()
-    ]
-    text = BENCH.format(function=function, checks="\n".join(checks))
-    (tmp_path / "bench.vhd").write_text(text)
-    for action in (["-a", "--std=08", "bench.vhd"], ["--elab-run", "--std=08", "bench"]):
+    checks = []
+    for value, fixed in expected.items():
+        text = f'signed\'(x"{fixed & 0xFFFF_FFFF:08x}")'
+        for call, want in (
+            (f'to_fixed(x"{struct.pack(">d", value).hex()}")', text),
+            (f"to_float({text})", f'x"{struct.pack(">d", fixed / 2**16).hex()}"'),
+        ):
+            checks.append(f'    assert {call} = {want} report "{value}" severity failure;')
+    (tmp_path / "bench.vhd").write_text(BENCH.format(checks="\n".join(checks)))
+    for action in (
+        ["-a", "--std=08", str(PACKAGE), "bench.vhd"],
+        ["--elab-run", "--std=08", "bench", "--ieee-asserts=disable-at-0"],
+    ):
         done = subprocess.run(
             [ghdl, *action], cwd=tmp_path, capture_output=True, text=True, check=False
         )

@@ -131,6 +131,21 @@ def test_motors_obey_good_packets_alone(example_copies):
     fails(example_copies, "cocotb_motor", "PASS=0 FAIL=1")
 
 
+def test_wheels_get_their_speeds(example_copies):
+    """In `make test`, those in VHDL run, and node tests compile the others."""
+    need("GHDL", GHDL)
+    folders = ["wheels_vhdl"]
+    if THOROUGH:
+        need("Verilator", shutil.which("verilator"))
+        folders.append("wheels_sv")
+    for folder in folders:
+        passes(example_copies, f"nodes/{folder}", "PASS: 6 commands")
+        file = example_copies / "nodes" / folder / ("wheels.vhd", "wheels.sv")["sv" in folder]
+        text = file.read_text()
+        file.write_text(text.replace("forward - ", "forward + "))
+        fails(example_copies, f"nodes/{folder}", "left ")
+
+
 # It is as the motor in VHDL, with circuits that take longer.
 @pytest.mark.thorough
 def test_clouds_with_headers_of_scans_are_good_ones_alone(example_copies):
@@ -152,6 +167,8 @@ def test_naive_filter_lets_damaged_scans_pass(tmp_path, capsys):
 def test_make_examples_runs_every_one():
     text = (ROOT / "Makefile").read_text()
     (named,) = re.findall(r"^HDL_EXAMPLES := (.*)$", text, re.M)
-    assert sorted(named.split()) == sorted(path.parent.name for path in EXAMPLES.glob("*/Makefile"))
+    found = [*EXAMPLES.glob("*/Makefile"), *EXAMPLES.glob("nodes/wheels_*/Makefile")]
+    names = [path.parent.relative_to(EXAMPLES).as_posix() for path in found]
+    assert sorted(named.split()) == sorted(names)
     page = (ROOT / "docs" / "howto" / "index.md").read_text()
     assert all(f"`examples/{name}`" in page for name in named.split())

@@ -6,7 +6,6 @@ from __future__ import annotations
 import io
 import json
 import math
-import random
 import re
 import struct
 import sys
@@ -15,8 +14,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from amaranth.hdl import Module, Signal, signed
-from amaranth.sim import Simulator
 from rosbags.typesys import Stores, get_typestore
 
 import firm_hdl
@@ -72,10 +69,21 @@ def read(packets, name, kind):
     return [STORE.deserialize_cdr(p, kind) for topic, p in packets if topic == name]
 
 
-# The circuit is large. Those of the next tests have topics, too, and tests/node has the rest.
-@pytest.mark.thorough
 def test_wheels(start):
     made, topics = start("wheels/wheels.yaml")
+    graph = made.graph
+    graph.say(topics["/cmd_vel"], twist(1.0, 0.0), twist(0.5, -1.0), twist(-1e9, math.nan))
+    names = ("/wheel/left", "/wheel/right")
+    assert run_until(made, lambda: len(graph.got) == 6, 60)
+    speeds = [[e.data for e in read(graph.got, n, "std_msgs/msg/Float64")] for n in names]
+    assert speeds == [[1.0, 0.75, -32768.0], [1.0, 0.25, -32768.0]]
+    assert not made.counters.dropped
+
+
+# The circuit is large. Those of the next tests have topics, too, and tests/node has the rest.
+@pytest.mark.thorough
+def test_odometry(start):
+    made, topics = start("odometry/odometry.yaml")
     graph = made.graph
     graph.say(topics["/cmd_vel"], twist(1.0, 0.0))
 
@@ -104,7 +112,7 @@ def test_wheels(start):
 def check_odometry(messages):
     """Check each message by the one before it: the way that the robot made in this time."""
     times = [each.header.stamp.sec + each.header.stamp.nanosec / 1e9 for each in messages]
-    assert times == sorted(times) and abs(times[-1] - time.time()) < 5
+    assert times == sorted(times) and abs(times[-1] - time.time()) < 60
     yaws = []
     for each in messages:
         assert (each.header.frame_id, each.child_frame_id) == ("odom", "base")
@@ -162,63 +170,6 @@ def test_echo_of_ros_1(start):
     made.graph.say(topics["/heard"], *texts)
     assert run_until(made, lambda: len(made.graph.got) == len(texts), 60)
     assert made.graph.got == [("/said", text) for text in texts]
-
-
-def floats(count):
-    rng = random.Random(count)
-    yield from (
-        0.0,
-        -0.0,
-        1.0,
-        -1.0,
-        0.5,
-        2**-20,
-        2**-21,
-        -(2**-20),
-        524_287.0,
-        3e5,
-        1e-300,
-        5e-324,
-    )
-    for _ in range(count):
-        yield math.ldexp(rng.uniform(-1, 1), rng.randrange(-25, 19))
-
-
-def test_floats_and_fixed_numbers(modules, monkeypatch):
-    monkeypatch.syspath_prepend(EXAMPLES / "wheels")
-    import wheels
-
-    m = Module()
-    number, fixed = Signal(64), Signal(signed(wheels.BITS))
-    found, back = wheels.from_float64(m, number), wheels.to_float64(m, fixed)
-    seen = []
-
-    async def testbench(ctx):
-        for value in floats(200):
-            ctx.set(number, struct.unpack("<Q", struct.pack("<d", value))[0])
-            await ctx.delay(1e-9)
-            whole = ctx.get(found)
-            # Cut towards 0, and exact on the way back.
-            assert whole == math.trunc(value * 2**20), value
-            ctx.set(fixed, whole)
-            await ctx.delay(1e-9)
-            bits = ctx.get(back)
-            assert struct.unpack("<d", struct.pack("<Q", bits))[0] == whole / 2**20, value
-            seen.append(whole)
-        for value, want in (
-            (math.inf, 2**39 - 1),
-            (-math.inf, 1 - 2**39),
-            (math.nan, 0),
-            (1e9, 2**39 - 1),
-        ):
-            ctx.set(number, struct.unpack("<Q", struct.pack("<d", value))[0])
-            await ctx.delay(1e-9)
-            assert ctx.get(found) == want
-
-    simulator = Simulator(m)
-    simulator.add_testbench(testbench)
-    simulator.run()
-    assert len(set(seen)) > 100
 
 
 def test_the_tutorial(tmp_path, monkeypatch, capsys, modules):

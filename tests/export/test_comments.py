@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.export.build import build
+from firm_hdl.export.options import Options
 from firm_hdl.frontend import Library
+from tests.export.conftest import EVERYTHING
 from tests.export.systemverilog.hdl import slang
 
 ORDERS = (
@@ -48,7 +50,12 @@ def folder(tmp_path_factory) -> Path:
     text += 'string S="-- synthesis translate_off"\nInner[2] inner\n'
     (messages / "Orders.msg").write_text(text, encoding="utf-8", newline="")
     (messages / "Inner.msg").write_text(f"{COMMENTS}float64 x # pragma translate_off\n")
-    (built,) = build(["my_msgs/msg/Orders"], here / "out", library=Library("lyrical", [here]))
+    (built,) = build(
+        ["my_msgs/msg/Orders"],
+        here / "out",
+        library=Library("lyrical", [here]),
+        options=Options(extras=EVERYTHING),
+    )
     return built.folder
 
 

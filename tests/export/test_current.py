@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-import importlib
-
 import pytest
 
 import firm_hdl
-from firm_hdl.export.backend import BackEnd, Converters, Output
 from tests.export.test_build import build_one, tree
 
-# The package's face has a function of this name.
-build_module = importlib.import_module("firm_hdl.export.build")
 
-
-@pytest.mark.usefixtures("quick")
+@pytest.mark.usefixtures("hollow")
 def test_current_folder_is_left_alone(tmp_path):
     first = build_one(tmp_path)
     assert not first.was_current
-    (first.folder / "plan.yaml").touch()
+    (first.folder / "vhdl" / "files.txt").touch()
     times = {path: path.stat().st_mtime_ns for path in first.folder.iterdir()}
     again = build_one(tmp_path)
     assert again.was_current
@@ -27,11 +21,11 @@ def test_current_folder_is_left_alone(tmp_path):
     assert not build_one(tmp_path, force=True).was_current
 
 
-@pytest.mark.usefixtures("quick")
+@pytest.mark.usefixtures("hollow")
 def test_a_folder_that_lacks_a_file_or_has_another_manifest_is_written_again(tmp_path):
     built = build_one(tmp_path)
     before = tree(built.folder)
-    (built.folder / "plan.yaml").unlink()
+    (built.folder / "vhdl" / "files.txt").unlink()
     assert not build_one(tmp_path).was_current
     manifest = built.folder / "manifest.json"
     manifest.write_text(manifest.read_text().replace(firm_hdl.__version__, "0.0.9"))
@@ -39,13 +33,20 @@ def test_a_folder_that_lacks_a_file_or_has_another_manifest_is_written_again(tmp
     assert tree(built.folder) == before
 
 
-@pytest.mark.usefixtures("quick")
+@pytest.mark.usefixtures("hollow")
 def test_other_options_and_definitions_are_built_anew(tmp_path, monkeypatch):
     build_one(tmp_path)
     assert not build_one(tmp_path, max_message_bytes=1000).was_current
     assert build_one(tmp_path, max_message_bytes=1000).was_current
     assert not build_one(tmp_path, max_message_bytes=1000, ports="flat").was_current
     assert not build_one(tmp_path, max_message_bytes=1000).was_current
+    with_plan = {"max_message_bytes": 1000, "extras": frozenset({"documents"})}
+    built = build_one(tmp_path, **with_plan)
+    assert not built.was_current and build_one(tmp_path, **with_plan).was_current
+    assert (built.folder / "plan.yaml").exists()
+    # What is not asked for any more goes.
+    assert not build_one(tmp_path, max_message_bytes=1000).was_current
+    assert not (built.folder / "plan.yaml").exists()
     assert build_one(tmp_path, bus_bytes=4).folder.name == "std_msgs_msg_Bool_cdr_4"
     monkeypatch.setattr(firm_hdl, "__version__", "9.9.9")
     assert not build_one(tmp_path, max_message_bytes=1000).was_current
@@ -54,37 +55,9 @@ def test_other_options_and_definitions_are_built_anew(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     "packets", [[b"\1", b"\2\4"], [b"\1\2", b"\3"], [b"\2\3", b"\1"], [b"\1\2\3"], [b"\1"], []]
 )
-@pytest.mark.usefixtures("quick")
+@pytest.mark.usefixtures("hollow")
 def test_other_packets_of_the_bench_are_built_anew(tmp_path, packets):
     # The same bytes in other packets, or in another order, are other packets.
     build_one(tmp_path, stimuli=lambda message, plan: [b"\1", b"\2\3"])
     assert build_one(tmp_path, stimuli=lambda message, plan: [b"\1", b"\2\3"]).was_current
     assert not build_one(tmp_path, stimuli=lambda message, plan: packets).was_current
-
-
-class Notes(BackEnd):
-    """A new back end."""
-
-    name = "notes"
-
-    def write(self, converters: Converters) -> Output:
-        return Output(files={f"{converters.name}_notes.txt": f"{converters.message.name}\n"})
-
-
-@pytest.mark.usefixtures("quick")
-def test_a_new_back_end_writes_its_files_to_folders_that_were_current(tmp_path, monkeypatch):
-    before = build_module.BACK_ENDS
-    built = build_one(tmp_path)
-    monkeypatch.setattr(build_module, "BACK_ENDS", (*before, Notes()))
-    assert not build_one(tmp_path).was_current
-    notes = built.folder / f"{built.folder.name}_notes.txt"
-    assert notes.read_text() == "std_msgs/msg/Bool\n"
-    assert build_one(tmp_path).was_current
-    monkeypatch.setattr(build_module, "BACK_ENDS", before)
-    assert not build_one(tmp_path).was_current
-    assert not notes.exists()
-
-
-def test_back_ends_have_names_of_their_own():
-    names = [each.name for each in build_module.BACK_ENDS]
-    assert len({*names}) == len(names) and all(names)

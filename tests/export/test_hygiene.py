@@ -11,11 +11,12 @@ from typing import Any
 
 import pytest
 
-from firm_hdl.export.backend import Options
 from firm_hdl.export.build import build
+from firm_hdl.export.options import Options
 from firm_hdl.jobs.programs import ProgramMissingError, find_yosys
 from firm_hdl.names.keywords import KEYWORDS, VERILOG, VHDL
 from tests.depth import by_depth
+from tests.export.conftest import EVERYTHING
 from tests.tools import need
 
 # Strings and nested sequences; a fixed size, so a record view; arrays in a record view.
@@ -32,10 +33,10 @@ TYPES = by_depth(
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory) -> list[Path]:
     out = tmp_path_factory.mktemp("built")
-    made = build(TYPES, out)
+    made = build(TYPES, out, options=Options(extras=EVERYTHING))
     # On a narrow bus, a string needs no alignment, but a sequence does.
     for bus_bytes in by_depth((4,), (1, 4)):
-        options = Options(bus_bytes=bus_bytes)
+        options = Options(bus_bytes=bus_bytes, extras=EVERYTHING)
         types = by_depth(
             ["sensor_msgs/msg/ChannelFloat32"], ["std_msgs/msg/String", "sensor_msgs/msg/Joy"]
         )
@@ -155,7 +156,9 @@ def test_verilog_linters_find_nothing(folders):
 @pytest.mark.usefixtures("verilator")
 def test_each_waiver_is_needed_and_has_its_reason(folders, tmp_path):
     # Several lengths in one bus word need one-hot choices.
-    wide = build(["sensor_msgs/msg/JointState"], tmp_path, options=Options(bus_bytes=16))
+    wide = build(
+        ["sensor_msgs/msg/JointState"], tmp_path, options=Options(bus_bytes=16, extras=EVERYTHING)
+    )
     folders = [*folders, *(each.folder for each in wide)]
     rules = re.findall(r"-rule (\w+)", (folders[0] / "waivers.vlt").read_text())
     assert len(set(rules)) == 4
@@ -193,7 +196,7 @@ def test_no_module_has_the_name_of_an_entity_in_another_case(folders):
         assert not {name.lower() for name in modules} & {name.lower() for name in entities}
 
 
-_OF_VERILOG = r"^ *(?:input|output|wire|reg|function)\b(?: signed)?(?: \[\d+:\d+\])? (\w+) ?[;=\[]"
+_OF_VERILOG = r"^ *(?:input|output|wire|reg|function)\b(?: wire)?(?: \[\d+:\d+\])? (\w+) ?[;=,\[]"
 
 
 def declared(folder: Path) -> set[str]:

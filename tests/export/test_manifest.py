@@ -6,14 +6,20 @@ import json
 
 import pytest
 
-from firm_hdl.export.manifest import inputs_of, make_manifest, to_json
+from firm_hdl.export import verilog
+from firm_hdl.export.backend import Converters
+from firm_hdl.export.manifest import converter_sections, to_json
+from firm_hdl.export.options import Options
 from firm_hdl.export.top import DIRECTIONS, leaf_names, ports_of
-from firm_hdl.export.verilog.backend import section
 from firm_hdl.model import PRIMITIVES, Constant, Field, Message, String
 from firm_hdl.plan import build_plan
 from firm_hdl.plan.timing import timing
+from firm_hdl.rtlil import netlist_of
 from firm_hdl.wire import lay_out
+from tests.export.conftest import EVERYTHING
 from tests.frontend.workspace import library
+
+EMPTY = "attribute \\top 1\nmodule \\top\nend\n"
 
 TEXTS = {
     # Every level has a field `x` and a field `item`, each with its own comment.
@@ -25,13 +31,18 @@ TEXTS = {
 }
 
 
-def manifest_of(message: Message, files: dict[str, str] | None = None, **options):
+def manifest_of(message: Message, **options):
+    """Return a plan, and the sections on its converters."""
     plan = build_plan(lay_out(message), **{"bus_bytes": 8, **options})
-    inputs = inputs_of(message, plan, distro="lyrical", definition_sha256="0" * 64)
-    sections = {"converters": section(plan, "f")}
-    return plan, make_manifest(
-        message, plan, timing(plan), inputs=inputs, files=files or {}, sections=sections
+    made = Converters(
+        message=message,
+        plan=plan,
+        name="f",
+        options=Options(extras=EVERYTHING),
+        circuits=dict.fromkeys(DIRECTIONS, netlist_of(EMPTY)),
     )
+    sections = converter_sections(message, plan, timing(plan))
+    return plan, {**sections, **verilog.write(made).manifest}
 
 
 def test_comments_and_units_are_those_of_the_very_field(tmp_path):

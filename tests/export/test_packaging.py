@@ -15,11 +15,13 @@ import yaml
 
 from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.build import build
-from firm_hdl.export.packaging import packaging
-from firm_hdl.export.packaging.fusesoc import cores
+from firm_hdl.export.options import Options
+from firm_hdl.export.packaging import cores, packaging
 from tests.depth import by_depth
+from tests.export.conftest import EVERYTHING
 from tests.tools import need
 
+ALL = Options(extras=EVERYTHING)
 TYPES = ("geometry_msgs/msg/Vector3", "std_msgs/msg/Header")
 VECTOR, HEADER = "geometry_msgs_msg_vector3_cdr_8", "std_msgs_msg_header_cdr_8"
 
@@ -28,7 +30,7 @@ VECTOR, HEADER = "geometry_msgs_msg_vector3_cdr_8", "std_msgs_msg_header_cdr_8"
 def folders(tmp_path_factory) -> list[Path]:
     """Folders of two types, one of them with a record view."""
     out = tmp_path_factory.mktemp("built")
-    return [each.folder / "vhdl" for each in build(TYPES, out, stimuli=stimuli)]
+    return [each.folder / "vhdl" for each in build(TYPES, out, stimuli=stimuli, options=ALL)]
 
 
 def manifest_of(folder: Path) -> dict[str, Any]:
@@ -342,7 +344,7 @@ def test_vunit_runs_the_benches(folders, tmp_path):
 
 @pytest.mark.usefixtures("hollow")
 def test_without_packets_nothing_runs_them(tmp_path):
-    [built] = build(TYPES[:1], tmp_path)
+    [built] = build(TYPES[:1], tmp_path, options=ALL)
     names = {path.name for path in (built.folder / "vhdl").iterdir()}
     assert "vunit_run.py" not in names and "stimuli.txt" not in names
     assert "sim" not in (built.folder / "vhdl" / f"{VECTOR}.core").read_text()

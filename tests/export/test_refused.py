@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from firm_hdl.export.backend import Options
 from firm_hdl.export.build import BuildError, build
+from firm_hdl.export.options import Options
 from firm_hdl.frontend import Library
 from tests.export.test_build import build_one, tree
 from tests.frontend.workspace import library
@@ -24,7 +24,7 @@ def test_folders_that_differ_only_in_case_are_refused(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.usefixtures("quick")
+@pytest.mark.usefixtures("hollow")
 def test_the_folder_of_another_type_is_refused_and_an_empty_one_is_not(tmp_path):
     folder = tmp_path / "lyrical" / "std_msgs_msg_Bool_cdr_8"
     folder.mkdir(parents=True)
@@ -48,7 +48,7 @@ SIMILAR = {
 }
 
 
-@pytest.mark.usefixtures("quick")
+@pytest.mark.usefixtures("hollow")
 def test_flat_ports_need_no_packages_so_none_of_them_meet(tmp_path):
     similar = library(tmp_path / "src", SIMILAR, "ros1")
     with pytest.raises(BuildError, match="the VHDL package 'p_inner_ros1_8_pkg' would be"):
@@ -57,7 +57,7 @@ def test_flat_ports_need_no_packages_so_none_of_them_meet(tmp_path):
     assert len(build(["p/A", "p/B"], tmp_path / "out", library=similar, options=flat)) == 2
 
 
-@pytest.mark.usefixtures("quick")
+@pytest.mark.usefixtures("hollow")
 @pytest.mark.parametrize(
     ("folder", "message", "fails"),
     [

@@ -5,12 +5,15 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.errors import DefinitionError, Source
-from firm_hdl.frontend.parse import parse_message
+from firm_hdl.frontend.parse import read_message
 from firm_hdl.frontend.syntax import ConstantSyntax, FieldSyntax
 
 
 def parse(text, dialect):
-    return parse_message(Source(name="T.msg", text=text), dialect)
+    syntax, diagnostics = read_message(Source(name="T.msg", text=text), dialect)
+    if diagnostics:
+        raise DefinitionError(diagnostics)
+    return syntax
 
 
 def member(line, dialect):
@@ -38,17 +41,3 @@ def refused(line, dialect):
     assert diagnostic.span is not None
     assert 0 <= diagnostic.span.start <= diagnostic.span.end <= len(line) + 1
     return diagnostic.message
-
-
-def spelled(line, dialect="ros2"):
-    """Return the text of a field's type, with all properties in the tree."""
-    type_ = field(line, dialect).type
-    text = f"{type_.package}/" * (type_.package is not None) + type_.name
-    if type_.bound:
-        text += f"<={type_.bound.value}"
-    match type_.array:
-        case "array":
-            text += f"[{type_.size.value}]"
-        case "sequence":
-            text += f"[<={type_.size.value}]" if type_.size else "[]"
-    return text

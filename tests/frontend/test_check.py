@@ -64,22 +64,3 @@ def test_the_name_of_a_file_is_called_that_of_its_kind(tmp_path, distro, rule, k
     (wrong,) = error.value.diagnostics
     assert wrong.message == f"'do-it' is not a legal {what} name: {rule}"
     assert (wrong.span.line, wrong.span.column) == (1, 1)
-
-
-@pytest.mark.parametrize(
-    ("text", "column"),
-    {
-        "int8[] x [1x, 2]": 11,
-        "int8[] x [ 1x , 2]": 12,
-        "int8[] x [3, 1x, 2]": 14,
-        "int8[] x [3,1x]": 13,
-        "int8[] x [1x]": 11,
-        "int8 x 1x": 8,
-    }.items(),
-)
-def test_error_in_a_list_marks_the_wrong_item_alone(tmp_path, text, column):
-    with pytest.raises(DefinitionError) as error:
-        load(tmp_path, text)
-    lines = str(error.value).splitlines()
-    assert lines[0].endswith(f"T.msg:1:{column}: error: '1x' is not an integer")
-    assert lines[2] == " " * (column - 1) + "^^"

@@ -8,23 +8,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firm_hdl.errors import Source
-from firm_hdl.frontend.comments import condense
-from firm_hdl.frontend.parse import parse_message
+from firm_hdl.frontend.parse import condense
+
+from .reading import parse
 
 
 def comments(text, dialect="ros2"):
-    syntax = parse_message(Source(name="T.msg", text=text), dialect)
+    syntax = parse(text, dialect)
     return syntax.comment, {m.name.text: m.comment for m in syntax.members}
 
 
 def test_head_comment_ends_at_the_first_line_without_a_comment():
     text = "# one\n#  two\n\n# of a\nint32 a\n"
     assert comments(text) == ("one\n two", {"a": "of a"})
-
-
-def test_comment_right_above_the_first_field_is_the_head():
-    assert comments("# head\nint32 a\n") == ("head", {"a": ""})
 
 
 def test_comment_above_and_after_are_joined():
@@ -53,10 +49,6 @@ def test_comment_may_begin_right_after_a_name(type_, dialect):
     assert comments(text, dialect) == ("", {"a": "of a", "b": "", "c": "of c"})
 
 
-def test_comment_survives_empty_lines():
-    assert comments("\n# above\n\n\nint32 a\n")[1] == {"a": "above"}
-
-
 def test_indented_comment_continues_the_definition_before_it():
     text = "int32 a # one\n        # two\n# of b\nint32 b\n"
     assert comments(text)[1] == {"a": "one\ntwo", "b": "of b"}
@@ -68,10 +60,6 @@ def test_indented_comment_before_all_definitions_is_dropped():
 
 def test_comment_after_the_last_definition_is_dropped():
     assert comments("int32 a\n# lost\n") == ("", {"a": ""})
-
-
-def test_constants_have_comments_too():
-    assert comments("\n# of A\nint32 A=1 # one\nint32 b\n")[1] == {"A": "of A\none", "b": ""}
 
 
 def test_hash_in_a_ros1_text_constant_is_no_comment():

@@ -11,7 +11,6 @@ from rosbags.typesys import get_typestore
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS, Library
-from firm_hdl.identity import proto
 from firm_hdl.verify.ros2_wheels import RELEASES
 
 from .structure import field_descriptions
@@ -51,31 +50,6 @@ def test_every_type_is_what_rosbags_has(distro):
         for name, (constants, fields) in theirs.items()
     }
     assert len(ours) > 140
-
-
-def test_texts_are_in_the_dialect_of_the_distribution():
-    ros1 = Library("noetic").source("std_msgs/Header")
-    assert ros1.name == "<rosbags noetic>/std_msgs/msg/Header.msg"
-    assert ros1.text == "uint32 seq\ntime stamp\nstring frame_id\n"
-    ros2 = Library("lyrical").source("std_msgs/Header")
-    assert ros2.name == "<rosbags lyrical>/std_msgs/msg/Header.msg"
-    assert ros2.text == "builtin_interfaces/Time stamp\nstring frame_id\n"
-
-
-def test_bounds_and_constants_are_kept():
-    library = Library("lyrical")
-    assert "float64[<=3] dimensions\n" in library.source("shape_msgs/SolidPrimitive").text
-    assert "uint8 PRISM=5\n" in library.source("shape_msgs/SolidPrimitive").text
-    assert "string<=256 node_name\n" in library.source("rmw_dds_common/NodeEntitiesInfo").text
-    text = Library("noetic").source("bond/Constants").text
-    assert "float32 DEAD_PUBLISH_PERIOD=0.05\n" in text
-    assert "string DISABLE_HEARTBEAT_TIMEOUT_PARAM=/bond_disable_heartbeat_timeout\n" in text
-
-
-def test_empty_messages_have_no_fields():
-    for distro in DISTROS:
-        assert Library(distro).message("std_msgs/Empty").fields == ()
-        assert Library(distro).source("std_msgs/Empty").text == ""
 
 
 DEFAULTS = {
@@ -135,11 +109,6 @@ def test_definitions_are_those_that_the_release_published(release):
     assert compared >= 78
     # Every field with a default was compared.
     assert {name.split("/")[0] for name in DEFAULTS} <= {path.name for path in share.iterdir()}
-
-
-def test_an_example_has_the_defaults():
-    assert "w: 1.0" in proto(Library("lyrical").message("geometry_msgs/msg/PoseStamped"))
-    assert "w: 0.0" in proto(Library("noetic").message("geometry_msgs/PoseStamped"))
 
 
 def missing_packages() -> dict[str, set[str]]:

@@ -6,9 +6,8 @@ from typing import ClassVar
 
 import pytest
 
-import firm_hdl.frontend
 from firm_hdl.errors import DefinitionError, Source
-from firm_hdl.frontend import DISTROS, Library, load_message
+from firm_hdl.frontend import DISTROS, Library
 from firm_hdl.frontend.sources import Definition
 from firm_hdl.model import Action, Message, Service
 
@@ -20,13 +19,6 @@ def refused(function, *args):
         function(*args)
     assert all(d.span is None for d in error.value.diagnostics)
     return str(error.value)
-
-
-def test_public_names():
-    assert firm_hdl.frontend.__all__ == [
-        "DEFAULT_DISTRO", "DISTROS", "Distro", "Library", "RecordingOrigin", "all_names",
-        "load_all", "load_message", "open_library", "show",
-    ]  # fmt: skip
 
 
 def test_names_are_canonical_and_sorted(tmp_path):
@@ -44,22 +36,9 @@ def test_builtin_types_of_ros1_are_not_listed():
     assert not any("builtin_interfaces" in name for name in Library("noetic").names())
 
 
-@pytest.mark.parametrize("name", ["sensor_msgs/Imu", "sensor_msgs/msg/Imu"])
-def test_both_forms_of_a_name_are_taken(name):
-    assert Library("noetic").message(name).name == "sensor_msgs/Imu"
-    assert Library("humble").message(name).name == "sensor_msgs/msg/Imu"
-    assert load_message(name).name == "sensor_msgs/msg/Imu"
-    assert load_message(name, distro="noetic").name == "sensor_msgs/Imu"
-
-
-def test_load_message_takes_paths(tmp_path):
-    make_files(tmp_path, {"p/msg/A.msg": "int8 x"})
-    assert load_message("p/A", distro="foxy", paths=[tmp_path]).fields[0].name == "x"
-
-
 @pytest.mark.parametrize(
     "name",
-    ["", "/", "/b", "a/", "a//b", "/a/b", "a/b/", "a/b/c", "a/b/c/d", "/msg/b", "a/msg/", "time"],
+    ["", "/", "/b", "a/", "a//b", "/a/b", "a/b/", "a/b/c", "a/b/c/d", "/msg/b", "a/msg/"],
 )
 def test_malformed_names(name):
     assert refused(Library("noetic").message, name) == (
@@ -96,53 +75,6 @@ def test_unknown_names_get_suggestions(name, message):
     assert refused(lib.message, name) == f"error: {message}"
     assert refused(lib.source, name) == f"error: {message}"
     assert refused(lib.definition_hash, name) == f"error: {message}"
-
-
-def test_types_of_the_same_name_are_suggested_with_similar_packages_first(tmp_path):
-    files = {f"{package}/msg/Gizmo.msg": "" for package in ("a_msgs", "own_msgs", "owl_msgs", "z")}
-    lib = Library("lyrical", [make_files(tmp_path, files)], origins=())
-    assert refused(lib.message, "own_msg/Gizmo") == (
-        "error: package 'own_msg' is not found; did you mean 'own_msgs/msg/Gizmo', "
-        "'owl_msgs/msg/Gizmo' or 'a_msgs/msg/Gizmo'?"
-    )
-    # Similar names are suggested only if no package has the name itself.
-    assert refused(lib.message, "z/Gizmos") == (
-        "error: type 'Gizmos' is not defined in package 'z'; did you mean 'z/msg/Gizmo'?"
-    )
-    assert refused(lib.message, "a_msg/Gizmos") == (
-        "error: package 'a_msg' is not found; did you mean 'a_msgs/msg/Gizmo', "
-        "'own_msgs/msg/Gizmo' or 'owl_msgs/msg/Gizmo'?"
-    )
-
-
-def test_similar_names_are_those_of_the_package_that_was_named(tmp_path):
-    names = ("a_msgs/msg/Gizmos", "z_msgs/msg/Gizmo", "own/msg/Else", "owner/msg/Gadget")
-    files = {f"{name}.msg": "" for name in names}
-    lib = Library("lyrical", [make_files(tmp_path, files)], origins=())
-    # Another package has the very name, so a similar name in a similar package is none.
-    assert refused(lib.message, "a_msg/Gizmo") == (
-        "error: package 'a_msg' is not found; did you mean 'z_msgs/msg/Gizmo'?"
-    )
-    # The package is right, so those with a similar name are not searched.
-    assert refused(lib.message, "own/Gadgets") == (
-        "error: type 'Gadgets' is not defined in package 'own'"
-    )
-    assert refused(lib.message, "owne/Gadgets").endswith("did you mean 'owner/msg/Gadget'?")
-
-
-def test_services_do_not_crowd_out_the_messages_that_a_field_may_mean(tmp_path):
-    services = {f"p/srv/{name}.srv": "---" for name in ("Begnia", "Begnib", "Begnic")}
-    files = {**services, "p/msg/Benign.msg": "", "p/msg/A.msg": "Begni a"}
-    with pytest.raises(DefinitionError, match="in package 'p'; did you mean 'Benign'"):
-        Library("lyrical", [make_files(tmp_path, files)]).message("p/A")
-
-
-def test_fields_get_suggestions_of_messages_alone(tmp_path):
-    files = {"p/msg/Begin.msg": "", "p/srv/Begin.srv": "---", "p/msg/A.msg": "Begni a"}
-    with pytest.raises(DefinitionError) as error:
-        Library("lyrical", [make_files(tmp_path, files)]).message("p/A")
-    (wrong,) = error.value.diagnostics
-    assert wrong.message.endswith("in package 'p'; did you mean 'Begin'?")
 
 
 def test_long_and_invisible_names_are_shown_shortened_and_escaped():
@@ -207,26 +139,6 @@ def test_a_service_is_no_message(tmp_path, name):
     assert refused(Library("noetic", [tmp_path]).message, name) == (
         "error: 'p/B' is a service, not a message; did you mean 'p/BRequest' or 'p/BResponse'?"
     )
-
-
-def test_an_action_is_no_message(tmp_path):
-    make_files(tmp_path, {"p/action/C.action": "---\n---"})
-    assert refused(Library("lyrical", [tmp_path]).message, "p/C") == (
-        "error: 'p/action/C' is an action, not a message; "
-        "did you mean 'p/action/C_Goal', 'p/action/C_Result' or 'p/action/C_Feedback'?"
-    )
-
-
-def test_services_and_actions_are_suggested(tmp_path):
-    lib = Library("lyrical", [make_files(tmp_path, {"p/srv/Begin.srv": "---"})])
-    assert refused(lib.interface, "p/Begni") == (
-        "error: type 'Begni' is not defined in package 'p'; did you mean 'p/srv/Begin'?"
-    )
-    # A field cannot be a service or an action.
-    make_files(tmp_path, {"p/msg/A.msg": "Begni a"})
-    with pytest.raises(DefinitionError) as error:
-        Library("lyrical", [tmp_path]).message("p/A")
-    assert error.value.diagnostics[0].message == "type 'Begni' is not defined in package 'p'"
 
 
 def test_messages_of_services_are_the_same_objects_however_asked_for(tmp_path):
@@ -335,50 +247,6 @@ def test_hash_changes_with_every_text_that_matters_and_no_other(tmp_path):
         changed = files | {name: files[name] + "\n# more"}
         after = library(tmp_path / str(number), changed).definition_hash("p/A")
         assert (after == before) is (name == "p/E")
-
-
-def test_hash_changes_with_the_text_of_an_included_file(tmp_path):
-    def digest(size, tail=""):
-        folder = tmp_path / f"{size}{len(tail)}"
-        idl = "module p { module msg { struct T { sequence<long, N> x; }; }; };"
-        sizes = f"module p {{ module msg {{ const long N = {size}; }}; }};"
-        make_files(
-            folder,
-            {
-                "p/msg/T.idl": f'#include "p/msg/sizes.idl"\n{idl}',
-                "p/msg/sizes.idl": sizes + tail,
-            },
-        )
-        return Library("lyrical", [folder]).definition_hash("p/msg/T")
-
-    assert digest(3) != digest(4)
-    assert digest(3) == digest(3, " // The same.")
-
-
-def test_hash_changes_with_a_constant_whose_value_is_in_an_included_file(tmp_path):
-    def digest(value):
-        folder = tmp_path / str(value)
-        idl = (
-            "module p { module msg { module T_Constants { const long SIZE = N; };"
-            " struct T { long x; }; }; };"
-        )
-        sizes = f"module p {{ module msg {{ const long N = {value}; }}; }};"
-        files = {"p/msg/T.idl": f'#include "p/msg/sizes.idl"\n{idl}', "p/msg/sizes.idl": sizes}
-        made = Library("lyrical", [make_files(folder, files)])
-        assert [each.value for each in made.message("p/msg/T").constants] == [value]
-        return made.definition_hash("p/msg/T")
-
-    assert digest(3) != digest(4)
-
-
-def test_hash_changes_with_a_default_whose_value_is_in_an_included_file(tmp_path):
-    def digest(value):
-        idl = "module p { module msg { struct T { @default(value=N) long x; }; }; };"
-        sizes = f"module p {{ module msg {{ const long N = {value}; }}; }};"
-        files = {"p/msg/T.idl": f'#include "p/msg/sizes.idl"\n{idl}', "p/msg/sizes.idl": sizes}
-        return Library("lyrical", [make_files(tmp_path / str(value), files)]).definition_hash("p/T")
-
-    assert digest(3) != digest(4)
 
 
 def test_hash_tells_where_a_text_ends(tmp_path):

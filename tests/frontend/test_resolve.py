@@ -8,9 +8,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend import Library, interfaces
+from firm_hdl.frontend import Library
 from firm_hdl.model import PRIMITIVES, Array, Constant, Field, Message, Sequence, String
-from tests.depth import by_depth
 from tests.steps import calls_at_most
 from tests.strategies import definitions
 
@@ -63,32 +62,6 @@ def test_a_whole_message(tmp_path):
     assert (message.fields[2].span.line, message.fields[2].span.column) == (6, 6)
 
 
-def test_ros1_times_are_messages_of_two_fields(tmp_path):
-    message = load(tmp_path, "time t\nduration[2] d", "ros1")
-    time_, duration = message.fields[0].type, message.fields[1].type.element
-    assert (time_.name, time_.package) == ("time", "")
-    assert [(f.name, str(f.type)) for f in time_.fields] == [
-        ("secs", "uint32"),
-        ("nsecs", "uint32"),
-    ]
-    assert [(f.name, str(f.type)) for f in duration.fields] == [
-        ("secs", "int32"),
-        ("nsecs", "int32"),
-    ]
-
-
-def test_ros1_header_is_that_of_std_msgs_but_an_array_is_the_packages_own(tmp_path):
-    text = "Header a\nHeader[] b\nHeader[2] c\np/Header d\nstd_msgs/Header e"
-    message = load(tmp_path, text, "ros1", Header="int8 mine")
-    kinds = [getattr(f.type, "element", f.type).name for f in message.fields]
-    assert kinds == ["std_msgs/Header", "p/Header", "p/Header", "p/Header", "std_msgs/Header"]
-
-
-def test_ros2_header_is_the_packages_own(tmp_path):
-    message = load(tmp_path, "Header a\nstd_msgs/Header b", Header="int8 mine")
-    assert [f.type.name for f in message.fields] == ["p/msg/Header", "std_msgs/msg/Header"]
-
-
 def test_ros1_lets_a_constant_be_declared_again_and_called_like_a_field(tmp_path):
     message = load(tmp_path, "int8 a\nint8 a=1\nint8 a=2\n", "ros1")
     assert [c.value for c in message.constants] == [1, 2]
@@ -111,59 +84,11 @@ def test_limits_of_values_are_legal(tmp_path):
                 load(tmp_path, beyond, dialect)
 
 
-def test_arrays_of_any_size_cost_nothing(tmp_path):
-    with calls_at_most(600_000):
-        message = load(tmp_path, "uint8[2147483648] a\nU[2147483648] b", U="float64[8388608] x")
-        assert [f.type.count for f in message.fields] == [1 << 31, 1 << 31]
-        assert message.is_fixed_size
-
-
-def test_same_type_is_the_same_object(tmp_path):
-    lib = library(tmp_path, {"p/T": "U a\nV b", "p/U": "W w", "p/V": "p/W w", "p/W": ""})
-    message = lib.message("p/T")
-    u, v = (f.type for f in message.fields)
-    assert u.fields[0].type is v.fields[0].type is lib.message("p/msg/W")
-    assert lib.message("p/T") is message
-
-
-def test_every_text_is_read_once_however_often_it_is_used(tmp_path, monkeypatch):
-    # A lattice: 2**40 ways from top to bottom.
-    files = {f"p/T{i}": f"T{i + 1} a\nT{i + 1}[] b\n" for i in range(40)} | {"p/T40": "int8 x"}
-    lib = library(tmp_path, files)
-    read = []
-    original = interfaces.read_message
-    monkeypatch.setattr(
-        interfaces, "read_message", lambda s, d: [read.append(s.name), original(s, d)][1]
-    )
-    assert lib.message("p/T0").depth == 41
-    assert len(read) == len(set(read)) == 41
-
-
 def test_mistakes_in_a_lattice_are_reported_once(tmp_path):
     files = {f"p/T{i}": f"T{i + 1} a\nT{i + 1}[] b\n" for i in range(40)} | {"p/T40": "int8 X"}
     with pytest.raises(DefinitionError) as error:
         library(tmp_path, files).message("p/T0")
     assert len(error.value.diagnostics) == 1
-
-
-def test_depth_is_not_limited_by_recursion(tmp_path):
-    depth = by_depth(1500, 3000)
-    last = {f"p/T{depth}": "Nothing x"}
-    files = {f"p/T{i}": f"T{i + 1} a\n" for i in range(depth)} | last
-    with pytest.raises(DefinitionError) as error:
-        library(tmp_path, files).message("p/T0")
-    assert errors_of(error.value, tmp_path) == (
-        f"p/msg/T{depth}.msg:1:1: error: type 'Nothing' is not defined in package 'p'\n"
-        "Nothing x\n^^^^^^^"
-    )
-    make_files(tmp_path, {f"p/msg/T{depth}.msg": "int8 x"})
-    assert Library("lyrical", [tmp_path]).message("p/T0").name == "p/msg/T0"
-
-
-def test_syntax_errors_do_not_hide_other_errors_of_the_file(tmp_path):
-    with pytest.raises(DefinitionError) as error:
-        load(tmp_path, "Nothing a\nint32\nuint8 b 256\nuint8 b\n")
-    assert [d.span.line for d in error.value.diagnostics] == [1, 2, 3, 4]
 
 
 def test_mistake_in_a_dependency_is_reported_there(tmp_path):
@@ -173,20 +98,6 @@ def test_mistake_in_a_dependency_is_reported_there(tmp_path):
             lib.message(name)
         assert errors_of(error.value, tmp_path).startswith("q/msg/U.msg:1:7: error: 'B' is not")
         assert len(error.value.diagnostics) == 1
-
-
-def test_mistake_far_below_is_reported_to_all_that_come_later(tmp_path):
-    texts = {"p/T": "U u", "p/U": "V v", "p/V": "int32 B", "p/W": "T t\nint8 x"}
-    lib = library(tmp_path, texts)
-    for name in ("p/T", "p/W"):
-        with pytest.raises(DefinitionError) as error:
-            lib.message(name)
-        assert errors_of(error.value, tmp_path).startswith("p/msg/V.msg:1:7: error: 'B' is not")
-
-
-def test_good_types_of_a_library_with_bad_ones_resolve(tmp_path):
-    lib = library(tmp_path, {"p/A": "A a", "p/B": "int8 x", "p/C": "Nothing n"})
-    assert lib.message("p/B").fields[0].name == "x"
 
 
 @pytest.mark.parametrize(
@@ -226,13 +137,6 @@ def test_cycle_through_a_sequence_is_a_cycle(tmp_path):
         "p/msg/V.msg:1:1: error: type 'p/msg/T' contains itself: "
         "p/msg/T -> p/msg/U -> p/msg/V -> p/msg/T\nT[<=1] t\n^^^^^^"
     )
-
-
-def test_cycle_below_a_type_is_none_of_its_own(tmp_path):
-    with pytest.raises(DefinitionError) as error:
-        load(tmp_path, "U u", U="V v", V="U u")
-    (diagnostic,) = error.value.diagnostics
-    assert diagnostic.message == ("type 'p/msg/U' contains itself: p/msg/U -> p/msg/V -> p/msg/U")
 
 
 def test_unreadable_dependency_is_reported(tmp_path):
@@ -291,13 +195,6 @@ def test_mistakes_of_a_type_come_in_the_order_of_its_files(tmp_path):
     first, second, *_, last = error.value.diagnostics
     assert [Path(each.span.source.name).name for each in (first, second)] == ["C.idl", "T.idl"]
     assert last.message == "too many errors; the others are not listed"
-
-
-def test_mistakes_in_dependencies_come_in_the_order_of_the_fields(tmp_path):
-    with pytest.raises(DefinitionError) as error:
-        load(tmp_path, "A a\nB b\nint8 X\nC c\n", A="D d", B="int8 Y", C="int8 Z", D="int8 W")
-    names = [each.message[1] for each in error.value.diagnostics]
-    assert names == ["X", "W", "Y", "Z"]
 
 
 def test_the_first_twenty_unknown_types_get_suggestions(tmp_path):

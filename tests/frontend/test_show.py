@@ -100,13 +100,6 @@ def test_empty_message_shows_nothing(distro):
     assert show(Library(distro), "std_msgs/Empty") == ""
 
 
-def test_deep_types_are_shown(tmp_path):
-    files = {f"p/T{i}": f"T{i + 1} a\n" for i in range(1500)} | {"p/T1500": "int8 x"}
-    for dialect, indent in (("ros1", "  "), ("ros2", "\t")):
-        text = show(library(tmp_path, files, dialect), "p/T0")
-        assert text.splitlines()[-1] == indent * 1500 + "int8 x"
-
-
 def test_wrong_types_are_not_shown(tmp_path):
     with pytest.raises(DefinitionError):
         show(library(tmp_path, {"p/T": "T t"}), "p/T")
@@ -177,18 +170,6 @@ def test_idl_is_shown_as_msg(tmp_path):
     )
 
 
-def test_shown_idl_is_a_definition_that_means_the_same(tmp_path):
-    idl = (
-        'module p { module msg { module T_Constants { const string S = "a\'b"; '
-        "const boolean B = TRUE; const float F = 1.5; }; struct T { "
-        '@default(value="x y") string s; @default(value=FALSE) boolean b; '
-        "long long a[3]; sequence<octet> o; @default(value=-7) long n; }; }; };"
-    )
-    library = Library("lyrical", [make_files(tmp_path / "1", {"p/msg/T.idl": idl})])
-    root = make_files(tmp_path / "2", {"p/msg/T.msg": show(library, "p/msg/T")})
-    assert Library("lyrical", [root]).message("p/T") == library.message("p/T")
-
-
 @pytest.mark.parametrize(
     ("kind", "parts"),
     [("srv", ["Request", "Response"]), ("action", ["Goal", "Result", "Feedback"])],
@@ -207,19 +188,6 @@ def test_a_nested_idl_without_fields_is_shown_by_its_constants(tmp_path):
     ours = Library("lyrical", [make_files(tmp_path, files)])
     assert show(ours, "p/T") == "q/U u\n\tint16 LIMIT=3\nint8 x\n"
     assert show(ours, "q/U") == "int16 LIMIT=3\n"
-
-
-def test_values_of_an_idl_are_spelled_as_in_a_msg(tmp_path):
-    idl = """module p { module msg {
-      module T_Constants { const boolean B = TRUE; const octet O = 0x1F; const double D = 1e3; };
-      struct T { @default(value=FALSE) boolean b; @default(value="(True, False)") boolean c[2];
-                 @default(value="()") sequence<long> d; @default(value="[1.5]") double e[1]; };
-    }; };"""
-    ours = Library("lyrical", [make_files(tmp_path, {"p/msg/T.idl": idl})])
-    assert show(ours, "p/T") == (
-        "bool B=true\nbyte O=31\nfloat64 D=1000.0\n"
-        "bool b false\nbool[2] c [true, false]\nint32[] d []\nfloat64[1] e [1.5]\n"
-    )
 
 
 def test_a_text_in_an_idl_stays_in_its_line_and_is_shown_to_its_end(tmp_path):

@@ -43,24 +43,9 @@ def test_the_same_name_in_a_similar_package_comes_first_then_in_others():
     ]  # fmt: skip
 
 
-def test_types_of_the_last_origin_come_before_those_of_others():
-    origins = [["aa/msg/Pose"], ["zz/msg/Pose", "yy/msg/Pose"]]
-    assert similar(origins, "nothing", "Pose") == ["yy/msg/Pose", "zz/msg/Pose", "aa/msg/Pose"]
-
-
 def test_similar_names_of_the_same_package_come_after_the_same_name_elsewhere():
     origins = [["p/msg/Poses", "p/msg/Wheel", "q/msg/Pose", "q/msg/Poser"]]
     assert similar(origins, "p", "Pose") == ["q/msg/Pose", "p/msg/Poses"]
-
-
-def test_similar_names_of_similar_packages_are_found_if_the_name_is_nowhere():
-    origins = [["geo_msgs/msg/Poses", "geo_msgz/msg/Posed", "other/msg/Poses"]]
-    assert sorted(similar(origins, "geo_msg", "Pose")) == [
-        "geo_msgs/msg/Poses", "geo_msgz/msg/Posed",
-    ]  # fmt: skip
-    # Of a package that exists, or of a name that exists, no other packages are searched.
-    assert similar([*origins, ["geo_msg/msg/Wheel"]], "geo_msg", "Pose") == []
-    assert similar([*origins, ["other/msg/Pose"]], "geo_msg", "Pose") == ["other/msg/Pose"]
 
 
 def test_only_the_kinds_that_may_be_meant_are_named():

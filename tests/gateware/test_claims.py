@@ -10,6 +10,7 @@ from functools import cache
 import pytest
 
 from firm_hdl import Deserializer, Parser
+from firm_hdl.gateware.parser import PlanParser
 from firm_hdl.gateware.signatures import LATENCY_CYCLES
 from firm_hdl.plan import build_plan, decode
 from firm_hdl.plan.recovery import recovery
@@ -18,6 +19,7 @@ from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.gateware import test_parser
 from tests.gateware.test_throughput import harness_of, measure_deserializer
+from tests.plan.lengths import with_charges
 from tests.strategies import make
 
 MOST = 1024
@@ -94,12 +96,8 @@ def test_the_interpreter_gives_the_statuses_of_the_table(bus_bytes):
     plan = build_plan(lay_out(MESSAGE), bus_bytes=bus_bytes, max_message_bytes=MOST)
     check_statuses(plan, bombs())
     # A twin: lengths that are only judged by themselves.
-    steps = tuple(
-        step if step.begin is None else replace(step, begin=replace(step.begin, claim=None))
-        for step in plan.steps
-    )
     with pytest.raises(AssertionError):
-        check_statuses(replace(plan, steps=steps), bombs())
+        check_statuses(with_charges(plan, lambda charge: None), bombs())
 
 
 @cache
@@ -182,10 +180,10 @@ def test_a_parser_finds_late_that_lengths_in_a_row_claim_too_much(bus_bytes):
 
 def test_a_parser_with_a_larger_budget_is_found():
     plan = Parser(BOOK, bus_bytes=8, max_message_bytes=MOST).plan
-    first = plan.steps[0]
-    claim = replace(first.begin.claim, total=first.begin.claim.total + 1)
-    step = replace(first, begin=replace(first.begin, claim=claim))
-    parser = Parser.of_plan(replace(plan, steps=(step, *plan.steps[1:])))
+    larger = with_charges(
+        plan, lambda charge: replace(charge, budget=charge.budget and charge.budget + 1)
+    )
+    parser = PlanParser(larger)
     seen = test_parser.run(parser, [numbers(100, 80, 301), numbers(100, 80, 302)])
     assert [status.name for status in seen.statuses] == ["TRUNCATED", "LENGTH"]
     assert decode(plan, numbers(100, 80, 301)).status == "LENGTH"

@@ -24,7 +24,7 @@ from firm_hdl import (
     Serializer,
     load_message,
 )
-from firm_hdl.export import Top
+from firm_hdl.export.top import Top
 from firm_hdl.node import Node
 from firm_hdl.sim.fast import FastSimulation
 

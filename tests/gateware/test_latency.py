@@ -20,7 +20,7 @@ from firm_hdl.gateware.signatures import LATENCY_CYCLES, leaf_streams
 from firm_hdl.plan import decode
 from firm_hdl.plan.geometry import first_step
 from firm_hdl.sim import Harness, Stalls, leaf_name
-from firm_hdl.sim.job import Job, RunOptions
+from firm_hdl.sim.bench import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, encoder_of
 from tests.depth import by_depth
 

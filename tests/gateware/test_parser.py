@@ -19,7 +19,7 @@ from firm_hdl.gateware.parser import PacketSizes
 from firm_hdl.model import PRIMITIVES, Field, Message, Sequence
 from firm_hdl.plan import BeginLoop, build_plan, decode, encode
 from firm_hdl.sim import Stalls, to_transfers
-from firm_hdl.sim.job import Job, RunOptions
+from firm_hdl.sim.bench import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, beats_of
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth

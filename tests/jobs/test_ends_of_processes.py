@@ -10,16 +10,14 @@ import tempfile
 import threading
 import time
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
-from firm_hdl.jobs import processes
+from firm_hdl.jobs import processes, run_each
 from firm_hdl.jobs.processes import (
     ToolError,
     cpu_seconds,
     hang_up,
-    in_processes,
     made_by,
     run_tool,
     unwound_when_terminated,
@@ -122,29 +120,6 @@ def test_cpu_seconds_include_children():
     assert cpu_seconds() - before < 0.1
 
 
-def test_tasks_of_one_job_run_in_this_process_in_order():
-    here = []
-    tasks = [("b", (2,)), ("a", (1,))]
-
-    def work(number):
-        here.append((os.getpid(), number))
-        return -number
-
-    results = in_processes(work, tasks, 1)
-    assert next(results) == ("b", -2)
-    assert here == [(os.getpid(), 2)]
-    assert list(results) == [("a", -1)]
-
-
-def fails(number):
-    raise ValueError(number)
-
-
-def test_error_of_a_task_has_the_name_of_its_type():
-    ((key, error),) = in_processes(fails, [("a", (7,))], 2)
-    assert (key, str(error)) == ("a", "ValueError: 7")
-
-
 def test_terminated_process_runs_its_cleanup():
     tidied, own = [], lambda number, frame: None
     before = signal.signal(signal.SIGTERM, own)
@@ -175,77 +150,6 @@ def test_threads_install_no_signal_handler():
     assert seen == [before]
 
 
-def test_worker_ignores_interrupts_and_watches_its_parent(monkeypatch):
-    handlers, threads = {}, []
-
-    class Thread:
-        def __init__(self, **options):
-            threads.append(options)
-
-        def start(self):
-            threads.append("started")
-
-    monkeypatch.setattr(processes.signal, "signal", handlers.__setitem__)
-    monkeypatch.setattr(processes.threading, "Thread", Thread)
-    monkeypatch.setattr(tempfile, "tempdir", None)
-    processes._prepare("/folder", 7)
-    assert tempfile.gettempdir() == "/folder"
-    assert handlers == {signal.SIGINT: signal.SIG_IGN, signal.SIGTERM: processes._stop}
-    watch = {"target": processes._end_with, "args": (7, "/folder"), "daemon": True}
-    assert threads == [watch, "started"]
-
-
-class LeftError(BaseException):
-    """Stands for the end of this process."""
-
-
-@pytest.fixture
-def tools_of_worker(monkeypatch):
-    """Two running tools of this process, whose end becomes an exception with its status."""
-
-    def raise_left(status):
-        raise LeftError(status)
-
-    monkeypatch.setattr(processes.os, "_exit", raise_left)
-    tools = [subprocess.Popen(["sleep", "60"], start_new_session=True) for _ in range(2)]
-    monkeypatch.setattr(processes, "_running", {*tools})
-    yield tools
-    for tool in tools:
-        tool.kill()
-        tool.wait()
-
-
-def test_stopped_worker_kills_its_tools(tools_of_worker):
-    with pytest.raises(LeftError, match=r"^143$"):
-        processes._stop(signal.SIGTERM, None)
-    assert [tool.wait(30) for tool in tools_of_worker] == [-signal.SIGKILL] * 2
-
-
-@pytest.mark.parametrize("adopted", [True, False])
-def test_an_orphan_ends_with_its_tools_and_files(tools_of_worker, monkeypatch, tmp_path, adopted):
-    """It notices by the new parent's number, or because the old parent no longer exists."""
-    folder = tmp_path / "own"
-    (folder / "deep").mkdir(parents=True)
-    parents = iter([5, 5, 5, 1]) if adopted else iter([5] * 9)
-    alive = iter([True, True] if adopted else [True, True, False])
-    waited = []
-    monkeypatch.setattr(processes.os, "getppid", lambda: next(parents))
-    monkeypatch.setattr(processes, "_exists", lambda process: process == 4 and next(alive))
-    monkeypatch.setattr(processes.time, "sleep", waited.append)
-    with pytest.raises(LeftError, match=r"^137$"):
-        processes._end_with(4, str(folder))
-    assert waited == [1, 1]
-    assert [tool.wait(30) for tool in tools_of_worker] == [-signal.SIGKILL] * 2
-    assert not folder.exists()
-
-
-def test_existence_of_a_process_is_asked_of_the_system():
-    process = start_process("sleep", "60")
-    assert processes._exists(process.pid) and processes._exists(os.getpid())
-    hang_up(process)
-    assert not processes._exists(process.pid)
-
-
 def test_process_that_has_ended_is_not_killed_again(monkeypatch):
     """Its number may belong to another process by now."""
     process = start_process("true")
@@ -257,47 +161,9 @@ def test_process_that_has_ended_is_not_killed_again(monkeypatch):
     hang_up(process)
 
 
-def test_process_that_ends_while_it_is_killed_is_no_error(monkeypatch):
-    def raise_lookup_error(*_):
-        raise ProcessLookupError
-
-    process = start_process("sleep", "60")
-    monkeypatch.setattr(processes.os, "killpg", raise_lookup_error)
-    processes._kill(process)
-    monkeypatch.undo()
-    hang_up(process)
-
-
 def test_temporary_files_of_workers_go_with_their_pool(tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    ((_, folder),) = in_processes(tempfile.mkdtemp, [("a", ())], 2)
+    ((_, folder),) = run_each(tempfile.mkdtemp, [("a", ())], jobs=2)
     assert Path(folder).parent.parent == tmp_path
     assert Path(folder).parent.name.startswith("firm-hdl-")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_processor_time_has_the_system_time_of_children_as_well(monkeypatch):
-    times = SimpleNamespace(ru_utime=2.0, ru_stime=0.5)
-    asked = []
-    monkeypatch.setattr(processes.resource, "getrusage", lambda who: asked.append(who) or times)
-    monkeypatch.setattr(processes.time, "thread_time", lambda: 4.0)
-    assert cpu_seconds() == 6.5
-    assert asked == [processes.resource.RUSAGE_CHILDREN]
-
-
-def test_tasks_that_wait_do_not_begin_when_a_pool_is_interrupted(monkeypatch):
-    said = []
-
-    class Pool(processes.ProcessPoolExecutor):
-        def shutdown(self, **how):
-            said.append(how)
-            super().shutdown(**how)
-
-    monkeypatch.setattr(processes, "ProcessPoolExecutor", Pool)
-    with pytest.raises(KeyboardInterrupt), processes.worker_pool(1):
-        raise KeyboardInterrupt
-    assert said[0] == {"wait": False, "cancel_futures": True}
-    said.clear()
-    with processes.worker_pool(1):
-        pass
-    assert said == [{"wait": True}]

@@ -14,7 +14,6 @@ import pytest
 from firm_hdl.jobs.processes import (
     ToolError,
     TooSlowError,
-    in_processes,
     run_tool,
     unwound_when_terminated,
 )
@@ -132,35 +131,18 @@ def test_a_signal_while_a_program_is_started_ends_the_program(tmp_path, monkeypa
     assert [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)] == before
 
 
-def double(number: int) -> int:
-    if number == 7:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return 2 * number
-
-
-def test_tasks_are_shared_out():
-    tasks = [(str(number), (number,)) for number in range(6)]
-    for jobs in (1, 2):
-        assert dict(in_processes(double, tasks, jobs)) == {str(n): 2 * n for n in range(6)}
-
-
-def test_dead_process_is_reported():
-    (result,) = in_processes(double, [("seven", (7,))], 2)
-    assert result[0] == "seven" and "BrokenProcessPool" in str(result[1])
-
-
 INTERRUPTED = """
 import signal
 import sys
 from pathlib import Path
-from firm_hdl.jobs.processes import in_processes, run_tool
+from firm_hdl.jobs import run_each, run_tool
 from tests.jobs.test_processes import work
 
 if __name__ == "__main__":
     # Shells have it ignored by what they start in the background, and so these tests may have.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        list(in_processes(work, [(n, (sys.argv[1], n)) for n in range(9)], 2))
+        list(run_each(work, [(n, (sys.argv[1], n)) for n in range(9)], jobs=2))
     except KeyboardInterrupt:
         sys.exit(130)
 """

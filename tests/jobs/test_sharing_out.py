@@ -175,13 +175,6 @@ def test_cancelled_tasks_end_the_run(cluster):
     assert pool.shutdowns == ["shutdown False"] and cluster.closed == 1
 
 
-def test_run_without_errors_shuts_no_pool_down(cluster):
-    pool = Pool()
-    cluster.pools = [pool]
-    assert len(list(cluster.run(tasks(1, 2)))) == 2
-    assert pool.shutdowns == []
-
-
 @pytest.mark.parametrize("busy", [{"a": (), "b": ()}, {}, OSError("lost")])
 def test_idle_clusters_are_given_up(cluster, monkeypatch, busy):
     monkeypatch.setattr(executors, "CHECK_SECONDS", 0.01)
@@ -271,30 +264,3 @@ def test_local_pools_have_the_requested_number_of_processes(monkeypatch, jobs, w
     assert len(list(results)) == 19
     # A pool of one process for the suspect, then a pool for the rest.
     assert opened == [workers, 1, workers]
-
-
-def test_local_pools_are_never_given_up(monkeypatch):
-    monkeypatch.setattr(executors, "CHECK_SECONDS", 0.001)
-    monkeypatch.setattr(executors, "MAX_IDLE_SECONDS", 0.002)
-    future, waits = Future(), []
-
-    def wait(running, **how):
-        waits.append(how["timeout"])
-        if len(waits) == 10:
-            future.set_result(4)
-        return {each for each in running if each.done()}, None
-
-    monkeypatch.setattr(executors, "wait", wait)
-
-    class Slow(Pool):
-        def submit(self, *_):
-            return future
-
-    monkeypatch.setattr(executors, "worker_pool", lambda _: _context_of(Slow()))
-    assert list(run_each(square, tasks(2), jobs=2)) == [("task 2", 4)]
-    assert waits == [0.001] * 10
-
-
-@contextmanager
-def _context_of(pool):
-    yield pool

@@ -13,7 +13,7 @@ import time
 import pytest
 
 from firm_hdl.jobs import processes
-from firm_hdl.jobs.processes import cpu_seconds, in_processes, run_tool, worker_pool
+from firm_hdl.jobs.processes import cpu_seconds, run_tool, worker_pool
 
 
 def test_a_program_leads_a_group_and_a_session_of_its_own(tmp_path):
@@ -30,28 +30,6 @@ def test_programs_run_in_threads_too(tmp_path):
     thread.start()
     thread.join(60)
     assert found == ["a\n"]
-
-
-def test_a_process_that_is_about_to_end_starts_no_program(tmp_path, monkeypatch):
-    seen = []
-
-    class Noted(subprocess.Popen):
-        def __init__(self, *given, **options):
-            seen.append(processes._starting.locked())
-            super().__init__(*given, **options)
-
-    monkeypatch.setattr(processes.subprocess, "Popen", Noted)
-    run_tool(["true"], tmp_path)
-    run_tool(["true"], tmp_path)
-    assert seen == [True, True] and not processes._starting.locked()
-    # What holds the lock keeps the program from being started.
-    with processes._starting:
-        thread = threading.Thread(target=run_tool, args=(["true"], tmp_path))
-        thread.start()
-        thread.join(0.05)
-        assert len(seen) == 2
-    thread.join(60)
-    assert len(seen) == 3
 
 
 @pytest.fixture
@@ -101,14 +79,6 @@ def test_a_program_ignores_the_signals_that_its_parent_ignores(tmp_path, handler
     assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
 
 
-def test_a_handler_that_python_did_not_set_is_left_alone(tmp_path, monkeypatch):
-    changed = []
-    monkeypatch.setattr(processes.signal, "getsignal", lambda number: None)
-    monkeypatch.setattr(processes.signal, "signal", lambda *given: changed.append(given))
-    assert run_tool(["echo", "a"], tmp_path) == "a\n"
-    assert changed == []
-
-
 def test_processor_time_is_that_of_one_thread():
     """Other tasks of this process may run in other threads."""
 
@@ -139,21 +109,6 @@ def test_an_interrupted_pool_ends_its_own_processes_only():
         other.kill()
         other.join()
         other.close()
-
-
-def test_a_pool_has_as_many_processes_as_it_is_given(monkeypatch):
-    """`None` is one for each processor."""
-    given = []
-
-    class Pool(processes.ProcessPoolExecutor):
-        def __init__(self, workers, **options):
-            given.append(workers)
-            super().__init__(1, **options)
-
-    monkeypatch.setattr(processes, "ProcessPoolExecutor", Pool)
-    for jobs in (3, None):
-        assert list(in_processes(abs, [("a", (-1,))], jobs)) == [("a", 1)]
-    assert given == [3, None]
 
 
 def test_the_limit_of_time_is_that_of_the_program_in_seconds(tmp_path):

@@ -9,7 +9,6 @@ import json
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.frontend import Library
 
 from ..frontend.workspace import make_files
 
@@ -73,27 +72,10 @@ def test_all_are_all_messages_of_the_folder_or_of_the_distribution(run, capsys):
 
 def test_types_that_are_wrong_do_not_hide_the_others(run, tmp_path):
     make_files(tmp_path, {"p/msg/Bad.msg": "int33 a\n", "p/srv/Bad.srv": "int34 a\n---\n"})
-    status, out, err = run("p/Bad", "p/B", "p/srv/Bad", "--format", "csv")
+    status, out, err = run("p/msg/Bad", "p/B", "p/srv/Bad", "--format", "csv")
     assert status == 1
     assert [row["name"] for row in csv.DictReader(io.StringIO(out))] == ["p/msg/B"]
     assert "'int33'" in err and "'int34'" in err
-
-
-@pytest.mark.parametrize(
-    ("words", "names", "has_bar"), [(["p/A"], ["p/A"], False), (["--all"], ["p/msg/A"], True)]
-)
-def test_only_all_types_have_a_progress_bar(run, monkeypatch, words, names, has_bar):
-    seen = []
-
-    def bar(chosen, *, disable, **_):
-        # `None` shows the bar where standard error is a terminal.
-        seen.append((list(chosen), disable))
-        return chosen
-
-    monkeypatch.setattr("firm_hdl.metrics.command.tqdm", bar)
-    monkeypatch.setattr(Library, "interfaces", lambda library: ["p/msg/A"])
-    assert run(*words)[0] == 0
-    assert seen == [(names, None if has_bar else True)]
 
 
 @pytest.mark.parametrize("arguments", [(), ("p/A", "--all")])

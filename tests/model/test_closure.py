@@ -1,4 +1,4 @@
-"""The closure of a type: parts before the whole, each once, at any depth; and types rebuilt."""
+"""The closure of a type: parts before the whole, each once, at any depth; and changed messages."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from firm_hdl.model import (
     Sequence,
     String,
     closure,
-    rebuilt,
+    map_messages,
 )
 
 
@@ -67,7 +67,7 @@ def test_every_message_is_rebuilt_once_and_after_its_parts():
         seen.append((part.base_name, [str(field.type) for field in part.fields]))
         return replace(part, name=f"{part.name}2")
 
-    found = rebuilt(top, change)
+    found = map_messages(top, change)
     assert seen == [
         ("A", []),
         ("B", ["p/msg/A2", "p/msg/A2[<=5]", "p/msg/A2[3]", "int8", "string<=4[2]"]),
@@ -77,4 +77,4 @@ def test_every_message_is_rebuilt_once_and_after_its_parts():
     new = found.fields[0].type
     assert (new.constants, new.fields[3]) == ((limit,), b.fields[3])
     # The type that was given stays as it was.
-    assert str(top.fields[0].type) == "p/msg/B" and rebuilt(top, lambda part: part) == top
+    assert str(top.fields[0].type) == "p/msg/B" and map_messages(top, lambda part: part) == top

@@ -14,7 +14,7 @@ from firm_hdl.model import (
     String,
     element_of,
     idl_primitives,
-    spelled,
+    type_text,
 )
 
 # Bytes, whether negative numbers exist, kind.
@@ -96,6 +96,6 @@ def test_elements_of_arrays_and_sequences():
 def test_types_are_spelled_with_another_name_for_the_element():
     text = String(bound=3)
     kinds = (text, Array(element=text, count=2), Sequence(element=text))
-    assert [spelled(kind, "T") for kind in (*kinds, Sequence(element=text, bound=7))] == [
+    assert [type_text(kind, "T") for kind in (*kinds, Sequence(element=text, bound=7))] == [
         "T", "T[2]", "T[]", "T[<=7]",
     ]  # fmt: skip

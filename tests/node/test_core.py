@@ -208,7 +208,7 @@ def test_each_counter_has_32_bits():
     assert {field.width for owner in owners for _, field in owner} == {32}
 
 
-@pytest.mark.parametrize("bus_bytes", by_depth([4], [1, 2, 4, 8, 16]))
+@pytest.mark.parametrize("bus_bytes", by_depth([8], [1, 2, 4, 8, 16]))
 def test_a_host_reads_all_registers(bus_bytes, wheels):
     description = read(bus_bytes=str(bus_bytes))
     is_wheels = bus_bytes == wheels.bus

@@ -11,7 +11,7 @@ from amaranth.hdl import Module
 from firm_hdl.node import Link
 from firm_hdl.node.bytestream import ByteStreamReader, write_frame
 from firm_hdl.node.links import ByteLink, StreamLink, UartLink, UdpLink
-from firm_hdl.node.links.ports import datagram_layout
+from firm_hdl.node.links.udp import datagram_layout
 from firm_hdl.node.messages import NodeMessage
 from firm_hdl.sim import Stalls
 from tests.depth import by_depth

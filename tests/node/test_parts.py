@@ -11,13 +11,13 @@ from amaranth.hdl import Const, Module, Mux, Signal
 from amaranth.sim import Simulator
 
 from firm_hdl.node.bytestream import write_frame
-from firm_hdl.node.description import Store
+from firm_hdl.node.description import Link, Store
 from firm_hdl.node.gateware.clock import NodeClock
 from firm_hdl.node.gateware.cobs import ByteFrameReader, CobsDecoder, CobsEncoder
-from firm_hdl.node.gateware.fragmenter import Fragmenter
-from firm_hdl.node.gateware.reassembler import Reassembler
-from firm_hdl.node.gateware.request_gate import RequestGate
+from firm_hdl.node.gateware.fragments import Fragmenter, Reassembler
+from firm_hdl.node.gateware.services import RequestGate
 from firm_hdl.node.gateware.uart import UartReceiver, UartTransmitter
+from firm_hdl.node.links import UartLink
 from firm_hdl.node.messages import MessageSender, NodeMessage
 from firm_hdl.sim import Stalls
 from tests.depth import by_depth
@@ -180,6 +180,26 @@ def test_the_uart_sends_and_receives():
     for number, byte in enumerate(data[:4]):
         bits = [levels[start + 50 * number + 5 * bit + 2] for bit in range(10)]
         assert bits == [0, *(byte >> bit & 1 for bit in range(8)), 1]
+
+
+@pytest.mark.parametrize("off", [-0.02, 0.0, 0.02])
+@pytest.mark.parametrize("baud", [25_000_000, 20_400_000, 12_260_000, 12_750_000])
+def test_a_uart_hears_a_sender_that_is_fast_or_slow(baud, off):
+    """Bytes follow each other without a pause, and their edges are anywhere in a cycle.
+
+    Of 100 MHz, these are 4 cycles, and rates whose nearest number of cycles is 2 % off.
+    """
+    link = UartLink(8, Link(kind="uart", baud=baud), 100e6)
+    m = Module()
+    m.submodules.part = part = UartReceiver(link.cycles)
+    line = SimpleNamespace(payload=Signal(), valid=Signal(), ready=Const(1))
+    m.d.comb += part.rx.eq(Mux(line.valid, line.payload, 1))
+    data = [0, 255, 0x55, 0xAA, 1, 128, 0xFE, 0x7F]
+    bits = "1" + "".join(f"0{f'{byte:08b}'[::-1]}1" for byte in data)
+    per_bit = 100e6 / (baud * (1 + off))
+    levels = [int(bits[int(cycle / per_bit)]) for cycle in range(int(len(bits) * per_bit))]
+    bench = PacketBench(m, {"line": line}, {}, others={"o": part.o})
+    assert bench.run({"line": levels}, {"o": len(data)}).others["o"] == data
 
 
 def test_a_line_that_breaks_is_no_byte():

@@ -16,8 +16,7 @@ from firm_hdl.errors import UserError
 from firm_hdl.node import Node, read_description_text
 from firm_hdl.node.benches import bench_files, link_script
 from firm_hdl.node.build import build_node
-from firm_hdl.node.records import message_ports
-from firm_hdl.node.records.messages import other_ports
+from firm_hdl.node.records import message_ports, other_ports
 from firm_hdl.node.top import node_ports
 from tests.depth import by_depth
 from tests.node.samples import RELAY, read

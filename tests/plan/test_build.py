@@ -7,6 +7,7 @@ import re
 import pytest
 
 from firm_hdl.plan import build_plan, check, decode, encode
+from firm_hdl.plan.tree import Run, Step, walk
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out
 from tests.strategies import BUS_WIDTHS, make
@@ -96,7 +97,8 @@ NAMED = make("ros1", {"s": "string", "x": "uint32"}, "Named")
 def test_the_last_step_takes_two_words_if_no_length_is_in_the_message(fields, sizes):
     message = make("ros1", {**fields, "a": "uint32", "b": "uint32"})
     plan = build_plan(lay_out(message), bus_bytes=4)
-    assert [step.bytes for step in plan.steps if step.bytes] == sizes
+    steps = [item for item in walk(plan.items) if isinstance(item, Step)]
+    assert [step.bytes for step in steps if step.bytes] == sizes
 
 
 @pytest.mark.parametrize(("more", "sizes"), [(56, [8]), (57, [4, 4])])
@@ -104,8 +106,8 @@ def test_the_first_length_of_a_short_packet_is_in_a_step_of_two_words(more, size
     """The shortest packet has up to 16 bus words."""
     message = make("ros1", {"a": "uint32", "s": "string", "m": f"uint8[{more}]"})
     plan = build_plan(lay_out(message), bus_bytes=4)
-    first = next(n for n, step in enumerate(plan.steps) if step.begin is not None)
-    assert [step.bytes for step in plan.steps[: first + 1]] == sizes
+    first = next(n for n, item in enumerate(plan.items) if isinstance(item, Run))
+    assert [step.bytes for step in plan.items[:first]] == sizes
 
 
 @pytest.mark.parametrize(
@@ -129,7 +131,8 @@ def test_arrays_are_values_runs_or_loops(wire, kind, bus_bytes, runs, levels):
     for before in ({"a": "uint8"}, {"s": "string"}):
         layout = lay_out(make("ros2", {**before, "m": kind, "z": "uint16"}), wire)
         plan = build_plan(layout, bus_bytes=bus_bytes)
-        assert (len(plan.runs) - ("s" in before), plan.levels) == (runs, levels)
+        found = sum(isinstance(item, Run) for item in walk(plan.items))
+        assert (found - ("s" in before), plan.levels) == (runs, levels)
         assert check(plan, layout) == []
 
 

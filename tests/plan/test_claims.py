@@ -8,18 +8,18 @@ from itertools import pairwise
 import pytest
 
 from firm_hdl import load_message
-from firm_hdl.plan import Fixed, build_plan, check, decode
-from firm_hdl.wire import LengthField, LoopNode, lay_out, walk
+from firm_hdl.plan import build_plan, check, decode
+from firm_hdl.wire import LengthField, LoopNode, lay_out
+from tests.plan.lengths import header_of, next_length, with_charges
 from tests.strategies import make
 
 
 def packet_of(plan, lengths):
     """Return a packet of zeros with these lengths in wire order; further lengths are 0."""
-    packet = b"".join(s.data for step in plan.steps for s in step.slices if isinstance(s, Fixed))
+    packet = header_of(plan)
     for number in lengths:
-        steps = decode(plan, packet).steps
-        lengths_at = (v.end - 4 for v in steps if plan.steps[v.step].begin and v.end > len(packet))
-        packet = packet.ljust(next(lengths_at), b"\0") + number.to_bytes(4, "little")
+        at, _ = next_length(plan, packet)
+        packet = packet.ljust(at, b"\0") + number.to_bytes(4, "little")
     return packet.ljust(decode(plan, packet).steps[-1].end, b"\0")
 
 
@@ -76,7 +76,8 @@ def refused(change=None):
             packet = packet_of(largest, lengths(letters))
             plan = build_plan(layout, max_message_bytes=len(packet))
             assert any(
-                begin.claim and begin.claim.least <= letters for begin in plan.begins.values()
+                length.charge and length.charge.charged_from <= letters
+                for length in plan.lengths.values()
             )
             for each in (plan, change and change(plan)):
                 status = decode(each, packet).status if each else "OK"
@@ -85,28 +86,17 @@ def refused(change=None):
     return count
 
 
-def altered(plan, **changes):
-    steps = tuple(
-        replace(step, begin=replace(step.begin, claim=replace(step.begin.claim, **changes)))
-        if step.begin and step.begin.claim
-        else step
-        for step in plan.steps
-    )
-    return replace(plan, steps=steps)
-
-
 def test_no_packet_within_the_largest_size_is_refused():
     assert refused() == 0
     # A twin: padding that items save is claimed.
-    assert refused(lambda plan: altered(plan, saved=0))
+    assert refused(lambda plan: with_charges(plan, lambda c: replace(c, padding_credit=0)))
 
 
 def test_padding_is_only_saved_where_it_is_claimed():
     for fields, saved in (({"s": "string"}, 0), ({"s": "string", "x": "uint8"}, 14)):
         message = make("ros2", {"e": (make("ros2", fields, "Element"), "[]")})
         plan = build_plan(lay_out(message))
-        assert {begin.claim.saved for begin in plan.begins.values()} == {saved}
-        assert any(isinstance(node, LoopNode) for node in walk(lay_out(message).nodes))
+        assert {length.charge.padding_credit for length in plan.lengths.values()} == {saved}
 
 
 PAIR = make("ros1", {"x": "uint16", "y": "uint16"}, "Pair")
@@ -194,12 +184,13 @@ def test_claims_by_hand(wire, fields, claims):
     # The check comes to the same, also where only some of the sequences have padding.
     assert check(plan, layout) == []
     found = {
-        ".".join(plan.leaves[leaf].path[:-1]): begin.claim for leaf, begin in plan.begins.items()
+        ".".join(plan.leaves[leaf].path[:-1]): length.charge
+        for leaf, length in plan.lengths.items()
     }
     assert {
-        path: (claim.bytes, claim.least, claim.saved, claim.total)
-        for path, claim in found.items()
-        if claim is not None
+        path: (charge.bytes, charge.charged_from, charge.padding_credit, charge.budget)
+        for path, charge in found.items()
+        if charge is not None
     } == claims
 
 
@@ -209,4 +200,7 @@ def test_claims_by_hand(wire, fields, claims):
 )
 def test_a_length_is_counted_from_a_16th_of_the_largest_packet(size, least):
     plan = build_plan(lay_out(make("ros1", {"l": (LIST, "[]")})), max_message_bytes=size)
-    assert [begin.claim.least for begin in plan.begins.values()] == [-(-least // 4), least]
+    assert [length.charge.charged_from for length in plan.lengths.values()] == [
+        -(-least // 4),
+        least,
+    ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.plan.cut import cut, split, step_sizes
-from firm_hdl.plan.ir import Pad, Part
+from firm_hdl.plan.tree import Pad, Part
 
 
 @pytest.mark.parametrize(
@@ -25,21 +25,20 @@ from firm_hdl.plan.ir import Pad, Part
     ],
 )
 def test_steps_are_few_and_end_where_values_end(values, sizes):
-    slices = [Pad(at=sum(values[:n]), bytes=size) for n, size in enumerate(values)]
+    slices = [Pad(bytes=size) for size in values]
     assert cut(slices, 4, 4) == sizes
 
 
 def test_the_last_step_may_be_larger():
-    assert cut([Pad(at=0, bytes=4), Pad(at=4, bytes=6)], 4, 8) == [4, 6]
+    assert cut([Pad(bytes=4), Pad(bytes=6)], 4, 8) == [4, 6]
 
 
 def segment(*values):
     """Return values of leaves by their sizes; transfers of an array share a negative leaf."""
-    slices, at = [], 0
+    slices = []
     for number, value in enumerate(values):
         size, leaf = value if isinstance(value, tuple) else (value, number)
-        slices.append(Part(at=at, bytes=size, leaf=leaf, first=0, size=size))
-        at += size
+        slices.append(Part(bytes=size, leaf=leaf, first=0, size=size))
     return slices
 
 

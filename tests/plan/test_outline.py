@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 
 from firm_hdl.frontend import load_message
 from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence
-from firm_hdl.plan import RunStep, build_plan, check, decode, encode
+from firm_hdl.plan import build_plan, check, decode, encode
 from firm_hdl.plan.outline import outline
+from firm_hdl.plan.tree import Run
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out, walk
 from firm_hdl.wire.layout import LoopNode, RunNode, Scalar, Trigger
@@ -58,9 +59,8 @@ def test_lengths_and_their_limits_stay(wire, bus_bytes):
     plan, short = plans_of(message, wire, bus_bytes)
     names = [
         {
-            (leaf.path[:-1], p.begins[k].limit, p.begins[k].claim)
-            for k, leaf in enumerate(p.leaves)
-            if k in p.begins
+            (p.leaves[leaf].path[:-1], length.limit, length.charge)
+            for leaf, length in p.lengths.items()
         }
         for p in (plan, short)
     ]
@@ -102,7 +102,7 @@ def test_an_array_of_messages_is_bytes_if_its_padding_is_fixed():
     layout = lay_out(message, "cdr")
     assert sum(node.length.count for node in outline(layout, 8).nodes) == 1 + 1000 * 8 + 1
     _, short = plans_of(message, "cdr", 8)
-    assert sum(isinstance(step, RunStep) for step in short.steps) == 1
+    assert sum(isinstance(item, Run) for item in short.items) == 1
     assert decode(short, b"\0\1\0\0" + bytes(8002)).status == "OK"
     assert decode(short, b"\0\1\0\0" + bytes(8001)).status == "TRUNCATED"
 
@@ -154,7 +154,7 @@ def test_elements_without_bytes_are_only_counted():
     assert len(short.steps) == 2
     assert decode(short, (996).to_bytes(4, "little")).status == "OK"
     assert decode(short, (997).to_bytes(4, "little")).status == "LENGTH"
-    assert next(iter(plan.begins.values())).limit == 996
+    assert next(iter(plan.lengths.values())).limit == 996
 
 
 def test_a_message_without_bytes_has_one_step():

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import random
-from dataclasses import replace
 
 import pytest
 
 from firm_hdl import load_message
-from firm_hdl.plan import Fixed, build_plan, decode
+from firm_hdl.plan import build_plan, decode
 from firm_hdl.plan.recovery import Recovery, recovery
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
+from tests.plan.lengths import header_of, next_length, with_charges
 from tests.strategies import make
 
 AFTER = 4
@@ -23,20 +23,12 @@ def bomb(plan, wanted):
 
     Each value is put where the interpreter finds the next length, and the packet ends behind it.
     """
-    packet = b"".join(s.data for step in plan.steps for s in step.slices if isinstance(s, Fixed))
+    packet = header_of(plan)
     for number in wanted:
-        place = next(
-            (
-                (visit.end - 4, plan.steps[visit.step].begin)
-                for visit in decode(plan, packet).steps
-                if plan.steps[visit.step].begin is not None and visit.end > len(packet)
-            ),
-            None,
-        )
-        if place is None:
+        if (place := next_length(plan, packet)) is None:
             break
-        at, begin = place
-        value = min(number, plan.max_count(begin))
+        at, length = place
+        value = min(number, length.most)
         packet = packet.ljust(at, b"\0") + value.to_bytes(4, "little")
     return packet
 
@@ -101,11 +93,7 @@ def test_a_bad_packet_costs_hardly_more_than_the_longest_legal_packet(name):
 def test_without_a_budget_a_packet_takes_longer_than_the_bound():
     # A twin: the largest claims of both levels, in a plan that does not check them together.
     plan = diagnostics("lyrical", 1 << 14)
-    steps = tuple(
-        step if step.begin is None else replace(step, begin=replace(step.begin, claim=None))
-        for step in plan.steps
-    )
-    free = replace(plan, steps=steps)
+    free = with_charges(plan, lambda charge: None)
     packet = bomb(free, [0, 1 << 14, 0, 0, 0, 1 << 14])
     bound = recovery(plan, 1).cycles
     assert steps_after(free, packet) > 1.4 * bound

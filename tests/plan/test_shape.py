@@ -9,6 +9,7 @@ import pytest
 from firm_hdl import load_message
 from firm_hdl.plan import build_plan, check
 from firm_hdl.plan.shape import constructs, shape
+from firm_hdl.plan.tree import Step
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
@@ -39,21 +40,15 @@ def test_a_shape_is_a_plan():
 def test_constructs_follow_the_plan():
     imu = plan("sensor_msgs/msg/Imu")
     found = constructs(imu)
-    assert "begin run, counted by a length, NUL" in found
+    assert "run of 1 bytes, counted, aligned to 1, NUL" in found
     assert "leaf items float64" in found
-    unaligned = replace(imu, steps=tuple(replace(step, align=1) for step in imu.steps))
-    assert found - constructs(unaligned) == {"align 8"}
+    items = (replace(i, align=1) if isinstance(i, Step) else i for i in imu.items)
+    assert found - constructs(replace(imu, items=tuple(items))) == {"align 8"}
 
 
 EMPTY = make("ros1", {}, "Empty")
-
-
 PAIRS = make("ros2", {"p": (make("ros2", {"x": "int8"}, "X"), "[2]")}, "Pairs")
-
-
 BYTES = make("ros1", {"r": "uint8[24]"}, "Bytes")
-
-
 INNER = make("ros2", {"d": "float64[]"}, "Inner")
 
 
@@ -66,15 +61,14 @@ CONSTRUCTS = [
         """\
 wire ros1
 0 loop levels
-0 loops may repeat
-start goes on
-next goes on
-next ends the packet
+start of packet then step
+step then step
+step then end of packet
 align 1
 map of two words
 leaf scalar uint64
 first part of scalar, 8 bytes each
-inner part of scalar, 8 bytes each
+part of scalar, 8 bytes each
 last part of scalar, 8 bytes each
 leaf trigger bool
 whole of trigger, 0 bytes each
@@ -88,28 +82,27 @@ whole of trigger, 0 bytes each
         """\
 wire cdr
 2 loop levels
-0 loops may repeat
-2 loops may repeat
-start goes on
-next goes on
-next ends the packet
-body goes on
-repeat goes on
-repeat enters 1 loops
-next enters 2 loops
-next enters a run
+start of packet then step
+step then run, counted
+run, counted then step
+step then loop, constant count
+start of loop, constant count then loop, constant count
+start of loop, constant count then step
+step then end of loop, constant count
+loop, constant count then end of loop, constant count
+loop, constant count then run, constant count
+run, constant count then step
+step then end of packet
 align 1
 fixed bytes, checked
 fixed bytes, ignored
-begin run, counted by a length, NUL
-words of a run
 rest of a run alone
 leaf length uint32
 whole of length, 4 bytes each
 leaf items uint8
-run of 1 bytes, counted, NUL
-run of 1 bytes, constant count, with tail
-whole of items, 1 bytes each, last
+run of 1 bytes, counted, aligned to 1, NUL
+run of 1 bytes, constant count, aligned to 1, with tail
+whole of items, 1 bytes each, last always
 leaf scalar signed int8
 whole of scalar, 1 bytes each
 """,
@@ -122,57 +115,50 @@ whole of scalar, 1 bytes each
         """\
 wire cdr
 2 loop levels
-0 loops may repeat
-1 loops may repeat
-2 loops may repeat
-start goes on
-next goes on
-next enters a run
-next ends the packet
-body goes on
-repeat goes on
+start of packet then step
+step then step
+step then loop, counted
+start of loop, counted then step
+step then end of loop, counted
+loop, counted then end of loop, counted
+loop, counted then run, constant count
+run, constant count then step
+step then end of packet
 align 1
 align 8
 map of two words
 padding of 3
 fixed bytes, checked
 fixed bytes, ignored
-begin loop, counted by a length
-words of a run
 leaf length uint32
 whole of length, 4 bytes each
 leaf items float64
-whole of items, 8 bytes each, last by its loop
+whole of items, 8 bytes each, last in loop
 leaf items float32
-run of 4 bytes, constant count
+run of 4 bytes, constant count, aligned to 1
 leaf scalar uint8
 leaf scalar byte
 whole of scalar, 1 bytes each
 """,
     ),
     (
-        # A loop whose elements are runs: the jump into it loads both counters.
+        # A loop whose elements are runs.
         make("ros1", {"a": "uint8", "g": (BYTES, "[2]")}),
         "ros1",
         8,
         """\
 wire ros1
 1 loop levels
-0 loops may repeat
-1 loops may repeat
-start goes on
-next goes on
-next enters 1 loops
-next enters a run
-repeat goes on
-repeat enters a run
-next ends the packet
+start of packet then step
+step then loop, constant count
+start of loop, constant count then run, constant count
+run, constant count then end of loop, constant count
+loop, constant count then end of packet
 align 1
-words of a run
 leaf scalar uint8
 whole of scalar, 1 bytes each
 leaf items uint8
-run of 1 bytes, constant count
+run of 1 bytes, constant count, aligned to 1
 """,
     ),
 ]

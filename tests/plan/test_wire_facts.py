@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from firm_hdl.model import IDL_PRIMITIVES, Array, Field, Message, Sequence, idl_primitives
-from firm_hdl.plan import build_plan, decode, encode, from_yaml, to_yaml
+from firm_hdl.plan import build_plan, decode, encode, to_yaml
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import lay_out
 from tests.strategies import BUS_WIDTHS, TIMES, make
@@ -293,4 +293,3 @@ def test_idl_char_is_signed_and_wchar_has_the_size_of_its_distribution():
         assert from_transfers(plan, message, decode(plan, packet).streams) == value
         text = to_yaml(plan)
         assert "c: signed char\n" in text and "w: uint32\n" in text
-        assert from_yaml(text) == plan

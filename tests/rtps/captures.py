@@ -7,10 +7,16 @@ tables of DDSI-RTPS 2.5. Fast DDS ends each datagram with a vendor-specific subm
 
 from __future__ import annotations
 
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import ParameterList
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import (
+    AckNack,
+    Data,
+    Gap,
+    Heartbeat,
+    HeartbeatFrag,
+    NackFrag,
+    NumberSet,
+)
 
 __all__ = ["CAPTURES", "RECEIVER_OF", "SEDP_CYCLONE", "SEDP_FAST_DDS"]
 

@@ -15,7 +15,7 @@ from firm_hdl.rtps.discovery import ParticipantData
 from firm_hdl.rtps.events import Arrived, Event, Sample
 from firm_hdl.rtps.peers import Peer, Route
 from firm_hdl.rtps.reader import Reader
-from firm_hdl.rtps.settings import Settings
+from firm_hdl.rtps.spdp import Settings
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.writer import Writer
 

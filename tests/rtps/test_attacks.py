@@ -25,10 +25,17 @@ from firm_hdl.rtps.wire.guid import (
     SUBSCRIPTIONS_WRITER,
 )
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import Pid
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import (
+    AckNack,
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    HeartbeatFrag,
+    NackFrag,
+    NumberSet,
+)
 from tests.rtps.network import TOPIC, TYPE, Network
 
 KEEP_ALL = Qos(depth=0)
@@ -235,6 +242,7 @@ def test_a_topic_is_matched_with_64_endpoints_of_a_peer():
 
 @pytest.mark.parametrize("count", [1, 3])
 @pytest.mark.parametrize("kind", ["early", "fragments", "tiny fragments"])
+@pytest.mark.sampled(2)
 def test_one_writer_does_not_take_the_memory_of_all_others(memory, kind, count):
     network, one, two, writer = pair(memory_bytes=2 * MEGABYTE)
     for number in range(count):
@@ -362,6 +370,7 @@ def request(kind, attacker, entity, last):
 @pytest.mark.parametrize("kind", ["samples", "fragments", "heartbeat"])
 @pytest.mark.parametrize("qos", [Qos(depth=20), KEEP_ALL, DURABLE], ids=["last", "all", "durable"])
 @pytest.mark.parametrize("size", [1000, 20_000])
+@pytest.mark.sampled(5)
 def test_a_storm_of_requests_is_not_amplified(kind, qos, size):
     network, one, two, writer = pair(qos)
     attacker = Attacker(one, 1)

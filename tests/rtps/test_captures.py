@@ -10,7 +10,7 @@ from firm_hdl.rtps.ros import names
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.parameters import ParameterList
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import Data
 from tests.rtps.captures import CAPTURES, RECEIVER_OF, SEDP_CYCLONE, SEDP_FAST_DDS
 
 

@@ -8,13 +8,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from firm_hdl.rtps import Durability, HistoryFullError, Qos, Reliability, SampleIdentity
+from firm_hdl.rtps import Durability, Qos, Reliability, SampleIdentity
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import Guid
-from firm_hdl.rtps.wire.numbers import NumberSet
-from firm_hdl.rtps.wire.reliability import AckNack, Gap
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import AckNack, Data
 from tests.depth import by_depth
 from tests.rtps.network import Network
 
@@ -95,19 +93,6 @@ def test_best_effort_samples_come_at_most_once_and_in_order(seed, sizes):
     assert not [each for each in sent_to(one, AckNack) if each.writer == writer.guid.entity]
 
 
-def test_timestamps_and_related_samples_arrive():
-    network = Network()
-    one, two, writer = pair(network)
-    related = SampleIdentity(Guid(bytes(range(12)), 0x1304), -1 << 32)
-    one.core.write(writer, bytes(8), network.now, 1_700_000_000_123_456_789, related)
-    one.core.write(writer, bytes(3000), network.now, None, related)
-    network.run(1)
-    first, second = two.samples
-    assert (first.source_timestamp, first.related) == (1_700_000_000_123_456_789, related)
-    assert (second.source_timestamp, second.related) == (None, related)
-    assert first.identity == SampleIdentity(writer.guid, 1)
-
-
 def test_the_end_of_an_instance_is_no_sample():
     network = Network()
     one, two, writer = pair(network)
@@ -117,23 +102,6 @@ def test_the_end_of_an_instance_is_no_sample():
     one.write(writer, b"efgh")
     network.run(1)
     assert two.payloads == [b"abcd", b"efgh"]
-
-
-def test_a_volatile_writer_sends_nothing_old():
-    network = Network()
-    one, two, writer = pair(network)
-    for each in payloads([8] * 5):
-        one.write(writer, each)
-    network.run(1)
-    assert len(two.payloads) == 5
-    late = network.station()
-    late.reader(Qos(depth=0))
-    assert network.run(10, lambda: len(writer.matched) == 2)
-    network.run(3)
-    one.write(writer, b"new.")
-    network.run(1)
-    assert late.payloads == [b"new."]
-    assert two.payloads[5:] == [b"new."]
 
 
 def test_a_late_reader_gets_what_a_durable_writer_keeps():
@@ -152,63 +120,6 @@ def test_a_late_reader_gets_what_a_durable_writer_keeps():
     network.run(5)
     assert late.payloads == sent[-5:]
     assert volatile.payloads == []
-
-
-def test_what_a_writer_no_longer_has_is_a_gap():
-    network = Network()
-    one, two, writer = pair(network, Qos(depth=2), Qos())
-    network.loss = 1
-    for each in payloads([8] * 10):
-        one.write(writer, each)
-    network.run(0.01)
-    network.loss = 0
-    network.run(5)
-    assert two.payloads == payloads([8] * 10)[-2:]
-    assert writer.acknowledged
-    writer.forget(9)
-    assert writer.last == 10
-
-
-def test_a_gap_is_sent_for_a_sample_that_is_asked_for_and_gone():
-    network = Network()
-    one, two, writer = pair(network)
-    network.loss = 1
-    for each in payloads([8] * 3):
-        one.write(writer, each)
-    network.run(0.001)
-    writer.forget(2)
-    network.loss = 0
-    network.run(5)
-    assert two.payloads == [payloads([8] * 3)[n] for n in (0, 2)]
-    gaps = {(each.start, each.numbers) for each in sent_to(two, Gap)}
-    assert gaps == {(2, NumberSet(3))}
-
-
-def test_a_writer_that_keeps_all_says_when_it_is_full():
-    network = Network()
-    one, two, writer = pair(network, Qos(depth=0, max_samples=50))
-    two.dead = True
-    for _ in range(50):
-        one.write(writer, bytes(4))
-    with pytest.raises(HistoryFullError, match=r"^50 samples are not acknowledged$"):
-        one.write(writer, bytes(4))
-    # The reader's participant is gone after its lease, and nobody else waits.
-    network.run(15)
-    one.write(writer, bytes(4))
-
-
-def test_policies_that_do_not_fit():
-    network = Network()
-    one, two = network.station(), network.station()
-    writer, reader = one.writer(BEST_EFFORT), two.reader(DURABLE)
-    network.run(5)
-    policies = ("RELIABILITY", "DURABILITY")
-    assert [(e.local, e.policies) for e in one.named("Incompatible")] == [(writer.guid, policies)]
-    assert [(e.local, e.policies) for e in two.named("Incompatible")] == [(reader.guid, policies)]
-    assert not one.named("Matched") and not writer.matched
-    # A reliable writer and a best-effort reader do fit.
-    two.reader(BEST_EFFORT)
-    assert network.run(5, lambda: bool(one.named("Matched")))
 
 
 @pytest.mark.parametrize(
@@ -342,21 +253,6 @@ def test_a_peer_that_did_not_listen_yet():
     assert network.run(0.2, lambda: len(two.core.peers) == 1)
 
 
-@pytest.mark.parametrize(("vendor", "base"), [("010f", 0), ("0101", 0), ("0110", 1), ("01ff", 1)])
-def test_the_first_acknack_is_one_that_the_vendor_answers(vendor, base):
-    network = Network()
-    one, two = network.station(bytes.fromhex(vendor) + bytes(10)), network.station()
-    one.writer()
-    two.reader()
-    assert network.run(5, lambda: bool(one.named("Matched")))
-    network.run(1)
-    firsts = {}
-    for each in sent_to(one, AckNack):
-        firsts.setdefault(each.writer, each)
-    assert len(firsts) == 3
-    assert {(each.missing, each.final) for each in firsts.values()} == {(NumberSet(base), False)}
-
-
 def test_participants_of_another_domain_are_none():
     network = Network()
     one, two = network.station(domain=0), network.station(domain=1)
@@ -379,18 +275,6 @@ def test_samples_go_in_fragments_that_fit_an_ethernet_frame():
     assert max(map(len, network.sent)) <= 1472
 
 
-def test_only_missing_fragments_are_sent_again():
-    network = Network(seed=1)
-    one, two, writer = pair(network)
-    network.loss = 0.1
-    one.write(writer, bytes(128_000))
-    network.run(0.01)
-    network.loss = 0
-    network.run(5)
-    assert two.payloads == [bytes(128_000)]
-    assert 100 < len(sent_to(two, DataFrag)) < 130
-
-
 def test_peers_of_the_other_byte_order(monkeypatch):
     monkeypatch.setattr(message, "write", partial(message.write, little=False))
     network = Network(seed=2, loss=0.1)
@@ -400,42 +284,3 @@ def test_peers_of_the_other_byte_order(monkeypatch):
         one.write(writer, each)
     assert network.run(20, lambda: two.payloads == sent)
     assert not any(datagram[21] & 1 for datagram in network.sent)
-
-
-def test_memory_for_early_samples_is_limited():
-    network = Network()
-    one, two = network.station(), network.station(memory_bytes=20_000)
-    writer = one.writer(KEEP_ALL)
-    two.reader(KEEP_ALL)
-    assert network.run(5, lambda: bool(writer.matched) and bool(two.named("Matched")))
-    network.run(1)
-    sent = payloads([1000] * 100)
-    network.loss = 1
-    one.write(writer, sent[0])
-    network.run(0.0001)
-    network.loss = 0
-    for each in sent[1:]:
-        one.write(writer, each)
-    # What has no room is asked for again.
-    assert network.run(60, lambda: two.payloads == sent)
-
-
-@pytest.mark.parametrize("number", [2, 4096, 1 << 40, (1 << 62)])
-def test_sequence_numbers_far_ahead_take_no_memory_and_no_time(number):
-    network = Network()
-    _, two, writer = pair(network)
-    reader = next(iter(two.core.matched(next(iter(two.core._sedp.locals)))))
-    assert reader.guid == writer.guid
-    evil = [
-        Data(reader=0, writer=writer.guid.entity, sequence_number=number, payload=bytes(9)),
-        Gap(
-            reader=0,
-            writer=writer.guid.entity,
-            start=number,
-            numbers=NumberSet(number + (1 << 61), (number + (1 << 61) + 3,)),
-        ),
-    ]
-    two.core.receive(message.write(writer.guid.prefix, evil), network.now)
-    two.core.tick(network.now)
-    assert two.core._budget.used <= 400
-    assert two.core.counters["malformed"] == 0

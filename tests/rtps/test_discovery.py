@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from dataclasses import replace
 
 import pytest
 
-from firm_hdl.rtps import Durability, Qos, Reliability, core, sedp
+from firm_hdl.rtps import Qos, Reliability, core
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData, key_payload
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import (
@@ -18,10 +20,8 @@ from firm_hdl.rtps.wire.guid import (
     Guid,
 )
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import Pid
-from firm_hdl.rtps.wire.reliability import AckNack, Heartbeat
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import AckNack, Data, Heartbeat
 from tests.rtps.network import GROUP, TOPIC, TYPE, Network
 
 PREFIX, OTHER = b"\x01\x10" + bytes(9) + b"\x09", b"\x01\x10" + bytes(9) + b"\x08"
@@ -111,20 +111,6 @@ def test_only_built_in_endpoints_that_a_peer_has_are_talked_to():
         assert {(type(each), each.writer) for each in sent} == {talk}
 
 
-@pytest.mark.parametrize(
-    ("period", "times"),
-    [(1.0, [0, 0.1, 0.2, 0.3, 0.4, 1.4, 2.4]), (0.04, [0, 0.04, 0.08, 0.12, 0.16, 0.2, 0.24])],
-)
-def test_a_new_participant_announces_itself_quickly_at_first(period, times):
-    station = Network().station(period=period)
-    now, found = 0.0, []
-    while len(found) < len(times):
-        due = station.core.tick(now)
-        found += [now for to, each in posted(station) if to == GROUP]
-        now = due
-    assert found == pytest.approx(times)
-
-
 def test_a_flood_of_announcements_makes_no_flood_of_answers(station):
     counts = []
     for now, name in ((0.0, "a"), (0.2, "b"), (0.4, "c"), (0.5, "d")):
@@ -138,23 +124,6 @@ def test_a_flood_of_announcements_makes_no_flood_of_answers(station):
         )
     assert counts == [1, 0, 0, 1]
     assert [each.name for each in station.core.peers] == ["d"]
-
-
-@pytest.mark.parametrize(("lease", "end"), [(1e-6, 1.0), (2.5, 2.5), (1e9, 30.0)])
-def test_a_silent_peer_is_lost_when_its_lease_ends(lease, end):
-    station = Network().station(period=1e6)
-    announce(station, 0.0, replace(PEER, lease=lease, endpoints=0))
-    now = 0.0
-    while station.core.peers:
-        before, now = now, station.core.tick(now)
-    assert before == end
-    # Anything that it sends is a sign of life.
-    announce(station, 5000.0, replace(PEER, lease=lease))
-    tell(station, 5000.9)
-    station.core.tick(5000.9 + end - 0.01)
-    assert station.core.peers
-    station.core.tick(5000.9 + end)
-    assert not station.core.peers
 
 
 def test_only_a_peer_that_left_is_not_found_again_at_once(station):
@@ -238,53 +207,6 @@ def test_policies_that_change(station):
         tell(station, 0.0, replace(ends, sequence_number=number + 1))
 
 
-def test_endpoints_of_a_peer_are_limited(station, monkeypatch):
-    monkeypatch.setattr(sedp, "_MAX_ENDPOINTS", 3)
-    announce(station, 0.0)
-    many = [replace(WRITER, guid=Guid(PREFIX, n << 8 | 3), topic=f"rt/{n}") for n in range(1, 6)]
-    changed = replace(many[0], topic="rt/new")
-    for number, each in enumerate([*many, changed], 1):
-        tell(station, 0.0, *announcement(each, number, PUBLICATIONS_WRITER))
-    # What is known may change.
-    topics = [each.topic for each in station.core.remotes(writers=True)]
-    assert topics == ["rt/new", "rt/2", "rt/3"]
-
-
-def test_what_is_announced_of_an_endpoint(station):
-    announce(station, 0.0)
-    station.core.add_writer(TOPIC, TYPE, Qos(depth=3), b"abc", 0.0)
-    ((_, data),) = [
-        pair
-        for pair in posted(station)
-        if getattr(pair[1], "payload", None) and pair[1].writer == PUBLICATIONS_WRITER
-    ]
-    found = EndpointData.decode(data.payload, writer=True)
-    assert (found.topic, found.type_name, found.user_data) == (TOPIC, TYPE, b"abc")
-    assert found.addresses == station.core.settings.own.user
-
-
-def test_a_removed_writer_says_nothing_more(station):
-    writer = station.writer(Qos(durability=Durability.TRANSIENT_LOCAL))
-    # A peer that announces readers, and does not listen to announcements.
-    announce(station, 0.0, replace(PEER, endpoints=1 << 4))
-    tell(station, 0.0, *announcement(READER, 1, SUBSCRIPTIONS_WRITER))
-    station.write(writer, b"abcd")
-    # While a reader has not acknowledged, a heartbeat is due soon.
-    assert station.core.tick(0.0) == pytest.approx(0.05)
-    ask = AckNack(
-        reader=READER.guid.entity,
-        writer=writer.guid.entity,
-        missing=NumberSet(1, (1,)),
-        count=1,
-    )
-    for count in (1, 2):
-        posted(station)
-        tell(station, float(count), replace(ask, count=count))
-        about = [each for _, each in posted(station) if each.writer == writer.guid.entity]
-        assert bool(about) is (count == 1)
-        station.core.remove(writer.guid, 1.5)
-
-
 def test_bad_discovery_data_does_not_concern_what_follows(station):
     bad = Data(reader=0, writer=SPDP_WRITER, sequence_number=1, payload=b"\0\1\0\0")
     good = replace(bad, payload=PEER.encode())
@@ -309,3 +231,21 @@ def test_datagrams_that_wait_take_limited_memory(station, monkeypatch):
     dropped = station.core.counters["dropped"]
     station.core.tick(4.0)
     assert station.core.outbox and station.core.counters["dropped"] == dropped
+
+
+def test_an_endpoint_that_is_removed_takes_no_memory():
+    network = Network()
+    one, two = network.station(), network.station()
+
+    def use():
+        writer, reader = one.writer(Qos(depth=0)), two.reader()
+        assert network.run(5, lambda: len(writer.matched) == 1)
+        one.write(writer, bytes(100))
+        one.core.remove(writer.guid, network.now)
+        two.core.remove(reader.guid, network.now)
+        return weakref.ref(writer), weakref.ref(reader)
+
+    kept = use()
+    assert network.run(5, lambda: not list(two.core.remotes(writers=True)))
+    gc.collect()
+    assert [each() for each in kept] == [None, None]

@@ -7,9 +7,7 @@ import pytest
 from firm_hdl.rtps import Durability, Guid, Qos
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.reader import Reader
-from firm_hdl.rtps.wire.numbers import NumberSet
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, NackFrag
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import AckNack, Data, Gap, Heartbeat, NumberSet
 from firm_hdl.rtps.writer import Writer
 from tests.rtps.test_endpoints import (
     BEST_EFFORT,
@@ -41,38 +39,6 @@ def listening(sent, qos=KEEP_ALL, limit=1 << 20):
     return reader, got, budget
 
 
-@pytest.mark.parametrize("own", [KEEP_ALL, BEST_EFFORT])
-@pytest.mark.parametrize("other", [KEEP_ALL, BEST_EFFORT])
-def test_nobody_waits_for_the_other_side_unless_both_are_reliable(sent, own, other):
-    both = own is other is KEEP_ALL
-    got = []
-    deliver = lambda writer, data, timestamp: got.append(data.sequence_number)  # noqa: E731
-    reader = Reader(THERE, own, sent.append, deliver, Budget(1 << 20))
-    reader.match(endpoint(HERE, other), ROUTE, 0.0)
-    reader.on_data(HERE, data(2), None, 1.0)
-    assert got == ([] if both else [2])
-    writer = Writer(HERE, own, sent.append)
-    writer.match(endpoint(THERE, other), ROUTE, 0.0)
-    writer.write(b"abcd", 1.0)
-    assert writer.acknowledged is not both
-
-
-def test_what_a_best_effort_reader_lost_begins_with_its_first_sample(sent):
-    reader, got, _ = listening(sent, BEST_EFFORT)
-    for number, lost in ((5, 0), (6, 0), (9, 2), (8, 2), (10, 2)):
-        reader.on_data(HERE, data(number), None, 1.0)
-        assert reader.lost == lost
-    assert got == [5, 6, 9, 10]
-    assert not sent
-
-
-def test_samples_far_ahead_take_no_memory(sent):
-    reader, _, budget = listening(sent)
-    for number, takes in ((4097, False), (4096, True)):
-        reader.on_data(HERE, data(number), None, 1.0)
-        assert bool(budget.used) is takes
-
-
 def test_early_samples_without_memory_are_dropped_and_asked_for(sent):
     # A sample of 4 bytes takes 204.
     reader, got, budget = listening(sent, limit=410)
@@ -100,27 +66,8 @@ def test_fragments_of_a_sample_that_will_not_come_are_forgotten(sent):
     assert budget.used == 204
 
 
-def test_fragments_of_a_sample_that_came_whole_are_forgotten_at_once(sent):
-    reader, got, budget = listening(sent)
-    for first in (1, 2):
-        reader.on_data_frag(HERE, part(3, first), None, 1.0)
-    assert budget.used == 408
-    reader.on_data(HERE, data(3), None, 1.0)
-    assert (got, budget.used) == ([], 204)
-
-
 def gap(start, base, members=()):
     return Gap(reader=0, writer=0x103, start=start, numbers=NumberSet(base, members))
-
-
-def test_a_gap_far_ahead_takes_no_memory(sent):
-    reader, got, _ = listening(sent)
-    reader.on_gap(HERE, gap(2, 1 << 16), 1.0)
-    reader.on_data(HERE, data(1), None, 1.0)
-    reader.on_heartbeat(HERE, heartbeat(1, 1 << 17, count=2), 1.0)
-    (answer,) = sent.take(AckNack)
-    # What is further ahead than samples may be has to be said again.
-    assert got == [1] and answer.missing.base == 4097
 
 
 @pytest.mark.parametrize(
@@ -141,38 +88,6 @@ def test_what_is_gone_is_lost_unless_it_never_was(sent, gaps, first, lost):
     assert reader.lost == 0
     reader.on_heartbeat(HERE, heartbeat(first, 9, count=2), 1.0)
     assert reader.lost == lost
-
-
-def test_a_reader_that_gets_on_asks_as_often_again(sent):
-    def asks(reader, now, most=99):
-        count = 0
-        while now < float("inf") and count < most:
-            now = reader.tick(now)
-            count += len(sent.take(AckNack))
-        return count
-
-    totals = []
-    for helps in (False, True):
-        reader, _, _ = listening(sent)
-        reader.on_heartbeat(HERE, heartbeat(1, 3, count=2), 1.0)
-        sent.clear()
-        total = asks(reader, 1.0, most=4)
-        if helps:
-            reader.on_gap(HERE, gap(1, 1, (1,)), 1.5)
-        totals.append(total + asks(reader, 10.0))
-    # Of four that were asked by themselves, and one as an answer to the heartbeat.
-    assert totals[1] == totals[0] + 5
-
-
-def test_a_heartbeat_that_is_late_takes_nothing_back(sent):
-    reader, got, _ = listening(sent)
-    reader.on_data(HERE, data(1), None, 1.0)
-    reader.on_heartbeat(HERE, heartbeat(1, 3, count=2), 1.0)
-    for last in (1, 0):
-        assert not reader.on_heartbeat(HERE, heartbeat(1, last, count=1), 1.9)
-    reader.on_data(HERE, data(1), None, 1.9)
-    reader.on_data(HERE, data(2), None, 1.9)
-    assert got == [1, 2] and [each.missing.base for each in sent.take(AckNack)] == [2]
 
 
 @pytest.mark.parametrize("qos", [KEEP_ALL, BEST_EFFORT])
@@ -200,45 +115,6 @@ def test_a_writer_that_says_nothing_is_asked_ever_more_seldom(sent):
         times += [now for each in sent.take(AckNack) if not each.final]
         now = due
     assert times == [1.0, 1.25, 1.75, 2.75, 4.75, 8.75]
-
-
-def test_an_old_answer_takes_no_acknowledgement_back(sent):
-    writer = Writer(HERE, KEEP_ALL, sent.append)
-    writer.match(endpoint(THERE), ROUTE, 0.0)
-    writer.write(b"abcd", 1.0)
-    writer.write(b"abcd", 1.0)
-    for count, base in ((1, 2), (2, 3), (3, 2)):
-        writer.on_ack_nack(THERE, ack(base, count=count), 1.1)
-        assert writer.acknowledged is (count > 1)
-
-
-def test_a_sample_is_kept_until_the_slowest_reader_has_it(sent):
-    slow = Guid(bytes(11) + b"\1", 0x204)
-    writer = Writer(HERE, KEEP_ALL, sent.append)
-    for each in (THERE, slow):
-        writer.match(endpoint(each), ROUTE, 0.0)
-    writer.write(b"abcd", 1.0)
-    writer.on_ack_nack(THERE, ack(2), 1.1)
-    sent.clear()
-    writer.on_ack_nack(slow, ack(1, (1,)), 1.2)
-    assert [each.sequence_number for each in sent.take(Data, slow.prefix)] == [1]
-    writer.on_ack_nack(slow, ack(2, count=2), 1.3)
-    sent.clear()
-    writer.on_ack_nack(slow, ack(1, (1,), count=3), 1.4)
-    assert len(sent.take(Gap)) == 1
-
-
-def test_a_durable_writer_whose_history_is_empty(sent):
-    durable = Qos(durability=Durability.TRANSIENT_LOCAL)
-    writer = Writer(HERE, durable, sent.append)
-    for _ in range(3):
-        writer.write(b"abcd", 1.0)
-    for number in (1, 2, 3):
-        writer.forget(number)
-    writer.match(endpoint(THERE, durable), ROUTE, 2.0)
-    (first,) = sent.take(Heartbeat)
-    assert (first.first, first.last) == (4, 3)
-    assert writer.acknowledged
 
 
 @pytest.mark.parametrize(("acknowledged", "sent_again"), [(1, [1, 2, 3]), (2, [1, 3]), (3, [1, 3])])
@@ -279,34 +155,3 @@ def test_which_samples_ask_for_an_acknowledgement(sent, qos, large, asks):
         (beat,) = sent.take(Heartbeat)
         asking += [] if beat.final else [number]
     assert asking == asks
-
-
-def test_further_samples_do_not_put_the_next_heartbeat_off(sent):
-    writer = Writer(HERE, KEEP_ALL, sent.append)
-    writer.match(endpoint(THERE), ROUTE, 0.0)
-    for now in (1.0, 1.02, 1.04):
-        writer.write(b"abcd", now)
-        assert writer.tick(now) == pytest.approx(1.05)
-    # It has them all before the fourth.
-    writer.on_ack_nack(THERE, ack(4), 1.045)
-    writer.write(b"abcd", 1.047)
-    assert writer.tick(1.047) == pytest.approx(1.097)
-
-
-@pytest.mark.parametrize("kind", ["acknowledges", "asks for fragments"])
-def test_a_reader_that_was_silent_is_asked_again_once_it_says_something(sent, kind):
-    writer = Writer(HERE, KEEP_ALL, sent.append, fragment_bytes=4)
-    writer.match(endpoint(THERE), ROUTE, 0.0)
-    writer.write(b"abcdefgh", 1.0)
-    now = 1.0
-    for _ in range(99):
-        now = min(writer.tick(now), 999.0)
-    assert writer.tick(999.0) == float("inf")
-    if kind == "acknowledges":
-        writer.on_ack_nack(THERE, ack(1), 1000.0)
-    else:
-        missing = NackFrag(
-            reader=0, writer=0x103, sequence_number=1, missing=NumberSet(1, (1,)), count=1
-        )
-        writer.on_nack_frag(THERE, missing, 1000.0)
-    assert writer.tick(1000.0) < 1002.0

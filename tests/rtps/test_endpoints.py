@@ -10,10 +10,17 @@ from firm_hdl.rtps.discovery import EndpointData, key_of
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire.guid import PUBLICATIONS_READER
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import (
+    AckNack,
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    HeartbeatFrag,
+    NackFrag,
+    NumberSet,
+)
 from firm_hdl.rtps.writer import Writer
 from tests.rtps.network import route_to
 
@@ -96,35 +103,6 @@ def part(number, first, count=1):
     )
 
 
-def test_heartbeats_go_on_for_each_reader_that_has_not_acknowledged(writer, sent):
-    others = [Guid(bytes(11) + bytes([n]), 0x204) for n in (1, 2)]
-    writer.match(endpoint(others[0], BEST_EFFORT), ROUTE, 0.0)
-    writer.match(endpoint(others[1]), ROUTE, 0.0)
-    writer.write(b"abcd", 1.0)
-    writer.on_ack_nack(THERE, ack(2), 1.001)
-    sent.clear()
-    now, times = 1.0, []
-    while now < 5:
-        due = writer.tick(now)
-        if [each.prefix for each in sent] == [others[1].prefix]:
-            times.append(round(now, 3))
-        sent.clear()
-        now = due
-    # 0.05 s, then twice as long each time, up to 1 s.
-    assert times == [1.05, 1.15, 1.35, 1.75, 2.55, 3.55, 4.55]
-    assert not writer.acknowledged
-    writer.on_ack_nack(others[1], ack(2), 5.0)
-    assert writer.acknowledged
-    assert writer.tick(6.0) == float("inf")
-
-
-def test_a_reader_that_never_answers_is_not_asked_for_ever(writer, sent):
-    for now in range(1, 100):
-        writer.tick(float(now))
-    # One heartbeat was sent when the reader matched.
-    assert len(sent.take(Heartbeat)) == 11
-
-
 def test_what_is_missing_is_sent_again_with_a_heartbeat(writer, sent):
     for _ in range(5):
         writer.write(b"abcd", 1.0)
@@ -141,18 +119,6 @@ def test_what_is_missing_is_sent_again_with_a_heartbeat(writer, sent):
     assert not sent
     writer.on_ack_nack(THERE, ack(2, (2, 4), count=3), 1.2)
     assert len(sent.take(Data)) == 2
-
-
-def test_an_answer_that_asks_for_samples_gets_one_heartbeat(writer, sent):
-    for _ in range(3):
-        writer.write(b"abcd", 1.0)
-    sent.clear()
-    # It asks for a heartbeat, too: the one behind the samples is that.
-    writer.on_ack_nack(THERE, ack(2, (2,), final=False), 1.1)
-    assert len(sent.take(Heartbeat)) == 1
-    writer.on_ack_nack(THERE, ack(4, count=2, final=False), 1.2)
-    (asked,) = sent.take(Heartbeat)
-    assert asked.final
 
 
 def test_numbers_that_a_writer_never_had_are_no_gap(writer, sent):
@@ -176,26 +142,6 @@ def test_old_samples_are_a_gap_for_a_late_volatile_reader(sent):
     writer.on_ack_nack(THERE, ack(1, (1, 3, 5)), 2.1)
     (gap,) = sent.take(Gap)
     assert (gap.start, gap.numbers) == (1, NumberSet(2, (3, 5)))
-
-
-def test_fragments_of_old_samples_are_a_gap_for_a_late_volatile_reader(sent):
-    writer = Writer(HERE, Qos(durability=Durability.TRANSIENT_LOCAL), sent.append)
-    writer.write(bytes(5000), 1.0)
-    writer.match(endpoint(THERE), ROUTE, 2.0)
-    writer.write(bytes(5000), 2.0)
-    sent.clear()
-    for number, kind in ((1, Gap), (2, DataFrag)):
-        asked = NackFrag(
-            reader=0x204,
-            writer=0x103,
-            sequence_number=number,
-            missing=NumberSet(1, (1,)),
-            count=number,
-        )
-        writer.on_nack_frag(THERE, asked, 2.1)
-        kinds = {type(each) for outgoing in sent for each in outgoing.submessages}
-        assert kinds & {Gap, DataFrag} == {kind}
-        sent.clear()
 
 
 def test_fragments_that_are_asked_for(writer, sent):
@@ -235,17 +181,6 @@ def test_answers_of_strangers_and_best_effort_readers_are_ignored(writer, sent):
     assert not sent
 
 
-def test_a_reader_delivers_in_order_once_it_knows_where_to_begin(reader, got):
-    for number in (7, 6, 7, 9):
-        reader.on_data(HERE, data(number), None, 1.0)
-    assert got == []
-    reader.on_heartbeat(HERE, heartbeat(6, 9), 1.0)
-    assert got == [6, 7]
-    assert reader.lost == 0
-    reader.on_data(HERE, data(8), None, 1.1)
-    assert got == [6, 7, 8, 9]
-
-
 def test_a_reader_asks_for_what_is_missing_and_says_what_is_lost(reader, sent, got):
     reader.on_heartbeat(HERE, heartbeat(1, 0), 1.0)
     assert not sent
@@ -264,30 +199,6 @@ def test_a_reader_asks_for_what_is_missing_and_says_what_is_lost(reader, sent, g
     reader.on_gap(HERE, Gap(reader=0, writer=0x103, start=5, numbers=NumberSet(6)), 1.3)
     reader.on_data(HERE, data(6), None, 1.3)
     assert (got, reader.lost) == ([1, 4, 6], 2)
-
-
-def test_what_a_gap_named_and_is_then_given_up_is_not_lost(reader, got):
-    reader.on_heartbeat(HERE, heartbeat(1, 0), 1.0)
-    # 1 is missing; 2 and 4 will never come; 3 came early.
-    reader.on_gap(HERE, Gap(reader=0, writer=0x103, start=2, numbers=NumberSet(3, (4,))), 1.0)
-    reader.on_data(HERE, data(3), None, 1.0)
-    reader.on_heartbeat(HERE, heartbeat(6, 6, count=2), 1.1)
-    assert got == [3]
-    # 1 and 5.
-    assert reader.lost == 2
-
-
-def test_a_writer_that_goes_gives_all_memory_back(sent, got):
-    budget = Budget(1 << 20)
-    reader = Reader(THERE, KEEP_ALL, sent.append, lambda *_: got.append(1), budget)
-    reader.match(endpoint(HERE), ROUTE, 0.0)
-    reader.on_heartbeat(HERE, heartbeat(1, 0), 1.0)
-    for number in (3, 4):
-        reader.on_data(HERE, data(number), None, 1.0)
-    reader.on_data_frag(HERE, part(6, 2), None, 1.0)
-    assert budget.used > 12
-    reader.unmatch(HERE)
-    assert budget.used == 0 and got == []
 
 
 def test_fragments_far_ahead_take_no_memory(sent, got):
@@ -324,29 +235,6 @@ def test_a_reader_repeats_its_request_while_there_is_progress(reader, sent, got)
         now += 1
         reader.tick(now)
     assert len(sent.take(AckNack)) == 20
-
-
-def test_a_reader_is_called_again_for_each_of_its_writers(reader, sent):
-    other = Guid(bytes(11) + b"\1", 0x103)
-    reader.match(endpoint(other), ROUTE, 1.0)
-    for writer, at in ((HERE, 1.0), (other, 1.5)):
-        reader.on_heartbeat(writer, heartbeat(1, 3, final=True), at)
-    assert len(sent.take(AckNack)) == 2
-    assert reader.tick(1.05) == pytest.approx(1.1)
-    assert reader.tick(1.55) == pytest.approx(1.6)
-    assert len(sent.take(AckNack, HERE.prefix)) == 1
-    reader.tick(1.6)
-    assert len(sent.take(AckNack, other.prefix)) == 1
-
-
-def test_a_gap_in_what_comes_is_asked_for_after_a_while(reader, sent):
-    reader.on_heartbeat(HERE, heartbeat(1, 0), 1.0)
-    reader.on_data(HERE, data(2), None, 1.0)
-    assert reader.tick(1.01) == pytest.approx(1.02)
-    assert not sent.take(AckNack)
-    reader.tick(1.02)
-    (answer,) = sent.take(AckNack)
-    assert answer.missing == NumberSet(1, (1,))
 
 
 def test_fragments_are_asked_for_when_no_more_come(reader, sent, got):

@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
-import socket
 from dataclasses import replace
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from firm_hdl.rtps import Durability, Qos, Reliability, TransportError
+from firm_hdl.rtps import Durability, Qos, Reliability
 from firm_hdl.rtps.backlog import Backlog
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData
-from firm_hdl.rtps.fragments import fragment, fragment_count
-from firm_hdl.rtps.pacing import Pacer
+from firm_hdl.rtps.participant import Pacer
 from firm_hdl.rtps.qos import duration, seconds
-from firm_hdl.rtps.settings import Settings
-from firm_hdl.rtps.transport import address_of
+from firm_hdl.rtps.spdp import Settings
 from firm_hdl.rtps.wire import locators
-from firm_hdl.rtps.wire.guid import Guid, is_keyed, new_prefix, user_reader, user_writer
+from firm_hdl.rtps.wire.guid import Guid, is_keyed, user_reader, user_writer
 from firm_hdl.rtps.wire.locators import Address, Ports
 from firm_hdl.rtps.wire.octets import Cursor, MalformedError
 from firm_hdl.rtps.wire.parameters import ParameterList
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import Data, fragment, fragment_count
 
 # A busy machine is no fault.
 SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
@@ -44,19 +41,6 @@ def test_samples_are_put_together_in_any_order(payload, size, random):
     assert done[:-1] == [None] * (len(done) - 1)
     assert done[-1] == sample
     assert budget.used == 0
-
-
-def test_several_fragments_in_one_submessage():
-    new = {"reader": 1, "writer": 2, "sequence_number": 3, "fragment_bytes": 4, "sample_bytes": 10}
-    backlog = Backlog(GUID.prefix, Budget(1 << 20))
-    assert backlog.add(DataFrag(first=2, count=2, payload=b"efghij", **new)) is None
-    assert backlog.missing(3) == [1]
-    # Other sizes than before: not of this sample.
-    wrong = {**new, "fragment_bytes": 5}
-    assert backlog.add(DataFrag(first=1, count=1, payload=b"abcde", **wrong)) is None
-    whole = backlog.add(DataFrag(first=1, count=1, payload=b"abcd", **new))
-    assert whole is not None and whole.payload == b"abcdefghij"
-    assert not backlog and not backlog.has_part(3)
 
 
 @pytest.mark.parametrize(("in_order", "left"), [(True, [1, 2]), (False, [4, 5])])
@@ -126,18 +110,6 @@ def test_incomplete_samples_are_limited():
         assert backlog.add(new) is None
         assert backlog.has_part(99) is begun
         backlog.drop(99)
-
-
-def test_samples_below_a_number_are_forgotten():
-    budget = Budget(1 << 20)
-    backlog = Backlog(GUID.prefix, budget)
-    for number in (7, 3, 5, 4):
-        sample = Data(reader=1, writer=2, sequence_number=number, payload=bytes(2000))
-        assert backlog.add(fragment(sample, 1, 1000)) is None
-    whole = budget.used
-    backlog.take_below(5)
-    assert [backlog.has_part(number) for number in (3, 4, 5, 7)] == [False, False, True, True]
-    assert budget.used == whole // 2
 
 
 def test_tables_of_policies():
@@ -313,12 +285,6 @@ def test_ports_of_the_standard():
             Ports.of(domain, participant)
 
 
-def test_a_domain_has_ports_for_120_participants_of_a_host():
-    assert [len(Ports.all_of(domain)) for domain in (0, 231, 232)] == [120, 120, 63]
-    assert Ports.all_of(231)[-1].user < Ports.of(232, 0).discovery_multicast
-    assert Ports.all_of(232)[-1].user == 65535
-
-
 def test_addresses_of_other_transports_are_left_out():
     good = locators.encode(Address("10.0.0.1", 7410))
     ipv6 = b"\2\0\0\0" + good[4:]
@@ -349,20 +315,6 @@ def test_pacing():
     assert pacer.wait(1000.0) == pytest.approx(0.016884)
     with pytest.raises(ValueError, match=r"^Rate must be positive, not 0$"):
         Pacer(0)
-
-
-def test_addresses_of_interfaces():
-    assert address_of("10.1.2.3") == "10.1.2.3"
-    assert address_of("lo") == "127.0.0.1"
-    socket.inet_aton(address_of(None))
-    with pytest.raises(TransportError, match=r"^interface 'no such' has no IPv4 address$"):
-        address_of("no such")
-
-
-def test_prefixes_are_of_our_vendor_and_differ():
-    made = {new_prefix() for _ in range(100)}
-    assert len(made) == 100
-    assert {(len(each), each[:2]) for each in made} == {(12, b"\x01\xff")}
 
 
 def test_values_out_of_range():

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import socket
-from types import SimpleNamespace
 
 import pytest
 
 from firm_hdl.rtps.backlog import Backlog
 from firm_hdl.rtps.budget import Budget
-from firm_hdl.rtps.fragments import fragment
-from firm_hdl.rtps.ros import Context, names
 from firm_hdl.rtps.transport import Transport
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.samples import Data, DataFrag
-from tests.rtps.test_participant import DOMAIN, OPTIONS
+from firm_hdl.rtps.wire.submessages import Data, DataFrag, fragment
+from tests.rtps.test_participant import DOMAIN
 
 THERE = Address("127.0.0.1", 9)
 INLINE = ParameterList(((Pid.KEY_HASH, bytes(16)),))
@@ -96,27 +93,6 @@ def test_the_largest_datagram_is_received_whole(transport):
     assert list(transport.receive(user, limit=1)) == [(datagram, "127.0.0.1")]
 
 
-def test_topics_of_peers_are_those_of_writers_and_readers(monkeypatch):
-    def endpoint(topic, kind, type_hash=None):
-        name = names.type_name(f"p/msg/{kind}")
-        data = names.user_data(type_hash)
-        return SimpleNamespace(topic=topic, type_name=name, user_data=data)
-
-    remotes = {
-        True: (endpoint("rt/a", "A", "RIHS01_1"), endpoint("rt/b", "B"), endpoint("dds", "D")),
-        False: (endpoint("rt/a", "A", "RIHS01_2"), endpoint("rt/a", "X"), endpoint("rt/c", "C")),
-    }
-    with Context(**OPTIONS) as context:
-        monkeypatch.setattr(context.participant, "remotes", remotes.get)
-        assert context.topics() == {
-            "/a": {"p/msg/A", "p/msg/X"},
-            "/b": {"p/msg/B"},
-            "/c": {"p/msg/C"},
-        }
-        assert context.type_hashes("/a") == {"RIHS01_1", "RIHS01_2"}
-        assert context.type_hashes("/b") == context.type_hashes("/d") == set()
-
-
 # Fragments.
 
 SAMPLE = Data(
@@ -127,14 +103,6 @@ SAMPLE = Data(
 def part(first, payload, **changes):
     given = {"count": 1, "fragment_bytes": 4, "sample_bytes": 10, "sequence_number": 7, **changes}
     return DataFrag(reader=5, writer=6, first=first, payload=payload, inline=INLINE, **given)
-
-
-def test_a_fragment_has_all_that_its_sample_has():
-    assert [fragment(SAMPLE, number, 4) for number in (1, 2, 3)] == [
-        part(1, b"abcd"),
-        part(2, b"efgh"),
-        part(3, b"ij"),
-    ]
 
 
 def test_a_sample_that_was_cut_has_all_that_it_had():
@@ -149,39 +117,6 @@ def test_fragments_that_are_announced_and_missing_may_still_come():
     assert backlog.add(part(1, b"abcd", count=3)) is None
     assert backlog.missing(7) == [2, 3]
     assert backlog.add(part(2, b"efghij", count=2)) == SAMPLE
-
-
-@pytest.mark.parametrize("change", [{"fragment_bytes": 5}, {"sample_bytes": 11}])
-def test_fragments_of_other_sizes_are_of_another_sample(change):
-    backlog = Backlog(bytes(12), Budget(1 << 20))
-    backlog.add(part(1, b"abcd"))
-    assert backlog.add(part(2, b"EFGHI", **change)) is None
-    assert backlog.missing(7) == [2, 3]
-    assert backlog.add(part(2, b"efghij", count=2)) == SAMPLE
-
-
-def test_a_sample_without_memory_is_not_put_together():
-    # A fragment of 4 bytes takes 204.
-    for limit, found in ((203, None), (204, b"abcd")):
-        budget = Budget(limit)
-        backlog = Backlog(bytes(12), budget)
-        whole = backlog.add(part(1, b"abcd", sample_bytes=4))
-        assert (whole and whole.payload) == found and budget.used == 0
-        assert not backlog
-
-
-def test_a_sample_that_outgrows_the_memory_is_given_up_and_may_begin_again():
-    for fitting in (1, 2):
-        # A byte too few for one more.
-        budget = Budget(204 * fitting + 203)
-        backlog = Backlog(bytes(12), budget)
-        for first in range(1, fitting + 1):
-            assert backlog.add(part(first, b"abcd")) is None
-        assert budget.used == 204 * fitting
-        assert backlog.add(part(fitting + 1, b"efgh")) is None
-        assert not backlog and budget.used == 0
-        assert backlog.add(part(3, b"ij")) is None
-        assert backlog.missing(7) == [1, 2] and budget.used == 204
 
 
 def test_no_more_fragments_are_missing_than_one_answer_can_name():

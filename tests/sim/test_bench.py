@@ -9,8 +9,7 @@ import pytest
 from amaranth.hdl import Cat, Module, Signal
 
 from firm_hdl.sim import DeadlineError, StreamRuleError
-from firm_hdl.sim.bench import RESET_CYCLES, WORD_BITS, Bench, Ports
-from firm_hdl.sim.job import Job, RunOptions
+from firm_hdl.sim.bench import RESET_CYCLES, WORD_BITS, Bench, Job, Ports, RunOptions
 from firm_hdl.sim.stalls import Stalls
 from tests.sim.components import Relay
 
@@ -60,13 +59,6 @@ def test_payloads_leave_in_the_next_cycle():
     # 0, 1 and 2 in; 1, 2 and 3 out; four cycles of silence.
     assert run.go() == 8
     assert run.taken == {"o0": [(1, 5), (2, 6), (3, 7)]}
-
-
-def test_a_bench_runs_job_after_job_from_reset():
-    run = Run([[5]])
-    assert [run.go(), run.taken["o0"]] == [6, [(1, 5)]]
-    run.taken["o0"].clear()
-    assert [run.go(), run.taken["o0"]] == [6, [(1, 5)]]
 
 
 class RelayBench:

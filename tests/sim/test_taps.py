@@ -8,8 +8,7 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.sim import StreamRuleError
-from firm_hdl.sim.bench import Bench, Ports
-from firm_hdl.sim.job import Job, RunOptions
+from firm_hdl.sim.bench import Bench, Job, Ports, RunOptions
 from firm_hdl.sim.stalls import Stalls
 from tests.sim.components import Relay
 

@@ -51,11 +51,6 @@ def test_payload_that_changes_is_rule_3():
         relay("change")
 
 
-@pytest.mark.parametrize("fault", ["drop", "change"])
-def test_faults_that_no_stall_provokes_are_not_seen(fault):
-    assert relay(fault, Stalls.none) == list(range(1, 9))
-
-
 def test_reset_takes_back_what_was_offered_and_begins_a_new_packet():
     dut = Relay(packet_layout(4))
     top = Module()

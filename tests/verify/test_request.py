@@ -11,7 +11,7 @@ import pytest
 
 import firm_hdl.verify.run as run
 from firm_hdl.cli import main
-from firm_hdl.errors import DefinitionError
+from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.verify.command import Workload, resolve
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.verdict import Passed
@@ -138,7 +138,7 @@ def workload(problems=None, **options):
     return Workload(request=Request(**options), tasks=(), problems=problems or {})
 
 
-def test_results_are_bound_to_all_inputs(tmp_path, fixed, capsys):
+def test_results_are_bound_to_all_inputs(tmp_path, fixed):
     fixed(ts1=Passed(1), ts3=Passed(1))
     inputs = "src/p/msg/A.msg", "golden/x.yaml", "node.yaml", "b.bag", "more/q/msg/B.msg"
     make_files(tmp_path, dict.fromkeys(inputs, ""))
@@ -158,8 +158,8 @@ def test_results_are_bound_to_all_inputs(tmp_path, fixed, capsys):
         before = (tmp_path / name).read_text()
         times = os.stat(tmp_path / name)
         (tmp_path / name).write_text(f"changed {number}")
-        assert run.run_workload(workload(**given)) == 1
-        assert "is of another run: inputs was" in capsys.readouterr().err
+        with pytest.raises(UserError, match="is of another run: inputs was"):
+            run.run_workload(workload(**given))
         (tmp_path / name).write_text(before)
         os.utime(tmp_path / name, ns=(times.st_atime_ns, times.st_mtime_ns))
     assert run.run_workload(workload(**given)) == 0
@@ -172,7 +172,7 @@ FREE |= {"bus_bytes", "simulated", "libraries"}
 
 
 @pytest.mark.parametrize("name", [each.name for each in fields(Request) if each.name not in FREE])
-def test_results_are_bound_to_each_option(tmp_path, fixed, capsys, name):
+def test_results_are_bound_to_each_option(tmp_path, fixed, name):
     fixed(ts3=Passed(1))
     usual = Request(results=str(tmp_path / "r.jsonl"))
     value = getattr(usual, name)
@@ -192,8 +192,8 @@ def test_results_are_bound_to_each_option(tmp_path, fixed, capsys, name):
     work = Workload(request=usual, tasks=(), problems={})
     assert run.run_workload(work) == run.run_workload(work) == 0
     changed = replace(work, request=replace(usual, **{name: other}))
-    assert run.run_workload(changed) == 1
-    assert "is of another run: " in capsys.readouterr().err
+    with pytest.raises(UserError, match="is of another run: "):
+        run.run_workload(changed)
 
 
 def test_a_board_without_a_node_sends_the_named_types_back():

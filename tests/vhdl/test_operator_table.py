@@ -180,12 +180,17 @@ TABLES = {
 }
 
 
+def design_of(table: Table) -> str:
+    """Return a design with all operators, as RTLIL."""
+    head = "attribute \\top 1\nmodule \\top\n"
+    head += "".join(f"  wire width {table.bits} input {n} \\{c}\n" for n, c in enumerate("ab"))
+    return head + "".join(row.cell(n) for n, row in enumerate(table.rows)) + "end\n"
+
+
 def compared(table: Table, folder: Path, change: tuple[str, str] = ("", "")) -> str | None:
     """Simulate the VHDL of operators, on request changed; return the first difference."""
     rows = table.rows
-    head = "attribute \\top 1\nmodule \\top\n"
-    head += "".join(f"  wire width {table.bits} input {n} \\{c}\n" for n, c in enumerate("ab"))
-    vhdl = convert(head + "".join(row.cell(n) for n, row in enumerate(rows)) + "end\n")
+    vhdl = convert(design_of(table))
     vhdl.files["top.vhd"] = vhdl.files["top.vhd"].replace(*change)
     widths = {f"o{n}": row.width for n, row in enumerate(rows)}
     seen = simulate(vhdl, table.steps, dict.fromkeys("ab", table.bits), widths, folder)

@@ -100,13 +100,6 @@ def test_gap_is_static_exactly_when_types_decide_it(fields, path, gap):
     assert gaps_of(layout)[(path,)].bytes == gap
 
 
-@pytest.mark.parametrize(("count", "gap"), [(1, 0), (2, 4), (3, 0), (4, 4), (1000001, 0)])
-def test_a_gap_after_a_constant_loop_knows_its_count(count, gap):
-    element = make("ros2", {"x": "uint32"}, "E")
-    layout = lay_out(make("ros2", {"h": "uint32", "a": (element, f"[{count}]"), "z": "uint64"}))
-    assert gaps_of(layout)[("z",)].bytes == gap
-
-
 def test_a_loop_body_is_laid_out_for_all_of_its_elements():
     element = make("ros2", {"x": "uint8", "y": "uint16"}, "E")
     layout = lay_out(make("ros2", {"a": (element, "[]")}))
@@ -190,15 +183,6 @@ def test_loops_have_the_sizes_of_their_elements():
         assert [(each.path[-2:], each.type) for each in node.body] == [
             (("item", "x"), P["uint32"]), (("item", "y"), P["uint8"])
         ]  # fmt: skip
-
-
-@pytest.mark.parametrize(("primitive", "name"), [("wchar", "uint16"), ("char", "char")])
-def test_characters_of_idl_are_numbers_of_their_size(primitive, name):
-    kind = IDL_PRIMITIVES[primitive]
-    message = Message(name="p/msg/T", dialect="ros2", fields=(Field(name="f", type=kind),))
-    (node,) = lay_out(message).nodes
-    assert node == Scalar(path=("f",), gap=Gap(align=kind.bytes, bytes=0), type=node.type)
-    assert (node.type.name, node.type.bytes, node.type.signed) == (name, kind.bytes, kind.signed)
 
 
 def test_an_unknown_wire_is_refused():

@@ -10,8 +10,7 @@ import pytest
 
 from firm_hdl.frontend import Library
 from firm_hdl.wire import lay_out
-from firm_hdl.wire.bands import Note, bands
-from firm_hdl.wire.picture import BYTE_WIDTH, INDENT, LEFT, ROW_BYTES, to_svg
+from firm_hdl.wire.picture import BYTE_WIDTH, INDENT, LEFT, ROW_BYTES, Note, bands, to_svg
 from tests.frontend.workspace import library
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -205,14 +204,6 @@ def test_offsets_count_from_the_start_of_the_packet(tmp_path):
     assert rows[8:] == ["0", "+0", "+8"]
 
 
-def test_names_are_beside_the_row_where_they_start(tmp_path):
-    message = library(tmp_path, {"p/T": "uint8 a\nuint16 b\nuint64 c"}).message("p/T")
-    texts = texts_of(to_svg(lay_out(message, "cdr"), "p/T"))
-    assert "a uint8, b uint16" in texts and "c uint64" in texts
-    # Padding has no name beside its row.
-    assert not [text for text in texts if "padding" in text and "," in text]
-
-
 def test_special_characters_of_a_title_are_escaped(tmp_path):
     message = library(tmp_path, {"p/T": "uint8 a"}).message("p/T")
     title = "</text><script>&\"'"
@@ -299,16 +290,3 @@ def test_a_box_has_room_for_its_text_and_is_not_smaller_than_a_row(tmp_path):
         tops.append(y)
     assert [*boxes] == notes and len(name) > 50 > len(notes[1]) and tops == sorted(tops)
     assert int(picture.get("width")) >= LEFT + 8 + 6.7 * len(notes[0])
-
-
-def test_what_varies_is_dashed_and_loops_are_not(tmp_path):
-    layout = lay_out(library(tmp_path, TEXTS).message("p/T"), "cdr")
-    picture = ElementTree.fromstring(to_svg(layout, "p/T"))
-    notes = [band for band in bands(layout) if isinstance(band, Note)]
-    drawn = [
-        each.get("stroke-dasharray") is not None
-        for each in picture.iter(f"{SVG}rect")
-        if each.get("fill") and each.find(f"{SVG}title") is None
-    ]
-    assert drawn == [note.kind != "loop" for note in notes]
-    assert {note.kind for note in notes} == {"data", "padding", "loop"}

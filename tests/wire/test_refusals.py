@@ -9,7 +9,6 @@ from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.errors import DefinitionError
 from firm_hdl.gateware.record import RecordReader
 from firm_hdl.model import IDL_PRIMITIVES, PRIMITIVE_OF, PRIMITIVES, Array, Field, Message, Sequence
-from firm_hdl.plan import build_plan, from_yaml, to_yaml
 from firm_hdl.wire import lay_out, layout, refusals
 from tests.frontend.workspace import errors_of, make_files
 from tests.steps import calls_at_most
@@ -120,13 +119,6 @@ def test_it_is_the_only_primitive_that_no_wire_has():
     refused = {item.name for table in tables for item in table.values() if not item.has_wire_format}
     assert refused == {"long double"}
     assert not {name for name, _ in PRIMITIVE_OF} & refused
-
-
-def test_a_plan_that_names_it_is_no_plan(load):
-    text = to_yaml(build_plan(lay_out(load("p/Constant"))))
-    assert "float64" in text
-    with pytest.raises(ValueError, match="long double"):
-        from_yaml(text.replace("float64", "long double"))
 
 
 def test_deep_nesting_needs_neither_stack_nor_time():

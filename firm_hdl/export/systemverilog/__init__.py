@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from firm_hdl.export.systemverilog.backend import SystemVerilog
+from firm_hdl.export.systemverilog.backend import write
 
-__all__ = ["SystemVerilog"]
+__all__ = ["write"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from firm_hdl.export.backend import BackEnd, Converters, Output
+from firm_hdl.export.backend import Converters, Output, module_name
 from firm_hdl.export.remarks import remark
 from firm_hdl.export.systemverilog.package import constants_of, shared_packages
 from firm_hdl.export.systemverilog.structs import package_name
@@ -12,9 +12,8 @@ from firm_hdl.export.systemverilog.types import WORDS, bus_name
 from firm_hdl.export.systemverilog.wrapper import wrapper
 from firm_hdl.export.top import DIRECTIONS, Direction
 from firm_hdl.export.tree import Tree, tree_of
-from firm_hdl.export.verilog import module_name
 
-__all__ = ["FOLDER", "SystemVerilog", "wrapper_name"]
+__all__ = ["FOLDER", "wrapper_name", "write"]
 
 FOLDER = "systemverilog"
 """Subfolder of a type's folder."""
@@ -40,30 +39,26 @@ def wrapper_name(folder: str, direction: Direction) -> str:
     return f"{folder}_{direction}_sv"
 
 
-class SystemVerilog(BackEnd):
-    """SystemVerilog-2012 around the Verilog modules; writes the manifest's entry `systemverilog`.
+def write(converters: Converters) -> Output:
+    """Write SystemVerilog-2012 around the Verilog modules, and the manifest's `systemverilog`.
 
-    With flat ports, the back end writes nothing.
+    With flat ports, there is none.
     """
-
-    name = "systemverilog"
-
-    def write(self, converters: Converters) -> Output:
-        if converters.options.ports == "flat":
-            return Output(files={})
-        tree = tree_of(converters.message, converters.plan, WORDS)
-        modules = {way: wrapper_name(converters.name, way) for way in DIRECTIONS}
-        cores = [f"../{module_name(converters.name, way)}.v" for way in DIRECTIONS]
-        texts = shared_packages(converters.plan, tree)
-        shared = list(texts)
-        for way, name in modules.items():
-            texts[f"{name}.sv"] = _module(converters, tree, way, name)
-        listed = [*shared, *cores, *(f"{name}.sv" for name in modules.values())]
-        files = {**texts, _LIST: "".join(f"{file}\n" for file in listed), _WAIVERS: WAIVERS_TEXT}
-        return Output(
-            files={f"{FOLDER}/{name}": text for name, text in files.items()},
-            manifest={"systemverilog": _section(converters, tree, modules, listed)},
-        )
+    if converters.options.ports == "flat":
+        return Output(files={})
+    tree = tree_of(converters.message, converters.plan, WORDS)
+    modules = {way: wrapper_name(converters.name, way) for way in DIRECTIONS}
+    cores = [f"../{module_name(converters.name, way)}.v" for way in DIRECTIONS]
+    texts = shared_packages(converters.plan, tree)
+    shared = list(texts)
+    for way, name in modules.items():
+        texts[f"{name}.sv"] = _module(converters, tree, way, name)
+    listed = [*shared, *cores, *(f"{name}.sv" for name in modules.values())]
+    files = {**texts, _LIST: "".join(f"{file}\n" for file in listed), _WAIVERS: WAIVERS_TEXT}
+    return Output(
+        files={f"{FOLDER}/{name}": text for name, text in files.items()},
+        manifest={"systemverilog": _section(converters, tree, modules, listed)},
+    )
 
 
 def _module(converters: Converters, tree: Tree, way: Direction, name: str) -> str:

@@ -1,8 +1,8 @@
-"""Verilog: a module per converter, waivers for linters, and an instantiation template."""
+"""The back end for Verilog: modules with plain ports, and templates of instances."""
 
 from __future__ import annotations
 
 from firm_hdl.export.backend import module_name
-from firm_hdl.export.verilog.backend import Verilog
+from firm_hdl.export.verilog.backend import write
 
-__all__ = ["Verilog", "module_name"]
+__all__ = ["module_name", "write"]

@@ -5,43 +5,48 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from firm_hdl.export.backend import BackEnd, Converters, Output, module_name
+from firm_hdl.export.backend import Converters, Output, module_name
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
 from firm_hdl.export.verilog.template import template
 from firm_hdl.plan import Plan
 from firm_hdl.verilog import convert
 
-__all__ = ["Verilog", "section", "waivers"]
+__all__ = ["waivers", "write"]
 
 _WAIVERS = "waivers.vlt"
 """File with waivers of Verilator's warnings."""
 
 _WAIVED = {
-    "WIDTH": "Amaranth relies on Verilog's own extension of the narrower operand.",
+    "WIDTH": "An assignment cuts the result of a shift.",
     "UNUSEDSIGNAL": "Amaranth names every field of a structure, used or not.",
-    "CASEOVERLAP": "The selectors are one-hot, so only one pattern matches at a time.",
+    "VARHIDDEN": "A parameter of a function has the name of the signal that it takes.",
     "DECLFILENAME": "A file has a module and its submodules.",
 }
 
 
-class Verilog(BackEnd):
-    """Verilog-2005 that is also SystemVerilog; writes the manifest's entry `converters`."""
-
-    name = "verilog"
-
-    def write(self, converters: Converters) -> Output:
-        name = converters.name
-        modules = {direction: module_name(name, direction) for direction in DIRECTIONS}
-        files = {_WAIVERS: waivers(modules.values())}
-        for direction, module in modules.items():
-            header = converters.header(module, f"the {direction}")
-            files[f"{module}.v"] = convert(
-                converters.circuits[direction], name=module, header=header
-            )
+def write(converters: Converters) -> Output:
+    """Write Verilog-2005 that is also SystemVerilog, and the manifest's entry `converters`."""
+    name, plan = converters.name, converters.plan
+    files, section = {}, {}
+    for direction in DIRECTIONS:
+        module = module_name(name, direction)
+        header = converters.header(module, f"the {direction}")
+        files[f"{module}.v"] = convert(converters.circuits[direction], name=module, header=header)
+        section[direction] = {
+            "module": module,
+            "verilog": f"{module}.v",
+            "clock": "aclk",
+            "reset": "aresetn",
+            "ports": _ports(plan, direction),
+        }
+        if "tools" in converters.options.extras:
+            section[direction]["template"] = f"{module}.veo"
             files[f"{module}.veo"] = template(
-                converters.message, converters.plan, direction, module=module, header=header
+                converters.message, plan, direction, module=module, header=header
             )
-        return Output(files=files, manifest={"converters": section(converters.plan, name)})
+    if "tools" in converters.options.extras:
+        files[_WAIVERS] = waivers(module_name(name, each) for each in DIRECTIONS)
+    return Output(files=files, manifest={"converters": section})
 
 
 def waivers(modules: Iterable[str]) -> str:
@@ -62,21 +67,6 @@ def waivers(modules: Iterable[str]) -> str:
         lines.append(f"\n// {reason}\n")
         lines += [f'lint_off -rule {rule} -file "*{file}"\n' for file in files]
     return "".join(lines)
-
-
-def section(plan: Plan, folder: str) -> dict[str, Any]:
-    """Return the manifest's entry on the modules of a folder."""
-    return {
-        direction: {
-            "module": module_name(folder, direction),
-            "verilog": f"{module_name(folder, direction)}.v",
-            "template": f"{module_name(folder, direction)}.veo",
-            "clock": "aclk",
-            "reset": "aresetn",
-            "ports": _ports(plan, direction),
-        }
-        for direction in DIRECTIONS
-    }
 
 
 def _ports(plan: Plan, direction: Direction) -> list[dict[str, Any]]:

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from firm_hdl.export.vhdl.backend import Vhdl
+from firm_hdl.export.vhdl.backend import write
 
-__all__ = ["Vhdl"]
+__all__ = ["write"]

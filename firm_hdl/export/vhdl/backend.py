@@ -4,46 +4,49 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
-from firm_hdl.export.backend import BackEnd, Converters, Output
+from firm_hdl.export.backend import Converters, Output
 from firm_hdl.export.packaging import packaging
 from firm_hdl.export.primitives import TYPES_NAME
 from firm_hdl.export.record_top import RecordTop, why_no_record
 from firm_hdl.export.top import DIRECTIONS, Direction
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT, STIMULI, bench, run_script
 from firm_hdl.export.vhdl.bench_views import View, flat_view, record_view, stream_view
+from firm_hdl.export.vhdl.constants import comment
 from firm_hdl.export.vhdl.layer import flat_package, user_layer
-from firm_hdl.export.vhdl.neighbours import FOLDER, SECTION, check_packages
+from firm_hdl.export.vhdl.neighbours import FOLDER, SECTION
 from firm_hdl.export.vhdl.parts import PARTS, packets_text
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan
+from firm_hdl.rtlil.ir import Design
 from firm_hdl.vhdl.convert import convert
 from firm_hdl.vhdl.package import PACKAGE_NAME
 
-__all__ = ["Vhdl", "to_vhdl"]
+__all__ = ["to_vhdl", "write"]
 
 COMMON = (f"{TYPES_NAME}.vhd", f"{PACKAGE_NAME}.vhd")
 """Files that are the same for all types."""
 
 
-class Vhdl(BackEnd):
-    """VHDL-2008; writes the manifest's entry `vhdl`."""
+def write(converters: Converters) -> Output:
+    """Write VHDL-2008, and the manifest's entry `vhdl`."""
+    made = to_vhdl(converters)
+    manifest = {SECTION: made.manifest}
+    files = {**made.files, **_lists(made.manifest)}
+    if "tools" in converters.options.extras:
+        files |= packaging({"inputs": converters.inputs, **manifest})
+    return Output(
+        files={f"{FOLDER}/{name}": text for name, text in files.items()}, manifest=manifest
+    )
 
-    name = "vhdl"
 
-    def check(self, folders: Mapping[Path, Converters]) -> None:
-        check_packages(folders)
-
-    def write(self, converters: Converters) -> Output:
-        made = to_vhdl(converters)
-        manifest = {SECTION: made.manifest}
-        tools = packaging({"inputs": converters.inputs, **manifest})
-        files = {f"{FOLDER}/{name}": text for name, text in {**made.files, **tools}.items()}
-        return Output(files=files, manifest=manifest)
+def _lists(section: Mapping[str, Any]) -> dict[str, str]:
+    """List the files to synthesize, and those of the benches, which compile after the design."""
+    lists = {"files.txt": section["files"], "bench_files.txt": section["bench"]["files"]}
+    return {name: "".join(f"{file}\n" for file in files) for name, files in lists.items()}
 
 
 @dataclass(slots=True, kw_only=True)
@@ -56,10 +59,20 @@ class _Parts:
     benches: dict[str, str] = field(default_factory=dict)
     section: dict[str, Any] = field(default_factory=dict)
 
+    @property
+    def head(self) -> str:
+        """The comment at the head of each file that is not shared."""
+        return "".join(comment(self.header, ""))
+
     @search_put_off()
-    def core(self, circuit: str, name: str) -> Core:
-        made = convert(circuit, name=name, header=self.header)
-        self.design.update(made.files)
+    def core(self, circuit: Design | RecordTop, name: str) -> Core:
+        made = convert(circuit, name=name)
+        package = f"{PACKAGE_NAME}.vhd"
+        entities = [text for file, text in made.files.items() if file != package]
+        self.design |= {
+            package: made.files[package],
+            f"{made.top}.vhd": self.head + "\n".join(entities),
+        }
         # The outermost entity is the last one.
         return Core(entity=made.top, names=list(made.entities.values())[-1].ports)
 
@@ -126,7 +139,7 @@ def _add_records(parts: _Parts, converters: Converters, cores: Mapping[Direction
     """Add the layer with records and its benches."""
     message, plan = converters.message, converters.plan
     reason = why_no_record(message, plan)
-    record_cores = None if reason else _record_cores(parts, converters)
+    record_cores = None if reason else _record_cores(parts, converters, cores)
     layer = user_layer(
         message,
         plan,
@@ -171,11 +184,15 @@ def _add_records(parts: _Parts, converters: Converters, cores: Mapping[Direction
     }
 
 
-def _record_cores(parts: _Parts, converters: Converters) -> dict[Direction, Core]:
-    """Add converters with the whole message as one vector."""
-    parameters = converters.parameters()
-    tops = {way: RecordTop.of(converters.message, way, **parameters) for way in DIRECTIONS}
-    return {way: parts.core(top, f"{parts.base}_{way}_record_flat") for way, top in tops.items()}
+def _record_cores(
+    parts: _Parts, converters: Converters, cores: Mapping[Direction, Core]
+) -> dict[Direction, Core]:
+    """Add entities with the whole message as one vector, around the converters."""
+    found = {}
+    for way, core in cores.items():
+        top = RecordTop(converters.message, converters.plan, way, core.entity, core.names)
+        found[way] = parts.core(top, f"{parts.base}_{way}_record_flat")
+    return found
 
 
 def _add_flat(parts: _Parts, converters: Converters, cores: Mapping[Direction, Core]) -> None:

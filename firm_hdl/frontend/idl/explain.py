@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
-from firm_hdl.frontend.explain import clip
+from firm_hdl.frontend.explain import alternatives, clip, words_at
 
 __all__ = ["explain"]
 
@@ -115,7 +115,7 @@ def _wrong_character(text: str, start: int, before: str, expected: frozenset[str
     """Explain characters that start no token at any place."""
     rest = text[start : start + 100]
     if rest.startswith("#"):
-        directive = _group(_DIRECTIVE, text, start)
+        directive = words_at(_DIRECTIVE, text, start)
         if directive == "#include":
             return len(directive), "'#include' needs a path in quotes or angle brackets"
         message = f"'{clip(directive)}' is not supported: ROS 2 supports only '#include'"
@@ -128,12 +128,12 @@ def _wrong_character(text: str, start: int, before: str, expected: frozenset[str
         return len(text[start:].splitlines()[0]), "this string is not closed in its line"
     if rest.startswith("\ufeff"):
         return 1, "a byte order mark is not allowed"
-    number = _group(_NUMBER, text, start)
+    number = words_at(_NUMBER, text, start)
     if number and "DECIMAL" in expected:
         return len(number), f"'{clip(number)}' is not a number"
     if rest.startswith(("'", "L'")):
         return 1, "a character literal must have one character, or one escape, between its quotes"
-    escaped = _group(_ESCAPED, text, start)
+    escaped = words_at(_ESCAPED, text, start)
     if escaped:
         rule = "letters, digits and underscores, a letter first"
         return len(escaped), f"'{clip(escaped)}' is not a legal name: {rule}"
@@ -142,7 +142,7 @@ def _wrong_character(text: str, start: int, before: str, expected: frozenset[str
 
 def _wrong_word(text: str, start: int, before: str, expected: frozenset[str]) -> _Found:
     """Explain a construct that the standard has and ROS 2 does not support."""
-    word = _group(_WORD, text, start)
+    word = words_at(_WORD, text, start)
     last = _LAST_WORD.search(before)
     at, previous = last.groups() if last else (None, "")
     if word in _REFUSED and "_MODULE" in expected:
@@ -180,14 +180,8 @@ def _in_general(text: str, start: int, expected: frozenset[str]) -> tuple[int, i
         hidden = {"_GREATER"} if "OR" in expected and "_END_BRACKET" in expected else set()
         names = [name for name in _PHRASES if name in expected - hidden]
         phrases = list(dict.fromkeys(_PHRASES[name] for name in names))
-    *others, last = phrases or ["something else"]
-    wanted = f"{', '.join(others)} or {last}" if others else last
-    word = _group(_WORD, text, start)
+    wanted = alternatives(phrases or ["something else"])
+    word = words_at(_WORD, text, start)
     if start < len(text.rstrip(_BLANKS)):
         return start, start + len(word), f"expected {wanted}, not '{clip(word)}'"
     return start, start + 1, f"expected {wanted}, but the file ends here"
-
-
-def _group(pattern: re.Pattern[str], text: str, start: int) -> str:
-    match = pattern.match(text, start)
-    return match.group() if match else ""

@@ -19,7 +19,6 @@ from firm_hdl.frontend.idl.tree import (
     Declarator,
     Definition,
     Enum,
-    Expression,
     FileSyntax,
     Include,
     Module,
@@ -29,6 +28,7 @@ from firm_hdl.frontend.idl.tree import (
     Struct,
     Typedef,
     TypeNode,
+    words_of,
 )
 from firm_hdl.frontend.idl.values import AlreadyReportedError, UnknownNameError, Value
 
@@ -199,21 +199,16 @@ class Names:
 
 def _describe(type_: TypeNode, declarator: Declarator) -> str:
     """Write a type, with equal texts for types that are equal in rosidl_parser."""
-    text = "".join(f"[{_words(size)}]" for size in declarator.sizes)
+    text = "".join(f"[{words_of(size.span)}]" for size in declarator.sizes)
     while isinstance(type_, SequenceType):
-        text += f"<{'' if type_.bound is None else _words(type_.bound)}>"
+        text += f"<{'' if type_.bound is None else words_of(type_.bound.span)}>"
         type_ = type_.element
     match type_:
         case BasicType():
             return text + type_.name
         case StringType():
-            bound = "" if type_.bound is None else _words(type_.bound)
+            bound = "" if type_.bound is None else words_of(type_.bound.span)
             return f"{text}{'wstring' if type_.wide else 'string'} {bound}"
         case ScopedName():
             return text + str(type_)
     return text + "fixed"
-
-
-def _words(expression: Expression) -> str:
-    span = expression.span
-    return " ".join(span.source.text[span.start : span.end].split())

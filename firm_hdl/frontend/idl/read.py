@@ -3,41 +3,47 @@
 The checks are those of rosidl_parser and those of a C++ compiler on the code that ROS 2 generates.
 ``docs/reference/errata.md`` lists the differences. All errors are reported, and the parts with
 errors are left out.
+
+Annotations give comments, units and defaults. Others are ignored, as in rosidl_parser, unless they
+change the bytes on the wire in the standard. ROS 2 ignores these, too, but the author of the
+definition does not expect this. Therefore they are errors.
 """
 
 from __future__ import annotations
 
+import ast
+import math
+import re
+import warnings
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Literal
 
 from firm_hdl.errors import MAX_DIAGNOSTICS, Diagnostic, Source, Span
-from firm_hdl.frontend.idl.annotations import (
-    comment_of,
-    default_of,
-    refusals,
-    unit_of,
-    unsigned_bits,
-    words_of,
-)
 from firm_hdl.frontend.idl.names import CONSTANTS, Names, Path, definitions, included
 from firm_hdl.frontend.idl.parse import parse_file
 from firm_hdl.frontend.idl.tree import (
+    Annotation,
     BasicType,
     Constant,
     Declarator,
+    Expression,
     FileSyntax,
     FixedType,
+    LiteralSyntax,
     Member,
     Module,
+    ScopedName,
     StringType,
     Struct,
     Typedef,
+    words_of,
 )
 from firm_hdl.frontend.idl.types import Expander
 from firm_hdl.frontend.idl.values import (
     AlreadyReportedError,
     IdlError,
+    Lookup,
     UnknownNameError,
     Value,
     evaluate,
@@ -54,7 +60,7 @@ from firm_hdl.frontend.syntax import (
     TypeSyntax,
     ValueSyntax,
 )
-from firm_hdl.model import EMPTY_MEMBER
+from firm_hdl.model import EMPTY_MEMBER, IDL_PRIMITIVES
 
 __all__ = ["read_idl"]
 
@@ -126,7 +132,7 @@ class _Reader:
         for path, node in definitions(self._file):
             match node:
                 case Module():
-                    self.wrong += refusals(node.annotations)
+                    self.wrong += _refusals(node.annotations)
                 case Constant():
                     self._constant(node, path)
                 case Typedef():
@@ -151,7 +157,7 @@ class _Reader:
         """Declare a constant, and keep it for the struct to which it belongs."""
         full = (*path, node.name.text)
         name = NameSyntax(text=node.name.text, span=node.name.span)
-        self.wrong += refusals(node.annotations)
+        self.wrong += _refusals(node.annotations)
         if not path:
             message = "a constant must be declared in a module"
             self.wrong.append(Diagnostic(message=message, span=name.span))
@@ -176,8 +182,8 @@ class _Reader:
                 type=type_,
                 name=name,
                 value=ValueSyntax(value=fitting, text=words_of(span), span=span),
-                comment=comment_of(node.annotations),
-                unit=unit_of(node.annotations),
+                comment=_comment_of(node.annotations),
+                unit=_unit_of(node.annotations),
             )
         )
 
@@ -187,7 +193,7 @@ class _Reader:
         """Evaluate a constant: its value in expressions, its type, and its value of that type."""
         type_ = self._constant_type(node)
         lookup = partial(self._names.constant, path=path)
-        value = evaluate(node.value, lookup, unsigned_bits(type_.name))
+        value = evaluate(node.value, lookup, _unsigned_bits(type_.name))
         fitting = fit(value, type_.name, node.value.span)
         if type_.name not in ("char", "wchar"):
             value = Value(_KINDS.get(type_.name, "integer"), fitting)
@@ -232,7 +238,7 @@ class _Reader:
 
     def _struct(self, node: Struct, path: Path) -> MessageSyntax:
         assert node.members is not None
-        self.wrong += refusals(node.annotations)
+        self.wrong += _refusals(node.annotations)
         fields = [field for member in node.members for field in self._fields(member, path, node)]
         match fields:
             case [FieldSyntax(name=NameSyntax(text=name), type=type_)] if (
@@ -248,13 +254,13 @@ class _Reader:
             source=self._file.source,
             dialect="ros2",
             members=tuple(members),
-            comment=comment_of(node.annotations),
+            comment=_comment_of(node.annotations),
             language="idl",
         )
 
     def _fields(self, node: Member, path: Path, struct: Struct) -> Iterator[FieldSyntax]:
-        self.wrong += refusals(node.annotations)
-        comment, unit = comment_of(node.annotations), unit_of(node.annotations)
+        self.wrong += _refusals(node.annotations)
+        comment, unit = _comment_of(node.annotations), _unit_of(node.annotations)
         array: Declarator | None = None
         # Several names share a type and a default, which are read once for plain names and once
         # for an array.
@@ -292,7 +298,7 @@ class _Reader:
     ) -> ValueSyntax | ListSyntax | None:
         lookup = partial(self._names.constant, path=path, struct=struct.name.text)
         try:
-            return default_of(node.annotations, type_, lookup)
+            return _default_of(node.annotations, type_, lookup)
         except IdlError as error:
             self._note(error)
             return None
@@ -345,3 +351,149 @@ def _check_structs(file: FileSyntax, structs: list[tuple[Path, Struct]]) -> Iter
         elif path != first_path:
             message = f"'{name}' must be in the same module as '{first.name.text}'"
             yield Diagnostic(message=message, span=struct.name.span)
+
+
+_REFUSED = ("optional", "mutable")
+
+
+def _refusals(annotations: tuple[Annotation, ...]) -> Iterator[Diagnostic]:
+    """Find annotations that would change the bytes on the wire."""
+    for annotation in annotations:
+        name = annotation.name.parts[0]
+        values = [v for _, v in annotation.arguments if isinstance(v, ScopedName)]
+        if name in _REFUSED:
+            message = f"annotation '@{name}' is not supported"
+            yield Diagnostic(message=message, span=annotation.span)
+        elif name == "extensibility" and any(v.parts[-1] == "MUTABLE" for v in values):
+            message = "annotation '@extensibility(MUTABLE)' is not supported"
+            yield Diagnostic(message=message, span=annotation.span)
+
+
+def _comment_of(annotations: tuple[Annotation, ...]) -> str:
+    """Join the texts of ``@verbatim(language="comment", text="...")``."""
+    lines: list[str] = []
+    for annotation in _named(annotations, "verbatim"):
+        texts = {}
+        for name, value in annotation.arguments:
+            if name is not None and isinstance(value, LiteralSyntax):
+                texts[name.text] = _literal_text(value)
+        if texts.get("language") == "comment" and texts.get("text"):
+            lines += (texts["text"] or "").splitlines()
+    return "\n".join(lines)
+
+
+def _unit_of(annotations: tuple[Annotation, ...]) -> str | None:
+    """Give the text of ``@unit(value="...")``."""
+    for annotation in _named(annotations, "unit"):
+        for name, value in annotation.arguments:
+            if name is None or name.text == "value":
+                return _literal_text(value) if isinstance(value, LiteralSyntax) else None
+    return None
+
+
+def _default_of(
+    annotations: tuple[Annotation, ...], type_: TypeSyntax, lookup: Lookup
+) -> ValueSyntax | ListSyntax | None:
+    """Give the value of ``@default(value=...)``, converted to a type.
+
+    Raises
+    ------
+    IdlError
+        If there are two defaults, if the default has no value, or if it does not fit the type.
+    """
+    found = list(_named(annotations, "default"))
+    if not found:
+        return None
+    if len(found) > 1:
+        raise IdlError("a member can have only one default", found[1].span)
+    if not type_.is_builtin:
+        raise IdlError("only a builtin type can have a default", found[0].span)
+    expression = _default_expression(found[0])
+    span = expression.span
+    value = evaluate(expression, lookup, _unsigned_bits(type_.name))
+    if type_.array != "one":
+        return _list(value, type_, span)
+    return ValueSyntax(value=fit(value, type_.name, span), text=words_of(span), span=span)
+
+
+def _unsigned_bits(name: str) -> int | None:
+    """Give the bits of an unsigned integer type; `None` for any other type."""
+    primitive = IDL_PRIMITIVES.get(name)
+    if primitive is None or primitive.kind != "int" or primitive.signed:
+        return None
+    return 8 * primitive.bytes
+
+
+def _named(annotations: tuple[Annotation, ...], name: str) -> Iterator[Annotation]:
+    # rosidl_parser compares only the first word of a name with a scope.
+    return (a for a in annotations if a.name.parts[0] == name)
+
+
+def _literal_text(literal: LiteralSyntax) -> str | None:
+    try:
+        value = evaluate(literal, _no_names).value
+    except IdlError:
+        return None
+    return value if isinstance(value, str) else None
+
+
+def _no_names(name: ScopedName) -> Value:
+    raise AssertionError(name)
+
+
+def _default_expression(annotation: Annotation) -> Expression:
+    for name, value in annotation.arguments:
+        if name is None or name.text == "value":
+            return value
+    raise IdlError("a default needs a value: '@default(value=...)'", annotation.span)
+
+
+# An element of a Python list: a single token, so that lists cannot nest.
+_ITEM = re.compile(
+    r"""\s*(?P<item>[+-]?[\w.]+(?:(?<=[eE])[+-]\d+)?|'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*")\s*(?:,|$)"""
+)
+
+
+def _list(value: Value, type_: TypeSyntax, span: Span) -> ListSyntax:
+    """Read a default of several elements, which rosidl_adapter writes like a Python tuple."""
+    text = value.value.strip() if isinstance(value.value, str) else ""
+    if text[:1] + text[-1:] not in ("()", "[]"):
+        raise _no_list(type_, span)
+    items = []
+    inside = text[1:-1].rstrip()
+    position = 0
+    while position < len(inside):
+        match = _ITEM.match(inside, position)
+        if match is None:
+            raise _no_list(type_, span)
+        element = _python_value(match["item"], span)
+        if element is None:
+            raise _no_list(type_, span)
+        items.append(
+            ValueSyntax(value=fit(element, type_.name, span), text=match["item"], span=span)
+        )
+        position = match.end()
+    return ListSyntax(items=tuple(items), span=span)
+
+
+def _no_list(type_: TypeSyntax, span: Span) -> IdlError:
+    return IdlError(f'expected a list of {type_.name} as a string, such as "(1, 2)"', span)
+
+
+def _python_value(text: str, span: Span) -> Value | None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # Unknown escapes stay as they are, as in rosidl.
+        try:
+            value = ast.literal_eval(text)
+        except (ValueError, SyntaxError):
+            return None
+    match value:
+        case bool():
+            return Value("boolean", value)
+        case int():
+            return Value("integer", value)
+        case float() if math.isfinite(value):
+            return Value("float", value)
+        case str():
+            return Value("text", value)
+    return None

@@ -36,6 +36,7 @@ __all__ = [
     "TypeNode",
     "Typedef",
     "Unary",
+    "words_of",
 ]
 
 
@@ -243,3 +244,8 @@ class FileSyntax:
 
     source: Source
     definitions: tuple[Definition, ...]
+
+
+def words_of(span: Span) -> str:
+    """Give the text of a span, on one line."""
+    return " ".join(span.source.text[span.start : span.end].split())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from amaranth.hdl import Module, Signal, Value
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
@@ -95,10 +96,9 @@ class PacketFifo(Component):
         memory = BlockMemory(m, packet_layout(shape.bus_bytes), shape.beats)
         m.submodules.writer = writer = PacketWriter(shape, self.when_full)
         m.submodules.reader = reader = PacketReader(shape)
+        wiring.connect(m, wiring.flipped(self.packets_in), writer.packets)
+        wiring.connect(m, reader.packets, wiring.flipped(self.packets_out))
         m.d.comb += [
-            writer.packets.payload.eq(self.packets_in.payload),
-            writer.packets.valid.eq(self.packets_in.valid),
-            self.packets_in.ready.eq(writer.packets.ready),
             writer.abort.eq(self.abort),
             memory.write_at.eq(writer.at),
             memory.write_word.eq(writer.word),
@@ -108,9 +108,6 @@ class PacketFifo(Component):
             memory.read_at.eq(reader.at),
             memory.reads.eq(reader.reads),
             Value.cast(reader.word).eq(memory.word),
-            self.packets_out.payload.eq(reader.packets.payload),
-            self.packets_out.valid.eq(reader.packets.valid),
-            reader.packets.ready.eq(self.packets_out.ready),
             self.size.eq(reader.size),
             self.ended.eq(writer.ended),
             self.outcome.eq(writer.outcome),

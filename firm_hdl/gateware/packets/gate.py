@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amaranth.hdl import Module, Mux, Signal, Value
-from amaranth.lib import data, stream
+from amaranth.lib import data, stream, wiring
 from amaranth.lib.fifo import SyncFIFO, SyncFIFOBuffered
 from amaranth.lib.wiring import In, Out
 
@@ -14,7 +14,7 @@ from firm_hdl.gateware.packets.fifo import PacketFifo
 from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
 from firm_hdl.gateware.packets.status import GateStatus, GateStatusSignature
 from firm_hdl.gateware.packets.tail_drop import MOST_DROPPED, TailDrop, tail_drop_layout
-from firm_hdl.gateware.parser import Parser, parser_plan
+from firm_hdl.gateware.parser import PlanParser, parser_plan
 from firm_hdl.gateware.signatures import PacketSignature, Status, packet_layout
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
@@ -134,7 +134,7 @@ class PacketGate(Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.submodules.parser = parser = Parser.of_plan(self.plan)
+        m.submodules.parser = parser = PlanParser(self.plan)
         m.submodules.fifo = fifo = PacketFifo(
             self.bus_bytes,
             self.shape.memory_bytes,
@@ -155,11 +155,9 @@ class PacketGate(Component):
             parser.packets.payload.eq(beats.payload.beat),
             parser.packets.valid.eq(beats.valid & waiting.w_rdy),
             beats.ready.eq(parser.packets.ready & waiting.w_rdy),
-            self.packets_out.payload.eq(fifo.packets_out.payload),
-            self.packets_out.valid.eq(fifo.packets_out.valid),
-            fifo.packets_out.ready.eq(self.packets_out.ready),
             self.size.eq(fifo.size),
         ]
+        wiring.connect(m, fifo.packets_out, wiring.flipped(self.packets_out))
         verdicts = _Verdicts(m, self, parser, fifo, waiting)
         verdicts.give_statuses()
         if self.when_full == "wait":
@@ -171,17 +169,9 @@ class PacketGate(Component):
         else:
             m.submodules.tail_drop = tail_drop = TailDrop(self.bus_bytes)
             m.submodules.backlog = backlog = BlockFifo(layout, BACKLOG_BEATS)
-            m.d.comb += [
-                tail_drop.packets_in.valid.eq(self.packets_in.valid),
-                tail_drop.packets_in.payload.eq(self.packets_in.payload),
-                self.packets_in.ready.eq(tail_drop.packets_in.ready),
-                backlog.i.payload.eq(tail_drop.packets_out.payload),
-                backlog.i.valid.eq(tail_drop.packets_out.valid),
-                tail_drop.packets_out.ready.eq(backlog.i.ready),
-                beats.payload.eq(backlog.o.payload),
-                beats.valid.eq(backlog.o.valid),
-                backlog.o.ready.eq(beats.ready),
-            ]
+            wiring.connect(m, wiring.flipped(self.packets_in), tail_drop.packets_in)
+            wiring.connect(m, tail_drop.packets_out, backlog.i)
+            wiring.connect(m, backlog.o, wiring.flipped(beats))
             verdicts.report_dropped(tail_drop, backlog.is_empty)
         return m
 
@@ -211,7 +201,7 @@ class _Verdicts:
         self,
         m: Module,
         gate: PacketGate,
-        parser: Parser,
+        parser: PlanParser,
         fifo: PacketFifo,
         waiting: SyncFIFO,
     ):

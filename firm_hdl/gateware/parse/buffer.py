@@ -11,16 +11,44 @@ from firm_hdl.gateware.positions import Ring, beat_layout
 from firm_hdl.gateware.signatures import PacketSignature
 from firm_hdl.plan import Plan
 
-__all__ = ["Buffer"]
+__all__ = ["ArrivalSignature", "Buffer"]
+
+
+def ArrivalSignature(plan: Plan) -> wiring.Signature:
+    """Return the signature of the packets in the buffer, seen from the buffer.
+
+    Members
+    -------
+    beat : Out(beat_layout(plan))
+        The beat that is written to the buffer in this cycle.
+    limit : Out(position)
+        All bytes of the current packet before this position are in the buffer.
+    ended : Out(1)
+        The packet ends at `limit`.
+    following : Out(beat)
+        First beat of the next packet, if `ended`.
+    next : In(1)
+        Go to the next packet; only if `ended`.
+    """
+    ring = Ring(plan)
+    return wiring.Signature(
+        {
+            "beat": Out(beat_layout(plan)),
+            "limit": Out(ring.bits),
+            "ended": Out(1),
+            "following": Out(ring.beat_bits),
+            "next": In(1),
+        }
+    )
 
 
 class Buffer(wiring.Component):
     """Give each beat a position in the ring; tell how many bytes of the current packet arrived.
 
     The buffer itself stores no bytes: its readers write `beat` to memories of their own, and read
-    it from the next cycle on. The sequencer stores decoded lengths and marks, the mover the bytes.
+    it from the next cycle on. The sequencer stores decoded lengths and flags, the mover the bytes.
 
-    Latency 1 cycle from `packets` to `beat`, and 2 cycles to `limit`.
+    Latency 1 cycle from `packets` to `arrival.beat`, and 2 cycles to `arrival.limit`.
 
     Parameters
     ----------
@@ -30,37 +58,24 @@ class Buffer(wiring.Component):
     -------
     packets : In(PacketSignature(bus_bytes))
         `ready` is a register.
-    beat : Out(beat_layout(plan))
-    limit : Out(position)
-        All bytes of the current packet before this position have arrived.
-    ended : Out(1)
-        The packet ends at `limit`.
-    following : Out(beat)
-        First beat of the next packet, if `ended`.
-    next : In(1)
-        Go to the next packet; only if `ended`.
+    arrival : Out(ArrivalSignature(plan))
     freed : In(beat)
         No reader needs a beat before this one.
     """
 
     def __init__(self, plan: Plan):
-        self.plan, self.ring = plan, Ring(plan)
-        ring = self.ring
+        self.ring = ring = Ring(plan)
         super().__init__(
             {
                 "packets": In(PacketSignature(plan.bus_bytes)),
-                "beat": Out(beat_layout(plan)),
-                "limit": Out(ring.bits),
-                "ended": Out(1),
-                "following": Out(ring.beat_bits),
-                "next": In(1),
+                "arrival": Out(ArrivalSignature(plan)),
                 "freed": In(ring.beat_bits),
             }
         )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        ring, beat = self.ring, self.beat
+        ring, beat = self.ring, self.arrival.beat
         at = self._receive(m)
         next_beat = Signal(ring.beat_bits)
         ends_now = Signal()
@@ -82,7 +97,7 @@ class Buffer(wiring.Component):
 
     def _receive(self, m: Module) -> Signal:
         """Register a beat if the ring has room; return the ring position it is written to."""
-        ring, packets = self.ring, self.packets
+        ring, packets, beat = self.ring, self.packets, self.arrival.beat
         payload = Signal(packets.payload.shape(), name="payload", reset_less=True)
         # Counts of beats: transferred on `packets`, and written to the ring.
         arrived, at = Signal(ring.beat_bits, name="arrived"), Signal(ring.beat_bits, name="at")
@@ -92,11 +107,11 @@ class Buffer(wiring.Component):
             packets.ready.eq(room),
             arrives.eq(packets.valid & room),
             used.eq(arrived - self.freed),
-            self.beat.data.eq(Value.cast(payload.data)),
-            self.beat.count.eq(payload.count),
-            self.beat.last.eq(payload.last),
-            self.beat.at.eq(at),
-            self.beat.valid.eq(full),
+            beat.data.eq(Value.cast(payload.data)),
+            beat.count.eq(payload.count),
+            beat.last.eq(payload.last),
+            beat.at.eq(at),
+            beat.valid.eq(full),
         ]
         m.d.sync += [
             full.eq(arrives),
@@ -120,6 +135,7 @@ class Buffer(wiring.Component):
         With two registers, `next` only selects. The memory has a word for each beat of the ring,
         because a packet may have one beat.
         """
+        arrival = self.arrival
         ends = LutMemory(m, "ends", layout, self.ring.depth)
         write, read = ends.write, ends.reader()
         pushed = Signal(self.ring.beat_bits, name="pushed")
@@ -137,19 +153,19 @@ class Buffer(wiring.Component):
         # `has_second` implies `ended`.
         first = Mux(has_second, Value.cast(second), Value.cast(newest))
         more, follows = Signal(name="more"), Signal(name="follows")
-        m.d.comb += [more.eq(stored | ends_now), follows.eq(self.ended & ends_now)]
-        with m.If(self.next | ~self.ended):
+        m.d.comb += [more.eq(stored | ends_now), follows.eq(arrival.ended & ends_now)]
+        with m.If(arrival.next | ~arrival.ended):
             m.d.sync += [
-                Cat(self.limit, self.following).eq(first),
-                self.ended.eq(has_second | ends_now),
+                Cat(arrival.limit, arrival.following).eq(first),
+                arrival.ended.eq(has_second | ends_now),
             ]
-        with m.If(self.next | ~has_second):
+        with m.If(arrival.next | ~has_second):
             m.d.sync += second.eq(Mux(stored, Value.cast(read.data), Value.cast(end)))
         m.d.sync += has_second.eq(
-            Mux(has_second, Mux(self.next, more, 1), Mux(self.next, 0, follows))
+            Mux(has_second, Mux(arrival.next, more, 1), Mux(arrival.next, 0, follows))
         )
         # If `has_second`, every end is pushed. One that `second` takes at once is popped as well.
         with m.If(has_second & ends_now):
             m.d.sync += pushed.eq(pushed + 1)
-        with m.If(self.next & has_second & more):
+        with m.If(arrival.next & has_second & more):
             m.d.sync += popped.eq(popped + 1)

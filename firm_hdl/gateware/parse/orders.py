@@ -78,21 +78,22 @@ class OrderQueue(wiring.Component):
         The first beat that the sequencer still needs.
     freed : Out(beat)
         The first beat that any order or the sequencer still needs.
-    holds, refuses : In(1)
-        As of :class:`Sequencer`; only if the plan has claims. No order comes while `holds` is high.
+    stall_newest, zero_length : In(1)
+        As of :class:`Sequencer`; not used if the plan has no claims. No order comes while
+        `stall_newest` is high.
     """
 
     def __init__(self, plan: Plan):
         layout, beat = order_layout(plan), Ring(plan).beat_bits
-        self.checks = plan.has_claims
-        checks = {"holds": In(1), "refuses": In(1)} if self.checks else {}
+        self.stalls = plan.has_claims
         super().__init__(
             {
                 "i": In(stream.Signature(layout)),
                 "o": Out(stream.Signature(layout)),
                 "oldest": In(beat),
                 "freed": Out(beat),
-                **checks,
+                "stall_newest": In(1),
+                "zero_length": In(1),
             }
         )
 
@@ -102,7 +103,7 @@ class OrderQueue(wiring.Component):
         second = Signal(self.i.payload.shape(), reset_less=True)
         has_second = Signal()
         first, valid, ready = self.o.payload, self.o.valid, self.o.ready
-        if self.checks:
+        if self.stalls:
             shape = first.shape()
             first, valid = Signal(shape, name="first", reset_less=True), Signal(name="has_first")
             ready = self._wait(m, first, valid, has_second)
@@ -126,12 +127,12 @@ class OrderQueue(wiring.Component):
     def _wait(self, m: Module, first: data.View, valid: Signal, has_second: Signal) -> Value:
         """Let the newest order wait for the check of its length; return whether the first moves.
 
-        A refusal is a bit of its own: the orders' own bits come late in the cycle.
+        That a length is refused is a bit of its own: the orders' own bits come late in the cycle.
         """
         waits, ready = Signal(name="waits"), Signal(name="moves")
         first_refused, second_refused = Signal(name="first_refused"), Signal(name="second_refused")
         m.d.comb += [
-            waits.eq(self.holds & ~has_second),
+            waits.eq(self.stall_newest & ~has_second),
             ready.eq(self.o.ready & ~waits),
             self.o.valid.eq(valid & ~waits),
             self.o.payload.eq(first),
@@ -139,11 +140,11 @@ class OrderQueue(wiring.Component):
         ]
         with m.If(ready):
             m.d.sync += [
-                first_refused.eq(has_second & (second_refused | self.refuses)),
+                first_refused.eq(has_second & (second_refused | self.zero_length)),
                 second_refused.eq(0),
             ]
-        with m.Elif(self.refuses & has_second):
+        with m.Elif(self.zero_length & has_second):
             m.d.sync += second_refused.eq(1)
-        with m.Elif(self.refuses):
+        with m.Elif(self.zero_length):
             m.d.sync += first_refused.eq(1)
         return ready

@@ -15,8 +15,7 @@ from firm_hdl.node.control import RESPONSE, ControlRequest, Operation, registers
 from firm_hdl.node.description import CONTROL_TOPIC, Description, Store, Topic
 from firm_hdl.node.frame import HEADER_BYTES, VERSION
 from firm_hdl.node.messages import MessageSender, NodeMessage
-from firm_hdl.plan import Plan, build_plan
-from firm_hdl.wire import lay_out
+from firm_hdl.plan import Plan
 
 __all__ = ["FRAMES", "LinkScript", "Stimuli", "link_script"]
 
@@ -98,7 +97,7 @@ def link_script(
     for number in range(5):
         writer.read(number)
     for topic in description.topics:
-        if stimuli is not None and topic.store("in") is not None:
+        if stimuli is not None and topic.has("in"):
             writer.packets(topic, stimuli)
     writer.counters()
     loops = () if has_accelerator else description.loops()
@@ -164,13 +163,8 @@ class _Writer:
     def packets(self, topic: Topic, stimuli: Stimuli) -> None:
         """Send packets of a topic, and truncated ones; what comes back is known of a loop."""
         store = topic.store("in")
-        assert store is not None
         self._passed[topic.id] = self._truncated[topic.id] = 0
-        plan = build_plan(
-            lay_out(store.message, self.description.wire),
-            bus_bytes=self.description.bus_bytes,
-            max_message_bytes=store.max_message_bytes,
-        )
+        plan = self.description.plan(store)
         room = self._room(topic)
         most = min(room, MOST_PACKET_BYTES)
         good = [packet for packet in stimuli(store.message, plan) if len(packet) <= most]

@@ -14,13 +14,14 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from firm_hdl.export.fusesoc import STALLS, copied, fileset, simulation
 from firm_hdl.export.templates import text_of
 from firm_hdl.node.benches.script import FRAMES, LinkScript
 from firm_hdl.node.description import Description, Topic
 from firm_hdl.node.frame import HEADER_BYTES
 from firm_hdl.node.top import NodePort
 
-__all__ = ["bench_files"]
+__all__ = ["bench_core", "bench_files"]
 
 _HELPERS = "firm_hdl_bench_pkg.vhd"
 
@@ -47,6 +48,7 @@ def bench_files(
     vhdl_ports: Mapping[str, str],
     vhdl_files: Sequence[str],
     header: str,
+    more: Sequence[str] = (),
 ) -> dict[str, str]:
     """Write the benches of a node, the frames, and the scripts that run them.
 
@@ -65,6 +67,8 @@ def bench_files(
         Files of the node in compile order.
     header : str
         Lines of a comment at the head of each file.
+    more : sequence of str
+        More files of Verilog.
 
     Returns
     -------
@@ -79,6 +83,9 @@ def bench_files(
         "vhdl_ports": vhdl_ports,
         "frames_file": FRAMES,
         "header": header.splitlines(),
+        "more": more,
+        "standard": 2012 if any(file.endswith(".sv") for file in more) else 2005,
+        "folders": list(dict.fromkeys(file.rpartition("/")[0] for file in more)),
     }
     bench = [_HELPERS, f"{top}.vhd"]
     return {
@@ -174,3 +181,28 @@ _templates = Environment(
 
 def _render(template: str, **values: Any) -> str:
     return _templates.get_template(f"{template}.j2").render(values)
+
+
+def bench_core(name: str) -> dict[str, dict[str, Any]]:
+    """Return the entries of the benches, by section of the core.
+
+    The target `sim` runs the bench in GHDL, and `sim_verilog` that in Icarus Verilog.
+
+    Parameters
+    ----------
+    name : str
+        Name of the node's entity.
+    """
+    top = f"{name}_tb"
+    return {
+        "filesets": {
+            "bench": fileset("vhdl", ["vhdl/firm_hdl_bench_pkg.vhd", f"vhdl/{top}.vhd"]),
+            "bench_verilog": fileset("verilog", [f"{top}.v"]),
+            "frames": copied(FRAMES),
+        },
+        "targets": {
+            "sim": simulation("ghdl", top, ["vhdl", "bench", "frames"], STALLS),
+            "sim_verilog": simulation("icarus", top, ["verilog", "bench_verilog", "frames"]),
+        },
+        "parameters": STALLS,
+    }

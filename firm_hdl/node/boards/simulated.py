@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from firm_hdl.errors import UserError
@@ -45,11 +46,14 @@ class SimulatedBoard(Board):
     engine : {"auto", "verilator", "amaranth"}
     report : callable or None
         Told the stages of a compilation.
+    wave : Path or None
+        A file that the waveform is written to, as VCD.
 
     Raises
     ------
     DefinitionError, UserError
-        If the description has no accelerator, or one that cannot be used.
+        If the description has no accelerator, or one that cannot be used, or if the waveform cannot
+        be written.
     """
 
     sample_seconds = 0.1
@@ -67,6 +71,7 @@ class SimulatedBoard(Board):
         accelerator: Any = None,
         engine: EngineName = "auto",
         report: Report | None = None,
+        wave: Path | None = None,
     ) -> None:
         super().__init__("sim")
         if accelerator is None and not description.accelerator:
@@ -76,6 +81,13 @@ class SimulatedBoard(Board):
             )
         self._description = replace(description, link=Link(kind="stream"))
         self._accelerator, self._engine, self._report = accelerator, engine, report
+        self._wave = wave
+        if wave is not None:
+            try:
+                with wave.open("ab"):
+                    pass
+            except OSError as error:
+                raise UserError(f"cannot write '{wave}': {error.strerror or error}") from None
         self._simulation: FastSimulation | None = None
         self._is_open = False
 
@@ -125,6 +137,8 @@ class SimulatedBoard(Board):
                 options=_OPTIONS,
                 ignored=ignored,
                 report=self._report,
+                modules=getattr(node.accelerator, "modules", None),
+                wave=self._wave,
             )
 
     def fileno(self) -> int:

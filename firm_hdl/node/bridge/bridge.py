@@ -10,18 +10,15 @@ from __future__ import annotations
 import select
 import socket
 import time
-from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.boards.board import Board
 from firm_hdl.node.bridge.boardside import BoardSide
-from firm_hdl.node.bridge.counters import BridgeCounters
-from firm_hdl.node.bridge.load import Load
+from firm_hdl.node.bridge.counters import BridgeCounters, Load
 from firm_hdl.node.bridge.waiting import RETRY_SECONDS, Call, Calls, MessageQueue, Retry, Waiting
 from firm_hdl.node.capacity import most_bytes
-from firm_hdl.node.control import Register
 from firm_hdl.node.description import Description, Topic
 from firm_hdl.node.graphs.graph import Graph, GraphError
 from firm_hdl.node.messages import NodeMessage
@@ -188,7 +185,7 @@ class Bridge:
         end, session = self._last + self.board.end_seconds, self.side.session
         has_asked = False
         # A board that is lost now is not tried again.
-        while self.is_ready and self.side.session is session and time.monotonic() < end:
+        while self.side.is_ready and self.side.session is session and time.monotonic() < end:
             self._to_board(time.monotonic())
             if not has_asked and not self._has_waiting:
                 has_asked = True
@@ -212,31 +209,6 @@ class Bridge:
         self.side.lose(None)
         for each in (self._wake_receiver, self._wake_sender):
             each.close()
-
-    @property
-    def on_the_way(self) -> Counter[str]:
-        """What was lost between the board and here, in all sessions."""
-        return self.side.on_the_way
-
-    @property
-    def last_drops(self) -> list[tuple[Register, int]]:
-        """What the node says that it dropped; see :meth:`.Session.drops`."""
-        return self.side.drops()
-
-    @property
-    def restarts(self) -> int:
-        """How often the board, or the way to it, started again or was gone."""
-        return self.side.restarts
-
-    @property
-    def is_ready(self) -> bool:
-        """Whether the board is there and the right one."""
-        return self.side.is_ready
-
-    @property
-    def was_ready(self) -> bool:
-        """Whether the board was ready once."""
-        return self.side.was_ready
 
     def _from_board(self) -> None:
         for message in self.side.receive():
@@ -269,7 +241,7 @@ class Bridge:
         now = time.monotonic()
         if self.graph.ends and self.side.was_tried and self._waits_until == float("inf"):
             self._waits_until = now + self.board.silent_seconds
-        return self.was_ready or now >= self._waits_until
+        return self.side.was_ready or now >= self._waits_until
 
     def _lose_graph(self, why: str) -> None:
         self._has_graph = False
@@ -382,14 +354,14 @@ class Bridge:
 
     def _next_due(self) -> float:
         found = self.side.next_due()
-        if not self._has_graph and not self.was_ready:
+        if not self._has_graph and not self.side.was_ready:
             found = min(found, self._waits_until)
         elif not self._has_graph:
             found = min(found, self._graph_retry.at)
         oldest = self._queue.oldest()
         if oldest is not None and not self.side.has_room:
             found = min(found, oldest + HOLD_SECONDS)
-            if self.is_ready:
+            if self.side.is_ready:
                 # Of a driver that holds bytes, nothing tells when it has sent them.
                 found = min(found, time.monotonic() + _POLL_SECONDS)
         return found

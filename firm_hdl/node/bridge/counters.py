@@ -1,4 +1,4 @@
-"""What a bridge passed on and what it lost, and how people read this."""
+"""What a bridge passed on and what it lost, and how much the way to the board carries."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from firm_hdl.node.description import Description
+from firm_hdl.node.capacity import bytes_on_link
+from firm_hdl.node.description import Description, Direction, Topic
 
-__all__ = ["CAUSES", "BridgeCounters", "summary_lines"]
+__all__ = ["CAUSES", "BridgeCounters", "Load"]
 
 CAUSES = {
     "no board": "messages for the board while it was not there for longer than a moment",
@@ -50,18 +51,54 @@ class BridgeCounters:
             self.dropped[topic, cause] += count
 
 
-def summary_lines(description: Description, counters: BridgeCounters) -> Iterator[str]:
-    """Yield a table of what passed, a line per topic, and lines of what was dropped."""
-    rows = [
-        [topic.name, topic.kind, counters.to_board[topic.name], counters.to_graph[topic.name]]
-        for topic in description.topics
-    ]
-    head: list[object] = ["topic", "", "to board", "to graph"]
-    table = [[str(cell) for cell in row] for row in (head, *rows)]
-    widths = [max(len(row[column]) for row in table) for column in range(len(head))]
-    for row in table:
-        cells = [row[0].ljust(widths[0]), row[1].ljust(widths[1])]
-        cells += [row[n].rjust(widths[n]) for n in (2, 3)]
-        yield "  ".join(cells)
-    for (name, cause), count in sorted(counters.dropped.items()):
-        yield f"dropped: {count} of {name}: {cause}"
+_SECONDS = 2.0
+"""How long is measured. What comes faster for so long waits for longer than the bridge lets it."""
+
+_FULL = 0.95
+"""A way that carries so much of what it can has no more room."""
+
+
+class Load:
+    """Measure both directions.
+
+    Parameters
+    ----------
+    description : Description
+    bytes_per_second : float or None
+        What the way carries; `None` if that is not known, and nothing is measured.
+    """
+
+    def __init__(self, description: Description, bytes_per_second: float | None) -> None:
+        self._description, self._carries = description, bytes_per_second
+        self._bytes: dict[Direction, Counter[str]] = {"in": Counter(), "out": Counter()}
+        self._since: float | None = None
+        self._said: set[Direction] = set()
+
+    def add(self, direction: Direction, topic: Topic, packet: bytes) -> None:
+        """Count a message: `in` is the way to the board."""
+        self._bytes[direction][topic.name] += bytes_on_link(self._description, len(packet))
+
+    def judge(self, now: float) -> Iterator[str]:
+        """Yield a line for each direction in which there is too much, once."""
+        if self._carries is None or (self._since is not None and now - self._since < _SECONDS):
+            return
+        seconds, self._since = now - (self._since or now), now
+        for direction, counted in self._bytes.items():
+            rate = counted.total() / seconds if seconds else 0.0
+            most = ", ".join(name for name, _ in counted.most_common(1))
+            counted.clear()
+            limit = self._carries * (_FULL if direction == "out" else 1)
+            if rate <= limit or direction in self._said:
+                continue
+            self._said.add(direction)
+            amount = f"{rate:,.0f} bytes/s, most of them of {most}"
+            if direction == "in":
+                yield (
+                    f"messages for the board have {amount}, and the link carries "
+                    f"{self._carries:,.0f}; what has no room is dropped"
+                )
+            else:
+                yield (
+                    f"messages of the board have {amount}, which is all that the link carries; "
+                    "what has no room waits on the board, or is dropped there"
+                )

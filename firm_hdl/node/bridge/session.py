@@ -3,22 +3,19 @@
 A session begins when a way to a board is open. First, the board has to answer with the fingerprint
 of the description; no message passes before. Then the clock of the node is kept in step, and its
 counters are read. One request of control is under way at any time; its answer also shows that the
-board is there.
-
-The numbers of messages show what is lost, and their flag or a clock that was reset that a board has
-started again. A network that repeats or delays a frame shows the same, so such a sign is only a
-reason to ask: the answer to a later request decides. In the same sequence, an answer has a number
-after those that had come before its request was sent.
+board is there. Whether it has started again, :mod:`.arrivals` finds out; what was lost,
+:mod:`.losses`.
 """
 
 from __future__ import annotations
 
 import random
 from collections import Counter, deque
-from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Iterable
+from dataclasses import asdict, replace
 
-from firm_hdl.node.bridge.unconfirmed import PASS_SECONDS, Unconfirmed
+from firm_hdl.node.bridge.arrivals import MOST_HELD, Arrivals, Asked
+from firm_hdl.node.bridge.losses import PASS_SECONDS, LostRequests, Unconfirmed
 from firm_hdl.node.control import (
     ControlRequest,
     ControlResponse,
@@ -29,8 +26,8 @@ from firm_hdl.node.control import (
     registers,
 )
 from firm_hdl.node.description import CONTROL_TOPIC, Description
-from firm_hdl.node.frame import HEADER_BYTES, LATE_MESSAGES, FrameError, Header, decode_header
-from firm_hdl.node.messages import MessageReceiver, MessageSender, NodeMessage, distance
+from firm_hdl.node.frame import HEADER_BYTES, FrameError, decode_header
+from firm_hdl.node.messages import MessageSender, NodeMessage
 from firm_hdl.node.timekeeping import ClockKeeper
 
 __all__ = ["ROUND_SECONDS", "Session", "SilentBoardError", "WrongBoardError"]
@@ -43,20 +40,13 @@ ROUND_SECONDS = 5.0
 """All counters of a board are read in turn; a round begins so often."""
 
 _SHORT_SECONDS = 0.02
-_MOST_HELD = 1024
-_MOST_LATE = 3
 _MOST_ASKED = 64
 _LATENCIES = 64
-_RESET_SECONDS = 10**8
-"""A node whose time is before that of 1973 has started again since its time was set."""
 
 _SETTLED = 0x8100
 """The number of the first message that does not say that a sequence begins; those that do have 0.
 If one of these comes again later, the others seem to be behind, so that the board counts no gap. It
 believes such a number when the next one follows, so two requests are sent."""
-
-_MOST_BEHIND = (1 << 15) - 1
-"""What is behind is late. Whether a sequence goes back, :meth:`Session._judge` finds out."""
 
 _NO_LOSSES = ("passed", "bytes_low", "bytes_high", "control", "control_full", "unsent")
 """Counters that do not count losses: a request of control without room was repeated, and before a
@@ -69,63 +59,6 @@ class WrongBoardError(Exception):
 
 class SilentBoardError(Exception):
     """The board does not answer."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Asked:
-    """A request that was sent, and when: on the host's clock, and in its time."""
-
-    request: ControlRequest
-    at: float
-    wall_ns: int
-    is_sample: bool
-    # How many requests were sent up to this one, and which message of the board came next.
-    number: int
-    expected: int | None
-
-
-@dataclass(slots=True)
-class _Control:
-    """How many requests and answers were lost, which are no losses of messages: they are repeated.
-
-    The board counts the requests that it takes, so those that were lost on the way to it differ
-    from those whose answer was lost. Of a board that does not count them, nothing is known.
-
-    Attributes
-    ----------
-    asked, answered : int
-        Requests that were sent, and answers that came.
-    lost_there, lost_back : int
-        What was lost on the way to the board, and back.
-    """
-
-    asked: int = 0
-    answered: int = 0
-    lost_there: int = 0
-    lost_back: int = 0
-    # By how much the numbers differ when nothing is lost.
-    _taken: int = 0
-    _there: int = 0
-    _back: int | None = None
-
-    @property
-    def is_known(self) -> bool:
-        """Whether the board was asked for the requests that it has taken since it started."""
-        return self._back is not None
-
-    def begin(self, asked: int, taken: int, lost: int) -> None:
-        """Begin with a request of this number, as of which the board has taken and lost so many."""
-        self.lost_there += lost
-        self._taken, self._there = taken, asked - taken - self.lost_there
-        if self._back is None:
-            self._back = taken - self.answered
-
-    def note(self, asked: int, taken: int) -> None:
-        """Note how many requests the board has taken, up to one with its number."""
-        assert self._back is not None
-        if taken > self._taken:
-            self.lost_there = max(0, asked - taken - self._there)
-            self.lost_back = max(0, taken - self.answered - self._back)
 
 
 class Session:
@@ -152,6 +85,8 @@ class Session:
     ----------
     is_ready : bool
         The board is the right one; messages may pass.
+    answered_at : float
+        When a request was answered last as it should be.
     restarts : int
         How often the board has started again.
     held_back : int
@@ -182,30 +117,22 @@ class Session:
         self._requests_register = number["node", "control"]
         self._keeper = ClockKeeper(nominal_rate(description.clock_hz))
         self._sender = MessageSender(frame_bytes)
-        self._receiver: MessageReceiver = (
-            before._receiver if before else MessageReceiver(most_late=_MOST_BEHIND)
-        )
-        # Since a sign that the board has started again: when it came, and the messages since then.
-        self._suspected = 0.0
-        self._new: MessageReceiver | None = None
-        self._new_messages: list[NodeMessage] = []
-        self._new_starts = False
-        self._control: _Control = before._control if before else _Control()
+        self._arrivals: Arrivals = Arrivals(before._arrivals.receiver if before else None)
+        self._control: LostRequests = before._control if before else LostRequests()
         # Answers that were lost before the board started again.
         self._past_back: int = before._past_back if before else 0
         # What was lost counts from when the board is known.
-        self._lost_before = self._receiver.counters.lost
+        self._lost_before = self._arrivals.receiver.counters.lost
         self._lost_asked = self._settled_at = self._asks_from = 0
         self._tag = random.getrandbits(32)
-        self._asked: dict[int, _Asked] = {}
+        self._asked: dict[int, Asked] = {}
         self._held: deque[NodeMessage] = deque()
         self._latencies: deque[float] = deque(maxlen=_LATENCIES)
-        self._heard = self._waits_until = now
+        self._heard = self._waits_until = self.answered_at = now
         self._is_set: bool = before is not None and before._is_set
         self._is_unanswered = self._is_finishing = self._is_settled = False
         # Until when the last messages may still be in the node.
         self._passes_until = now
-        self._late = 0
         self._next_sample = self._next_round = now
         self._todo: deque[ControlRequest] = deque()
         # Of the clock; a newer one takes its place, because the time of an older one has passed.
@@ -252,7 +179,7 @@ class Session:
             pause = min(pause, max(_SHORT_SECONDS, 4 * (self.latency or pause)))
         self._waits_until = now + pause
         self._is_unanswered = True
-        asked = _Asked(request, now, wall_ns, is_sample, 0, self._receiver.expected)
+        asked = Asked(request, now, wall_ns, is_sample, 0, self._arrivals.receiver.expected)
         if self.is_ready:
             return self._ask(asked)
         if request.argument != self._requests_register:
@@ -265,7 +192,7 @@ class Session:
             self._settled_at = self._control.asked + 1
         return self._ask(asked) + self._ask(asked)
 
-    def _ask(self, asked: _Asked) -> list[bytes]:
+    def _ask(self, asked: Asked) -> list[bytes]:
         """Return the frames of a request, and keep it in mind."""
         self._tag = (self._tag + 1) & 0xFFFF_FFFF
         self._control.asked += 1
@@ -307,7 +234,7 @@ class Session:
     @property
     def may_be_new(self) -> bool:
         """Whether a frame has said that the board has started again, which is not known yet."""
-        return self._new is not None and self._new_starts
+        return self._arrivals.may_be_new
 
     # The end.
 
@@ -318,16 +245,23 @@ class Session:
         and the counters are final. The answer to the first of them confirms all messages.
         """
         self._is_finishing = True
-        # An answer to a request of before shows nothing of the last messages.
+        losses = [each.number for each in self._counters if _is_loss(each)]
+        losses.remove(self._lost_register)
+        self.read([0, *losses, self._lost_register, self._requests_register], now)
+
+    def read(self, numbers: Iterable[int], now: float) -> None:
+        """Let the next requests read some registers, in place of all counters in turn.
+
+        No answer to a request of before counts. :attr:`has_read` tells when the values are there.
+        """
+        self._todo = deque(map(_read, numbers))
         self._asks_from = self._control.asked
-        self._todo = deque([_read(0)])
-        self._todo.extend(
-            _read(each.number)
-            for each in self._counters
-            if _is_loss(each) and each.number != self._lost_register
-        )
-        self._read_lost()
         self._waits_until = now
+
+    @property
+    def has_read(self) -> bool:
+        """Whether all requests of :meth:`read` were answered."""
+        return self.is_ready and not self._todo
 
     def _read_lost(self) -> None:
         """Read what the link has lost, and then which part of this were requests."""
@@ -353,7 +287,22 @@ class Session:
         WrongBoardError
             If the board has another description.
         """
-        message = self._receive(frame, now)
+        arrivals, suspected_at = self._arrivals, self._arrivals.suspected_at
+        try:
+            header = decode_header(frame)
+        except FrameError:
+            header = None
+        if header is not None and header.topic == CONTROL_TOPIC and header.tag in self._asked:
+            asked = self._asked[header.tag]
+            first = arrivals.judge(asked, header, frame[HEADER_BYTES:], now, is_set=self._is_set)
+            if first is not None:
+                self._begin_again(now)
+                for each in first:
+                    self._hold(each)
+        message = arrivals.take(frame, header, now)
+        if arrivals.suspected_at != suspected_at:
+            # An answer shows whether the board has started again.
+            self._waits_until = self._next_sample = now
         if message is None:
             return []
         self._heard = now
@@ -374,91 +323,18 @@ class Session:
 
     def _hold(self, message: NodeMessage) -> None:
         self._held.append(message)
-        if len(self._held) > _MOST_HELD:
+        if len(self._held) > MOST_HELD:
             self._held.popleft()
             self.held_back += 1
-
-    def _receive(self, frame: bytes, now: float) -> NodeMessage | None:
-        """Put messages together; those of a sequence that may be new wait until this is known."""
-        try:
-            header = decode_header(frame)
-        except FrameError:
-            return self._receiver.take(frame)
-        if header.topic == CONTROL_TOPIC and header.tag in self._asked:
-            self._judge(self._asked[header.tag], header, frame[HEADER_BYTES:], now)
-        starts = header.start and self._receiver.expected is not None
-        if starts:
-            self._suspect(now)
-            self._new_starts = True
-        if self.may_be_new:
-            # What comes may be of the new sequence, whose numbers can also be ahead.
-            self._receiver.doubt()
-        late = self._receiver.counters.late
-        message = None if starts else self._receiver.take(frame)
-        self._late += self._receiver.counters.late - late
-        if message is not None:
-            self._late = 0
-        elif self._late >= _MOST_LATE:
-            # The message that says so may have been lost.
-            self._suspect(now)
-        if self._new is not None:
-            new = self._new.take(frame)
-            if new is not None and message is None and len(self._new_messages) < _MOST_HELD:
-                self._new_messages.append(new)
-        return message
-
-    def _suspect(self, now: float) -> None:
-        """Ask the board whether it has started again."""
-        if self._new is None:
-            self._new, self._new_starts = MessageReceiver(most_late=_MOST_BEHIND), False
-            self._suspected = self._waits_until = self._next_sample = now
-
-    def _judge(self, asked: _Asked, header: Header, packet: bytes, now: float) -> None:
-        """Find out by an answer whether the board has started again.
-
-        One answer alone may be damaged, or may belong to a request that was sent before the sign.
-        """
-        ahead = 0 if asked.expected is None else distance(header.sequence, asked.expected)
-        was_reset = False
-        with suppress(ValueError):
-            seconds = ControlResponse.decode(packet).seconds
-            was_reset = self._is_set and seconds < _RESET_SECONDS
-        if self._new is None or asked.at < self._suspected:
-            if ahead < 0 or was_reset:
-                self._suspect(now)
-            elif self._follows(header):
-                self._receiver.jumped = 0
-            return
-        new, self._new, self._late = self._new, None, 0
-        messages, self._new_messages = self._new_messages, []
-        if not (was_reset or self._new_starts or ahead < -LATE_MESSAGES):
-            if ahead < 0:
-                self._receiver.go_back(header.sequence)
-            return
-        if ahead >= 0 and not was_reset:
-            return
-        self._receiver.take_back()
-        new.counters.add(self._receiver.counters)
-        self._receiver = new
-        self._begin_again(now)
-        for message in messages:
-            if message.topic != CONTROL_TOPIC:
-                self._hold(message)
-
-    def _follows(self, header: Header) -> bool:
-        """Return whether a number is of the sequence that is received now."""
-        expected = self._receiver.expected
-        return expected is not None and abs(distance(header.sequence, expected)) <= LATE_MESSAGES
 
     def _begin_again(self, now: float) -> None:
         """The board has started again, perhaps with another design."""
         self._identity.clear()
-        self._late = 0
         # Also of the board that a session before has left.
         self._past.update(self.values)
         self._past[self._lost_register] -= self._control.lost_there
         self._past_back += self._control.lost_back
-        self._control, self._lost_before = _Control(), self._receiver.counters.lost
+        self._control, self._lost_before = LostRequests(), self._arrivals.receiver.counters.lost
         self._asks_from = 0
         self.values.clear()
         self._is_set = self._is_settled = False
@@ -478,7 +354,7 @@ class Session:
 
     def _answer(self, message: NodeMessage, now: float, wall_ns: int) -> None:
         asked = self._asked.pop(message.tag, None)
-        if asked is None or self._new is not None or asked.number <= self._asks_from:
+        if asked is None or self._arrivals.is_suspected or asked.number <= self._asks_from:
             return
         try:
             response = ControlResponse.decode(message.packet)
@@ -486,6 +362,7 @@ class Session:
             return
         if response.operation != asked.request.operation:
             return
+        self.answered_at = now
         self._waits_until = max(now, self._passes_until)
         self._latencies.append(now - asked.at)
         self.unconfirmed.answered(asked.at, now)
@@ -500,6 +377,11 @@ class Session:
         if asked.request.operation == Operation.READ:
             if response.result == Result.OK:
                 self._keep(asked.request.argument, response.value)
+            elif not self.is_ready:
+                raise WrongBoardError(
+                    f"the board refuses to read register {asked.request.argument}: its node is of "
+                    "another version"
+                )
             if asked.request.argument == self._requests_register:
                 self._note_requests(asked, response.value)
         if asked.is_sample:
@@ -519,14 +401,14 @@ class Session:
             self.end()
             raise WrongBoardError(
                 f"the board's fingerprint is {found:016x}, and that of the description is "
-                f"{self._description.fingerprint:016x}: one of them is older"
+                f"{self._description.fingerprint:016x}: its node is another one, or an older one"
             )
 
-    def _note_requests(self, asked: _Asked, taken: int) -> None:
+    def _note_requests(self, asked: Asked, taken: int) -> None:
         """Take how many requests the board has taken; the first time, the board is known."""
         if not self.is_ready:
             if not self._control.is_known:
-                self._receiver.counters.lost = self._lost_before
+                self._arrivals.receiver.counters.lost = self._lost_before
             # Unless the board has believed the first one at once, it has counted it as lost.
             self._control.begin(asked.number, taken, int(asked.number > self._settled_at))
             self.is_ready = True
@@ -551,7 +433,7 @@ class Session:
 
     def lost_on_the_way(self) -> Counter[str]:
         """Return what was lost between the board and here, by cause."""
-        counters = asdict(self._receiver.counters)
+        counters = asdict(self._arrivals.receiver.counters)
         del counters["passed"]
         lost = max(0, counters["lost"] - self._past_back - self._control.lost_back)
         return Counter(counters | {"lost": lost, "held back": self.held_back})

@@ -40,6 +40,12 @@ class CobsEncoder(wiring.Component):
         m.submodules.block = block = Memory(shape=8, depth=256, init=[])
         write, read = block.write_port(), block.read_port(domain="comb")
         byte = self.i.payload.data[0]
+        # A block begins with a code, one more than its bytes, so all of them come first:
+        #
+        #     i        11 22 00 33(last)
+        #     state    FILL     CODE BYTES  FILL CODE BYTES END
+        #     out               03   11 22       02   33    00      (a 00 came before)
+        #
         # Bytes in the block, and those that were sent. The block ends with a 0, which it stands
         # for, or the packet ends with it.
         size, sent, ends_packet = Signal(8), Signal(8), Signal()
@@ -221,7 +227,8 @@ class ByteFrameReader(wiring.Component):
         layout = data.StructLayout({"beat": packet_layout(1), "bad": 1})
         m.submodules.slice = out = StreamSlice(layout)
         came, moves = cobs.o, Signal()
-        # The last bytes wait: the CRC, and the one before it, which is the last of the frame.
+        # Only the end of a frame tells that the four bytes before it were the CRC, and that the one
+        # before them was its last. So five bytes wait, and each further one lets the oldest pass.
         waiting, count = Signal(8 * (CRC_BYTES + 1)), Signal(range(CRC_BYTES + 2))
         is_full, ends = count == CRC_BYTES + 1, came.payload.ends
         m.d.comb += [

@@ -1,19 +1,21 @@
-"""The unit that answers control messages: registers are read, the clock is set."""
+"""The unit that answers control messages, and the counters and registers that a host reads."""
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Module, Mux, Signal, Value
+from collections.abc import Sequence
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.fifo import SyncFIFO
 from amaranth.lib.wiring import In, Out
+from amaranth.utils import ceil_log2
 
 from firm_hdl.gateware import PacketSignature
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.node.control import CONTROL_BYTES, REQUEST, RESPONSE, ControlField, Operation, Result
-from firm_hdl.node.gateware.counters import read_cycles
 from firm_hdl.node.gateware.streams import TAG_BITS, time_layout
 
-__all__ = ["ControlUnit"]
+__all__ = ["ByteCounter", "ControlUnit", "RegisterReader", "read_cycles"]
 
 REQUESTS = 4
 """Requests that wait. A host sends no more at once."""
@@ -87,7 +89,10 @@ class ControlUnit(wiring.Component):
         return m
 
     def _receive(self, m: Module, waiting: SyncFIFO, layout: data.StructLayout) -> None:
-        """Collect the beats of a request."""
+        """Collect the beats of a request.
+
+        A request of another size is kept all the same: it gets an answer, which says what is wrong.
+        """
         beats = CONTROL_BYTES // self.bus_bytes
         packets, beat = self.packets_in, self.packets_in.payload
         words, number = Signal(8 * CONTROL_BYTES), Signal(range(beats + 1))
@@ -220,3 +225,107 @@ class ControlUnit(wiring.Component):
 
 def _layout(fields: tuple[ControlField, ...]) -> data.StructLayout:
     return data.StructLayout({each.name: 8 * each.bytes for each in fields})
+
+
+_GROUP = 16
+
+
+def read_cycles(count: int) -> int:
+    """Return the cycles from a new number of one of `count` registers to its value."""
+    return 2 + -(-count // _GROUP)
+
+
+class ByteCounter(wiring.Component):
+    """Count bytes of packets, in 64 bits. The upper half changes a cycle after the lower one.
+
+    Members
+    -------
+    adds : In(1)
+        A packet of `size` bytes is counted in this cycle.
+    size : In(size_bits)
+    low, high : Out(32)
+    """
+
+    def __init__(self, size_bits: int):
+        super().__init__({"adds": In(1), "size": In(size_bits), "low": Out(32), "high": Out(32)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        # An addition of 64 bits would be too long for a cycle: the carry waits in a register.
+        adds, size, carry = Signal(), Signal.like(self.size), Signal()
+        total = Signal(33)
+        m.d.comb += total.eq(self.low + Mux(adds, size, 0))
+        m.d.sync += [
+            adds.eq(self.adds),
+            size.eq(self.size),
+            self.low.eq(total),
+            carry.eq(total[32]),
+            self.high.eq(self.high + carry),
+        ]
+        return m
+
+
+class RegisterReader(wiring.Component):
+    """Give the value of one of many registers, `read_cycles(count)` cycles after its number.
+
+    The registers are far from each other. So they are divided into groups, and each group has
+    registers for the number and for its value, in a chain from group to group.
+
+    Parameters
+    ----------
+    count : int
+        Number of registers.
+
+    Members
+    -------
+    values : In(ArrayLayout(32, count))
+    number : In(range(count))
+        Has to stay until the value is there.
+    value : Out(32)
+    """
+
+    def __init__(self, count: int):
+        super().__init__(
+            {
+                "values": In(data.ArrayLayout(32, count)),
+                "number": In(range(max(2, count))),
+                "value": Out(32),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        # A number moves on by a group in each cycle, and a value two cycles behind it. Each group
+        # passes on the value that comes, or its own if that is meant. Of 3 groups, the second one:
+        #
+        #     cycle    0       1         2         3         4         5
+        #     number   given   number_0  number_1  number_2
+        #     own                        group_0   group_1   group_2
+        #     value                                value_0   value_1   value_2
+        #                                                    = group_1 = value_1
+        values = [Value.cast(each) for each in self.values]
+        bits = ceil_log2(_GROUP)
+        number, value = self.number, Const(0, 32)
+        for place, at in enumerate(range(0, len(values), _GROUP)):
+            here = Signal.like(self.number, name=f"number_{place}", reset_less=True)
+            mine = Signal(32, name=f"group_{place}", reset_less=True)
+            chosen = Signal(32, name=f"value_{place}", reset_less=True)
+            m.d.sync += [
+                here.eq(number),
+                mine.eq(_pick(values[at : at + _GROUP], here[:bits])),
+                chosen.eq(Mux(here[bits:] == place, mine, value)),
+            ]
+            number, value = here, chosen
+        m.d.comb += self.value.eq(value)
+        return m
+
+
+def _pick(values: Sequence[Value], number: Value) -> Value:
+    """Return the value with a number; the last one for numbers without a value."""
+    if len(values) == 1:
+        return values[0]
+    half = 1 << (ceil_log2(len(values)) - 1)
+    bit = ceil_log2(half)
+    if bit >= len(number):
+        return _pick(values[:half], number)
+    return Mux(number[bit], _pick(values[half:], number[:bit]), _pick(values[:half], number[:bit]))

@@ -29,9 +29,8 @@ def message_groups(description: Description) -> dict[str, wiring.Signature]:
     """
 
     def message(topic: Topic, direction: Any) -> MessageSignature:
-        store = topic.store(direction)
-        assert store is not None
-        return MessageSignature(store.message, description.bus_bytes, description.wire)
+        message = topic.store(direction).message
+        return MessageSignature(message, description.bus_bytes, description.wire)
 
     def port(topic: Topic) -> wiring.Member:
         if topic.kind == "serve":
@@ -111,7 +110,6 @@ class NodeConverters(wiring.Component):
 
     def _deserialize(self, m: Module, topic: Topic, packets: Any, message: Any) -> None:
         store = topic.store("in")
-        assert store is not None
         rx = Deserializer(store.message, **self._options(store))
         m.submodules[f"{topic.kind}_{topic.port}_in"] = rx
         m.d.comb += [*passes(packets, rx.packets), rx.status.ready.eq(1)]
@@ -119,7 +117,6 @@ class NodeConverters(wiring.Component):
 
     def _serialize(self, m: Module, topic: Topic, packets: Any, message: Any) -> None:
         store = topic.store("out")
-        assert store is not None
         tx = Serializer(store.message, **self._options(store))
         m.submodules[f"{topic.kind}_{topic.port}_out"] = tx
         m.d.comb += [
@@ -132,7 +129,6 @@ class NodeConverters(wiring.Component):
     def _serve(self, m: Module, topic: Topic, packets: Any, message: Any) -> None:
         """Convert requests and responses; a response has the tag of the oldest request."""
         store = topic.store("in")
-        assert store is not None
         depth = store.packets + 4
         m.submodules[f"tags_{topic.port}"] = tags = SyncFIFO(width=TAG_BITS, depth=depth)
         asked, answered = packets.request.packets, packets.response.packets

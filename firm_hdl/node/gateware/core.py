@@ -18,12 +18,17 @@ from firm_hdl.node.control import (
     Register,
     registers,
 )
-from firm_hdl.node.description import CONTROL_TOPIC, Description, Kind, Topic
+from firm_hdl.node.description import (
+    CONTROL_TOPIC,
+    SERVICE_PARTS,
+    Description,
+    Kind,
+    Topic,
+)
 from firm_hdl.node.frame import VERSION
 from firm_hdl.node.gateware.clock import NodeClock
-from firm_hdl.node.gateware.control_unit import ControlUnit
-from firm_hdl.node.gateware.counters import ByteCounter, RegisterReader
-from firm_hdl.node.gateware.request_gate import RequestGate
+from firm_hdl.node.gateware.control_unit import ByteCounter, ControlUnit, RegisterReader
+from firm_hdl.node.gateware.services import RequestGate, TaggedFifo
 from firm_hdl.node.gateware.streams import (
     LENGTH_BITS,
     TAG_BITS,
@@ -34,7 +39,6 @@ from firm_hdl.node.gateware.streams import (
     passes,
     time_layout,
 )
-from firm_hdl.node.gateware.tagged_fifo import TaggedFifo
 
 __all__ = ["NodeCore", "node_counters_layout"]
 
@@ -53,8 +57,10 @@ def _path(description: Description, register: Register) -> tuple[str, str]:
     if not register.topic:
         return register.part, register.name
     topic = description.topics[register.topic - 1]
-    part = {"serve": {"in": "request", "out": "response"}[register.part]}.get(topic.kind)
-    return f"{part or topic.kind}_{topic.port}", register.name
+    part: str = topic.kind
+    if topic.kind == "serve":
+        part = SERVICE_PARTS["in" if register.part == "in" else "out"]
+    return f"{part}_{topic.port}", register.name
 
 
 class NodeCore(wiring.Component):
@@ -147,7 +153,6 @@ class NodeCore(wiring.Component):
 
     def _subscribe(self, m: Module, topic: Topic) -> None:
         store = topic.store("in")
-        assert store is not None
         m.submodules[f"gate_{topic.port}"] = gate = PacketGate(
             store.message,
             wire=self.description.wire,
@@ -165,7 +170,6 @@ class NodeCore(wiring.Component):
 
     def _publish(self, m: Module, topic: Topic) -> None:
         store = topic.store("out")
-        assert store is not None
         m.submodules[f"fifo_{topic.port}"] = fifo = PacketFifo(
             self.description.bus_bytes,
             store.memory_bytes,
@@ -180,7 +184,6 @@ class NodeCore(wiring.Component):
     def _serve(self, m: Module, topic: Topic) -> None:
         bus = self.description.bus_bytes
         asked, answered = topic.store("in"), topic.store("out")
-        assert asked is not None and answered is not None
         gate = RequestGate(bus, asked, self.description.wire)
         fifo = TaggedFifo(bus, answered)
         m.submodules[f"gate_{topic.port}"] = gate
@@ -211,7 +214,11 @@ class NodeCore(wiring.Component):
         self._events[owner, "bytes_high"] = total.high
 
     def _route(self, m: Module, control: ControlUnit) -> None:
-        """Send each packet to the part of its topic."""
+        """Send each packet to the part of its topic.
+
+        A gate takes what comes, or drops it and counts. So no topic can hold the others, except for
+        a subscription with the policy `"wait"`, which a link without losses alone may have.
+        """
         inputs = {CONTROL_TOPIC: control, **self._inputs}
         bits = len(inputs).bit_length()
         m.submodules.router = router = PacketRouter(
@@ -238,6 +245,8 @@ class NodeCore(wiring.Component):
 
     def _collect(self, m: Module, control: ControlUnit) -> None:
         """Send the packets of all topics, in turn."""
+        # Tag and length travel beside each beat of a packet, because the header of its frame has
+        # them, and is sent first. A FIFO knows the length, as it has the whole packet.
         count = 1 + len(self._outputs)
         m.submodules.arbiter = arbiter = PacketArbiter(
             self.description.bus_bytes, count, side_bits=TAG_BITS + LENGTH_BITS

@@ -70,6 +70,10 @@ class HeaderInsert(wiring.Component):
         layout = data.StructLayout({"beat": packet_layout(self.bus_bytes), "topic": TOPIC_BITS})
         m.submodules.slice = out = StreamSlice(layout)
         came, beat, bits = self.i.payload, self.i.payload.beat, 8 * self.bus_bytes
+        # The first beat of a message waits on `i` while its header is sent:
+        #
+        #     i        b0  b0  b0  b1  b2        sent   0  1  2  2  2    (a header of 2 beats)
+        #     slice    H   H   b0  b1  b2
         header, sequence, starts = Signal(header_layout()), Signal(16), Signal(init=1)
         # Beats of the header that were sent.
         sent, in_header, is_empty = Signal(range(self.beats + 1)), Signal(), Signal()
@@ -146,6 +150,11 @@ class HeaderStrip(wiring.Component):
         m = Module()
         m.submodules.slice = out = StreamSlice(link_layout(self.bus_bytes))
         beat, bits = self.frames.payload, 8 * self.bus_bytes
+        # `words` is a shift register of the header. The frame is judged with the last beat of its
+        # header, whose bytes are still on `frames`, so no cycle is lost:
+        #
+        #     frames   H   H   b0  b1            took   0  1  2  2       (a header of 2 beats)
+        #     slice            b0  b1            `good` is a register from the beat b0 on
         words, header = Signal(header_layout()), Signal(header_layout())
         took, in_header, ends_header = Signal(range(self.beats + 1)), Signal(), Signal()
         is_good, good, is_empty, emits = Signal(), Signal(), Signal(), Signal()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from amaranth.hdl import Cat, Const, Module, Signal, Value
 from amaranth.lib import stream, wiring
 from amaranth.lib.cdc import FFSynchronizer
@@ -53,13 +55,14 @@ class UartTransmitter(wiring.Component):
 class UartReceiver(wiring.Component):
     """Receive bytes; those without a stop bit are dropped.
 
-    Each bit is read in its middle. The line passes two registers first. A byte that is not taken
-    before the next one comes is lost, and counts as an overrun.
+    Each bit is read near its middle, also if the sender is 2 % fast or slow. The line passes two
+    registers first. A byte that is not taken before the next one comes is lost, and counts as an
+    overrun.
 
     Parameters
     ----------
-    cycles : int
-        Cycles per bit, at least 4.
+    cycles : float
+        Cycles per bit, at least 4. The nearest integer may be 2 % off.
 
     Members
     -------
@@ -70,8 +73,16 @@ class UartReceiver(wiring.Component):
         High for a cycle for each byte that was dropped: without a stop bit, or not taken in time.
     """
 
-    def __init__(self, cycles: int):
-        self.cycles = _checked(cycles)
+    def __init__(self, cycles: float):
+        self.cycles = _checked(round(cycles))
+        # From the edge of a start bit to the cycle in which it is read. Errors add up until the
+        # stop bit, so that is the one whose middle, 9.5 bits later, is met. The edge is seen half a
+        # cycle late on average:
+        #
+        #     line   ~~\___start___/  bit 0  \__ ... __/  stop   \
+        #     read          ^             ^                 ^
+        #              first       + cycles         + 9 * cycles
+        self.first = math.floor(9.5 * cycles - 9 * self.cycles)
         super().__init__(
             {
                 "rx": In(1, init=1),
@@ -91,8 +102,8 @@ class UartReceiver(wiring.Component):
         m.d.sync += [self.broken.eq(0), self.overrun.eq(0)]
         with m.FSM():
             with m.State("IDLE"):
-                # The middle of the start bit; if the line is 1 there, it was a glitch.
-                m.d.sync += [count.eq(self.cycles // 2 - 1), number.eq(0)]
+                # If the line is 1 when the start bit is read, it was a glitch.
+                m.d.sync += [count.eq(self.first - 1), number.eq(0)]
                 with m.If(~line):
                     m.next = "BITS"
             with m.State("BITS"):

@@ -57,7 +57,7 @@ class RospyGraph(FutureGraph):
         except ImportError:
             raise UserError(
                 "the graph 'ros1' needs rospy, which this Python does not have; source the setup "
-                "of ROS 1, or install the package python3-rospy"
+                "of ROS 1, or install the package python3-rospy; firm-hdl doctor says more"
             ) from None
         self._publishers: dict[int, Any] = {}
         self._others: list[Any] = []

@@ -100,7 +100,7 @@ class UartLink(wiring.Component):
 
     def __init__(self, bus_bytes: int, link: Link, clock_hz: float):
         self.bus_bytes, self.link = bus_bytes, link
-        self.cycles = round(clock_hz / link.baud)
+        self.cycles = clock_hz / link.baud
         super().__init__(
             {
                 "received": Out(LinkSignature(bus_bytes)),
@@ -119,7 +119,7 @@ class UartLink(wiring.Component):
         m = Module()
         m.submodules.bytes = inner = ByteLink(self.bus_bytes, self.link)
         m.submodules.receiver = receiver = UartReceiver(self.cycles)
-        m.submodules.transmitter = transmitter = UartTransmitter(self.cycles)
+        m.submodules.transmitter = transmitter = UartTransmitter(round(self.cycles))
         m.d.comb += [
             *passes(inner.received, self.received),
             *passes(self.sent, inner.sent),

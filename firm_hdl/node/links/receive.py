@@ -8,8 +8,8 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware import PacketFifo, PacketSignature, PacketWidth
 from firm_hdl.node.description import Link
+from firm_hdl.node.gateware.fragments import REASSEMBLER_COUNTERS, Reassembler
 from firm_hdl.node.gateware.header import HeaderStrip
-from firm_hdl.node.gateware.reassembler import REASSEMBLER_COUNTERS, Reassembler
 from firm_hdl.node.gateware.streams import LinkSignature, link_counters_layout, passes
 
 __all__ = ["FrameReceiver"]

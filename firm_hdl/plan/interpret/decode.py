@@ -6,14 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, TypeAlias
 
 from firm_hdl.plan.interpret.machine import Edge, Machine, Payload, Visit
-from firm_hdl.plan.ir import (
-    Begin,
-    Fixed,
-    Leaf,
-    Part,
-    Plan,
-    Run,
-)
+from firm_hdl.plan.tree import Charge, Fixed, Leaf, Part, Plan, Run
 
 __all__ = ["DecodeStatus", "Decoded", "Transfer", "decode"]
 
@@ -137,37 +130,37 @@ class _Reader(Machine):
             payload = (values, self.is_last(part))
         else:
             (payload,) = _numbers(leaf, self.partial, 1)
-            if part.leaf in self.begins:
-                payload = self.count(self.begins[part.leaf], payload)
+            if leaf.kind == "length":
+                payload = self.count(part.leaf, payload)
         self.transfers.append(Transfer(part.leaf, payload))
 
-    def count(self, begin: Begin, wire: int) -> int:
+    def count(self, leaf: int, wire: int) -> int:
         """Return the payload of a length, and store the length as it is on the wire."""
-        length = wire - 1 if self.plan.has_nul(begin) and wire else wire
-        if length > begin.limit or not self.may_claim(begin, wire):
+        given = self.plan.lengths[leaf]
+        length = wire - 1 if given.nul and wire else wire
+        if length > given.limit or not self.pay(given.charge, wire):
             # After an error lengths read 0, so this is the first error.
             self.status = "LENGTH"
             wire = length = 0
         self.length = wire
         return length
 
-    def may_claim(self, begin: Begin, wire: int) -> bool:
+    def pay(self, charge: Charge | None, wire: int) -> bool:
         """Take what a legal length claims from the budget, and return whether it had enough."""
-        claim = begin.claim
-        if claim is None:
+        if charge is None:
             return True
-        if claim.total is not None:
-            self.budget = claim.total
-        if wire < claim.least:
+        if charge.budget is not None:
+            self.budget = charge.budget
+        if wire < charge.charged_from:
             return True
-        self.budget -= wire * claim.bytes - claim.saved
+        self.budget -= wire * charge.bytes - charge.padding_credit
         self.held = CHECK_CYCLES + (REFUSAL_CYCLES if self.budget < 0 else 0)
         return self.budget >= 0
 
     def items(self, run: Run, count: int, last: bool) -> None:
-        leaf = self.plan.leaves[run.items]
+        leaf = self.plan.leaves[run.leaf]
         values = _numbers(leaf, self.read(count * leaf.item_bytes), count)
-        self.transfers.append(Transfer(run.items, (values, last)))
+        self.transfers.append(Transfer(run.leaf, (values, last)))
 
     def terminator(self) -> None:
         if self.read(1) not in (b"", b"\0"):

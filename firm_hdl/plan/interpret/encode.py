@@ -7,13 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from firm_hdl.plan.interpret.machine import Machine, Payload
-from firm_hdl.plan.ir import (
-    Fixed,
-    Leaf,
-    Part,
-    Plan,
-    Run,
-)
+from firm_hdl.plan.tree import Fixed, Leaf, Part, Plan, Run
 
 __all__ = ["EncodeStatus", "encode"]
 
@@ -96,11 +90,11 @@ class _Writer(Machine):
         payload = self.receive(index)
         if not isinstance(payload, int):
             raise ValueError(f"Leaf {leaf} takes a number, not {payload!r}")
-        if index in self.begins:
-            begin = self.begins[index]
-            if payload > begin.limit:
+        if leaf.kind == "length":
+            given = self.plan.lengths[index]
+            if payload > given.limit:
                 self.fail("LENGTH")
-            has_nul = self.plan.has_nul(begin) and (payload or not self.bare_strings)
+            has_nul = given.nul and (payload or not self.bare_strings)
             payload += 1 if has_nul else 0
             self.length = payload
         return _bytes(leaf, payload)
@@ -116,7 +110,7 @@ class _Writer(Machine):
         return b"".join(_bytes(leaf, value) for value in values[:count])
 
     def items(self, run: Run, count: int, last: bool) -> None:
-        self.packet += self.lanes(run.items, count, last)
+        self.packet += self.lanes(run.leaf, count, last)
 
     def terminator(self) -> None:
         self.packet.append(0)

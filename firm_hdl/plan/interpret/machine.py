@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
-from firm_hdl.plan.ir import (
-    RUN_COUNTER,
-    ArrayEnd,
-    Begin,
-    BeginLoop,
-    Exits,
+from firm_hdl.plan.tree import (
+    Constant,
     Fixed,
-    Jump,
-    LoopEnd,
-    MapStep,
+    Item,
+    Length,
+    Loop,
     Pad,
     Part,
     Plan,
     Run,
-    RunStep,
+    Step,
+    numbered,
 )
 
 __all__ = ["Edge", "Machine", "Payload", "Visit"]
@@ -57,9 +55,10 @@ class Edge(NamedTuple):
     step : int
     way : str
         ``rest`` and ``no rest``: whether a run had a rest that the step took. ``padding N``: the
-        step was aligned by skipping N bytes. ``again``: the body of a run was repeated. ``body``:
-        the loop or run that the step starts continues in its body. ``loop N again`` and ``next``:
-        the exit that was taken.
+        step was aligned by skipping N bytes. ``again``: another word of a run followed. Else what
+        followed the step: ``body``, the first element of a loop that its length counts, or the
+        first word of a run; ``loop N again``, another element (N counts the loops around it);
+        ``next``, neither.
     """
 
     step: int
@@ -71,18 +70,21 @@ class Machine(ABC):
     """The control flow of a plan, common to both directions."""
 
     plan: Plan
-    counters: dict[int | str, int] = field(default_factory=dict)
+    # Elements left in each open loop, outermost first, the current one included.
+    loops: list[int] = field(default_factory=list)
+    # Items left of the latest run that a length counts, a NUL included: what a step takes as rest.
+    left: int = 0
+    # The latest run.
+    ran: Run | None = None
     # The value of the latest length: items on the wire, a NUL included.
     length: int = 0
     # Cycles for which the next step is held.
     held: int = 0
+    # The step that was executed last, and what followed it.
+    last: int = -1
+    way: str = "next"
     visits: list[Visit] = field(default_factory=list)
     edges: set[Edge] = field(default_factory=set)
-    # The loop or run of each length. The length's first bytes may be in steps before the start.
-    begins: dict[int, Begin] = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.begins = self.plan.begins
 
     @property
     @abstractmethod
@@ -111,30 +113,59 @@ class Machine(ABC):
 
     def run(self) -> None:
         """Run the plan from start to end."""
-        index = self.enter(self.plan.start)
-        while index is not None:
-            index = self.step(index)
+        self.block(self.plan.items, 0)
+        self.go_to(len(self.visits))
 
-    def enter(self, jump: Jump) -> int | None:
-        self.counters.update(jump.enter)
-        return jump.step
+    def go_to(self, index: int) -> None:
+        """Note what followed the step before."""
+        if self.last >= 0:
+            self.edges.add(Edge(self.last, self.way))
+        self.last, self.way = index, "next"
 
-    def step(self, index: int) -> int | None:
-        """Run one step, including all repetitions of a run's body, and return the next step."""
-        step = self.plan.steps[index]
+    def block(self, items: Sequence[Item], first: int) -> None:
+        """Run items; `first` is the number of the first step."""
+        for index, item in numbered(items, first):
+            match item:
+                case Step():
+                    self.step(index, item)
+                case Run(count=Length()):
+                    self.ran, self.left = item, self.length
+                    if self.left:
+                        self.align(item.align)
+                    keep = self.plan.word_count(item)
+                    if self.left > keep:
+                        self.way = "body"
+                        self.go_to(index)
+                        self.words(index, item, keep)
+                case Run(count=Constant(number)):
+                    self.go_to(index)
+                    self.step_align(index, item.align)
+                    self.left = number
+                    self.words(index, item, 0)
+                case Loop(count=Constant(number)):
+                    self.loop(index, item, number)
+                case Loop():
+                    if self.length:
+                        self.way = "body"
+                    self.loop(index, item, self.length)
+
+    def loop(self, index: int, loop: Loop, count: int) -> None:
+        level = len(self.loops)
+        for left in range(count, 0, -1):
+            self.loops.append(left)
+            self.block(loop.body, index)
+            self.loops.pop()
+            if left > 1:
+                self.way = f"loop {level} again"
+
+    def step(self, index: int, step: Step) -> None:
+        self.go_to(index)
         start = self.offset
-        padding = 0
         if step.rest is not None:
-            left = self.counters.get(RUN_COUNTER, 0)
-            self.edges.add(Edge(index, "rest" if left else "no rest"))
-            if left:
-                self.transfer_items(step.rest, left)
-        if step.align != 1:
-            padding = self.align(step.align)
-            self.edges.add(Edge(index, f"padding {padding}"))
-        if isinstance(step, RunStep):
-            self.words(index, step.run)
-            return self.leave(index, step.exits)
+            self.edges.add(Edge(index, "rest" if self.left else "no rest"))
+            if self.left and self.ran is not None:
+                self.transfer_items(self.ran, self.left)
+        padding = self.step_align(index, step.align)
         held, self.held = self.held, 0
         for item in step.slices:
             match item:
@@ -145,14 +176,14 @@ class Machine(ABC):
                 case Part():
                     self.part(item)
         self.visit(index, self.offset - start - padding, held)
-        body = self.begin(step)
-        if body is None:
-            return self.leave(index, step.exits)
-        self.edges.add(Edge(index, "body"))
-        return self.enter(body)
 
-    def visit(self, index: int, size: int, held: int) -> None:
-        self.visits.append(Visit(index, size, self.offset, held))
+    def step_align(self, index: int, align: int) -> int:
+        """Skip the padding before a map or a constant run, and return its size."""
+        if align == 1:
+            return 0
+        padding = self.align(align)
+        self.edges.add(Edge(index, f"padding {padding}"))
+        return padding
 
     def align(self, align: int) -> int:
         """Skip padding, and return its size."""
@@ -160,61 +191,30 @@ class Machine(ABC):
         self.skip(padding)
         return padding
 
-    def leave(self, index: int, exits: Exits) -> int | None:
-        for level, jump in exits.repeats:
-            if self.counters[level] > 1:
-                self.counters[level] -= 1
-                self.edges.add(Edge(index, f"loop {level} again"))
-                return self.enter(jump)
-        self.edges.add(Edge(index, "next"))
-        return self.enter(exits.default)
+    def visit(self, index: int, size: int, held: int) -> None:
+        self.visits.append(Visit(index, size, self.offset, held))
 
-    def begin(self, step: MapStep) -> Jump | None:
-        """Start the step's loop or run, and return the jump to its body, if it is needed."""
-        begin, count = step.begin, self.length
-        if begin is None:
-            return None
-        if isinstance(begin, BeginLoop):
-            if not count:
-                return None
-            self.counters[begin.level] = count
-            return begin.body
-        self.counters[RUN_COUNTER] = count
-        if count:
-            self.align(begin.align)
-        return begin.body if count > self.plan.word(begin.run) else None
-
-    def words(self, index: int, run: int) -> None:
-        """Process the full words of a run, one per cycle, except the rest of a counted run."""
-        lanes = self.plan.items_leaf(run).lanes
-        rest = self.plan.word(run) if self.plan.runs[run].counted else 0
-        while True:
+    def words(self, index: int, run: Run, keep: int) -> None:
+        """Process the full words of a run, one per cycle, until at most `keep` items are left."""
+        lanes = self.plan.leaves[run.leaf].lanes
+        while self.left > keep:
             start = self.offset
             self.transfer_items(run, lanes)
             self.visit(index, self.offset - start, self.held)
             self.held = 0
-            if self.counters[RUN_COUNTER] <= rest:
-                return
-            self.edges.add(Edge(index, "again"))
+            if self.left > keep:
+                self.edges.add(Edge(index, "again"))
 
-    def transfer_items(self, index: int, count: int) -> None:
+    def transfer_items(self, run: Run, count: int) -> None:
         """Process one transfer of a run, with the NUL if the run ends with it."""
-        run = self.plan.runs[index]
-        left = self.counters[RUN_COUNTER] - count
-        self.counters[RUN_COUNTER] = left
-        has_nul = run.terminated and not left
+        self.left -= count
+        has_nul = run.count.nul and not self.left
         items = count - has_nul
         if items:
-            self.items(run, items, run.last and not left)
+            self.items(run, items, not run.has_tail and not self.left)
         if has_nul:
             self.terminator()
 
     def is_last(self, part: Part) -> bool:
         """Return whether a transfer of items is the last of its leaf."""
-        match part.end:
-            case ArrayEnd():
-                return True
-            case LoopEnd(level=level):
-                return self.counters[level] == 1
-            case None:
-                return False
+        return part.last == "always" or (part.last == "in loop" and self.loops[-1] == 1)

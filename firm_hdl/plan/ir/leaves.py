@@ -1,54 +1,11 @@
-"""Leaves of a message, and the bytes of a step that belong to them."""
+"""The bytes of a step that belong to them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
-from firm_hdl.model import PRIMITIVE_OF, Primitive
-
-__all__ = ["ArrayEnd", "Fixed", "Leaf", "LeafKind", "LoopEnd", "Pad", "Part", "Run", "Slice"]
-
-LeafKind: TypeAlias = Literal["scalar", "length", "items", "trigger"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Leaf:
-    """One stream of the message side.
-
-    Attributes
-    ----------
-    path : tuple of str
-        Names of fields from the message down. Unless `kind` is "scalar", the last name is `kind`.
-    kind : "scalar", "length", "items" or "trigger"
-    type : str
-        ROS name of the primitive (``uint32`` for a length, ``bool`` for a trigger).
-    signed : bool
-        Whether the stream's shape is signed.
-    lanes : int
-        Items per transfer; 1 unless `kind` is "items".
-    """
-
-    path: tuple[str, ...]
-    kind: LeafKind
-    type: str
-    signed: bool
-    lanes: int = 1
-
-    def __str__(self) -> str:
-        return ".".join(self.path)
-
-    @property
-    def primitive(self) -> Primitive:
-        """The primitive that `type` names; for `byte` and `char`, the one with the leaf's sign."""
-        # Only a wrong plan has the other sign, and `check` reports it.
-        found = PRIMITIVE_OF.get((self.type, self.signed))
-        return found or PRIMITIVE_OF[self.type, not self.signed]
-
-    @property
-    def item_bytes(self) -> int:
-        """Bytes of one item on the wire."""
-        return 0 if self.kind == "trigger" else self.primitive.bytes
+__all__ = ["ArrayEnd", "Fixed", "LoopEnd", "Pad", "Part", "Run", "Slice"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,53 +1,32 @@
-"""The whole plan of a converter."""
+"""The linked steps of a plan, for gateware."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from firm_hdl.model import Wire
-from firm_hdl.plan.ir.leaves import Leaf, Run
+from firm_hdl.plan.ir.leaves import Run
 from firm_hdl.plan.ir.steps import Begin, BeginLoop, Jump, Step, successors
+from firm_hdl.plan.tree import Leaf, Plan
 
-__all__ = ["Plan"]
+__all__ = ["Linked"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Plan:
-    """A converter of one message type, for one wire and one bus width.
+class Linked:
+    """The steps of a plan with jumps between them.
 
     Attributes
     ----------
-    message : str
-        Full name of the type.
-    wire : Wire
-    bus_bytes : int
-        1, 2, 4, 8, 16, 32 or 64.
-    max_message_bytes : int
-        Size of the longest packet that lengths may promise, header included.
-    header_bytes : int
-        Bytes of the encapsulation header; alignment counts from its end.
-    max_trailing_bytes : int
-        Largest number of bytes that may follow the message in its packet.
-    leaves : tuple of Leaf
-        In wire order.
+    plan : Plan
     runs : tuple of Run
-    levels : int
-        Number of loop counters.
     start : Jump
         Jump to the first step of each packet.
     steps : tuple of Step
     """
 
-    message: str
-    wire: Wire
-    bus_bytes: int
-    max_message_bytes: int
-    header_bytes: int
-    max_trailing_bytes: int
-    leaves: tuple[Leaf, ...]
+    plan: Plan
     runs: tuple[Run, ...]
-    levels: int
     start: Jump
     steps: tuple[Step, ...]
 
@@ -77,12 +56,12 @@ class Plan:
 
     def items_leaf(self, run: int) -> Leaf:
         """Return the leaf of a run's items."""
-        return self.leaves[self.runs[run].items]
+        return self.plan.leaves[self.runs[run].items]
 
     @property
     def max_run_lanes(self) -> int:
         """Lanes of the widest run; 1 without runs."""
-        return max((self.leaves[run.items].lanes for run in self.runs), default=1)
+        return max((self.plan.leaves[run.items].lanes for run in self.runs), default=1)
 
     def word(self, run: int) -> int:
         """Return the largest count that fits in one word of a run, its NUL included."""

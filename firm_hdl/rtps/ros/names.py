@@ -24,7 +24,7 @@ __all__ = [
 _TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _TYPE = re.compile(r"([a-z][a-z0-9_]*)/(msg|srv|action)/([A-Za-z][A-Za-z0-9_]*)")
 _MANGLED = re.compile(r"([a-z][a-z0-9_]*)::(msg|srv|action)::dds_::([A-Za-z][A-Za-z0-9_]*)_")
-_HASH = re.compile(r"RIHS\d\d_[0-9a-f]+")
+_HASH = re.compile(r"RIHS[0-9]{2}_[0-9a-f]+")
 _HASH_IN_DATA = re.compile(rb"(?:^|;)typehash=([^;]*)")
 
 

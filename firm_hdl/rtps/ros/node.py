@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from types import TracebackType
 from typing import Any
 
 from firm_hdl.rtps.endpoints import ClosedError, DataReader, DataWriter, OnSample
@@ -15,7 +14,8 @@ from firm_hdl.rtps.ros.services import Client, Handler, Service
 
 __all__ = ["Node"]
 
-_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+# Peers refuse the graph of a participant with a longer one.
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,254}")
 # A burst of requests gets its replies also where some datagrams are lost.
 _SERVICE_QOS = Qos(depth=256)
 
@@ -73,12 +73,7 @@ class Node:
     def __enter__(self) -> Node:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def publisher(

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from firm_hdl.rtps.wire.guid import UNKNOWN_PREFIX, VENDOR
-from firm_hdl.rtps.wire.infos import InfoDestination, InfoSource, InfoTimestamp
 from firm_hdl.rtps.wire.octets import MalformedError
-from firm_hdl.rtps.wire.submessages import Submessage, decode, encode
+from firm_hdl.rtps.wire.submessages import (
+    InfoDestination,
+    InfoSource,
+    InfoTimestamp,
+    Submessage,
+    decode,
+    encode,
+)
 
 __all__ = ["Message", "Received", "read", "write"]
 
@@ -79,55 +85,44 @@ def read(datagram: bytes, receiver: bytes) -> Message:
         raise MalformedError("no RTPS message")
     if datagram[4] != _VERSION[0]:
         raise MalformedError(f"RTPS version {datagram[4]}.{datagram[5]}")
-    state = _Receiver(datagram[8:20], receiver)
-    error = None
+    # The state of a receiver while it reads one datagram (8.3.4).
+    source, is_addressed = datagram[8:20], True
+    timestamp: int | None = None
+    received: list[Received] = []
+    unknown, error = 0, None
     try:
-        state.read(datagram)
+        for kind, submessage in _submessages(datagram):
+            match submessage:
+                case None:
+                    unknown += kind != _PAD
+                case InfoDestination(prefix):
+                    is_addressed = prefix in (receiver, UNKNOWN_PREFIX)
+                case InfoSource(prefix):
+                    # 8.3.8.10: the time of the former source is not that of the new one.
+                    source, timestamp = prefix, None
+                case InfoTimestamp(nanoseconds):
+                    timestamp = nanoseconds
+                case _ if is_addressed:
+                    each = Received(source=source, timestamp=timestamp, submessage=submessage)
+                    received.append(each)
     except MalformedError as problem:
         error = str(problem)
-    return Message(
-        source=datagram[8:20], received=tuple(state.received), unknown=state.unknown, error=error
-    )
+    return Message(source=datagram[8:20], received=tuple(received), unknown=unknown, error=error)
 
 
-class _Receiver:
-    """The state of a receiver while it reads one datagram (8.3.4)."""
-
-    def __init__(self, source: bytes, receiver: bytes):
-        self.source = source
-        self.receiver = receiver
-        self.addressed = True
-        self.timestamp: int | None = None
-        self.received: list[Received] = []
-        self.unknown = 0
-
-    def read(self, datagram: bytes) -> None:
-        at = _HEADER_BYTES
-        while at < len(datagram):
-            if at + 4 > len(datagram):
-                raise MalformedError("part of a submessage's header")
-            kind, flags = datagram[at], datagram[at + 1]
-            size = int.from_bytes(datagram[at + 2 : at + 4], "little" if flags & 1 else "big")
-            at += 4
-            # 9.4.5.1.3: 0 means "to the end", except where a submessage may be empty.
-            if size == 0 and kind not in (_PAD, InfoTimestamp.KIND):
-                size = len(datagram) - at
-            if at + size > len(datagram):
-                raise MalformedError("a submessage that is longer than its datagram")
-            self._take(decode(kind, flags, datagram[at : at + size]), kind)
-            at += size
-
-    def _take(self, submessage: Submessage | None, kind: int) -> None:
-        match submessage:
-            case None:
-                self.unknown += kind != _PAD
-            case InfoDestination(prefix):
-                self.addressed = prefix in (self.receiver, UNKNOWN_PREFIX)
-            case InfoSource(prefix):
-                # 8.3.8.10: the time of the former source is not that of the new one.
-                self.source, self.timestamp = prefix, None
-            case InfoTimestamp(nanoseconds):
-                self.timestamp = nanoseconds
-            case _ if self.addressed:
-                each = Received(source=self.source, timestamp=self.timestamp, submessage=submessage)
-                self.received.append(each)
+def _submessages(datagram: bytes) -> Iterator[tuple[int, Submessage | None]]:
+    """Yield the submessages of a datagram: the kind, and `None` if that is not known."""
+    at = _HEADER_BYTES
+    while at < len(datagram):
+        if at + 4 > len(datagram):
+            raise MalformedError("part of a submessage's header")
+        kind, flags = datagram[at], datagram[at + 1]
+        size = int.from_bytes(datagram[at + 2 : at + 4], "little" if flags & 1 else "big")
+        at += 4
+        # 9.4.5.1.3: 0 means "to the end", except where a submessage may be empty.
+        if size == 0 and kind not in (_PAD, InfoTimestamp.KIND):
+            size = len(datagram) - at
+        if at + size > len(datagram):
+            raise MalformedError("a submessage that is longer than its datagram")
+        yield kind, decode(kind, flags, datagram[at : at + size])
+        at += size

@@ -1,19 +1,418 @@
-"""All submessages: their union, and their bytes with the header (8.3.8, 9.4.5.1)."""
+"""The submessages of a datagram: what endpoints tell each other (8.3.8, 9.4.5).
+
+Each class has the number of its kind, `body` and `decode`: from its fields to the flags and the
+bytes behind the header, and back. `order` is that of :mod:`struct`. A reader or a writer is an
+entity identifier.
+"""
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
-from typing import TypeAlias
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import ClassVar, TypeAlias, get_args
 
-from firm_hdl.rtps.wire.infos import InfoDestination, InfoSource, InfoTimestamp
-from firm_hdl.rtps.wire.octets import Cursor
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, Heartbeat, HeartbeatFrag, NackFrag
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.guid import VENDOR
+from firm_hdl.rtps.wire.octets import Cursor, MalformedError
+from firm_hdl.rtps.wire.parameters import ParameterList, sequence_number_bytes
 
-__all__ = ["Submessage", "decode", "encode"]
+__all__ = [
+    "NO_PARAMETERS",
+    "AckNack",
+    "Data",
+    "DataFrag",
+    "Gap",
+    "Heartbeat",
+    "HeartbeatFrag",
+    "InfoDestination",
+    "InfoSource",
+    "InfoTimestamp",
+    "NackFrag",
+    "NumberSet",
+    "Submessage",
+    "decode",
+    "encode",
+    "fragment",
+    "fragment_count",
+]
 
-_LITTLE = 0x01
+NO_PARAMETERS = ParameterList(())
+"""Inline QoS of a sample that has none."""
+
+# Flags of all submessages, of HEARTBEAT and ACKNACK, and of DATA and DATA_FRAG.
+_LITTLE, _FINAL = 0x01, 0x02
+_INLINE, _DATA, _KEY = 0x02, 0x04, 0x08
+
+
+@dataclass(frozen=True, slots=True)
+class InfoDestination:
+    """INFO_DST: the participant that the following submessages are for (8.3.8.8)."""
+
+    KIND: ClassVar[int] = 0x0E
+
+    prefix: bytes
+
+    def body(self, order: str) -> tuple[int, bytes]:
+        return 0, self.prefix
+
+    @classmethod
+    def decode(cls, flags: int, cursor: Cursor) -> InfoDestination:
+        return cls(cursor.take(12))
+
+
+@dataclass(frozen=True, slots=True)
+class InfoSource:
+    """INFO_SRC: the participant that the following submessages come from (8.3.8.10)."""
+
+    KIND: ClassVar[int] = 0x0C
+
+    prefix: bytes
+    version: bytes = b"\x02\x03"
+    vendor: bytes = VENDOR
+
+    def body(self, order: str) -> tuple[int, bytes]:
+        return 0, bytes(4) + self.version + self.vendor + self.prefix
+
+    @classmethod
+    def decode(cls, flags: int, cursor: Cursor) -> InfoSource:
+        cursor.take(4)
+        version, vendor = cursor.take(2), cursor.take(2)
+        return cls(cursor.take(12), version, vendor)
+
+
+@dataclass(frozen=True, slots=True)
+class InfoTimestamp:
+    """INFO_TS: the time of the following submessages (8.3.8.11).
+
+    Attributes
+    ----------
+    nanoseconds : int or None
+        Time since 1970 in nanoseconds, or `None` for no time. The wire has seconds, unsigned, and
+        fractions of 2**-32 s (9.3.2).
+    """
+
+    KIND: ClassVar[int] = 0x09
+
+    nanoseconds: int | None
+
+    def body(self, order: str) -> tuple[int, bytes]:
+        if self.nanoseconds is None:
+            return 0x02, b""
+        seconds, rest = divmod(self.nanoseconds, 10**9)
+        # Rounded up, so that reading gives the same nanosecond again.
+        fraction = -(-(rest << 32) // 10**9)
+        return 0, struct.pack(order + "II", seconds & 0xFFFF_FFFF, fraction)
+
+    @classmethod
+    def decode(cls, flags: int, cursor: Cursor) -> InfoTimestamp:
+        if flags & 0x02:
+            return cls(None)
+        seconds, fraction = cursor.u32(), cursor.u32()
+        return cls(seconds * 10**9 + (fraction * 10**9 >> 32))
+
+
+@dataclass(frozen=True, slots=True)
+class NumberSet:
+    """A set of sequence numbers or of fragment numbers (8.3.5.5, 8.3.5.7).
+
+    Attributes
+    ----------
+    base : int
+        All numbers below it are received, or irrelevant.
+    members : tuple of int
+        The numbers in the set, ascending, each less than ``base + 256``.
+    """
+
+    base: int
+    members: tuple[int, ...] = ()
+
+    MAX_SIZE: ClassVar[int] = 256
+
+    @classmethod
+    def of(cls, base: int, members: Iterable[int]) -> NumberSet:
+        """Return the set of those `members` that fit behind `base`."""
+        last = base + cls.MAX_SIZE
+        return cls(base, tuple(sorted(each for each in members if base <= each < last)))
+
+    def bitmap(self, order: str) -> bytes:
+        """Return the count of bits, and the bits: the first is the highest of a word (9.4.2.6)."""
+        size = self.members[-1] - self.base + 1 if self.members else 0
+        count = (size + 31) // 32
+        top = self.base + 32 * count - 1
+        bits = sum(1 << (top - each) for each in self.members)
+        words = struct.unpack(f">{count}I", bits.to_bytes(4 * count, "big"))
+        return struct.pack(f"{order}I{count}I", size, *words)
+
+    @classmethod
+    def decode(cls, cursor: Cursor, base: int) -> NumberSet:
+        """Read the bits behind `base`. More than 256 are an error (8.3.5.5)."""
+        size = cursor.u32()
+        if size > cls.MAX_SIZE or base < 0:
+            raise MalformedError(f"a set of {size} numbers from {base}")
+        words = [cursor.u32() for _ in range((size + 31) // 32)]
+        numbers = range(size)
+        return cls(base, tuple(base + n for n in numbers if words[n // 32] >> (31 - n % 32) & 1))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gap:
+    """GAP: sequence numbers that the writer will not send to this reader (8.3.8.4).
+
+    These are the numbers from `start` to below ``numbers.base``, and the members of `numbers`.
+    """
+
+    KIND: ClassVar[int] = 0x08
+
+    reader: int
+    writer: int
+    start: int
+    numbers: NumberSet
+
+    def body(self, order: str) -> tuple[int, bytes]:
+        bounds = sequence_number_bytes(self.start, order)
+        bounds += sequence_number_bytes(self.numbers.base, order)
+        return 0, _entities(self.reader, self.writer) + bounds + self.numbers.bitmap(order)
+
+    @classmethod
+    def decode(cls, flags: int, cursor: Cursor) -> Gap:
+        reader, writer = cursor.u32_big(), cursor.u32_big()
+        start = _writer_number(cursor)
+        numbers = NumberSet.decode(cursor, cursor.sequence_number())
+        return cls(reader=reader, writer=writer, start=start, numbers=numbers)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Heartbeat:
+    """HEARTBEAT: the sequence numbers that a writer has (8.3.8.6).
+
+    Attributes
+    ----------
+    first, last : int
+        Lowest and highest number. If there are none, `last` is ``first - 1``.
+    count : int
+        Number of this heartbeat, modulo 2**32 (8.4.15.7).
+    final : bool
+        Whether a reader that misses nothing need not answer.
+    """
+
+    KIND: ClassVar[int] = 0x07
+
+    reader: int
+    writer: int
+    first: int
+    last: int
+    count: int
+    final: bool = False
+
+    def body(self, order: str) -> tuple[int, bytes]:
+        bounds = sequence_number_bytes(self.first, order) + sequence_number_bytes(self.last, order)
+        count = struct.pack(order + "I", self.count)
+        return _FINAL * self.final, _entities(self.reader, self.writer) + bounds + count
+
+    @classmethod
+    def decode(cls, flags: int, cursor: Cursor) -> Heartbeat:
+        reader, writer = cursor.u32_big(), cursor.u32_big()
+        first, last = _writer_number(cursor), cursor.sequence_number()
+        if last < first - 1:
+            raise MalformedError(f"a heartbeat from {first} to {last}")
+        final, count = bool(flags & _FINAL), cursor.u32()
+        return cls(reader=reader, writer=writer, first=first, last=last, count=count, final=final)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AckNack:
+    """ACKNACK: the sequence numbers that a reader has, and those that it misses (8.3.8.1).
+
+    `missing` has the base of what is not acknowledged. Fast DDS begins with base 0, which is let
+    pass. `final` says that no heartbeat is asked for.
+    """
+
+    KIND: ClassVar[int] = 0x06
+
+    reader: int
+    writer: int
+    missing: NumberSet
+    count: int
+    final: bool = False
+
+    def body(self, order: str) -> tuple[int, bytes]:
+        numbers = sequence_number_bytes(self.missing.base, order) + self.missing.bitmap(order)
+        count = struct.pack(order + "I", self.count)
+        return _FINAL * self.final, _entities(self.reader, self.writer) + numbers + count
+
+    @classmethod
+    def decode(cls, flags: int, cursor: Cursor) -> AckNack:
+        reader, writer = cursor.u32_big(), cursor.u32_big()
+        missing = NumberSet.decode(cursor, cursor.sequence_number())
+        final, count = bool(flags & _FINAL), cursor.u32()
+        return cls(reader=reader, writer=writer, missing=missing, count=count, final=final)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeartbeatFrag:
+    """HEARTBEAT_FRAG: the fragments of a sample that a writer has sent (8.3.8.7)."""
+
+    KIND: ClassVar[int] = 0x13
+
+    reader: int
+    writer: int
+    sequence_number: int
+    last: int
+    count: int
+
+    def body(self, order: str) -> tuple[int, bytes]:
+        number = sequence_number_bytes(self.sequence_number, order)
+        rest = struct.pack(order + "II", self.last, self.count)
+        return 0, _entities(self.reader, self.writer) + number + rest
+
+    @classmethod
+    def decode(cls, flags: int, cursor: Cursor) -> HeartbeatFrag:
+        reader, writer = cursor.u32_big(), cursor.u32_big()
+        number = _writer_number(cursor)
+        last, count = cursor.u32(), cursor.u32()
+        return cls(reader=reader, writer=writer, sequence_number=number, last=last, count=count)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NackFrag:
+    """NACK_FRAG: the fragments of a sample that a reader misses (8.3.8.12)."""
+
+    KIND: ClassVar[int] = 0x12
+
+    reader: int
+    writer: int
+    sequence_number: int
+    missing: NumberSet
+    count: int
+
+    def body(self, order: str) -> tuple[int, bytes]:
+        number = sequence_number_bytes(self.sequence_number, order)
+        missing = struct.pack(order + "I", self.missing.base) + self.missing.bitmap(order)
+        count = struct.pack(order + "I", self.count)
+        return 0, _entities(self.reader, self.writer) + number + missing + count
+
+    @classmethod
+    def decode(cls, flags: int, cursor: Cursor) -> NackFrag:
+        reader, writer = cursor.u32_big(), cursor.u32_big()
+        number = _writer_number(cursor)
+        missing = NumberSet.decode(cursor, cursor.u32())
+        return cls(
+            reader=reader,
+            writer=writer,
+            sequence_number=number,
+            missing=missing,
+            count=cursor.u32(),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Data:
+    """DATA: a sample, or the end of an instance (8.3.8.2).
+
+    Attributes
+    ----------
+    reader, writer : int
+        Reader 0 means all matched readers.
+    sequence_number : int
+        The number of the sample, from 1 on.
+    payload : bytes or None
+        The serialized sample with its encapsulation header; the serialized key if `key`.
+    inline : ParameterList
+        Inline QoS.
+    """
+
+    KIND: ClassVar[int] = 0x15
+
+    reader: int
+    writer: int
+    sequence_number: int
+    payload: bytes | None
+    key: bool = False
+    inline: ParameterList = NO_PARAMETERS
+
+    def body(self, order: str) -> tuple[int, bytes]:
+        flags, inline = _inline_bytes(self.inline)
+        flags |= 0 if self.payload is None else _KEY if self.key else _DATA
+        head = struct.pack(order + "HH", 0, 16) + _entities(self.reader, self.writer)
+        head += sequence_number_bytes(self.sequence_number, order)
+        return flags, head + inline + (self.payload or b"")
+
+    @classmethod
+    def decode(cls, flags: int, cursor: Cursor) -> Data:
+        behind = _behind_the_head(cursor, 16)
+        reader, writer = cursor.u32_big(), cursor.u32_big()
+        number = _writer_number(cursor)
+        cursor.at = behind
+        inline = ParameterList.decode(cursor) if flags & _INLINE else NO_PARAMETERS
+        if flags & _DATA and flags & _KEY:
+            raise MalformedError("data and key at once")
+        return cls(
+            reader=reader,
+            writer=writer,
+            sequence_number=number,
+            payload=cursor.take(cursor.left) if flags & (_DATA | _KEY) else None,
+            key=bool(flags & _KEY),
+            inline=inline,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DataFrag:
+    """DATA_FRAG: consecutive fragments of a sample (8.3.8.3).
+
+    Attributes
+    ----------
+    first, count : int
+        Number of the first fragment, from 1 on, and how many there are.
+    fragment_bytes, sample_bytes : int
+        Size of every fragment but the last, and of the whole sample with its encapsulation header.
+    payload : bytes
+        The bytes of these fragments.
+    """
+
+    KIND: ClassVar[int] = 0x16
+
+    reader: int
+    writer: int
+    sequence_number: int
+    first: int
+    count: int
+    fragment_bytes: int
+    sample_bytes: int
+    payload: bytes
+    inline: ParameterList = NO_PARAMETERS
+
+    def body(self, order: str) -> tuple[int, bytes]:
+        flags, inline = _inline_bytes(self.inline)
+        head = struct.pack(order + "HH", 0, 28) + _entities(self.reader, self.writer)
+        head += sequence_number_bytes(self.sequence_number, order)
+        sizes = (self.first, self.count, self.fragment_bytes, self.sample_bytes)
+        return flags, head + struct.pack(order + "IHHI", *sizes) + inline + self.payload
+
+    @classmethod
+    def decode(cls, flags: int, cursor: Cursor) -> DataFrag:
+        behind = _behind_the_head(cursor, 28)
+        reader, writer = cursor.u32_big(), cursor.u32_big()
+        number = _writer_number(cursor)
+        first, count = cursor.u32(), cursor.u16()
+        size, whole = cursor.u16(), cursor.u32()
+        if not (first and count and size) or (first + count - 2) * size >= whole:
+            raise MalformedError(f"{count} fragments of {size} bytes from {first} of {whole} bytes")
+        cursor.at = behind
+        inline = ParameterList.decode(cursor) if flags & _INLINE else NO_PARAMETERS
+        return cls(
+            reader=reader,
+            writer=writer,
+            sequence_number=number,
+            first=first,
+            count=count,
+            fragment_bytes=size,
+            sample_bytes=whole,
+            # Bytes behind the last fragment are padding.
+            payload=cursor.take(min(count * size, whole - (first - 1) * size)),
+            inline=inline,
+        )
+
 
 Submessage: TypeAlias = (
     Data
@@ -28,18 +427,7 @@ Submessage: TypeAlias = (
     | InfoTimestamp
 )
 
-_DECODERS: dict[int, Callable[[int, Cursor], Submessage]] = {
-    Data.KIND: Data.decode,
-    DataFrag.KIND: DataFrag.decode,
-    Gap.KIND: Gap.decode,
-    Heartbeat.KIND: Heartbeat.decode,
-    AckNack.KIND: AckNack.decode,
-    HeartbeatFrag.KIND: HeartbeatFrag.decode,
-    NackFrag.KIND: NackFrag.decode,
-    InfoDestination.KIND: InfoDestination.decode,
-    InfoSource.KIND: InfoSource.decode,
-    InfoTimestamp.KIND: InfoTimestamp.decode,
-}
+_OF_KIND = {each.KIND: each for each in get_args(Submessage)}
 
 
 def encode(submessage: Submessage, little: bool = True) -> bytes:
@@ -67,5 +455,60 @@ def decode(kind: int, flags: int, body: bytes) -> Submessage | None:
     MalformedError
         The bytes are no valid submessage of this kind.
     """
-    decoder = _DECODERS.get(kind)
-    return None if decoder is None else decoder(flags, Cursor(body, bool(flags & _LITTLE)))
+    if kind not in _OF_KIND:
+        return None
+    found: Submessage = _OF_KIND[kind].decode(flags, Cursor(body, bool(flags & _LITTLE)))
+    return found
+
+
+def fragment_count(sample_bytes: int, fragment_bytes: int) -> int:
+    """Return the number of fragments of a sample (8.4.14.1)."""
+    return -(-sample_bytes // fragment_bytes)
+
+
+def fragment(sample: Data, number: int, fragment_bytes: int) -> DataFrag:
+    """Return fragment `number`, from 1 on, of a sample with a payload (8.4.14.1)."""
+    assert sample.payload is not None
+    start = (number - 1) * fragment_bytes
+    return DataFrag(
+        reader=sample.reader,
+        writer=sample.writer,
+        sequence_number=sample.sequence_number,
+        first=number,
+        count=1,
+        fragment_bytes=fragment_bytes,
+        sample_bytes=len(sample.payload),
+        payload=sample.payload[start : start + fragment_bytes],
+        inline=sample.inline,
+    )
+
+
+def _entities(reader: int, writer: int) -> bytes:
+    """Return the entity identifiers, whose byte order is the same on every wire (9.3.1.2)."""
+    return struct.pack(">II", reader, writer)
+
+
+def _writer_number(cursor: Cursor) -> int:
+    """Read a sequence number of a writer, which is at least 1 (8.3.5.4)."""
+    number = cursor.sequence_number()
+    if number < 1:
+        raise MalformedError(f"sequence number {number}")
+    return number
+
+
+def _inline_bytes(parameters: ParameterList) -> tuple[int, bytes]:
+    """Return the flag of inline QoS, and the bytes."""
+    return (_INLINE, parameters.encode()) if parameters.items else (0, b"")
+
+
+def _behind_the_head(cursor: Cursor, size: int) -> int:
+    """Read where the inline QoS of DATA or DATA_FRAG begin: behind a head of at least `size` bytes.
+
+    9.4.5.4: a later version may have more fields before them.
+    """
+    cursor.u16()
+    skip = max(cursor.u16(), size)
+    start = cursor.at
+    cursor.take(skip)
+    behind, cursor.at = cursor.at, start
+    return behind

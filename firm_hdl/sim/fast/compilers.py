@@ -1,4 +1,4 @@
-"""Compile the program of a design, and keep it for the next time.
+"""Make the program of a design by Verilator and a compiler, and keep it for the next time.
 
 The name of a program is made from all that it depends on: the Verilog, the server, the versions of
 Verilator and of the compiler, and its options. :mod:`firm_hdl.jobs.caches` keeps the program, and
@@ -9,19 +9,35 @@ from __future__ import annotations
 
 import functools
 import os
+import re
 import shlex
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
 from pathlib import Path
 
+import jinja2
+
+from firm_hdl.garbage import search_put_off
 from firm_hdl.jobs import ToolError, made_by, run_tool
 from firm_hdl.jobs.caches import cache_folder, kept_program
 from firm_hdl.jobs.programs import find_compiler, find_verilator
-from firm_hdl.sim.fast.verilated import SERVER, VerilatedSource, translate
+from firm_hdl.rtlil import convert_fragment
+from firm_hdl.sim.fast.top import Top
+from firm_hdl.verilog import convert
 
-__all__ = ["COMPILER_OPTIONS", "BuildError", "Report", "program_of"]
+__all__ = [
+    "COMPILER_OPTIONS",
+    "SERVER",
+    "BuildError",
+    "Report",
+    "VerilatedSource",
+    "program_of",
+    "translate",
+    "verilated_source",
+]
 
 COMPILER_OPTIONS = ("-O2",)
 """Options of the compiler, unless the user has others."""
@@ -35,6 +51,33 @@ _REPORT_SECONDS = 5.0
 # Lines of a compiler's messages: the first ones say what is wrong.
 _MOST_LINES = 12
 _MOST_CHARACTERS = 2000
+
+
+SERVER = Path(__file__).parent / "server.h"
+"""The part of the program that is the same for all designs."""
+
+MOST_WAVE_BYTES = 1 << 30
+"""Where a waveform ends: a live simulation has no end."""
+
+_MODULE, _PREFIX = "firm_hdl_design", "Vdesign"
+_OPTIONS = (
+    *("--cc", "-Wno-lint", "-Wno-style", "-Wno-fatal", "--no-timing"),
+    # Amaranth's `Assert` and `Print`.
+    "--assert",
+    # Registers and memories have initial values, and wires have drivers.
+    *("--x-assign", "fast", "--x-initial", "fast", "-O3"),
+    # Files of a user's may have words that are keywords of SystemVerilog only.
+    "+1364-2005ext+v",
+    # Several files, for the processors of the machine.
+    *("--output-split", "20000"),
+    *("--top-module", _MODULE, "--prefix", _PREFIX, "--Mdir", "."),
+)
+_templates = jinja2.Environment(
+    loader=jinja2.FileSystemLoader(Path(__file__).parent),
+    trim_blocks=True,
+    lstrip_blocks=True,
+    undefined=jinja2.StrictUndefined,
+)
 
 
 class BuildError(ToolError):
@@ -74,7 +117,8 @@ def program_of(
     build = _Build(source(), verilator, (*compiler, *options, *_ALWAYS), cache, tell)
     versions = _said(verilator, "--version"), _said(compiler, "--version")
     text = SERVER.read_text(encoding="utf-8")
-    parts = (build.source.verilog, build.source.main, text, *versions, *build.command)
+    more = [each for module in build.source.modules.items() for each in module]
+    parts = (build.source.verilog, build.source.main, text, *more, *versions, *build.command)
     try:
         return kept_program("simulation", parts, build.make, cache)
     except OSError as error:
@@ -181,3 +225,80 @@ def _said(command: tuple[str, ...], option: str) -> str:
 def _environment() -> dict[str, str]:
     """Return where the compiler of `ziglang` keeps what it has compiled of its library."""
     return {"ZIG_GLOBAL_CACHE_DIR": str(cache_folder() / "zig")}
+
+
+@dataclass(slots=True)
+class VerilatedSource:
+    """The source of a program that simulates a design, before Verilator has run.
+
+    Attributes
+    ----------
+    verilog : str
+        It has no paths, so that it is the same for the same design.
+    main : str
+        C++ with the table of the ports.
+    modules : mapping of str to str
+        More Verilog by file name: modules that the design has instances of.
+    traced : bool
+        The program writes a waveform.
+    """
+
+    verilog: str
+    main: str
+    modules: Mapping[str, str]
+    traced: bool = False
+
+
+@search_put_off()
+def verilated_source(
+    top: Top, modules: Mapping[str, str] | None = None, *, traced: bool = False
+) -> VerilatedSource:
+    """Elaborate a design.
+
+    Raises
+    ------
+    ClockDomainError, wiring.ConnectionError
+    """
+    netlist = convert_fragment(top.prepare(name=_MODULE), (), name=_MODULE)
+    main = _templates.get_template("model.cc.j2").render(
+        prefix=_PREFIX,
+        streams=[*zip(top.ports.streams, top.clock_of, strict=True)],
+        plain=top.ports.plain,
+        clocks=top.clocks,
+        traced=traced,
+        most_bytes=MOST_WAVE_BYTES,
+    )
+    return VerilatedSource(convert(netlist, name=_MODULE), main, modules or {}, traced)
+
+
+def translate(
+    source: VerilatedSource, verilator: tuple[str, ...], folder: Path
+) -> tuple[list[Path], Path]:
+    """Write the C++ of a design into a folder.
+
+    Returns
+    -------
+    list of Path, Path
+        The files that are to be compiled, those of Verilator's runtime included, and the folder
+        of its headers.
+
+    Raises
+    ------
+    ToolError
+    """
+    (folder / "design.v").write_text(source.verilog, encoding="utf-8")
+    (folder / "main.cpp").write_text(source.main, encoding="utf-8")
+    (folder / SERVER.name).write_bytes(SERVER.read_bytes())
+    for name, text in source.modules.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    options = [*_OPTIONS, *(["--trace"] if source.traced else [])]
+    run_tool([*verilator, *options, "design.v", *source.modules], folder)
+    makefile = made_by("Verilator", folder / f"{_PREFIX}_classes.mk").read_text(encoding="utf-8")
+    # Which parts of the runtime a model needs depends on the version.
+    parts = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", makefile, re.MULTILINE)
+    root = run_tool([*verilator, "--getenv", "VERILATOR_ROOT"], folder).strip()
+    if not parts or not root:
+        raise ToolError("Verilator did not say where its runtime is, or which parts a model needs")
+    headers = Path(root, "include")
+    runtime = [headers / f"{part}.cpp" for part in parts[1].replace("\\", " ").split()]
+    return [*sorted(folder.glob("*.cpp")), *runtime], headers

@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from amaranth.hdl import Const, Elaboratable, Shape, ShapeCastable, Value
-from amaranth.lib import data, stream, wiring
+from amaranth.lib import stream, wiring
+
+from firm_hdl.sim.watch import bus_bytes_of
 
 __all__ = ["PlainPort", "Ports", "StreamPort", "bytes_of", "ports_of"]
 
@@ -223,20 +225,9 @@ def _elements(
 def _stream(name: str, port: stream.Interface, *, is_input: bool) -> StreamPort:
     if is_input and isinstance(port.valid, Const):
         raise ValueError(f"Stream {name!r} is an input that is always valid")
-    return StreamPort(number=0, name=name, is_input=is_input, port=port, bus_bytes=_bus_bytes(port))
-
-
-def _bus_bytes(port: stream.Interface) -> int:
-    """Return the bytes per beat of a packet stream, and 0 for any other stream."""
-    shape = port.signature.members["payload"].shape
-    if not isinstance(shape, data.StructLayout) or list(shape.members) != ["data", "count", "last"]:
-        return 0
-    lanes = shape.members["data"]
-    if not isinstance(lanes, data.ArrayLayout) or Shape.cast(lanes.elem_shape).width != 8:
-        return 0
-    counts = Shape.cast(shape.members["count"]).width
-    fits = counts == lanes.length.bit_length() and Shape.cast(shape.members["last"]).width == 1
-    return lanes.length if fits else 0
+    return StreamPort(
+        number=0, name=name, is_input=is_input, port=port, bus_bytes=bus_bytes_of(port)
+    )
 
 
 def _bits(name: str, shape: Any, width: int, value: object) -> int:

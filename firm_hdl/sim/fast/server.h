@@ -147,8 +147,10 @@ struct Ports {
 template <typename Design>
 class Server {
   public:
-    Server(int socket, int parent, void (*connect)(Design&, Ports&))
-        : socket(socket), parent(parent), connect(connect) {
+    // `begun` is called with each new design, and `moved` at half steps, for a waveform.
+    Server(int socket, int parent, void (*connect)(Design&, Ports&),
+           void (*begun)(Design&) = nullptr, void (*moved)(uint64_t) = nullptr)
+        : socket(socket), parent(parent), connect(connect), begun(begun), moved_to(moved) {
         start();
     }
 
@@ -166,6 +168,8 @@ class Server {
         design.reset(new Design);
         ports = Ports();
         connect(*design, ports);
+        if (begun) begun(*design);
+        half_steps = 0;
         for (size_t n = 0; n < periods.size(); ++n)
             ports.clocks[n].period = ports.clocks[n].next = periods[n];
         // Not yet settled.
@@ -207,9 +211,11 @@ class Server {
                 record(stream);
         }
         if (moved) be_active();
+        if (moved_to) moved_to(half_steps++);
         for (Clock& clock : ports.clocks)
             if (clock.next == now) *clock.signal = clock.active;
         design->eval();
+        if (moved_to) moved_to(half_steps++);
         for (Clock& clock : ports.clocks) {
             if (clock.next != now) continue;
             clock.next += clock.period;
@@ -423,6 +429,9 @@ class Server {
 
     int socket, parent;
     void (*connect)(Design&, Ports&);
+    void (*begun)(Design&);
+    void (*moved_to)(uint64_t);
+    uint64_t half_steps = 0;
     std::unique_ptr<Design> design;
     Ports ports;
     std::vector<Bytes> set_values;

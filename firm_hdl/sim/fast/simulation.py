@@ -14,11 +14,10 @@ from amaranth.lib import wiring
 from firm_hdl.gateware.limits import check_integer
 from firm_hdl.sim.bench import DeadlineError
 from firm_hdl.sim.fast import protocol
-from firm_hdl.sim.fast.arrivals import Arrivals
 from firm_hdl.sim.fast.channel import Channel
 from firm_hdl.sim.fast.compilers import COMPILER_OPTIONS, Report
 from firm_hdl.sim.fast.engines import EngineName, check_engine, start
-from firm_hdl.sim.fast.packing import Packet, Transfer, packed, packed_packets
+from firm_hdl.sim.fast.packing import Arrivals, Packet, Transfer, packed, packed_packets
 from firm_hdl.sim.fast.ports import StreamPort, ports_of
 from firm_hdl.sim.fast.protocol import Answer, Done, Order, Reason
 from firm_hdl.sim.fast.top import ClockDomainError, Top
@@ -76,6 +75,11 @@ class FastSimulation:
         simulation would take more and more memory.
     report : callable or None
         Called with a line of text at each stage of a compilation.
+    modules : mapping of str to str, or None
+        Verilog by file name, ``.v`` or ``.sv``: modules of which the design has an
+        `amaranth.hdl.Instance`. Only for Verilator.
+    wave : Path or None
+        A file of VCD that is written, up to 1 GiB. Only for Verilator.
 
     Attributes
     ----------
@@ -112,6 +116,8 @@ class FastSimulation:
         cache: Path | None = None,
         ignored: Collection[str] = (),
         report: Report | None = None,
+        modules: Mapping[str, str] | None = None,
+        wave: Path | None = None,
     ):
         self.ports = ports_of(design)
         top = Top(design, self.ports)
@@ -127,7 +133,15 @@ class FastSimulation:
         self.is_live = False
         self._clear()
         self._stalls = stalls
-        self._channel: Channel = start(top, engine, options=options, cache=cache, report=report)
+        self._channel: Channel = start(
+            top,
+            engine,
+            options=options,
+            cache=cache,
+            report=report,
+            modules=modules,
+            wave=wave,
+        )
         self.engine: Literal["verilator", "amaranth"] = self._channel.engine
         self._open = top.open
         try:

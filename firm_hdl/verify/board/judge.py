@@ -24,17 +24,17 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
 from firm_hdl.node import Description, Topic
+from firm_hdl.node.capacity import most_bytes
 from firm_hdl.node.control import FIFO_COUNTERS, GATE_COUNTERS, LINK_COUNTERS, registers
-from firm_hdl.plan import Plan, build_plan
+from firm_hdl.plan import Plan
 from firm_hdl.plan.interpret import decode, encode
-from firm_hdl.verify.board.talk import Talk, room_for
+from firm_hdl.verify.board.talk import Talk
 from firm_hdl.verify.references.clients import may_stand_in
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.ts3.acceptance import confirm_cases
 from firm_hdl.verify.ts3.compare import packet_differences
-from firm_hdl.wire import lay_out
 
 __all__ = ["judge_loop"]
 
@@ -102,18 +102,14 @@ def judge_loop(
         If the board is gone.
     """
     store = loop[0].store("in")
-    assert store is not None
     message, wire = store.message, description.wire
     judge = _judge_of(message, description.distro, options)
     trial.record.note = judge.note
-    plan = build_plan(
-        lay_out(message, wire),
-        bus_bytes=description.bus_bytes,
-        max_message_bytes=store.max_message_bytes,
-    )
+    plan = description.plan(store)
     trial.record.shape = digest(plan)
     cases = all_cases(judge.oracle, judge.name, plan, seed=options.seed, most=options.most_cases)
-    cases = _fitting(cases, min(room_for(description, loop), store.max_message_bytes), trial)
+    room = min(most_bytes(description, way, each) for topic in loop for way, each in topic.stores)
+    cases = _fitting(cases, min(room, store.max_message_bytes), trial)
     trial.record.cases = len(cases)
     trial.record.metrics = figures(message, plan, [case.packet for case in cases])
     confirm_cases(message, wire, cases, options, trial, judge.oracle)
@@ -122,11 +118,13 @@ def judge_loop(
     runs = [_good_run(plan, cases)]
     if options.broken:
         rng = random.Random(f"{options.seed}/{message.name}/broken")
-        runs.append(_damaged_run(plan, cases, rng, room_for(description, loop)))
+        runs.append(_damaged_run(plan, cases, rng, room))
     talk.take(loop[1])
+    trial.watch.enter("simulation")
+    counters = _counters(talk, description, loop)
     for number, run in enumerate(runs):
         trial.watch.enter("simulation")
-        got = _sent(talk, description, loop, run, trial)
+        got, counters = _sent(talk, description, loop, run, trial, counters)
         trial.watch.enter("testing")
         trial.record.packets += len(run.packets)
         # As in TS3, what follows damage is judged by the golden model, and does not count.
@@ -198,9 +196,12 @@ def _sent(
     loop: tuple[Topic, Topic],
     run: _Run,
     trial: Trial,
-) -> list[bytes]:
-    """Send a run; return what came back, and add what is wrong to the failures."""
-    before = _counters(talk, description, loop)
+    before: Mapping[tuple[str, str], int],
+) -> tuple[list[bytes], Mapping[tuple[str, str], int]]:
+    """Send a run, and add what is wrong to the failures; return what came back, and the counters.
+
+    `before` are the counters up to now.
+    """
     got = talk.exchange(loop, run.packets, [answer is not None for answer in run.answers])
     after = _counters(talk, description, loop)
     # A packet that nobody asked for may have come meanwhile.
@@ -216,7 +217,7 @@ def _sent(
         # Only requests for registers were lost, and repeated.
         trial.record.add_note(f"the link lost requests of control: {', '.join(losses)}")
     trial.failures += failures
-    return got
+    return got, after
 
 
 def _differences(run: _Run, got: Sequence[bytes]) -> Iterator[str]:

@@ -16,7 +16,7 @@ from firm_hdl.node.boards import Board, board_of
 from firm_hdl.sim.fast.engines import EngineName, expected_engine
 from firm_hdl.verify.board.description import chosen_loops
 from firm_hdl.verify.board.judge import judge_loop
-from firm_hdl.verify.board.talk import SILENT_SECONDS, Talk, TalkError
+from firm_hdl.verify.board.talk import Talk, TalkError
 from firm_hdl.verify.references.clients import find_references
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import (
@@ -39,9 +39,6 @@ from firm_hdl.verify.systems.system import (
 from firm_hdl.verify.ts3.task import command_of, words_of
 
 __all__ = ["Boards"]
-
-SILENT_SECONDS_OF_SIMULATION = 60.0
-"""A simulation is slower than a board: a node with many fields does some 100 cycles per second."""
 
 
 class Boards(System):
@@ -127,10 +124,7 @@ class Boards(System):
                 "board sim: starts; to compile a new node takes a minute or more",
                 flush=True,
             )
-        silent = self._request.silent_seconds or (
-            SILENT_SECONDS_OF_SIMULATION if self._request.board == "sim" else SILENT_SECONDS
-        )
-        with Talk(self._board, self._description, silent) as talk:
+        with Talk(self._board, self._description, self._request.silent_seconds) as talk:
             is_open, gone = False, ""
             for loop in left:
                 trial = Trial.of(self._test(loop))

@@ -1,34 +1,25 @@
 """A talk with a board under test: packets go there and come back, and registers are read.
 
-Every wait has an end: a board that is silent for too long ends the talk, or the exchange of
-packets. Time is only used to decide that nothing more comes.
+What control messages say, and whether the board has started again, is found out by the session of
+the bridge. While packets are under way, nothing else is asked. Every wait has an end: a board that
+is silent for too long ends the talk, or the exchange of packets.
 """
 
 from __future__ import annotations
 
-import random
 import select
 import time
 from collections import Counter, defaultdict, deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from firm_hdl.node import Description, Topic
 from firm_hdl.node.boards import Board, BoardError
-from firm_hdl.node.control import ControlRequest, ControlResponse, Operation, Result
-from firm_hdl.node.description import CONTROL_TOPIC
-from firm_hdl.node.frame import FLAG_START, HEADER_BYTES
-from firm_hdl.node.messages import MessageReceiver, MessageSender, NodeMessage
+from firm_hdl.node.bridge.session import Session, WrongBoardError
+from firm_hdl.node.capacity import link_bytes_per_second
+from firm_hdl.node.frame import HEADER_BYTES
+from firm_hdl.node.messages import NodeMessage
 
-__all__ = ["SILENT_SECONDS", "Talk", "TalkError", "room_for"]
-
-SILENT_SECONDS = 5.0
-"""A board that says nothing for so long has failed, unless the user names another time."""
-
-REPEAT_SECONDS = 0.25
-"""A request without an answer is repeated after so long, and then after twice as long each time."""
-
-MOST_ASKED = 4
-"""Requests that are under way at once: a node keeps so many."""
+__all__ = ["Talk", "TalkError"]
 
 
 class TalkError(Exception):
@@ -44,7 +35,8 @@ class Talk:
         Not yet open.
     description : Description
         Of the node that the board has to have.
-    silent_seconds : float
+    silent_seconds : float or None
+        A board that says nothing for so long has failed; `None`: as the board has it.
 
     Raises
     ------
@@ -53,23 +45,11 @@ class Talk:
     """
 
     def __init__(
-        self, board: Board, description: Description, silent_seconds: float = SILENT_SECONDS
+        self, board: Board, description: Description, silent_seconds: float | None = None
     ) -> None:
         self._board, self._description = board, description
-        self._silent_seconds = silent_seconds
-        self._bytes_per_second = board.bytes_per_second
-        if self._bytes_per_second is None and description.link.kind == "uart":
-            self._bytes_per_second = description.link.baud / 10
-        self._tag = random.getrandbits(32)
-        self._begin()
-
-    def _begin(self) -> None:
-        self._sender = MessageSender(self._board.frame_bytes)
-        self._receiver = MessageReceiver()
-        self._answers: deque[NodeMessage] = deque()
-        self._came: dict[int, list[bytes]] = defaultdict(list)
-        self._is_heard = False
-        self._before = Counter(self._board.counters)
+        self._silent_seconds = silent_seconds or board.silent_seconds
+        self._bytes_per_second = board.bytes_per_second or link_bytes_per_second(description)
 
     def __enter__(self) -> Talk:
         return self
@@ -79,23 +59,34 @@ class Talk:
 
     def open(self) -> None:
         """Open the way to the board, and check that it has the node of the description."""
-        self._begin()
+        self._came: dict[int, list[bytes]] = defaultdict(list)
+        self._before = Counter(self._board.counters)
         try:
             self._board.open()
         except BoardError as error:
             raise TalkError(str(error)) from None
-        # Until the board has answered, each request begins a sequence: the first may be lost.
-        low, high = self._read((1, 2), begins=True).values()
-        wanted = self._description.fingerprint
-        if (found := low | high << 32) != wanted:
-            raise TalkError(
-                f"{self._board.name}: the board's fingerprint is {found:016x}, and that of the "
-                f"description is {wanted:016x}: its node is another one"
-            )
+        self._session = Session(
+            self._description,
+            self._board.frame_bytes,
+            time.monotonic(),
+            # The clock is set, which shows a restart. Nobody reads it.
+            sample_seconds=float("inf"),
+            # What it says besides answers is no sign of life here.
+            silent_seconds=float("inf"),
+            repeat_seconds=self._board.repeat_seconds,
+        )
+        self._ask(lambda: self._session.is_ready)
 
     def read(self, numbers: Iterable[int]) -> dict[int, int]:
         """Read registers; return their values by their numbers."""
-        return self._read(tuple(numbers), begins=False)
+        wanted = list(numbers)
+        self._session.read(wanted, time.monotonic())
+        self._ask(lambda: self._session.has_read)
+        values = self._session.values
+        for number in wanted:
+            if number not in values:
+                raise TalkError(f"{self._board.name}: the board refuses to read register {number}")
+        return {number: values[number] for number in wanted}
 
     def exchange(
         self, loop: tuple[Topic, Topic], packets: Sequence[bytes], comes_back: Sequence[bool]
@@ -122,11 +113,16 @@ class Talk:
         wanted, at, heard = sum(comes_back), 0, time.monotonic()
         while len(got) < wanted:
             while at < len(packets) and window.has_room(packets[at]):
-                self._send(NodeMessage(topic=came.id, packet=packets[at]))
+                self._send(self._session.frames(NodeMessage(topic=came.id, packet=packets[at])))
                 window.add(packets[at], comes_back[at])
                 at += 1
-            end = heard + self._patience(window.bytes)
-            self._wait(end)
+            # There and back.
+            end = heard + self._silent_seconds + 2 * window.bytes / self._bytes_per_second
+            if self._session.may_be_new:
+                # Only an answer tells whether packets still come.
+                self._ask(lambda: not self._session.may_be_new)
+            else:
+                self._wait(end)
             if new := self.take(back):
                 got += new
                 window.remove(len(new))
@@ -141,60 +137,29 @@ class Talk:
 
     def losses(self) -> Counter[str]:
         """Return what was lost between the board and here since the talk was opened, by cause."""
-        counters = self._receiver.counters
-        names = ("lost", "late", "cut", "stray", "malformed", "large")
-        found = Counter({name: getattr(counters, name) for name in names})
-        return +(found + self._board.counters - self._before)
+        return +(self._session.lost_on_the_way() + self._board.counters - self._before)
 
-    def _read(self, numbers: Sequence[int], *, begins: bool) -> dict[int, int]:
-        left, values = deque(numbers), dict[int, int]()
-        asked: dict[int, int] = {}
-        # By register: when it is asked for again, and how long after that.
-        again: dict[int, tuple[float, float]] = {}
-        heard = time.monotonic()
-        while len(values) < len(set(numbers)):
+    def _ask(self, is_done: Callable[[], bool]) -> None:
+        """Send the requests that are due, until something is known."""
+        begin = time.monotonic()
+        while not is_done():
             now = time.monotonic()
-            # What is repeated comes first: nothing new is asked before it is answered.
-            left.extendleft(each for each, (due, _) in again.items() if due <= now)
-            while left and (left[0] in again or len(again) < MOST_ASKED):
-                number = left.popleft()
-                wait = 2 * again[number][1] if number in again else REPEAT_SECONDS
-                again[number] = (now + wait, wait)
-                asked[self._ask(number, begins=begins)] = number
-            self._wait(min(due for due, _ in again.values()))
-            if not self._answers and now > heard + self._patience(HEADER_BYTES * MOST_ASKED):
-                raise TalkError(self._silence())
-            while self._answers:
-                message = self._answers.popleft()
-                number = asked.get(message.tag, -1)
-                if number in again:
-                    values[number] = self._value(number, message)
-                    del again[number]
-                    heard = time.monotonic()
-        return {number: values[number] for number in numbers}
+            end = max(begin, self._session.answered_at) + self._silent_seconds
+            if now > end:
+                causes = ", ".join(f"{count} {cause}" for cause, count in self.losses().items())
+                more = f" (frames: {causes})" if causes else ""
+                raise TalkError(
+                    f"{self._board.name}: the board does not answer for "
+                    f"{self._silent_seconds:g} s{more}"
+                )
+            if frames := self._session.due(now, time.time_ns()):
+                self._send(frames)
+            self._wait(min(end, self._session.next_due()))
 
-    def _ask(self, number: int, *, begins: bool) -> int:
-        """Ask for a register; return the tag of the request."""
-        if begins:
-            self._sender = MessageSender(self._board.frame_bytes)
-        self._tag = (self._tag + 1) & 0xFFFF_FFFF
-        request = ControlRequest(operation=Operation.READ, argument=number)
-        self._send(NodeMessage(topic=CONTROL_TOPIC, packet=request.encode(), tag=self._tag))
-        return self._tag
-
-    def _value(self, number: int, message: NodeMessage) -> int:
+    def _send(self, frames: Sequence[bytes]) -> None:
         try:
-            response = ControlResponse.decode(message.packet)
-        except ValueError as error:
-            raise TalkError(f"{self._board.name}: {error}") from None
-        if response.operation != Operation.READ or response.result != Result.OK:
-            raise TalkError(f"{self._board.name}: the board refuses to read register {number}")
-        return response.value
-
-    def _send(self, message: NodeMessage) -> None:
-        try:
-            # A frame that was not taken is like one that is lost: no answer comes.
-            self._board.send(self._sender.frames(message))
+            # What is not taken is like what is lost: no answer comes.
+            self._board.send(frames)
         except BoardError as error:
             raise TalkError(str(error)) from None
 
@@ -207,36 +172,15 @@ class Talk:
             _, writable, _ = select.select([file], sends, [], left)
             if writable:
                 self._board.flush()
-            frames = self._board.receive()
+            for frame in self._board.receive():
+                for message in self._session.take(frame, time.monotonic(), time.time_ns()):
+                    self._came[message.topic].append(message.packet)
         except BoardError as error:
             raise TalkError(str(error)) from None
-        for frame in frames:
-            self._keep(frame)
-
-    def _keep(self, frame: bytes) -> None:
-        begins = len(frame) >= HEADER_BYTES and bool(frame[1] & FLAG_START)
-        message = self._receiver.take(frame)
-        if message is None:
-            return
-        if begins and self._is_heard:
+        except WrongBoardError as error:
+            raise TalkError(f"{self._board.name}: {error}") from None
+        if self._session.restarts:
             raise TalkError(f"{self._board.name}: the board has started again during the test")
-        self._is_heard = True
-        if message.topic == CONTROL_TOPIC:
-            self._answers.append(message)
-        else:
-            self._came[message.topic].append(message.packet)
-
-    def _patience(self, byte_count: int) -> float:
-        """Return how long the board may be silent while so many bytes are under way."""
-        rate = self._bytes_per_second
-        # There and back.
-        return self._silent_seconds + (2 * byte_count / rate if rate else 0.0)
-
-    def _silence(self) -> str:
-        """Say that the board does not answer, and what came instead."""
-        causes = ", ".join(f"{count} {cause}" for cause, count in self.losses().items())
-        more = f" (frames: {causes})" if causes else ""
-        return f"{self._board.name}: the board does not answer for {self._silent_seconds:g} s{more}"
 
 
 class _Window:
@@ -272,10 +216,3 @@ class _Window:
             size, comes_back = self._packets.popleft()
             self.bytes -= size
             count -= comes_back
-
-
-def room_for(description: Description, loop: tuple[Topic, Topic]) -> int:
-    """Return the size of the largest packet that passes every memory on the way, in bytes."""
-    most = min(store.memory_bytes for topic in loop for _, store in topic.stores)
-    link = description.link
-    return most if link.kind == "stream" else min(most, link.memory_bytes - HEADER_BYTES)

@@ -21,8 +21,8 @@ from firm_hdl.model import (
     String,
     closure,
     element_of,
-    rebuilt,
-    spelled,
+    map_messages,
+    type_text,
 )
 from firm_hdl.verify.references.client import Codec, Refusal, UnsupportedError
 
@@ -136,7 +136,7 @@ def definition_text(message: Message) -> str:
 def _spelled(kind: FieldType) -> str:
     inner = element_of(kind)
     if isinstance(inner, Message) and inner.package:
-        return spelled(kind, f"{inner.package}/{inner.base_name}")
+        return type_text(kind, f"{inner.package}/{inner.base_name}")
     return str(kind)
 
 
@@ -153,7 +153,7 @@ def plainly_named(message: Message) -> Message:
         plain = base if "_" not in base else f"T{number}{base.replace('_', '')}"
         return replace(kind, name=f"{head}/{plain}" if head else base)
 
-    return rebuilt(message, renamed)
+    return map_messages(message, renamed)
 
 
 def full_text(message: Message) -> str:

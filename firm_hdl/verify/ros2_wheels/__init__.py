@@ -46,9 +46,10 @@ class Release:
     @property
     def how(self) -> str:
         """A short text that says how to install the release."""
+        packages = Path(__file__).with_name(f"{self.name}.txt")
         return (
-            f"(make oracles-ros2, or {_FOLDER}=DIR where DIR/{self.name} is an environment of "
-            f"Python with it)"
+            f"(make oracles-ros2 in a clone; elsewhere: python3 -m venv {self.folder} && "
+            f"{self.folder}/bin/pip install --no-deps -r {packages})"
         )
 
 

@@ -1,8 +1,8 @@
 """The interface of test systems, and functions that run tests and keep their records.
 
 A system lists all its tests before it runs one, so that a file of results can say what is missing.
-:func:`kept` takes the records of earlier sessions from a recorder, runs the other tests with a
-progress bar, and writes each record to the file at once. Each system prints its own summary.
+:func:`kept` takes the records of earlier sessions from a recorder, runs the other tests, says how
+many are done, and writes each record to the file at once. Each system prints its own summary.
 """
 
 from __future__ import annotations
@@ -15,14 +15,13 @@ from contextlib import closing
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, TypeAlias, TypeVar
 
-from tqdm import tqdm
-
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.errors import described
 from firm_hdl.frontend import DISTROS
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, run_each
 from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import WIRE_OF
+from firm_hdl.terminal import stage
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import STAGES, Record, Seconds, Test, clipped_verdict, settled
 from firm_hdl.verify.results.verdict import (
@@ -334,19 +333,20 @@ def kept(
     run : callable
         Takes the keys of the tests to run. Records that it yields together are synced together.
     label, unit : str
-        The title of the progress bar, and its unit.
+        What the line of progress says, and the name of a test there.
     """
     records = recorder.resume(tests, f"{unit}s")
     left = [key for key in tests if key not in records]
-    bar = tqdm(total=len(tests), initial=len(records), unit=unit, desc=label, disable=None)
-    with bar, closing(run(left)) as shares:
+    what = f"verify, {label}: {unit}s"
+    stage(what, len(records), len(tests))
+    with closing(run(left)) as shares:
         for share in shares:
             recorder.add(*(record for _, record, _ in share))
             for key, record, lines in share:
                 records[key] = record
                 for line in lines:
-                    tqdm.write(line)
-            bar.update(len(share))
+                    print(line)
+            stage(what, len(records), len(tests))
     return {key: records[key] for key in tests}
 
 

@@ -38,7 +38,7 @@ from firm_hdl.model import (
     Message,
     Value,
     element_of,
-    spelled,
+    type_text,
 )
 
 __all__ = ["Difference", "Facts", "Said", "count_facts", "differences", "facts_of"]
@@ -185,7 +185,7 @@ def _member(member: Field | Constant, alike: Mapping[str, str]) -> dict[str, Any
 
 def _type(kind: FieldType, alike: Mapping[str, str]) -> str:
     name = str(element_of(kind))
-    return spelled(kind, alike.get(name, name))
+    return type_text(kind, alike.get(name, name))
 
 
 def _value(value: Value) -> Any:

@@ -19,8 +19,8 @@ from firm_hdl.files import read_file, write_file
 from firm_hdl.frontend import DISTROS, Library, open_library
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
-from firm_hdl.plan import Plan, check, from_yaml, to_yaml
-from firm_hdl.plan.compare import Change, compare
+from firm_hdl.plan import Plan, check, to_yaml
+from firm_hdl.plan.compare import Change, Head, compare, head_of
 from firm_hdl.verify.results.verdict import Failed, Passed, Verdict
 from firm_hdl.wire import lay_out
 
@@ -48,15 +48,15 @@ class Golden:
     path : Path
     distro : str
         Name of the folder that the file is in.
-    plan : Plan
-        The plan in the file.
+    plan : Head
+        What the plan in the file is of.
     text : str
         The text of the file.
     """
 
     path: Path
     distro: str
-    plan: Plan
+    plan: Head
     text: str
 
 
@@ -105,11 +105,9 @@ def read_golden(folder: str | os.PathLike[str]) -> list[Golden]:
         except UnicodeDecodeError:
             raise ValueError(f"'{path}' is not UTF-8 text") from None
         try:
-            plan = from_yaml(text)
+            plan = head_of(text)
         except ValueError as error:
             raise ValueError(f"'{path}': {error}") from None
-        except (TypeError, KeyError, AttributeError, IndexError, AssertionError, RecursionError):
-            raise ValueError(f"'{path}' is no plan") from None
         found.append(Golden(path=path, distro=distro, plan=plan, text=text))
     return found
 

@@ -7,15 +7,14 @@ in which a multiplication is a sum of shifted lengths.
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import Any, cast
 
 from amaranth.hdl import Array, Cat, Mux, Signal, Value
 
 from firm_hdl.frontend import load_message
-from firm_hdl.gateware.parse.claims import Claims
-from firm_hdl.gateware.parse.state import ParseState
+from firm_hdl.gateware.parse.budget import Budget
 from firm_hdl.plan import Begin, Plan, build_plan
+from firm_hdl.program import deserializer_program
 from firm_hdl.wire import lay_out
 from lab.formal.bugs import Bug
 from lab.formal.catalog import Claim, Study
@@ -78,7 +77,7 @@ class _Steps:
         started = scene.was(self.starts, "starts")
         fits = (self.count >= least[before]) & (self.count <= largest[before])
         scene.assume(~started | fits)
-        self.step = Signal(len(plan.steps), name="step")
+        self.step = Signal(len(plan.steps) + 1, name="step")
         for place, (index, _) in enumerate(begins):
             scene.m.d.comb += self.step[index].eq(number == place)
 
@@ -91,30 +90,27 @@ def _study(distro: str) -> Study:
         plan = build_plan(layout, bus_bytes=8, max_message_bytes=MOST_BYTES)
         begins = _begins(plan)
         steps = _Steps(scene, plan, begins)
-        refused = Signal(name="refused")
-        # What the budget needs of a deserializer's state.
-        state = SimpleNamespace(m=scene.m, plan=plan, has_leaves=True, refused=refused)
-        state.step, state.issue, state.bad = steps.step, steps.issue, steps.bad
-        counted = steps.counted & (steps.number < len(begins))
-        block = Claims(cast("ParseState", state), counted, steps.count)
-        _check(scene, block, steps, begins, refused)
+        scene.m.submodules.block = block = Budget(deserializer_program(plan))
+        scene.m.d.comb += [
+            block.step.eq(steps.step),
+            block.starts.eq(steps.starts),
+            block.count.eq(steps.count),
+        ]
+        _check(scene, block, steps, begins)
 
     claims = (
         Claim("fails", _FAILS[distro]),
-        Claim("pending", Bug(Claims.__init__, "multiplies | exceeds", "multiplies")),
-        Claim("refused", Bug(Claims.__init__, "state.refused & ~state.issue", "0")),
+        Claim("pending", Bug(Budget.elaborate, "multiplies | exceeds", "multiplies")),
     )
     return Study(
         f"claims-{distro}",
-        f"`Claims` of {name} ({distro}), budget of at most {MOST_BYTES} bytes",
+        f"`Budget` of {name} ({distro}), budget of at most {MOST_BYTES} bytes",
         build,
         claims,
     )
 
 
-def _check(
-    scene: Scene, block: Claims, steps: _Steps, begins: list[tuple[int, Begin]], refused: Signal
-) -> None:
+def _check(scene: Scene, block: Budget, steps: _Steps, begins: list[tuple[int, Begin]]) -> None:
     m = scene.m
     claims = [begin.claim for _, begin in begins if begin.claim is not None]
     number = _late(scene, steps.number, LATENCY, "number_late")
@@ -145,15 +141,11 @@ def _check(
     scene.claim("fails", ~(none & block.fails))
     recent = Cat(_late(scene, steps.starts, cycle, f"recent_{cycle}") for cycle in (1, 2, 3)).any()
     scene.claim("pending", block.pending == (recent | block.fails))
-    # The step after a length that failed is the length's step again, until it is left.
-    failed, stays = scene.was(block.fails, "failed"), scene.was(refused & ~steps.issue, "stays")
-    scene.claim("refused", ~(failed | stays) | refused)
-    scene.claim("refused", ~refused | failed | stays)
 
 
 _FAILS = {
-    "noetic": Bug(Claims.__init__, "Mux(renewed, total, budget)", "Mux(renewed, total, total)"),
-    "lyrical": Bug(Claims._product, "-self.saved", "self.saved"),
+    "noetic": Bug(Budget.elaborate, "Mux(renewed, total, budget)", "Mux(renewed, total, total)"),
+    "lyrical": Bug(Budget.elaborate, "-padding_credit", "padding_credit"),
 }
 
 

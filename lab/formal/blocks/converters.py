@@ -10,9 +10,10 @@ from amaranth.hdl import Array, Cat, Const, Mux, Signal, Value
 
 from firm_hdl.frontend import load_message
 from firm_hdl.gateware.deserializer import Deserializer
-from firm_hdl.gateware.mover import _MoverLogic as _Move
+from firm_hdl.gateware.mover import Mover, _put
 from firm_hdl.gateware.parse.buffer import Buffer
-from firm_hdl.gateware.parse.judge import Judge
+from firm_hdl.gateware.parse.sequencer import Sequencer
+from firm_hdl.gateware.parse.walk import Walk
 from firm_hdl.gateware.signatures import Status, leaf_streams
 from firm_hdl.plan.yaml import counted
 from lab.formal.bugs import Bug
@@ -134,13 +135,13 @@ class PacketNotes:
 
 _DATA = ("one each", "statuses", "values", "wire order")
 _DESERIALIZER_BUGS = {
-    "valid stays": Bug(_Move.__init__, "with m.If(port.ready):", "with m.If(1):"),
-    "payload stays": Bug(_Move.__init__, "m.If(writer.go)", "m.If(writer.active)"),
-    "one each": Bug(_Move._report, "self.ends.eq(ends)", "self.ends.eq(1)"),
-    "statuses": Bug(Judge._judge, "cut, Status.TRUNCATED", "cut, Status.LENGTH"),
-    "values": Bug(_Move._put, "self.m.If(good)", "self.m.If(~good)"),
-    "wire order": Bug(_Move._report, "self.ends.eq(ends)", "self.ends.eq(self.c.orders.valid)"),
-    "status in time": Bug(Judge._find, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
+    "valid stays": Bug(Mover.elaborate, "with m.If(port.ready):", "with m.If(1):"),
+    "payload stays": Bug(Mover.elaborate, "m.If(writer.go)", "m.If(writer.active)"),
+    "one each": Bug(Mover.elaborate, "ends_now.eq(ends)", "ends_now.eq(1)"),
+    "statuses": Bug(Sequencer.elaborate, "Status.TRUNCATED", "Status.LENGTH"),
+    "values": Bug(_put, "m.If(good)", "m.If(~good)"),
+    "wire order": Bug(Mover.elaborate, "ends_now.eq(ends)", "ends_now.eq(self.orders.valid)"),
+    "status in time": Bug(Walk.find, "cut.eq(arrival.ended & ~self.present)", "cut.eq(0)"),
     "input moves": Bug(Buffer._receive, "room.eq(~used[-1]", "room.eq(used[-1]"),
 }
 

@@ -16,9 +16,9 @@ from firm_hdl.gateware.packets.reader import PacketReader
 from firm_hdl.gateware.packets.status import GateStatus
 from firm_hdl.gateware.packets.writer import PacketWriter
 from firm_hdl.gateware.parse.buffer import Buffer
-from firm_hdl.gateware.parse.judge import Judge
-from firm_hdl.gateware.parse.packet_judge import PacketJudge
-from firm_hdl.gateware.parser import PacketSizes, Parser, VerdictQueue
+from firm_hdl.gateware.parse.checker import Checker
+from firm_hdl.gateware.parse.walk import Walk
+from firm_hdl.gateware.parser import PacketSizes, Parser, PlanParser, VerdictQueue
 from firm_hdl.gateware.signatures import Status
 from lab.formal.blocks.converters import DATA_DEPTH
 from lab.formal.bugs import Bug
@@ -117,11 +117,11 @@ def _parser(name: str, depth: int) -> Study:
         "valid stays": Bug(
             VerdictQueue.elaborate, "takes.eq(~first.ends | self", "takes.eq(1 | self"
         ),
-        "payload stays": Bug(Parser.elaborate, "with m.If(verdicts.moves):", "with m.If(1):"),
+        "payload stays": Bug(PlanParser.elaborate, "with m.If(verdicts.moves):", "with m.If(1):"),
         "one status": Bug(VerdictQueue.elaborate, "second.ends.eq(0)", "second.ends.eq(1)"),
-        "statuses": Bug(PacketJudge._judge, "cut, Status.TRUNCATED", "cut, Status.LENGTH"),
+        "statuses": Bug(Checker.elaborate, "Status.TRUNCATED", "Status.LENGTH"),
         "sizes": Bug(PacketSizes.elaborate, "self.beats.eq(0), over", "self.beats.eq(1), over"),
-        "status in time": Bug(Judge._find, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
+        "status in time": Bug(Walk.find, "cut.eq(arrival.ended & ~self.present)", "cut.eq(0)"),
         "input moves": Bug(Buffer._receive, "room.eq(~used[-1]", "room.eq(used[-1]"),
     }
     return Study(
@@ -176,7 +176,7 @@ def _gate(name: str, depth: int, beats: int) -> Study:
         "statuses": Bug(_Verdicts._store, "status.ready.eq(self.ends)", "status.ready.eq(1)"),
         "order": Bug(write, "Mux(self.rewinds, self.kept, at + 1)", "at + 1"),
         "nothing extra": Bug(_Verdicts._store, "(status.payload != Status.OK)", "0"),
-        "status in time": Bug(Judge._find, "cut.eq(self.ended & ~state.present)", "cut.eq(0)"),
+        "status in time": Bug(Walk.find, "cut.eq(arrival.ended & ~self.present)", "cut.eq(0)"),
         "output moves": Bug(read, "more.eq(self.at != self.kept)", "more.eq(0)"),
         "input moves": Bug(Buffer._receive, "room.eq(~used[-1]", "room.eq(used[-1]"),
     }

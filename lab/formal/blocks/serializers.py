@@ -7,8 +7,8 @@ from typing import Any
 from amaranth.hdl import Array, Cat, Const, Mux, Signal, Value
 
 from firm_hdl.frontend import load_message
-from firm_hdl.gateware.collect.collector import _CollectorLogic as _Collect
-from firm_hdl.gateware.packer import _PackerLogic as _Pack
+from firm_hdl.gateware.collector import Collector
+from firm_hdl.gateware.packer import Packer
 from firm_hdl.gateware.serializer import Serializer
 from firm_hdl.gateware.signatures import Status, leaf_streams
 from firm_hdl.plan.yaml import counted
@@ -60,13 +60,13 @@ def _serializer(kind: FixedType, bus_bytes: int, depth: int) -> Study:
 
 
 _BUGS = {
-    "valid stays": Bug(_Pack._send, "with m.If(packets.ready):", "with m.If(1):"),
-    "payload stays": Bug(_Pack._send, "(~packets.valid | packets.ready)", "1"),
-    "layout": Bug(_Pack._send, "payload.last.eq(is_last)", "payload.last.eq(~is_last)"),
-    "values": Bug(_Pack._send, "Value.cast(payload.data).eq(beat)", "payload.data.eq(~beat)"),
-    "statuses": Bug(_Collect._judge, "c.status.valid.eq(1)", "c.status.valid.eq(c.status.valid)"),
-    "wire order": Bug(_Collect._take, "state.free & ~earlier", "state.free"),
-    "packets move": Bug(_Pack._send, "self.complete.eq(self.complete_next)", "self.complete.eq(0)"),
+    "valid stays": Bug(Packer.elaborate, "with m.If(packets.ready):", "with m.If(1):"),
+    "payload stays": Bug(Packer.elaborate, "(~packets.valid | packets.ready)", "1"),
+    "layout": Bug(Packer.elaborate, "payload.last.eq(is_last)", "payload.last.eq(~is_last)"),
+    "values": Bug(Packer.elaborate, "Value.cast(payload.data).eq(beat)", "payload.data.eq(~beat)"),
+    "statuses": Bug(Collector.elaborate, "status.valid.eq(1)", "status.valid.eq(status.valid)"),
+    "wire order": Bug(Collector.elaborate, "free & ~earlier", "free"),
+    "packets move": Bug(Packer.elaborate, "complete.eq(complete_next)", "complete.eq(0)"),
 }
 
 

@@ -57,8 +57,8 @@ def _faults(
 
 
 # Names of registers are those of `std_msgs/msg/String` on a bus of 4 bytes.
-_ITEMS = "message__data__items"
-_WAITS = f"({_ITEMS}__valid & ~{_ITEMS}__ready)"
+_ITEMS = "message_data_items"
+_WAITS = f"{_ITEMS}_valid_q && !{_ITEMS}_ready"
 
 FAULTS = [
     *_faults(
@@ -66,65 +66,65 @@ FAULTS = [
         "deserializer",
         (
             "a wrong code",
-            r"\{ 5'h00, status__payload \}",
-            "{ 5'h00, status__payload == 3'h3 ? 3'h1 : status__payload }",
+            r"\{5'd0, status_payload\}",
+            "{5'd0, status_payload == 3'd3 ? 3'd1 : status_payload}",
             "a wrong value on status",
         ),
         (
             "a dropped status",
-            r"status__valid <= (\S+) ;",
-            r"status__valid <= \1 & (status_now != 3'h2);",
+            r"status_valid_q <= 1'b1;",
+            r"status_valid_q <= status_now != 3'd2;",
             "no status in time|a wrong value on status|wire order|withdrawn",
         ),
         (
             "an error that is forgotten",
-            r"new_error <= (\S+) ;",
-            r"new_error <= 1'h0;",
+            r"new_error <= \w+_\d+;",
+            r"new_error <= 1'b0;",
             "a wrong value|an extra transfer|no status",
         ),
         (
             "items that are not zeroed",
-            r"(items_good\[2\] \? .*) : 8'h00;",
-            r"\1 : items_word[23:16];",
+            r"(items_payload_q\[23:16\] <= )8'd0;",
+            r"\1items_word[23:16];",
             "a wrong value on data.items",
         ),
         (
             "a length that is not zeroed after an error",
-            r"(assign choice_\w+\s+= \S+\s+\? .*) : 32'd0;",
-            r"\1 : 32'd1;",
+            r"(length_payload_q <= )32'd0;",
+            r"\g<1>32'd1;",
             "a wrong value on data.length",
         ),
         (
             "last is missing from some transfers",
-            r"last_now <= (\S+) ;",
+            r"last_now <= (orders_payload\S+);",
             r"last_now <= \1 & ~items_good[3];",
             "a wrong value on data.items",
         ),
         (
             "a leaf that is withdrawn",
-            rf"{_ITEMS}__valid <= (\S+) ;",
-            rf"{_ITEMS}__valid <= \1 & ~{_WAITS};",
+            rf"if \({_ITEMS}_ready\) begin",
+            rf"if ({_ITEMS}_ready || {_ITEMS}_valid_q) begin",
             "valid was withdrawn",
         ),
         (
             "a payload that changes",
-            rf"{_ITEMS}__payload <= (\S+) ;",
-            rf"{_ITEMS}__payload <= \1 ^ {_WAITS};",
+            rf"    if \(go_2\) begin(?=\n      {_ITEMS}_payload)",
+            rf"    if ({_WAITS}) {_ITEMS}_payload_q[0] <= !{_ITEMS}_payload_q[0];\n"
+            "    else if (go_2) begin",
             "a payload changed|a wrong value on data.items",
         ),
         (
             "a path from the status to the input",
-            r"\.packets__ready\(s_axis_tready\)",
-            ".packets__ready(is_free)",
-            r"assign packets__ready = s_axis_tready;",
-            "wire is_free;"
+            r"(  deserializer_core core \((?s:.*)\.packets_ready +)\(s_axis_tready\)",
+            r"  wire is_free;\n\1(is_free)",
+            r"assign packets_ready = s_axis_tready;",
             "assign s_axis_tready = is_free | (m_axis_status_tready & ~s_axis_tvalid);",
             "ready of the input depends",
         ),
         (
             "no reset",
             r"assign rst = .*;",
-            "assign rst = 1'h0;",
+            "assign rst = 1'b0;",
             "a stream is valid after a reset|a wrong value|an extra transfer",
         ),
     ),
@@ -133,16 +133,16 @@ FAULTS = [
         "serializer",
         (
             "an error flag on each packet",
-            r"\.packet_error\(m_axis_tuser\)",
-            ".packet_error(is_bad)",
+            r"(  serializer_core core \((?s:.*)\.packet_error +)\(m_axis_tuser\)",
+            r"  wire is_bad;\n\1(is_bad)",
             r"assign packet_error = m_axis_tuser;",
-            "wire is_bad; assign m_axis_tuser = is_bad | (m_axis_tlast & m_axis_tkeep == 4'h1);",
+            "assign m_axis_tuser = is_bad | (m_axis_tlast & m_axis_tkeep == 4'h1);",
             "a wrong beat",
         ),
         (
             "a byte too much in the last beat",
-            r"(assign m_axis_tkeep = \{) (\S+) , (\S+) ",
-            r"\1 \3 , \3 ",
+            r"(assign m_axis_tkeep = \{\S+ > 3'd)3",
+            r"\g<1>2",
             "a wrong beat",
         ),
     ),
@@ -151,20 +151,20 @@ FAULTS = [
         "gate_wait",
         (
             "bad packets pass",
-            r"\.abort\(abort\)",
-            ".abort(abort & ~(status__ready & packets_out__ready))",
+            r"(?s)(\.abort +)\(abort\)(?!.*\.abort +\(abort\))",
+            r"\1(abort & ~(status__ready & packets_out__ready))",
             "a wrong packet|no status in time",
         ),
         (
             "a wrong counter",
-            r"counters\[95:64\] \+ 1'h1",
-            "counters[95:64] + 2'h2",
+            r"counters_q\[95:64\]\} \+ 33'd1",
+            "counters_q[95:64]} + 33'd2",
             "a wrong counter of TRAILING",
         ),
         (
             "a wrong size",
-            r"assign size = \{ words, 2'h0 \} \+",
-            "assign size = { words, 2'h0 } + (words[3]) +",
+            r"assign size = \{1'd0, words, 2'd0\} \+",
+            "assign size = {1'd0, words, 2'd0} + {8'd0, words[3]} +",
             "a wrong packet",
         ),
     ),
@@ -173,7 +173,7 @@ FAULTS = [
         "gate_drop",
         (
             "packets are dropped without need",
-            r"(assign refused = \S+ +)& (\S+) ;",
+            r"(assign refused = \S+ +)& (\S+);",
             r"\1& (\2 | (beat[7:0] == 8'h55));",
             "a wrong value on status|an extra|no status|a wrong packet",
         ),

@@ -8,8 +8,10 @@ from collections.abc import Iterable
 from importlib.util import find_spec
 from pathlib import Path
 
-from firm_hdl.export.backend import Converters, Options
-from firm_hdl.export.systemverilog.backend import SystemVerilog, wrapper_name
+from firm_hdl.export.backend import Converters
+from firm_hdl.export.options import Options
+from firm_hdl.export.systemverilog.backend import wrapper_name
+from firm_hdl.export.systemverilog.backend import write as write_systemverilog
 from firm_hdl.export.top import DIRECTIONS, Direction, Port, ports_of
 from firm_hdl.export.verilog import module_name
 from firm_hdl.model import Message
@@ -82,7 +84,7 @@ class Design:
         plan = plan_of(message, bus_bytes)
         name = f"{identifier(message.name)}_{plan.wire}_{bus_bytes}"
         options = Options(bus_bytes=bus_bytes)
-        made = SystemVerilog().write(
+        made = write_systemverilog(
             Converters(message=message, plan=plan, name=name, options=options)
         )
         section = made.manifest["systemverilog"]

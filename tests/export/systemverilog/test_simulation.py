@@ -17,6 +17,8 @@ import pytest
 
 from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.build import build
+from firm_hdl.export.options import Options
+from tests.export.conftest import EVERYTHING
 from tests.export.systemverilog.hdl import slang
 from tests.export.test_every_keyword import ALL
 from tests.export.test_packaging import run
@@ -79,7 +81,7 @@ for swap in "01":
 def folder(tmp_path_factory) -> Path:
     out = tmp_path_factory.mktemp("built")
     types = ["sensor_msgs/msg/JoyFeedbackArray", "std_msgs/msg/Header"]
-    return build(types, out, stimuli=stimuli)[0].folder
+    return build(types, out, stimuli=stimuli, options=Options(extras=EVERYTHING))[0].folder
 
 
 def sources(folder: Path) -> list[str]:

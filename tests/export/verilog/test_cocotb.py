@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.cases.stimuli import stimuli
-from firm_hdl.export.backend import Options
 from firm_hdl.export.build import build
+from firm_hdl.export.options import Options
 from tests.depth import by_depth
 from tests.tools import need
 

@@ -9,11 +9,12 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.export.build import build
+from firm_hdl.export.options import Options
 from firm_hdl.export.top import DIRECTIONS, ports_of
 from firm_hdl.export.verilog import module_name
 from firm_hdl.export.verilog.template import template
-from firm_hdl.frontend import Library
 from firm_hdl.model import Message
+from tests.export.conftest import EVERYTHING
 from tests.export.systemverilog.hdl import plan_of, stub
 from tests.export.systemverilog.test_structs import hard
 from tests.export.test_packaging import run
@@ -120,9 +121,9 @@ endmodule
 """
 
 
-@pytest.mark.usefixtures("iverilog", "without_vhdl")
+@pytest.mark.usefixtures("iverilog")
 def test_changing_one_line_sends_one_field(tmp_path):
-    (built,) = build(["std_msgs/msg/Header"], tmp_path, library=Library())
+    (built,) = build(["std_msgs/msg/Header"], tmp_path, options=Options(extras=EVERYTHING))
     module = module_name(built.folder.name, "serializer")
     text = (built.folder / f"{module}.veo").read_text()
     before = ".stamp_sec_data(32'd0), .stamp_sec_valid(1'b1), .stamp_sec_ready()"

@@ -15,7 +15,8 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.cases.stimuli import stimuli
-from firm_hdl.export.backend import Converters, Options, Output, Ports
+from firm_hdl.export.backend import Converters, Output
+from firm_hdl.export.options import Options, Ports
 from firm_hdl.export.top import Direction
 from firm_hdl.export.vhdl.backend import to_vhdl
 from firm_hdl.export.vhdl.layer import UserLayer, user_layer
@@ -24,7 +25,7 @@ from firm_hdl.model import Message
 from firm_hdl.plan import Plan, build_plan
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
-from tests.export.conftest import hollow_converters
+from tests.export.conftest import EVERYTHING, hollow_converters
 
 NASTY = """\
 # Keywords, doubles, outer underscores, case.
@@ -120,7 +121,7 @@ def _vhdl(
         message=message,
         plan=plan,
         name=f"{message.name}_{plan.wire}_{bus_bytes}",
-        options=Options(bus_bytes=bus_bytes, ports=ports),
+        options=Options(bus_bytes=bus_bytes, ports=ports, extras=EVERYTHING),
         stimuli=packets,
     )
     return to_vhdl(replace(made, circuits=_circuits(message, bus_bytes, hollow)))

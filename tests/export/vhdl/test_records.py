@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl import Deserializer, load_message
+from firm_hdl import load_message
 from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.backend import Output
 from firm_hdl.export.record_top import RecordTop, why_no_record
@@ -199,7 +199,7 @@ def test_types_without_a_record_state_the_reason(tmp_path, text, reason):
     plan = build_plan(lay_out(message))
     assert why_no_record(message, plan) == reason
     with pytest.raises(ValueError) as caught:
-        RecordTop(Deserializer(message), message)
+        RecordTop(message, plan, "deserializer", "core", {})
     assert str(caught.value) == reason
     if "8191" not in text and "1024" not in text:
         vhdl, _ = vhdl_of(message, hollow=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import sqlite3
 
 import pytest
@@ -10,23 +9,8 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import get_types_from_idl
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.frontend import Library, open_library, show
-from firm_hdl.identity import md5sum
+from firm_hdl.frontend import open_library
 from tests.frontend.recordings import make_recording
-from tests.frontend.workspace import make_files
-
-
-@pytest.mark.parametrize("length", ["010", "0010", "00"])
-def test_zeros_before_a_length_are_kept_as_genmsg_keeps_them(tmp_path, length):
-    text = f"uint8[{length}] a\nint8[3] b\n"
-    ours = Library("noetic", [make_files(tmp_path, {"p/msg/A.msg": text})])
-    if int(length) == 0:
-        with pytest.raises(DefinitionError):
-            ours.message("p/A")
-        return
-    assert ours.message("p/A").fields[0].type.count == 10
-    results = show(ours, "p/A"), md5sum(ours.message("p/A"))
-    assert results == (text, hashlib.md5(text.strip().encode()).hexdigest())
 
 
 def recorded(path, text, name="p/msg/A"):
@@ -122,14 +106,6 @@ def test_a_section_in_idl_may_declare_several_messages_in_recordings(tmp_path):
     }
 
 
-def test_names_of_structs_in_other_modules_keep_their_meaning_in_recordings(tmp_path):
-    text = """module q { module msg { struct B { long x; }; }; };
-      module p { module msg { typedef short B; struct A { B b; q::msg::B c; }; }; };"""
-    heading = f"{'=' * 80}\nIDL: p/msg/A\n"
-    ours = open_library(bags=[recorded(tmp_path / "r", heading + text)])
-    assert [str(f.type) for f in ours.message("p/A").fields] == ["int16", "q/msg/B"]
-
-
 def test_mistakes_in_one_of_several_messages_are_shown_where_they_are(tmp_path):
     heading = f"{'=' * 80}\nIDL: p/msg/A\n"
     text = SEVERAL.replace("long B_last", "lang B_last")
@@ -154,36 +130,3 @@ def test_several_structs_that_are_no_messages_of_ros_are_one_message_per_file(tm
     ours = open_library(bags=[recorded(tmp_path / "r", heading + text)])
     with pytest.raises(DefinitionError):
         ours.message("p/A")
-
-
-def idl(body, name="A"):
-    return f"module p {{ module msg {{ {body} struct {name} {{ T a; }}; }}; }};"
-
-
-@pytest.mark.parametrize("scope", ["T", "msg::T", "p::msg::T", "::p::msg::T"])
-def test_typedefs_are_found_by_any_scope_that_a_constant_has(tmp_path, scope):
-    text = idl("typedef long T;").replace("{ T a; }", f"{{ {scope} a; }}")
-    ours = Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})])
-    assert str(ours.message("p/A").fields[0].type) == "int32"
-
-
-@pytest.mark.parametrize("scope", ["::T", "p::T", "msg::msg::T", "q::msg::T", "::msg::T"])
-def test_typedefs_are_found_by_no_scope_that_they_have_not(tmp_path, scope):
-    text = idl("typedef long T;").replace("{ T a; }", f"{{ {scope} a; }}")
-    with pytest.raises(DefinitionError):
-        Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})]).message("p/A")
-
-
-def test_typedefs_of_a_module_beside_are_found_by_its_name(tmp_path):
-    text = idl("module A_T { typedef long T; };").replace("{ T a; }", "{ A_T::T a; }")
-    ours = Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})])
-    assert str(ours.message("p/A").fields[0].type) == "int32"
-    text = text.replace("{ A_T::T a; }", "{ B_T::T a; }")
-    with pytest.raises(DefinitionError):
-        Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})]).message("p/A")
-
-
-def test_two_structs_in_a_file_are_one_too_many(tmp_path):
-    text = idl("typedef long T; struct B { long b; };")
-    with pytest.raises(DefinitionError, match="one message per file"):
-        Library(paths=[make_files(tmp_path, {"p/msg/A.idl": text})]).message("p/A")

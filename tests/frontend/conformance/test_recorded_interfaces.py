@@ -66,18 +66,6 @@ def test_the_event_of_a_service_is_that_of_its_text(tmp_path, write, name, text)
     ]
 
 
-def test_services_in_idl_have_events_too(tmp_path):
-    structs = "".join(f"struct Add_{part} {{ long a; }}; " for part in ("Request", "Response"))
-    text = heading("IDL", "p/srv/Add", f"module p {{ module srv {{ {structs} }}; }};\n")
-    channel = Channel(type="p/srv/Add_Event", language="ros2idl", text=text)
-    ours = open_library(bags=[write_mcap(tmp_path / "x.mcap", channel)])
-    assert [field for field, _ in fields(ours, "p/srv/Add_Event")] == [
-        "info",
-        "request",
-        "response",
-    ]
-
-
 @pytest.mark.parametrize("name", ["Turn_FeedbackMessage", "Turn_SendGoal_Event", "Turn_Goal"])
 @pytest.mark.parametrize("text", [TURN, heading("ACTION", "p/action/Turn", TURN)])
 def test_an_action_has_all_its_messages(tmp_path, name, text):
@@ -233,13 +221,6 @@ def test_the_header_of_roslib_is_that_of_std_msgs(tmp_path, written, recorded):
     ours = open_library(bags=[path])
     assert ours.names() == ["p/A", "std_msgs/Header"]
     assert fields(ours, "p/A") == [("header", "std_msgs/Header")]
-
-
-def test_a_topic_of_the_header_of_roslib(tmp_path):
-    path = write_bag(tmp_path / "x.bag", Channel(type="roslib/Header", text="uint32 seq"))
-    ours = open_library(bags=[path])
-    assert ours.names() == ["std_msgs/Header"]
-    assert fields(ours, "std_msgs/Header") == [("seq", "uint32")]
 
 
 def test_a_topic_without_a_type_is_named(tmp_path):

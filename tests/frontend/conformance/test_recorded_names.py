@@ -7,7 +7,7 @@ from rosbags.rosbag1 import Writer
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import RecordingOrigin, open_library
-from tests.frontend.recordings import make_old_db3, record, record_in_idl
+from tests.frontend.recordings import record
 
 LINE = "=" * 80
 
@@ -24,15 +24,6 @@ def record_in_ros1(path, *topics):
         for number, (name, text) in enumerate(topics):
             writer.add_connection(f"/t{number}", name, msgdef=text, md5sum="0" * 32)
     return path
-
-
-def test_all_reasons_are_listed_if_no_type_can_be_used(tmp_path):
-    both = make_old_db3(tmp_path / "both.db3", ["no name of ros", "std_msgs/msg/String"])
-    assert refused(both) == (
-        f"error: '{both}' has a topic of type 'no name of ros', which is not the name of a type\n"
-        f"error: '{both}' has a topic of type 'std_msgs/msg/String', but not its definition: none "
-        "was recorded; name a folder that has it with --depends, or a distribution with --distro"
-    )
 
 
 @pytest.mark.parametrize(
@@ -58,32 +49,6 @@ def test_names_of_types_have_a_package_and_at_most_one_of_three_kinds(tmp_path, 
     assert open_library(bags=[path]).interfaces() == [*([want] if is_legal else []), "q/msg/B"]
 
 
-def test_definition_in_idl_without_a_text_is_a_missing_one(tmp_path):
-    path = record_in_idl(tmp_path / "r", "p/msg/A", "", ("p/msg/B", "struct B { long b; };"))
-    ours = open_library(bags=[path])
-    assert ours.names() == ["p/msg/B"]
-    with pytest.raises(DefinitionError, match="a topic of type 'p/msg/A', but not its definition"):
-        ours.message("p/A")
-
-
-def test_definition_in_idl_of_blanks_is_none_of_that_type(tmp_path):
-    ours = open_library(bags=[record_in_idl(tmp_path / "r", "p/msg/A", " \n ")])
-    assert ours.names() == ["p/msg/A"]
-    with pytest.raises(DefinitionError, match="the file ends here"):
-        ours.message("p/A")
-
-
-def test_type_whose_topic_lacks_a_definition_has_that_of_another_topic(tmp_path):
-    a = f"{LINE}\nIDL: p/msg/A\nstruct A {{ p::msg::B b; }};\n"
-    b = f"{LINE}\nIDL: p/msg/B\nstruct B {{ long x; }};\n"
-    for order in (1, -1):
-        topics = [("p/msg/B", ""), ("p/msg/A", a + b)][::order]
-        path = record_in_idl(tmp_path / str(order), *topics[0], topics[1])
-        ours = open_library(bags=[path])
-        assert ours.names() == ["p/msg/A", "p/msg/B"]
-        assert [field.name for field in ours.message("p/B").fields] == ["x"]
-
-
 def test_constants_of_an_included_section_are_known(tmp_path):
     a = """#include "p/msg/B.idl"
     module p { module msg { struct A { p::msg::B b; Many c; long d[B_Constants::N]; }; }; };"""
@@ -94,23 +59,6 @@ def test_constants_of_an_included_section_are_known(tmp_path):
     assert [str(f.type) for f in ours.message("p/A").fields] == [
         "p/msg/B", "int32[<=7]", "int32[3]"
     ]  # fmt: skip
-
-
-def test_scopes_of_idl_stand_in_names_of_definitions_in_idl_alone(tmp_path):
-    (path,) = record(tmp_path / "r", "p/msg//Long", "int8 a\n").glob("*.mcap")
-    path.write_bytes(path.read_bytes().replace(b"p/msg//Long", b"p::msg::Lon"))
-    assert "type 'p::msg::Lon', which is not the name of a type" in refused(path)
-
-
-@pytest.mark.parametrize("ending", ["", "\n", "\n\n"])
-def test_every_text_ends_with_one_line_end_at_least(tmp_path, ending):
-    text = f"B b{ending}{LINE}\nMSG: p/B\nint8 x{ending}" if ending else "int8 x"
-    ours = open_library(bags=[record(tmp_path / "r", "p/msg/A", text)])
-    if not ending:
-        assert ours.source("p/A").text == "int8 x\n"
-        return
-    assert ours.source("p/A").text == "B b\n"
-    assert ours.source("p/B").text == f"int8 x{ending}"
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from firm_hdl.frontend.recorded_idl import structs_of
+from firm_hdl.frontend.recordings import structs_of
 
 
 def cut(marked):

@@ -123,13 +123,6 @@ def test_texts_are_cut_at_headings_alone(tmp_path):
     assert ours.source("p/D").text == ""
 
 
-def test_empty_lines_at_the_end_are_of_the_last_text(tmp_path):
-    text = f"B b\n\n\n{SEPARATOR}\nMSG: p/B\nint8 x\n\n"
-    ours = open_library(bags=[record(tmp_path / "r", "p/msg/A", text)])
-    assert ours.source("p/A").text == "B b\n\n"
-    assert ours.source("p/B").text == "int8 x\n\n"
-
-
 def test_mistake_is_shown_where_it_is_in_its_type(tmp_path):
     path = record(tmp_path / "r", "p/msg/A", f"B b\n{SEPARATOR}\nMSG: p/B\nint8 x\nint33 y\n")
     with pytest.raises(DefinitionError) as error:
@@ -149,27 +142,6 @@ def test_definitions_in_idl(tmp_path):
     b, x = ours.message("p/A").fields
     assert (x.name, x.type.name) == ("x", "float32")
     assert [(f.name, f.type.signed) for f in b.type.fields] == [("c", True)]
-
-
-def test_messages_of_services_and_actions(tmp_path):
-    uuid = f"{SEPARATOR}\nMSG: unique_identifier_msgs/msg/UUID\nuint8[16] uuid\n"
-    path = record(
-        tmp_path / "r",
-        "p/srv/S",
-        f"A a\n---\nint8 b\n{SEPARATOR}\nMSG: p/msg/A\nint8 x\n",
-        (
-            "p/action/Go_FeedbackMessage",
-            "unique_identifier_msgs/UUID goal_id\nint8 rest\n" + uuid,
-        ),
-    )
-    ours = open_library("humble", bags=[path])
-    assert [m.name for m in ours.interface("p/srv/S").messages] == [
-        "p/srv/S_Request",
-        "p/srv/S_Response",
-    ]
-    assert ours.message("p/srv/S_Request").fields[0].type.name == "p/msg/A"
-    feedback = ours.message("p/action/Go_FeedbackMessage")
-    assert [field.name for field in feedback.fields] == ["goal_id", "rest"]
 
 
 def test_recording_without_definitions_says_what_to_do(tmp_path):
@@ -284,14 +256,6 @@ def test_definition_in_that_of_another_topic_will_do(tmp_path, order):
     assert [field.name for field in ours.message("p/B").fields] == ["x"]
 
 
-@pytest.mark.parametrize("place", [0, 1, 2])
-def test_each_of_several_recordings_is_to_be_of_one_ros(tmp_path, place):
-    paths = [record(tmp_path / str(n), "p/msg/A", "int8 a\n") for n in range(3)]
-    paths[place] = make_recording(tmp_path, "bag")
-    with pytest.raises(DefinitionError, match="read them one at a time"):
-        open_library(bags=paths)
-
-
 @pytest.mark.parametrize(
     ("recorded", "distro"),
     [("humble", "humble"), ("jazzy", "jazzy"), ("noetic", None), ("rosbags", None), ("[]", None)],
@@ -305,14 +269,6 @@ def test_distribution_is_the_one_that_the_recording_says(tmp_path, recorded, dis
     found = RecordingOrigin(path)
     assert (found.distro, found.dialect) == (distro, "ros2")
     assert open_library(bags=[path]).distro == (distro or "lyrical")
-
-
-def test_distribution_is_that_of_the_first_recording_that_says_one(tmp_path):
-    paths = [make_recording(tmp_path / str(number), "mcap") for number in range(3)]
-    for path, recorded in zip(paths, ("rosbags", "humble", "jazzy"), strict=True):
-        metadata = path / "metadata.yaml"
-        metadata.write_text(metadata.read_text().replace(": rosbags\n", f": {recorded}\n"))
-    assert open_library(bags=paths).distro == "humble"
 
 
 def test_a_file_that_ends_too_early_is_damaged(tmp_path):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.sources import FolderOrigin, Sources
 from firm_hdl.model import Action, Message, Service
@@ -171,17 +170,6 @@ def test_hash_covers_what_parts_include_at_any_depth(tmp_path):
         assert digest(tmp_path / f"{name}3", name, files) == first, name
 
 
-def test_hash_covers_what_a_service_includes(tmp_path):
-    files = {
-        **LEVELS,
-        "p/srv/S.idl": '#include "q/msg/Mid.idl"\nmodule p {{ module srv {{ '
-        "struct S_Request {{ long x; }}; struct S_Response {{ long y[q::msg::M]; }}; }}; }};",
-    }
-    for name in ("p/srv/S", "p/srv/S_Response", "p/srv/S_Event"):
-        first = digest(tmp_path / f"{name}0", name, files)
-        assert digest(tmp_path / f"{name}1", name, files, n=4) != first, name
-
-
 def test_hash_does_not_depend_on_the_order_in_which_types_are_found(tmp_path):
     texts = {"p/A": "int8 a", "q/A": "int8 b", "p/T": "A x\nq/A y", "p/U": "T t\nq/A y\nA x"}
     want = library(tmp_path / "0", texts).definition_hash("p/U")
@@ -237,20 +225,3 @@ def test_messages_with_other_fields_or_constants_are_different(tmp_path):
 def test_size_is_fixed_where_all_parts_are(tmp_path, text, is_fixed):
     files = {"p/T": text, "p/Fixed": "int8 a", "p/Text": "string a", "p/Deep": "Fixed b\nText[1] a"}
     assert library(tmp_path, files).message("p/T").is_fixed_size is is_fixed
-
-
-def test_the_same_mistake_in_two_packages_is_two(tmp_path):
-    files = {"p/T": "Bad a\nq/Bad b", "p/Bad": "int33 x", "q/Bad": "int33 x"}
-    with pytest.raises(DefinitionError) as caught:
-        library(tmp_path, files).message("p/T")
-    places = [d.span.source.name.removeprefix(f"{tmp_path}/") for d in caught.value.diagnostics]
-    assert places == ["p/msg/Bad.msg", "q/msg/Bad.msg"]
-
-
-def test_messages_of_an_action_are_in_the_order_of_its_parts(tmp_path):
-    make_files(tmp_path, {"p/action/D.action": "---\n---"})
-    action = Library("humble", [tmp_path]).interface("p/D")
-    assert [m.name.removeprefix("p/action/D_") for m in action.messages] == [
-        "Goal", "Result", "Feedback", "SendGoal_Request", "SendGoal_Response",
-        "GetResult_Request", "GetResult_Response", "FeedbackMessage",
-    ]  # fmt: skip

@@ -11,8 +11,9 @@ from itertools import product
 
 import pytest
 
-from firm_hdl.errors import DefinitionError, Source
-from firm_hdl.frontend.parse import is_type_name, parse_message
+from firm_hdl.errors import DefinitionError
+from firm_hdl.frontend.parse import is_type_name
+from tests.frontend.reading import parse
 
 # Types of both dialects.
 BUILTIN = "bool byte char float32 float64 string " + " ".join(
@@ -34,7 +35,7 @@ def words(alphabet, longest):
 def member(line, dialect):
     """Return the only member of a line, or `None` if it is refused."""
     try:
-        (only,) = parse_message(Source(name="T.msg", text=line), dialect).members
+        (only,) = parse(line, dialect).members
     except DefinitionError:
         return None
     return only
@@ -110,7 +111,7 @@ def test_words_that_go_on_after_a_builtin_type(word):
         assert member(f"{word}{letter} x", "ros2") is None
         # The error marks the whole word.
         with pytest.raises(DefinitionError, match=f"'{word}{letter}'"):
-            parse_message(Source(name="T.msg", text=f"{word}{letter} x"), "ros2")
+            parse(f"{word}{letter} x", "ros2")
     for dialect in ("ros1", "ros2"):
         assert member(f"{word}/x", dialect) is None
         assert member(f"{word}/Foo x", dialect).type.package == word

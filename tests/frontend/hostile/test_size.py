@@ -12,7 +12,7 @@ from tests.steps import calls_at_most
 
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
 # More than Python's stack has.
-DEEP = by_depth(1500, 5000)
+DEEP = by_depth(1100, 5000)
 
 
 @pytest.fixture(scope="module")

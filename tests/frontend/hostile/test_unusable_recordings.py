@@ -20,23 +20,6 @@ def refused(path):
 DDS = "struct One { long x; }; struct Two { long x; };"
 
 
-def test_types_in_another_language_are_refused_among_others(tmp_path):
-    path = record_in_idl(
-        tmp_path / "r",
-        "p/msg/A",
-        DDS,
-        ("p/msg/B", f"{LINE}\nIDL: p/msg/B\nstruct B {{ long b; }};"),
-    )
-    ours = open_library(bags=[path])
-    assert ours.names() == ["p/msg/B"]
-    with pytest.raises(DefinitionError) as caught:
-        ours.message("p/A")
-    assert str(caught.value) == (
-        f"error: '{path}' has a topic of type 'p/msg/A', but not its definition: it is in "
-        "'omgidl', and only ros2msg and ros2idl are read"
-    )
-
-
 @pytest.mark.parametrize("order", [1, -1])
 def test_a_type_in_another_language_has_the_definition_of_another_topic(tmp_path, order):
     b = "module p { module msg { struct B { p::msg::A a; }; }; };"

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from firm_hdl.errors import Diagnostic, Source
-from firm_hdl.frontend.check import check_members
 from firm_hdl.frontend.idl import read_idl
+from firm_hdl.frontend.interfaces import check_members
 from firm_hdl.frontend.syntax import (
     ConstantSyntax,
     FieldSyntax,

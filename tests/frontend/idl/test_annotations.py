@@ -73,39 +73,11 @@ def test_units_are_texts_with_or_without_the_name_value(annotation, unit):
     assert members(f"{annotation} long a;")["a"].unit == unit
 
 
-def test_of_several_units_the_first_with_a_value_counts():
-    text = '@unit(value="m") @unit(value="s") long a; @unit @unit("s") @unit(value="m") long b;'
-    assert [member.unit for member in members(text).values()] == ["m", "s"]
-
-
-@pytest.mark.parametrize(
-    ("annotation", "value"),
-    {"@default(value=3)": 3, "@default(3)": 3, "@default(other=4, value=3)": 3}.items(),
-)
-def test_defaults_have_the_name_value_or_none(annotation, value):
-    assert members(f"{annotation} long a;")["a"].default.value == value
-
-
 @pytest.mark.parametrize("bits", [8, 16, 32, 64])
 def test_complement_has_the_size_of_an_unsigned_member(bits):
     found = members(f"@default(value=~1) uint{bits} a; @default(value=~1) int{bits} b;")
     assert found["a"].default.value == 2**bits - 2
     assert found["b"].default.value == -2
-
-
-@pytest.mark.parametrize("bits", [8, 16, 32, 64])
-def test_complement_has_the_size_of_an_unsigned_constant(bits):
-    messages, wrong = read(
-        f"module p {{ module T_Constants {{ const uint{bits} A = ~1; const int{bits} B = ~1; }};"
-        " struct T { long a; }; };"
-    )
-    assert wrong == []
-    assert [each.value.value for each in messages["T"].members[:2]] == [2**bits - 2, -2]
-
-
-@pytest.mark.parametrize(("kind", "value"), [("double", -2.0), ("float", -2.0), ("char", -2)])
-def test_complement_of_other_types_is_that_of_a_signed_integer(kind, value):
-    assert members(f"@default(value=~1) {kind} a;")["a"].default.value == value
 
 
 def test_complement_of_a_boolean_has_no_bits_of_its_own():
@@ -216,15 +188,3 @@ def test_comments_are_those_in_the_language_of_comments():
     assert a.comment == "one\ntwo\nthree"
     # rosidl_parser decides by the first word of a name.
     assert (b.comment, b.unit, c.unit) == ("", None, "s")
-
-
-def test_a_default_of_one_name_is_not_that_of_an_array_after_it():
-    text = (
-        'module p { struct T { @default(value="(1, 2)") long a[2]; @default(value=3) long b; }; };'
-    )
-    messages, wrong = read(text)
-    assert wrong == []
-    a, b = messages["T"].members
-    assert [item.value for item in a.default.items] == [1, 2] and b.default.value == 3
-    # A list is no default of a number, and a number is none of a list.
-    assert read('module p { struct T { @default(value="(1, 2)") long a, b[2]; }; };')[1]

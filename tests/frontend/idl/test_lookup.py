@@ -12,7 +12,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.model import String
 
-from ..workspace import make_files
+from ..workspace import errors_of, make_files
 from .rosidl import read
 
 
@@ -64,13 +64,6 @@ def test_a_module_around_a_struct_comes_before_the_structs_own_constants():
     assert set(texts_of(text).values()) == {7}
 
 
-def test_own_constants_come_before_those_of_modules_further_out():
-    text = SERVICE.format(outer="const long N = 7;", inner="", request="", response="")
-    assert sizes_of(text) == {
-        "S_Request.n": 3, "S_Request.m": 3, "S_Response.n": 4, "S_Response.m": 4
-    }  # fmt: skip
-
-
 def test_constant_of_one_struct_is_seen_by_all():
     text = SERVICE.format(outer="", inner="", request="long b[B];", response="long a[A];")
     sizes = sizes_of(text)
@@ -108,18 +101,6 @@ def test_constants_have_the_kind_of_their_type_and_not_of_their_value(kind, valu
     assert wrong.message == "the length of an array must be an integer"
 
 
-def test_structs_keep_their_own_constants():
-    messages, wrong = read(
-        SERVICE.format(outer="const long X = 1;", inner="", request="", response="")
-    )
-    assert wrong == []
-    found = {
-        name: [(m.name.text, m.value.value) for m in syntax.members if hasattr(m, "value")]
-        for name, syntax in messages.items()
-    }
-    assert found == {"S_Request": [("N", 3), ("A", 13)], "S_Response": [("N", 4), ("B", 14)]}
-
-
 def test_a_scope_is_followed_from_the_inside_to_the_outside():
     text = """module a { const long N = 1; module a { const long N = 2; }; };
       module p { const long N = 3; module a { const long M = 4; };
@@ -146,17 +127,6 @@ def test_constants_of_a_file_come_before_those_of_included_files(tmp_path):
     }
     found = types(library(tmp_path, files).message("p/msg/T"))
     assert found == {"k": "int32[11]", "n": "int32[12]", "m": "int32[12]"}
-
-
-def test_a_constant_that_hides_an_included_one_is_still_the_only_one_of_its_name(tmp_path):
-    constants = """module p {{ module msg {{
-        module A_Constants {{ const long N = {n}; }}; {more} }}; }};"""
-    struct = "struct T { long n[N]; };"
-    files = {
-        "p/msg/Base.idl": constants.format(n=2, more=""),
-        "p/msg/T.idl": '#include "p/msg/Base.idl"\n' + constants.format(n=12, more=struct),
-    }
-    assert types(library(tmp_path, files).message("p/msg/T")) == {"n": "int32[12]"}
 
 
 def test_each_included_file_has_constants_of_its_own(tmp_path):
@@ -325,42 +295,6 @@ def test_a_scope_before_a_typedef_has_to_be_its_own():
     assert wrong == [] and (type_.package, type_.kind, type_.name) == ("p", "msg", "V")
 
 
-def test_a_typedef_is_read_where_it_stands():
-    text = """module a { const long N = 2; typedef long V[N]; };
-      module p { const long N = 3; module msg { const long N = 4;
-        typedef long W[N]; struct T { V v; W w; long n[N]; }; }; };"""
-    assert sizes_of(text) == {"T.v": 2, "T.w": 4, "T.n": 4}
-
-
-def test_types_of_two_packages_may_have_one_name(tmp_path):
-    files = {
-        "q/msg/Part.idl": "module q { module msg { struct Part { long q; }; }; };",
-        "r/msg/Part.idl": "module r { module msg { struct Part { long r; }; }; };",
-        "p/msg/Part.idl": "module p { module msg { enum Kind { A }; struct Part { long p; }; }; };",
-        "p/msg/T.idl": """#include "q/msg/Part.idl"
-            #include "r/msg/Part.idl"
-            #include "p/msg/Part.idl"
-            module q { enum Part { X }; };
-            module p { module msg { struct T {
-            r::msg::Part a; p::msg::Part b; q::msg::Part c; }; }; };""",
-    }
-    found = library(tmp_path, files).message("p/msg/T")
-    assert [item.type.fields[0].name for item in found.fields] == ["r", "p", "q"]
-
-
-def test_unknown_constant_in_a_dependency_names_its_file(tmp_path):
-    files = {
-        "q/msg/U.idl": "module q { module msg { struct U { long a[N]; }; }; };",
-        "p/msg/T.idl": """#include "q/msg/U.idl"
-            module p { module msg { const long N = 3;
-            struct T { q::msg::U u; long n[N]; }; }; };""",
-    }
-    with pytest.raises(DefinitionError) as caught:
-        library(tmp_path, files).message("p/msg/T")
-    (wrong,) = caught.value.diagnostics
-    assert wrong.span.source.name.endswith("q/msg/U.idl")
-
-
 def test_a_constant_keeps_its_first_value_and_place():
     text = """module p { module T_Constants {
         const long N = 2;
@@ -373,3 +307,83 @@ def test_a_constant_keeps_its_first_value_and_place():
     ]
     n, m, a = messages["T"].members
     assert (n.name.text, n.value.value, m.value.value, a.type.size.value) == ("N", 2, 2, 2)
+
+
+# A constant sees only those above it.
+LATE = "\nmodule p { module msg { const long A = B; const long B = 3; struct T { long a; }; }; };"
+
+
+@pytest.mark.parametrize("path", ["p/msg/T.idl", "T.idl"])
+def test_a_file_that_includes_itself_declares_nothing_earlier(tmp_path, path):
+    files = {"p/msg/T.idl": f'#include "{path}"{LATE}'}
+    library = Library("lyrical", [make_files(tmp_path, files)])
+    with pytest.raises(DefinitionError) as error:
+        library.message("p/T")
+    assert "T.idl:2:" in errors_of(error.value, tmp_path)
+    assert "error: constant 'B' is not declared above" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("word", "message"),
+    [
+        ("true", "'true' is not a boolean: TRUE or FALSE"),
+        ("false", "'false' is not a boolean: TRUE or FALSE"),
+        ("False", "constant 'False' is not declared above"),
+        ("p::true", "constant 'p::true' is not declared above"),
+    ],
+)
+def test_booleans_of_other_languages_are_told_from_names(word, message):
+    _, wrong = read(f"module p {{ struct T {{ @default(value={word}) boolean a; }}; }};")
+    assert [each.message for each in wrong] == [message]
+
+
+FAR = "module q {{ module msg {{ const long N = 2; typedef long V[2]; {typedef} }}; }}; "
+NEAR = "module p {{ module msg {{ const long N = 5; {near} struct T {{ {use} x; }}; }}; }};"
+
+
+def of_member(text):
+    """Return the array size and the bound of the only member, or what is wrong."""
+    messages, wrong = read(text)
+    if wrong:
+        return wrong[0].message
+    type_ = messages["T"].members[-1].type
+    return type_.size and type_.size.value, type_.bound and type_.bound.value
+
+
+@pytest.mark.parametrize("use", ["W", "q::msg::W", "q::msg::X"])
+@pytest.mark.parametrize(
+    ("typedef", "found"),
+    [
+        ("typedef msg::V W;", (2, None)),
+        ("typedef q::msg::V W;", (2, None)),
+        ("typedef ::q::msg::V W;", (2, None)),
+        ("typedef long W[N];", (2, None)),
+        ("typedef long W[msg::N];", (2, None)),
+        ("typedef sequence<long, N> W;", (2, None)),
+        ("typedef string<N> W;", (None, 2)),
+        ("typedef string<msg::N> W;", (None, 2)),
+    ],
+)
+def test_names_in_a_typedef_are_those_of_its_own_module(typedef, found, use):
+    far = FAR.format(typedef=f"{typedef} typedef W X;")
+    assert of_member(far + NEAR.format(near="", use=use)) == found
+
+
+def test_a_typedef_has_no_struct_whose_constants_it_sees_first():
+    text = """module p {{ module msg {{ module S_Constants {{ const long N = 6; }};
+      module T_Constants {{ const long N = 7; }};
+      typedef long W{}; struct T {{ W x{}; }}; }}; }};"""
+    assert of_member(text.format("", "[N]")) == (7, None)
+    wrong = "constant 'N' is not declared above; there are 2 of that name elsewhere"
+    assert of_member(text.format("[N]", "")) == wrong
+
+
+@pytest.mark.parametrize(("outer", "found"), [("msg::V", (3, None)), ("p::V", (4, None))])
+def test_each_typedef_of_a_chain_has_its_own_module(outer, found):
+    """The first one stands in p, the second in p::msg, the member in r."""
+    text = f"""module p {{ typedef {outer} A; typedef long V[4]; }};
+      module p {{ module msg {{ typedef p::A B; }}; }};
+      module r {{ typedef msg::B C; struct T {{ p::msg::B x; }}; }};"""
+    if outer == "msg::V":
+        text = text.replace("typedef long V[4];", "module msg { typedef long V[3]; };")
+    assert of_member(text) == found

@@ -17,7 +17,6 @@ from firm_hdl.frontend.idl.tree import (
     LiteralSyntax,
     Member,
     Module,
-    ScopedName,
     SequenceType,
     StringType,
     Struct,
@@ -75,28 +74,6 @@ def test_every_definition_has_its_place_and_its_parts():
     assert isinstance(minus, Unary) and words(minus) == "-2"
 
 
-def test_unexpected_end_is_marked_right_after_the_text():
-    text = "module m {"
-    found = parse_file(Source(name="test.idl", text=text + "\n"))
-    assert isinstance(found, Diagnostic) and found.span is not None
-    assert (found.span.start, found.span.end) == (len(text), len(text) + 1)
-
-
-def test_names_know_whether_they_are_absolute():
-    (struct,) = parse("struct T { ::a::b::C c; a :: b /* here */ ::C d; };")
-    types = [member.type for member in struct.members]
-    assert all(isinstance(t, ScopedName) and t.parts == ("a", "b", "C") for t in types)
-    assert [t.is_absolute for t in types] == [True, False]
-    assert str(types[0]) == "::a::b::C"
-
-
-def test_two_angles_end_two_types_and_shift_elsewhere():
-    (struct,) = parse("struct T { sequence<string<(16>>2)>> a; sequence<long, 1<<4> b; };")
-    a, b = (member.type for member in struct.members)
-    assert words(a) == "sequence<string<(16>>2)>>"
-    assert words(b.bound) == "1<<4"
-
-
 @pytest.mark.parametrize("sign", ["|", "^", "&", "<<", "+", "-", "*", "/", "%"])
 def test_operators_stand_between_angles_as_elsewhere(sign):
     for operands in (["8", "2"], ["8", "2", "1"]):
@@ -107,26 +84,12 @@ def test_operators_stand_between_angles_as_elsewhere(sign):
             assert [words(operand) for operand in bound.operands] == operands
 
 
-@pytest.mark.parametrize(
-    "text", ['#include"a/b.idl"', "#include<a/b.idl>", '#include \n "a/b.idl"']
-)
-def test_blanks_before_the_path_of_an_include_mean_nothing(text):
-    (include,) = parse(text)
-    assert isinstance(include, Include) and (include.path, words(include)) == ("a/b.idl", text)
-
-
 @pytest.mark.parametrize("blank", [" ", "\t", "\f", "\r", "\n"])
 def test_every_blank_separates_words(blank):
     (struct,) = parse("struct T { unsigned long a ; } ;".replace(" ", blank))
     assert struct.members[0].type.name == "uint32"
     (include,) = parse(f"#include{blank}<a/b.idl>{blank}")
     assert include.path == "a/b.idl"
-
-
-@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
-def test_comment_ends_with_its_line(end):
-    (struct,) = parse(f"struct T {{ // long a; /*{end} long b; // {end} /* // */ long c; }};")
-    assert [member.declarators[0].name.text for member in struct.members] == ["b", "c"]
 
 
 def test_operators_bind_as_in_c():
@@ -164,37 +127,8 @@ def test_too_deep_nesting_is_refused(text):
     assert found.message == "this is nested too deeply"
 
 
-def test_deep_nesting_within_the_limit_is_read():
-    deep = "module m { " * 20 + "const long A = " + "(1+" * 20 + "1" + ")" * 20 + "; " + "};" * 20
-    assert len(parse(deep)) == 1
-
-
 def test_nesting_ends_at_its_limit():
     for depth, is_read in ((192, True), (193, False)):
         text = "const long A = " + "(" * depth + "1" + ")" * depth + ";"
         found = parse_file(Source(name="test.idl", text=text))
         assert isinstance(found, FileSyntax) == is_read
-
-
-def test_chains_may_be_long():
-    (module,) = parse("module m { const long A = " + "+".join("1" * 20_000) + "; };")
-    assert len(module.definitions[0].value.operands) == 20_000
-
-
-@pytest.mark.parametrize(
-    ("member", "wanted"),
-    [
-        # In a bound, '>' ends it; in an index, it would be half of a shift.
-        ("sequence<long, 3 x> a;", "an operator or '>', not 'x'"),
-        ("string<3 x> a;", "an operator or '>', not 'x'"),
-        ("long a[3 x];", "an operator or ']', not 'x'"),
-        ("sequence<long x> a;", "',' or '>', not 'x'"),
-        ("long a[3", "an operator or ']', not '}'"),
-        ("sequence<long, 3", "an operator or '>', not '}'"),
-    ],
-)
-def test_errors_list_the_expected_tokens(member, wanted):
-    text = f"module p {{ struct T {{ {member} }}; }};"
-    found = parse_file(Source(name="test.idl", text=text))
-    assert isinstance(found, Diagnostic)
-    assert found.message == f"expected {wanted}"

@@ -9,13 +9,13 @@ import pytest
 from firm_hdl.errors import DefinitionError, Source
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.idl import read_idl
-from firm_hdl.frontend.syntax import ConstantSyntax, FieldSyntax
-from firm_hdl.model import IDL_PRIMITIVES, Array, Sequence, String
+from firm_hdl.frontend.syntax import ConstantSyntax
+from firm_hdl.model import Array, Sequence, String
 from tests.depth import by_depth
 from tests.frontend.workspace import make_files
 from tests.steps import calls_at_most
 
-from .rosidl import describe, read
+from .rosidl import read
 
 
 def library(tmp_path, files, distro="lyrical"):
@@ -41,11 +41,6 @@ def test_primitives_have_the_names_that_ros_gives_them(tmp_path):
         "int16 uint16 int32 uint32 int64 uint64 float32 float64 char wchar bool byte "
         "int8 uint8 int16 uint16 int32 uint32 int64 uint64"
     ).split()
-
-
-def test_char_is_signed(tmp_path):
-    (a,) = message(tmp_path, "char a;").fields
-    assert a.type == IDL_PRIMITIVES["char"] and a.type.signed
 
 
 @pytest.mark.parametrize(
@@ -75,34 +70,6 @@ def test_types_with_sizes(tmp_path):
     }
     assert isinstance(found.fields[3].type, Sequence) and isinstance(found.fields[4].type, Array)
     assert found.fields[1].type == String(bound=2, wide=True)
-
-
-def test_typedefs_are_expanded_whatever_their_order(tmp_path):
-    found = message(
-        tmp_path,
-        "D a; p::msg::C b; sequence<A> c; B d[2];",
-        "typedef C D; typedef B C[3]; typedef A B; typedef string<5> A;",
-    )
-    assert types(found) == {
-        "a": "string<=5[3]",
-        "b": "string<=5[3]",
-        "c": "string<=5[]",
-        "d": "string<=5[2]",
-    }
-
-
-def test_constants_are_looked_up_from_the_inside_to_the_outside():
-    text = """module p { const long N = 1; module msg {
-      const long N = 2;
-      module T_Constants { const long N = 3; const long M = N; const long O = p::N; };
-      module U_Constants { const long N = 4; const long P = 5; };
-      struct T { long a[N]; long b[M]; long c[O + 1]; long d[::p::N + 1]; long e[P];
-                 long f[U_Constants::N]; long g[msg::T_Constants::N]; };
-    }; };"""
-    (found,) = describe(read(text)[0])
-    sizes = [field["type"] for field in found["fields"]]
-    assert sizes == [f"int32[{n}]" for n in (2, 3, 2, 2, 5, 4, 3)]
-    assert read(text)[1] == []
 
 
 @pytest.mark.parametrize("module", ["b", "bits", "B_constants"])
@@ -181,17 +148,6 @@ def test_padding_member_alone_is_an_empty_message(tmp_path):
     assert len(library(tmp_path, files).message("q/msg/T").fields) == 1
 
 
-def test_spans_point_at_the_words():
-    text = "module p { struct T { unsigned long a, b[1 + 1]; }; };"
-    messages, _ = read(text)
-    for field in messages["T"].members:
-        assert isinstance(field, FieldSyntax)
-        assert text[field.type.span.start : field.type.span.end] == "unsigned long"
-        assert text[field.name.span.start : field.name.span.end] == field.name.text
-    size = messages["T"].members[1].type.size
-    assert (size.value, text[size.span.start : size.span.end]) == (2, "1 + 1")
-
-
 def test_what_is_included_can_be_named(tmp_path):
     files = {
         "q/msg/Base.idl": """#include "Other.idl"
@@ -258,13 +214,6 @@ def test_included_files_that_cannot_be_read_are_not_there(tmp_path):
         lib.message("p/msg/T")
 
 
-def test_a_typedef_that_is_wrong_is_reported_once():
-    text = "module p { typedef Nothing A; struct T { A a; A b; sequence<A> c; }; };"
-    (only,) = read(text)[1]
-    assert only.message.startswith("'Nothing' is not a type")
-    assert (only.span.line, only.span.column) == (1, 20)
-
-
 @pytest.mark.parametrize("unused", ["Nothing", "q::Nothing", "sequence<Nothing, 2>", "A"])
 def test_an_unused_typedef_may_have_an_unknown_name_as_in_rosidl(unused):
     before = "typedef Nothing A; " if unused == "A" else ""
@@ -273,25 +222,6 @@ def test_an_unused_typedef_may_have_an_unknown_name_as_in_rosidl(unused):
     # Any other mistake counts.
     (only,) = read("module p { typedef fixed<3, 1> B; struct T { long a; }; };")[1]
     assert only.message == "type 'fixed' is not supported"
-
-
-def test_a_constant_that_is_wrong_is_reported_once():
-    text = (
-        "module p { const long N = 1 / 0; const long M = N; struct T { long a[N]; long b[M]; }; };"
-    )
-    assert [d.message for d in read(text)[1]] == ["division by zero"]
-
-
-def test_annotations_of_others_promise_nothing():
-    assert read("module p { struct T { @vendor::optional long a; }; };")[1] == []
-    (only,) = read("module p { struct T { @optional long a; }; };")[1]
-    assert only.message == "annotation '@optional' is not supported"
-
-
-def test_enumerators_do_not_disturb():
-    text = "module p { enum E { a, T }; struct T { long a; }; };"
-    messages, wrong = read(text)
-    assert wrong == [] and [*messages] == ["T"]
 
 
 def test_good_members_stay_when_others_are_wrong():
@@ -379,23 +309,3 @@ def test_blanks_in_a_list_mean_nothing(text):
     assert wrong == []
     (member,) = messages["T"].members
     assert [item.value for item in member.default.items] == [1, 2, 3]
-
-
-@pytest.mark.parametrize(
-    "text", ["(1,2,3", "1,2,3)", "(1,2,3]", "[1,2,3)", "(", "", "(1 2)", "(,)", "(1,,2)", "(1,2);"]
-)
-def test_malformed_lists_are_refused(text):
-    source = f'module p {{ struct T {{ @default(value="{text}") sequence<long> a; }}; }};'
-    assert len(read(source)[1]) == 1
-
-
-@pytest.mark.parametrize(("kind", "text"), [("char", "'x'"), ("wchar", "L'x'")])
-def test_named_characters_are_characters(kind, text):
-    """They are legal as characters, and not as numbers."""
-    head = f"module p {{ module T_Constants {{ const {kind} A = {text};"
-    tail = "struct T { long a; }; };"
-    messages, wrong = read(f"{head} const {kind} B = A; }}; {tail}")
-    assert wrong == []
-    assert [member.value.value for member in messages["T"].members[:2]] == [120, 120]
-    (problem,) = read(f"{head} const long B = A; }}; {tail}")[1]
-    assert problem.message == "expected an integer, not a character"

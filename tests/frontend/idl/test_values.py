@@ -118,26 +118,6 @@ def test_operators_take_numbers_alone(text, message):
 @pytest.mark.parametrize(
     ("text", "want"),
     [
-        ("1.5", 1.5),
-        ("1.", 1.0),
-        ("+1.5", 1.5),
-        ("-(-1.5)", 1.5),
-        (".5e1", 5.0),
-        ("1e3", 1000.0),
-        ("-2E-1", -0.2),
-        ("1 + .5", 1.5),
-        ("1.5d", 1.5),
-        ("7D", 7.0),
-        ("3 / 2.", 1.5),
-    ],
-)
-def test_numbers_with_a_fraction(text, want):
-    assert value(text) == ("float", want)
-
-
-@pytest.mark.parametrize(
-    ("text", "want"),
-    [
         ("'a'", 97),
         ("' '", 32),
         ("'\"'", 34),

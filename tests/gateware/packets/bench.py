@@ -9,8 +9,7 @@ from types import SimpleNamespace
 
 from amaranth.hdl import Cat, Const, Value
 
-from firm_hdl.sim.bench import Bench, Ports
-from firm_hdl.sim.job import Job, RunOptions
+from firm_hdl.sim.bench import Bench, Job, Ports, RunOptions
 from firm_hdl.sim.payloads import PacketCollector, packet_beats
 from firm_hdl.sim.watch import PacketRules
 

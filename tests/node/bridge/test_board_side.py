@@ -128,7 +128,7 @@ def test_reasons_and_pauses_begin_anew_with_a_board_that_was_ready(monkeypatch):
     said = []
     for _ in range(3):
         sleeper.sleep()
-        assert sleeper.bridge.is_ready
+        assert sleeper.bridge.side.is_ready
         sleeper.board.is_dead = True
         sleeper.board.come([])
         # It is tried again after 0.2 s, and then after 0.4 s.
@@ -176,13 +176,13 @@ def test_a_board_that_starts_again_all_the_time_is_reported_now_and_then(monkeyp
             sleeper.board.is_dead = True
             list(sleeper.bridge.side.receive())
             sleeper.board.is_dead = False
-        elif sleeper.bridge.is_ready:
+        elif sleeper.bridge.side.is_ready:
             frames = sleeper.board.node.sender.frames(NodeMessage(topic=SAID.id, packet=b"x"))
             sleeper.board.come(frames)
         sleeper.now += 0.2
         for _ in range(6):
             sleeper.bridge.side.care(sleeper.now)
             list(sleeper.bridge.side.receive())
-    assert sleeper.bridge.restarts > 10
+    assert sleeper.bridge.side.restarts > 10
     assert 5 < len(sleeper.said) - before <= 22
     sleeper.bridge.close()

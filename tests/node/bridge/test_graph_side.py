@@ -86,7 +86,7 @@ def test_a_graph_that_is_gone_is_noticed_without_a_message(timed):
         assert timed.said[-1] == "graph fake: it is dead; trying again"
         assert timed.graph.closed == opened
         timed.graph.is_dead = False
-    assert timed.dropped == {("/said", "no graph"): 3} and timed.bridge.restarts == 0
+    assert timed.dropped == {("/said", "no graph"): 3} and timed.bridge.side.restarts == 0
 
 
 def test_requests_of_a_graph_that_is_gone_are_given_up(timed):
@@ -124,8 +124,8 @@ def test_requests_that_find_no_board_are_given_up(timed):
     checked = timed.graph.checked
     timed.now += 1.0
     timed.bridge.step()
-    assert timed.graph.checked == checked + 1 and timed.bridge.was_ready
-    assert not timed.bridge.is_ready
+    assert timed.graph.checked == checked + 1 and timed.bridge.side.was_ready
+    assert not timed.bridge.side.is_ready
 
 
 def test_requests_at_the_board_are_limited(timed):

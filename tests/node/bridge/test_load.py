@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from firm_hdl.node.bridge.load import Load
+from firm_hdl.node.bridge.counters import Load
 from tests.node.bridge.fakes import CAL, HEARD, LINE, SAID, FakeBoard, bridge_of, run_until
 
 

@@ -6,11 +6,11 @@ import pytest
 
 from firm_hdl.node.boards import Board
 from firm_hdl.node.bridge import session as sessions
+from firm_hdl.node.bridge.losses import PASS_SECONDS
 from firm_hdl.node.bridge.session import (
     ROUND_SECONDS,
     SilentBoardError,
 )
-from firm_hdl.node.bridge.unconfirmed import PASS_SECONDS
 from firm_hdl.node.frame import Header, encode_header
 from firm_hdl.node.messages import MessageSender, NodeMessage
 from tests.node.bridge.script import EPOCH, READ, REQUESTS, SET_RATE, SET_TIME, Script

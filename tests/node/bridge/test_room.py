@@ -10,7 +10,7 @@ import pytest
 from firm_hdl.node.boards import BoardError, board_of
 from firm_hdl.node.boards.bytestreams import ByteBoard
 from firm_hdl.node.bridge import bridge
-from tests.node.bridge.fakes import ECHO, HEARD, LINE, FakeBoard, FakeGraph, bridge_of, run_until
+from tests.node.bridge.fakes import HEARD, LINE, FakeBoard, FakeGraph, bridge_of, run_until
 
 
 def test_messages_wait_for_room_for_a_moment():
@@ -34,24 +34,6 @@ def test_messages_wait_for_room_for_a_moment():
     assert run_until(made, lambda: len(graph.got) == 3)
     assert made.counters.dropped == {("/heard", "board full"): 2}
     made.close()
-
-
-def test_a_socket_that_is_full_or_empty_is_no_error():
-    class Socket:
-        """What the system says if a call would have to wait."""
-
-        def send(self, frame):
-            raise BlockingIOError
-
-        recv = send
-
-        def close(self):
-            pass
-
-    board = board_of("udp://127.0.0.1:9", ECHO)
-    board._socket = Socket()
-    assert board.send([b"x"]) is False and board.receive() == []
-    assert not board.counters
 
 
 def test_one_message_always_has_room():

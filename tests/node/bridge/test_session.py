@@ -108,15 +108,6 @@ def test_a_board_that_does_not_answer_is_gone(options, seconds):
     assert seconds <= talk.now - 100 < seconds + 1
 
 
-def test_a_board_that_falls_silent_is_gone():
-    talk = Talk()
-    talk.run(10)
-    assert talk.session.is_ready
-    talk.node.is_mute = True
-    with pytest.raises(SilentBoardError):
-        talk.run(10)
-
-
 def test_the_clock_is_set_and_the_rate_corrected():
     talk = Talk()
     talk.run(3)
@@ -132,16 +123,6 @@ def test_the_clock_of_a_slow_simulation_is_never_set_back(seed):
     talk = Talk(delay=lambda: rng.uniform(0.02, 0.12), sample_seconds=0.1)
     talk.run(20)
     assert len(talk.node.set_ns) > 30 and talk.node.set_ns == sorted(talk.node.set_ns)
-
-
-def test_all_counters_are_read_in_turn():
-    talk = Talk()
-    talk.run(6)
-    numbers = {each.number for each in registers(ECHO) if each.part != "identity"}
-    assert numbers <= talk.session.values.keys()
-    assert [(each.owner, each.name, value) for each, value in talk.session.drops()] == [
-        ("link", "lost", 7)
-    ]
 
 
 def test_one_request_is_under_way_at_any_time():
@@ -329,18 +310,6 @@ def test_at_the_end_all_has_arrived_and_the_counters_are_the_last_ones(loss):
     count = len(talk.node.read)
     talk.run(4)
     assert len(talk.node.read) == count
-
-
-def test_at_the_end_the_counters_are_read_once_what_was_sent_has_passed():
-    talk = Talk()
-    talk.run(6)
-    talk.session.finish(talk.now)
-    count = len(talk.node.read)
-    talk.step(0.04)
-    talk.step(0.001)
-    assert talk.node.read[count:] == [0]
-    talk.run(0.1)
-    assert len(talk.node.read) > count + 1
 
 
 def test_an_answer_to_a_request_of_before_is_none_to_the_last_ones():

@@ -24,7 +24,7 @@ from tests.node.traffic import packets_of
 
 @pytest.mark.parametrize("link", by_depth(["udp"], ["udp", "stream", "uart"]))
 def test_messages_and_calls_go_through_gateware(link):
-    """The link is that of the description; a simulated board replaces it."""
+    """The link is that of the description; a simulated board replaces it, and may be killed."""
     description = read(echo_text(link=link))
     heard, _, _, cal = description.topics
     graph = FakeGraph()
@@ -32,6 +32,9 @@ def test_messages_and_calls_go_through_gateware(link):
     made, said = bridge_of(board, graph, description)
     try:
         assert run_until(made, lambda: graph.opened, 60), said
+        board._simulation.close()
+        assert run_until(made, lambda: made.side.restarts == 1 and made.side.is_ready, 60), said
+        assert "The simulation is closed; trying again" in "".join(said)
         texts = [f"text {number}" * (number % 3) for number in range(6)]
         graph.say(heard, *(string(text) for text in texts))
         # What the gate refuses does not come back.
@@ -49,10 +52,10 @@ def test_messages_and_calls_go_through_gateware(link):
     stamps = [struct.unpack("<4xiI", p)[0] for name, p in graph.got if name == "/stamp"]
     # The clock of the node was set before the graph was joined, or soon after.
     assert len(stamps) == 6 and stamps == sorted(stamps)
-    assert not made.counters.dropped and not made.on_the_way
+    assert not made.counters.dropped and not made.side.on_the_way
     # Slow as it is, all counters were read.
     assert made.side.has_read_last
-    assert [(each.owner, value) for each, value in made.last_drops] == [("/heard", 1)]
+    assert [(each.owner, value) for each, value in made.side.drops()] == [("/heard", 1)]
 
 
 NAMES = """\
@@ -89,29 +92,13 @@ def test_many_short_parts_do_not_overrun_a_gate(stalls, monkeypatch, tmp_path):
     try:
         assert run_until(made, lambda: graph.opened, 60), said
         graph.say(description.topics[0], packet)
-        assert run_until(made, lambda: graph.got or made.last_drops, 300)
+        assert run_until(made, lambda: graph.got or made.side.drops(), 300)
     finally:
         made.close()
     if stalls:
         assert graph.got == [("/said", packet)]
     else:
-        assert [(each.name, value) for each, value in made.last_drops] == [("overrun", 1)]
-
-
-def test_a_simulation_that_is_killed_is_started_again():
-    description = read(echo_text())
-    graph = FakeGraph()
-    board = SimulatedBoard(description, engine="amaranth")
-    made, said = bridge_of(board, graph, description)
-    try:
-        assert run_until(made, lambda: graph.opened, 60), said
-        board._simulation.close()
-        assert run_until(made, lambda: made.restarts == 1 and made.is_ready, 60), said
-        graph.say(description.topics[0], string("again"))
-        assert run_until(made, lambda: graph.got, 60)
-    finally:
-        made.close()
-    assert "The simulation is closed; trying again" in "".join(said)
+        assert [(each.name, value) for each, value in made.side.drops()] == [("overrun", 1)]
 
 
 def test_mistakes_of_an_accelerator_are_errors_of_the_user():

@@ -8,9 +8,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from firm_hdl.node.bridge import status
+from firm_hdl.node.bridge import command
+from firm_hdl.node.bridge.command import Status, account, status_line
 from firm_hdl.node.bridge.counters import BridgeCounters
-from firm_hdl.node.bridge.status import Status, account, status_line
 from tests.node.bridge.fakes import ECHO
 
 
@@ -31,26 +31,27 @@ class Screen(io.StringIO):
 @pytest.fixture
 def clock(monkeypatch):
     made = SimpleNamespace(now=100.0)
-    monkeypatch.setattr(status, "time", SimpleNamespace(monotonic=lambda: made.now))
+    monkeypatch.setattr(command, "time", SimpleNamespace(monotonic=lambda: made.now))
     return made
 
 
-def bridge_with(**changes):
-    """Return what is read of a bridge that has just begun, with changes."""
+def bridge_with(graph=(), drops=(), **side):
+    """Return what is read of a bridge that has just begun: losses, and changes of its board."""
     found = {
-        "description": ECHO,
-        "counters": BridgeCounters(),
         "is_ready": True,
         "was_ready": True,
         "restarts": 0,
         "on_the_way": Counter(),
-        "last_drops": [],
-        "graph": SimpleNamespace(counters=Counter()),
-        "side": SimpleNamespace(
-            session=SimpleNamespace(latency=None, offset_ns=None), has_read_last=True
-        ),
+        "drops": lambda: list(drops),
+        "session": None,
+        "has_read_last": True,
     }
-    return SimpleNamespace(**found | changes)
+    return SimpleNamespace(
+        description=ECHO,
+        counters=BridgeCounters(),
+        graph=SimpleNamespace(counters=Counter(dict(graph))),
+        side=SimpleNamespace(**found | side),
+    )
 
 
 def register(owner, part, name):
@@ -112,10 +113,10 @@ def test_a_quiet_one_says_only_what_happens(clock, is_terminal):
 def test_the_line_has_what_is_known():
     session = SimpleNamespace(latency=0.00123, offset_ns=-45_678.0)
     bridge = bridge_with(
-        side=SimpleNamespace(session=session),
+        session=session,
         on_the_way=Counter(lost=1),
-        graph=SimpleNamespace(counters=Counter(lost=20)),
-        last_drops=[(register("/a", "in", "full"), 300)],
+        graph={"lost": 20},
+        drops=[(register("/a", "in", "full"), 300)],
     )
     bridge.counters.drop("/a", "no board", 4000)
     assert status_line(bridge, (12.4, 0.6)) == (
@@ -123,7 +124,7 @@ def test_the_line_has_what_is_known():
     )
     session.offset_ns = 1500.0
     assert status_line(bridge, (0, 0)).endswith("clock +2 us")
-    bridge.is_ready, bridge.side.session = False, None
+    bridge.side.is_ready, bridge.side.session = False, None
     assert status_line(bridge, (0, 0)) == (
         "echo, no board, to board 0/s, to graph 0/s, dropped 4321"
     )
@@ -132,8 +133,8 @@ def test_the_line_has_what_is_known():
 def test_the_account_names_all_losses_with_their_places():
     bridge = bridge_with(
         on_the_way=Counter(lost=2, cut=1),
-        graph=SimpleNamespace(counters=Counter({"no line": 3, "fine": 0})),
-        last_drops=[(register("/a", "in", "full"), 4), (register("link", "link", "late"), 5)],
+        graph={"no line": 3, "fine": 0},
+        drops=[(register("/a", "in", "full"), 4), (register("link", "link", "late"), 5)],
         restarts=6,
     )
     bridge.counters.to_board.update({"/heard": 12_345, "/cal": 7})
@@ -181,9 +182,6 @@ def test_the_account_says_how_it_was_with_the_board(
     was_ready, is_ready, restarts, has_read_last, said
 ):
     bridge = bridge_with(
-        was_ready=was_ready,
-        is_ready=is_ready,
-        restarts=restarts,
-        side=SimpleNamespace(session=None, has_read_last=has_read_last),
+        was_ready=was_ready, is_ready=is_ready, restarts=restarts, has_read_last=has_read_last
     )
     assert [each for each in account(bridge) if each.startswith(("the ", "not "))] == said

@@ -7,7 +7,7 @@ from collections import Counter
 
 import pytest
 
-from firm_hdl.node.bridge.unconfirmed import PASS_SECONDS, Unconfirmed
+from firm_hdl.node.bridge.losses import PASS_SECONDS, Unconfirmed
 
 
 def board_that_dies(seed, pass_seconds):

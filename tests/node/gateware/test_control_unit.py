@@ -9,8 +9,7 @@ import pytest
 from amaranth.hdl import Cat, Const, Module, ResetInserter, Signal, Value
 from amaranth.sim import Simulator
 
-from firm_hdl.node.gateware.control_unit import ControlUnit
-from firm_hdl.node.gateware.counters import RegisterReader, read_cycles
+from firm_hdl.node.gateware.control_unit import ControlUnit, RegisterReader, read_cycles
 from firm_hdl.sim import Stalls
 from tests.gateware.packets.bench import PacketBench, beats, with_side
 from tests.node.traffic import counters_of

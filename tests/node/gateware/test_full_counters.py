@@ -10,7 +10,7 @@ from amaranth.hdl import Module, Signal, Value
 from amaranth.sim import Simulator
 
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
-from firm_hdl.node.gateware.reassembler import Reassembler
+from firm_hdl.node.gateware.fragments import Reassembler
 
 MOST = 0xFFFF_FFFF
 

@@ -7,7 +7,7 @@ import struct
 
 import pytest
 
-from firm_hdl.node.gateware.fragmenter import Fragmenter
+from firm_hdl.node.gateware.fragments import Fragmenter
 from tests.gateware.packets.bench import PacketBench, beats
 
 BUS = 8

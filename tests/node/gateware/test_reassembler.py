@@ -7,7 +7,7 @@ import struct
 
 import pytest
 
-from firm_hdl.node.gateware.reassembler import Reassembler
+from firm_hdl.node.gateware.fragments import Reassembler
 from firm_hdl.sim import Stalls
 from tests.gateware.packets.bench import PacketBench, beats, with_side
 from tests.node.traffic import counters_of

@@ -87,17 +87,6 @@ def test_policies_that_are_left_out_ask_for_nothing():
     assert (qos.exclusive, qos.partitions, qos.representations) == (False, (), ())
 
 
-@pytest.mark.parametrize("kind", range(4))
-def test_the_durabilities_are_four(kind):
-    assert announced((0x1D, f"0{kind}000000")).qos.durability == kind
-
-
-@pytest.mark.parametrize(("value", "kind"), [("04000000", 4), ("ff000000", 255)])
-def test_another_durability_is_refused(value, kind):
-    with pytest.raises(MalformedError, match=rf"^durability {kind}$"):
-        announced((0x1D, value))
-
-
 @pytest.mark.parametrize(
     ("kind", "is_reliable"), [("00000000", False), ("01000000", False), ("02000000", True)]
 )
@@ -105,22 +94,24 @@ def test_only_the_kind_2_is_reliable(kind, is_reliable):
     assert announced((0x1A, kind + "00" * 8)).qos.reliable is is_reliable
 
 
-NAME = "02000000" + b"p\0\0\0".hex()
+def test_the_durabilities_are_four():
+    for kind in range(4):
+        assert announced((0x1D, f"0{kind}000000")).qos.durability == kind
+    for value, kind in (("04000000", 4), ("ff000000", 255)):
+        with pytest.raises(MalformedError, match=rf"^durability {kind}$"):
+            announced((0x1D, value))
 
 
-@pytest.mark.parametrize("count", [1, 64])
-def test_as_many_as_64_partitions_are_read(count):
-    value = count.to_bytes(4, "little").hex() + NAME * count
-    assert announced((0x29, value)).qos.partitions == ("p",) * count
-
-
-@pytest.mark.parametrize("count", [1, 64])
-def test_as_many_as_64_representations_are_read(count):
-    value = count.to_bytes(4, "little").hex() + "0200" * count
-    assert announced((0x73, value)).qos.representations == (2,) * count
-
-
-@pytest.mark.parametrize(("pid", "each"), [(0x29, NAME), (0x73, "0200")])
-def test_more_than_64_are_refused(pid, each):
+@pytest.mark.parametrize(
+    ("pid", "policy", "text", "value"),
+    [
+        (0x29, "partitions", "02000000" + b"p\0\0\0".hex(), "p"),
+        (0x73, "representations", "0200", 2),
+    ],
+)
+def test_as_many_as_64_are_read(pid, policy, text, value):
+    for count in (1, 64):
+        given = (pid, count.to_bytes(4, "little").hex() + text * count)
+        assert getattr(announced(given).qos, policy) == (value,) * count
     with pytest.raises(MalformedError, match=r"^65 entries, where 64 may be$"):
-        announced((pid, "41000000" + each * 65))
+        announced((pid, "41000000" + text * 65))

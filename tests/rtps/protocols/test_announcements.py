@@ -7,20 +7,19 @@ from dataclasses import replace
 
 import pytest
 
-from firm_hdl.rtps import Durability, Guid, Qos, sedp
+from firm_hdl.rtps import Guid, Qos, sedp
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.discovery import EndpointData, ParticipantData, key_payload
-from firm_hdl.rtps.events import Incompatible, Matched, PeerLost, Unmatched
+from firm_hdl.rtps.events import PeerLost, Unmatched
 from firm_hdl.rtps.peers import Peer
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.sedp import Local, Sedp
-from firm_hdl.rtps.settings import Settings
-from firm_hdl.rtps.spdp import Spdp
+from firm_hdl.rtps.spdp import Settings, Spdp
 from firm_hdl.rtps.wire.guid import PARTICIPANT, SPDP_WRITER
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.octets import MalformedError
 from firm_hdl.rtps.wire.parameters import Pid
-from firm_hdl.rtps.wire.samples import Data
+from firm_hdl.rtps.wire.submessages import Data
 from firm_hdl.rtps.writer import Writer
 
 GROUP = Address("239.255.0.1", 7400)
@@ -137,62 +136,12 @@ def test_an_address_where_a_peer_may_be_is_told_at_first_and_then_seldom():
     assert len(announcer.sent) == 1 + len(many) // 10
 
 
-def test_an_address_is_told_once():
-    # The one named target is also a peer's address.
-    announcer = Announcer((GROUP, ONE.discovery[0]))
-    announcer.listen(ONE, 0.0)
-    announcer.listen(TWO, 0.0)
-    announcer.sent.clear()
-    announcer.leave()
-    assert [to for to, _ in announcer.sent] == [GROUP, ONE.discovery[0], TWO.discovery[0]]
-    (farewell,) = {data for _, data in announcer.sent}
-    # It comes after the announcement, which has number 1.
-    assert farewell.key and farewell.sequence_number == 2
-
-
 def strangers(count, host=9):
     """Return participants that announce themselves, and nothing else."""
     return [
         replace(participant(host), prefix=bytes([host]) + number.to_bytes(11, "big"))
         for number in range(count)
     ]
-
-
-def test_strangers_give_way_to_those_who_come_later():
-    announcer = Announcer()
-    announcer.listen(ONE, 0.0)
-    announcer.listen(TWO, 0.0)
-    announcer.ranks = {ONE.prefix: 2, TWO.prefix: 1}
-    flood = strangers(1000)
-    for number, each in enumerate(flood):
-        announcer.listen(each, 0.001 * number)
-    assert len(announcer.peers) == 256 and {ONE, TWO} <= set(announcer.peers)
-    assert announcer._counters == {"displaced": 1000 - 254}
-    # The first 32 were met at once. Of the others, who said nothing more, the last ones are left.
-    assert announcer.peers[2:] == (*flood[:32], *flood[-222:])
-    assert announcer.found == [each.prefix for each in (ONE, TWO, *flood[:32])]
-    # Whoever says something more is met then, and stays for longer than they do.
-    announcer.hear(flood[-222].prefix, None, 100, 1.0)
-    assert announcer.found[-1] == flood[-222].prefix
-    for each in strangers(300, host=8):
-        announcer.listen(each, 1.0)
-    assert announcer.peers[34] == flood[-222] and len(announcer.peers) == 256
-    # One that is matched stays as long as it says something.
-    announcer.ranks |= {each.prefix: 2 for each in flood}
-    announcer.ranks |= {each.prefix: 2 for each in announcer.peers if each != TWO}
-    late = participant(200)
-    for peer in announcer.peers:
-        announcer.hear(peer.prefix, None, 100, 1.0)
-    announcer.listen(late, 1.0)
-    assert late in announcer.peers and TWO not in announcer.peers
-    announcer.ranks[late.prefix] = 2
-    announcer.hear(late.prefix, None, 100, 1.0)
-    other = participant(201)
-    announcer.listen(other, 9.0)
-    assert other not in announcer.peers and announcer._counters["no_place"] == 1
-    announcer.hear(ONE.prefix, None, 100, 9.0)
-    announcer.listen(other, 11.5)
-    assert other in announcer.peers and ONE in announcer.peers
 
 
 def test_a_host_does_not_take_the_places_of_others():
@@ -215,8 +164,6 @@ def test_nobody_is_remembered_for_ever_for_having_left():
 
 
 # Endpoints.
-
-ADDRESSES = (Address("10.0.0.2", 7499),)
 
 
 def remote(peer, entity, topic="t", **options):
@@ -284,47 +231,6 @@ def test_each_participant_has_as_many_endpoints_as_it_may(monkeypatch):
             matcher.listen(remote(peer, number << 8 | 3), True)
     known = [(each.guid.prefix, each.guid.entity >> 8) for each in matcher.remotes(True)]
     assert known == [(ONE.prefix, 0), (ONE.prefix, 1), (TWO.prefix, 0), (TWO.prefix, 1)]
-
-
-@pytest.mark.parametrize("is_first", [False, True])
-@pytest.mark.parametrize(
-    ("own", "other", "is_writer", "topic", "fits"),
-    [
-        (WRITER, READER, False, "t", True),
-        (READER, WRITER, True, "t", True),
-        (KEYED_READER, KEYED_WRITER, True, "t", True),
-        (WRITER, WRITER, True, "t", False),
-        (READER, READER, False, "t", False),
-        (WRITER, READER, False, "u", False),
-        (WRITER, KEYED_READER, False, "t", False),
-        (KEYED_READER, WRITER, True, "t", False),
-    ],
-)
-def test_who_fits_whom_whoever_comes_first(own, other, is_writer, topic, fits, is_first):
-    matcher = Matcher()
-    steps = [lambda: matcher.own(own), lambda: matcher.listen(remote(ONE, other, topic), is_writer)]
-    for step in steps if is_first else reversed(steps):
-        step()
-    assert matcher.news() == ([Matched] if fits else [])
-
-
-def test_policies_that_do_not_fit_are_told_when_they_change():
-    durable = Durability.TRANSIENT_LOCAL
-    matcher = Matcher()
-    matcher.own(WRITER)
-    fits = remote(ONE, READER)
-    once = replace(fits, qos=Qos(durability=durable))
-    twice = replace(fits, qos=Qos(durability=durable, deadline=5))
-    for data, news in (
-        (fits, [Matched]),
-        (once, [Unmatched, Incompatible]),
-        (once, []),
-        (twice, [Incompatible]),
-        (fits, [Matched]),
-        (twice, [Unmatched, Incompatible]),
-    ):
-        matcher.listen(data, False)
-        assert matcher.news() == news
 
 
 def test_a_participant_that_is_gone_takes_all_with_it():

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 from firm_hdl.rtps import Guid
@@ -11,9 +9,7 @@ from firm_hdl.rtps.backlog import Backlog
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.reader import Reader
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
-from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.reliability import AckNack, Gap, HeartbeatFrag, NackFrag
+from firm_hdl.rtps.wire.submessages import AckNack, Gap, HeartbeatFrag, NackFrag, NumberSet
 from tests.rtps.network import route_to
 from tests.rtps.test_endpoints import (
     BEST_EFFORT,
@@ -90,13 +86,6 @@ def test_a_writer_is_greeted_as_its_vendor_understands(sent, prefix, base):
     )
 
 
-def test_a_sample_that_comes_early_does_not_hurry_a_greeting(sent):
-    reader = Listener(sent, synced=False)
-    reader.tick(1.0)
-    reader.take(3)
-    assert reader.tick(1.1) == 1.25 and reader.got == []
-
-
 def test_a_best_effort_reader_asks_for_nothing(sent):
     reader = Listener(sent, BEST_EFFORT)
     reader.on_heartbeat(HERE, heartbeat(4, 9, count=2, final=False), 1.0)
@@ -140,28 +129,6 @@ def test_what_comes_twice_takes_memory_once(sent):
     assert (reader.got, reader.budget.used) == ([1, 2, 3, 4], 0)
 
 
-def test_samples_keep_their_times(sent):
-    reader = Listener(sent)
-    for number in (3, 2, 1):
-        reader.on_data(HERE, data(number), 100 * number, 1.0)
-    assert reader.times == [100, 200, 300]
-
-
-def test_what_is_left_of_a_history_that_is_gone_is_delivered_in_order(sent):
-    reader = Listener(sent)
-    reader.take(5, 3, 4)
-    reader.on_heartbeat(HERE, heartbeat(6, 6, count=2), 1.0)
-    assert reader.got == [3, 4, 5] and reader.lost == 2
-
-
-@pytest.mark.parametrize(("first", "lost"), [(1, 0), (2, 1), (3, 2)])
-def test_samples_below_a_heartbeat_are_lost(sent, first, lost):
-    reader = Listener(sent)
-    reader.on_heartbeat(HERE, heartbeat(first, 4, count=2), 1.0)
-    (answer,) = sent.take(AckNack)
-    assert answer.missing == NumberSet(first, tuple(range(first, 5))) and reader.lost == lost
-
-
 # Asking.
 
 
@@ -173,26 +140,6 @@ def test_a_heartbeat_that_asks_is_answered_though_nothing_is_missing(sent, final
     answers = sent.take(AckNack)
     assert [each.missing for each in answers] == ([] if final else [NumberSet(2)])
     assert reader.tick(9.0) == float("inf") and not sent
-
-
-def test_the_first_of_two_gaps_says_when_to_ask(sent):
-    reader = Listener(sent)
-    reader.take(2, now=1.0)
-    reader.take(4, now=1.015625)
-    assert reader.tick(1.016) == 1.02
-    # What comes meanwhile is not asked for.
-    reader.take(1, 3)
-    assert reader.tick(1.02) == float("inf") and not sent
-
-
-def test_a_heartbeat_ends_what_was_asked_before_it(sent):
-    """A sample that comes early afterwards is given its whole time to be in order."""
-    reader = Listener(sent)
-    assert asked(reader, sent, 2, 2, now=1.0) == NumberSet.of(1, [1, 2])
-    reader.take(1, 2, now=1.05)
-    reader.on_heartbeat(HERE, heartbeat(1, 2, count=3), 1.06)
-    reader.take(4, now=1.09)
-    assert reader.tick(1.1) == pytest.approx(1.11)
 
 
 def test_no_more_is_asked_for_at_once_than_a_set_can_name(sent):
@@ -253,33 +200,6 @@ def test_gaps(sent, name, base, missing):
     assert asked(reader, sent, max(missing), 2) == NumberSet(base, missing)
 
 
-@pytest.mark.parametrize(
-    "far", [gap(4000, 1 << 17), gap(3000, 3001, tuple(range(3001, 3257))), gap(4097, 4097, (4097,))]
-)
-def test_gaps_far_ahead_are_not_noted(sent, far):
-    reader = Listener(sent)
-    reader.on_gap(HERE, far, 1.0)
-    # Sample 4097 was too far ahead for its gap to be noted.
-    reader.on_heartbeat(HERE, heartbeat(4097, 4097, count=2), 1.0)
-    assert sent.take(AckNack)[-1].missing == NumberSet(4097, (4097,))
-
-
-def test_a_gap_that_was_passed_is_not_counted_again(sent):
-    reader = Listener(sent)
-    reader.on_gap(HERE, gap(2, 4), 1.0)
-    reader.take(1)
-    for first, lost in ((4, 0), (6, 2), (7, 3)):
-        reader.on_heartbeat(HERE, heartbeat(first, 9, count=first), 1.0)
-        assert reader.lost == lost
-
-
-def test_a_gap_that_begins_where_the_history_does_is_not_lost_before(sent):
-    reader = Listener(sent)
-    reader.on_gap(HERE, gap(3, 4), 1.0)
-    reader.on_heartbeat(HERE, heartbeat(3, 4, count=2), 1.0)
-    assert reader.lost == 2
-
-
 # Fragments.
 
 
@@ -297,14 +217,6 @@ def test_fragments_are_asked_for_by_what_is_missing(sent):
             reader=0x204, writer=0x103, sequence_number=1, missing=NumberSet(2, (2,)), count=1
         ),
     )
-
-
-def test_fragments_of_what_is_given_up_are_not_asked_for(sent):
-    reader = Listener(sent, synced=False)
-    reader.on_data_frag(HERE, part(1, 1), None, 1.0)
-    reader.on_gap(HERE, gap(1, 3), 1.0)
-    reader.on_heartbeat_frag(HERE, begun(1, 2), 1.0)
-    assert not sent
 
 
 def test_fragments_are_asked_for_again(sent):
@@ -339,15 +251,6 @@ def test_a_flood_of_heartbeats_gets_an_answer_each_millisecond(sent):
     # The last one gets its answer, too.
     assert reader.tick(2.0) == pytest.approx(2.001)
     assert reader.tick(2.001) == float("inf") and len(sent.take(AckNack)) == 1
-
-
-def test_a_sample_in_fragments_keeps_its_inline_qos():
-    """It names the request that a large reply answers."""
-    inline = ParameterList(((Pid.KEY_HASH, bytes(16)),))
-    backlog = Backlog(HERE.prefix, Budget(1 << 20))
-    assert backlog.add(replace(part(1, 1, 2), inline=inline)) is None
-    whole = backlog.add(replace(part(1, 3), inline=inline))
-    assert whole is not None and whole.inline == inline and whole.payload == bytes(12)
 
 
 @pytest.mark.parametrize(

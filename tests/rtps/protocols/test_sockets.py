@@ -212,13 +212,17 @@ def test_an_interface_has_its_own_address(system, monkeypatch, name):
     assert argument.rstrip(b"\0") == name.encode() and len(argument) >= 40
 
 
-def test_an_interface_without_an_address_is_an_error(system, monkeypatch):
-    def ioctl(*_):
-        raise OSError(errno.EADDRNOTAVAIL, "none")
+# The system would read the first 15 bytes of a longer name, and a name as far as its NUL.
+@pytest.mark.parametrize("name", ["eth0.0123456789a", "\u0101" * 8, "lo\0", "eth0"])
+def test_an_interface_without_an_address_is_an_error(system, monkeypatch, name):
+    def ioctl(file, request, argument):
+        if argument.startswith(b"eth0\0"):
+            raise OSError(errno.EADDRNOTAVAIL, "none")
+        return bytes(256)
 
     monkeypatch.setattr(fcntl, "ioctl", ioctl)
-    with pytest.raises(TransportError, match=r"^interface 'eth0' has no IPv4 address$"):
-        address_of("eth0")
+    with pytest.raises(TransportError, match=rf"^interface '{name}' has no IPv4 address$"):
+        address_of(name)
 
 
 @pytest.mark.parametrize("address", ["127.0.0.1", "192.168.1.50"])

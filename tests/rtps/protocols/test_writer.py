@@ -5,12 +5,17 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.rtps import Durability, Guid, Qos
-from firm_hdl.rtps.wire.infos import InfoTimestamp
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.numbers import NumberSet
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.reliability import Gap, Heartbeat, NackFrag
-from firm_hdl.rtps.wire.samples import Data, DataFrag
+from firm_hdl.rtps.wire.submessages import (
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    InfoTimestamp,
+    NackFrag,
+    NumberSet,
+)
 from firm_hdl.rtps.writer import HistoryFullError, Writer
 from tests.rtps.network import route_to
 from tests.rtps.test_endpoints import (
@@ -121,18 +126,6 @@ def test_the_history_of_a_writer_whose_samples_all_have_begins_with_the_next_one
     ]
 
 
-def test_a_reader_that_asks_without_all_samples_has_to_answer_again(sent):
-    writer = serving(sent)
-    for _ in range(2):
-        writer.write(b"abcd", 1.0)
-    sent.clear()
-    writer.on_ack_nack(THERE, ack(2, count=1, final=False), 1.0)
-    assert [each.final for each in sent.take(Heartbeat)] == [False]
-    # One that asks for nothing gets nothing.
-    writer.on_ack_nack(THERE, ack(2, count=2), 1.0)
-    assert not sent
-
-
 def test_heartbeats_are_numbered_modulo_two_to_the_31(sent):
     writer = serving(sent)
     writer._count = 0x7FFF_FFFD
@@ -142,26 +135,6 @@ def test_heartbeats_are_numbered_modulo_two_to_the_31(sent):
 
 
 # What is kept.
-
-
-@pytest.mark.parametrize(
-    ("qos", "reader", "kept"),
-    [(KEEP_ALL, KEEP_ALL, 3), (KEEP_ALL, BEST_EFFORT, 0), (DURABLE, BEST_EFFORT, 3)],
-)
-def test_samples_are_kept_for_those_who_may_ask(sent, qos, reader, kept):
-    writer = serving(sent, qos, reader)
-    for _ in range(3):
-        writer.write(b"abcd", 1.0)
-    assert len(writer._changes) == kept
-
-
-def test_a_durable_writer_keeps_samples_that_nobody_reads_yet(sent):
-    writer = Writer(HERE, DURABLE, sent.append)
-    for _ in range(3):
-        writer.write(b"abcd", 1.0)
-    writer.match(endpoint(OTHER, DURABLE), ROUTE, 2.0)
-    (beat,) = sent.take(Heartbeat)
-    assert (beat.first, beat.last, beat.final) == (1, 3, False)
 
 
 @pytest.mark.parametrize(("depth", "kept"), [(1, [3]), (2, [2, 3]), (3, [1, 2, 3])])
@@ -182,27 +155,6 @@ def test_a_full_history_has_as_many_samples_as_it_may(sent):
         writer.write(b"abcd", 1.0)
     writer.on_ack_nack(THERE, ack(2, count=1), 1.0)
     assert writer.write(b"abcd", 1.0) == 3
-
-
-def test_best_effort_readers_keep_no_sample_from_being_forgotten(sent):
-    writer = serving(sent)
-    writer.match(endpoint(OTHER, BEST_EFFORT), ROUTE, 0.0)
-    writer.write(b"abcd", 1.0)
-    writer.on_ack_nack(THERE, ack(2), 1.0)
-    assert not writer._changes
-
-
-def test_samples_for_a_reader_that_goes_are_forgotten(sent):
-    writer = serving(sent)
-    writer.match(endpoint(OTHER), ROUTE, 0.0)
-    for _ in range(3):
-        writer.write(b"abcd", 1.0)
-    writer.on_ack_nack(OTHER, ack(3), 1.0)
-    assert len(writer._changes) == 3
-    writer.unmatch(THERE)
-    assert [*writer._changes] == [3] and writer.matched == (OTHER,)
-    writer.unmatch(OTHER)
-    assert not writer._changes
 
 
 @pytest.mark.parametrize("forgotten", [0, 1])
@@ -249,17 +201,6 @@ def test_pauses_are_short_again_after_progress(sent):
     assert writer.tick(9.0) == pytest.approx(9.05)
 
 
-def test_pauses_are_short_for_the_first_sample_of_a_reader_that_has_said_nothing(sent):
-    writer = Writer(HERE, KEEP_ALL, sent.append)
-    writer.match(endpoint(THERE), ROUTE, 0.0)
-    for now in (1.0, 2.0, 3.0, 4.0):
-        writer.tick(now)
-    # Nothing is missing, so the pauses have grown. The sample begins anew.
-    writer.write(b"abcd", 4.0)
-    assert writer.tick(4.0) == pytest.approx(4.05)
-    assert writer.tick(4.05) == pytest.approx(4.15)
-
-
 @pytest.mark.parametrize("answer", ["ack", "fragments"])
 def test_a_reader_that_has_answered_once_is_asked_for_ever(sent, answer):
     writer = Writer(HERE, KEEP_ALL, sent.append)
@@ -276,14 +217,6 @@ def test_a_reader_that_has_answered_once_is_asked_for_ever(sent, answer):
         writer.tick(float(now))
     # Each 2 s, as it is silent.
     assert len(sent.take(Heartbeat)) == 51
-
-
-def test_a_reader_that_has_answered_with_fragments_is_not_asked_without_need(sent):
-    writer = Writer(HERE, KEEP_ALL, sent.append)
-    writer.match(endpoint(THERE), ROUTE, 0.0)
-    assert writer.tick(0.0) < float("inf")
-    writer.on_nack_frag(THERE, nack_frag(1, NumberSet(1, (1,))), 0.0)
-    assert writer.tick(9.0) == float("inf")
 
 
 def test_a_reader_is_asked_before_the_last_samples_give_way(sent):
@@ -308,14 +241,6 @@ def test_a_heartbeat_that_asked_makes_the_next_one_final(sent):
     for now in (1.0625, 1.11, 1.125, 1.126):
         writer.write(b"abcd", now)
     assert [each.final for each in sent.take(Heartbeat)] == [True, True, False, True]
-
-
-def test_a_heartbeat_that_asked_nobody_leaves_the_next_one_to_ask(sent):
-    writer = serving(sent)
-    # The reader has all, and asks for a heartbeat.
-    writer.on_ack_nack(THERE, ack(1, final=False), 1.0)
-    writer.write(b"abcd", 1.01)
-    assert [each.final for each in sent.take(Heartbeat)] == [True, False]
 
 
 # What is sent again.

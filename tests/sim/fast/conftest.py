@@ -13,10 +13,9 @@ import pytest
 
 from firm_hdl.sim import StallPlan
 from firm_hdl.sim.fast import EngineName, FastSimulation
-from firm_hdl.sim.fast.compilers import program_of
+from firm_hdl.sim.fast.compilers import program_of, verilated_source
 from firm_hdl.sim.fast.ports import ports_of
 from firm_hdl.sim.fast.top import Top
-from firm_hdl.sim.fast.verilated import verilated_source
 from tests.sim.fast.designs import Awkward
 
 OPTIONS = ("-O0",)

@@ -26,7 +26,7 @@ from firm_hdl.sim.fast import (
     SimulationError,
     compilers,
 )
-from firm_hdl.sim.fast.verilated import VerilatedSource
+from firm_hdl.sim.fast.compilers import VerilatedSource
 from tests.sim.fast.designs import Awkward, Divided
 
 DEADLINE = 60.0

@@ -7,12 +7,11 @@ from collections import Counter
 from firm_hdl.node import read_description_text
 from firm_hdl.node.control import registers
 from firm_hdl.node.messages import MessageReceiver, MessageSender, NodeMessage
-from firm_hdl.plan import build_plan, decode, encode
+from firm_hdl.plan import decode, encode
 from firm_hdl.verify.board.description import loop_text
 from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import Recorder
-from firm_hdl.wire import lay_out
 from tests.node.bridge.fakes import FakeBoard
 
 __all__ = ["BOTH", "STRING", "LoopNode", "described", "verdicts"]
@@ -36,16 +35,12 @@ class LoopNode:
         self.description = description
         self.receiver, self.sender = MessageReceiver(), MessageSender(272)
         self.fingerprint = description.fingerprint
-        self.counters = Counter()
+        self.counters, self.seconds = Counter(), 0
         self.loops = {came.id: back.id for came, back in description.loops()}
-        self.plans = {came.id: self.plan(came) for came, _ in description.loops()}
+        self.plans = {
+            came.id: description.plan(came.store("in")) for came, _ in description.loops()
+        }
         self.heard = 0
-
-    def plan(self, topic):
-        store, wire = topic.store("in"), self.description.wire
-        return build_plan(
-            lay_out(store.message, wire), bus_bytes=8, max_message_bytes=store.max_message_bytes
-        )
 
     def take(self, frame):
         """Take a frame; return the frames of the answers."""
@@ -86,14 +81,16 @@ class LoopNode:
         return self.send(0, self.response(message.packet), message.tag)
 
     def response(self, packet):
-        assert len(packet) == 16 and packet[0] == 1
-        number = int.from_bytes(packet[4:8], "little")
+        operation, number = packet[0], int.from_bytes(packet[4:8], "little")
         halves = {1: self.fingerprint & 0xFFFF_FFFF, 2: self.fingerprint >> 32}
-        value = halves.get(number, 0)
-        if number >= 16:
+        value, seconds = halves.get(number, 0), self.seconds
+        if operation == 2:
+            self.seconds = int.from_bytes(packet[8:12], "little")
+        elif operation == 1 and number >= 16:
             (found,) = (each for each in registers(self.description) if each.number == number)
             value = self.counters[found.topic, found.name]
-        return bytes([1, 0, 0, 0]) + value.to_bytes(4, "little") + bytes(8)
+        numbers = value.to_bytes(4, "little") + seconds.to_bytes(4, "little") + bytes(4)
+        return bytes([operation, 0, 0, 0]) + numbers
 
 
 def verdicts(loop_node, description=None, names=(), loses=lambda frame: False, **options):
@@ -101,5 +98,8 @@ def verdicts(loop_node, description=None, names=(), loses=lambda frame: False, *
     description = description or loop_node.description
     given = {"most_cases": 6, "references": (), **options}
     request = Request(types=tuple(names), board="fake", **given)
-    with Boards(description, request, FakeBoard(loop_node, loses)) as system:
+    board = FakeBoard(loop_node, loses)
+    # A request is repeated before a board counts as silent.
+    board.repeat_seconds = 0.05
+    with Boards(description, request, board) as system:
         return {each.what.split()[0]: each.verdict for each in system.run(Recorder())}

@@ -191,8 +191,8 @@ FAULTS = {
     FallsSilent: r"fake: the board does not answer for 0\.2 s",
     Mute: r"^fake: the board does not answer for 0\.2 s$",
     Other: r"fake: the board's fingerprint is \w{16}, and that of the description is \w{16}",
-    RefusesToRead: r"fake: the board refuses to read register 16",
-    CutsResponses: r"fake: a response has \d+ bytes, not \d+$",
+    RefusesToRead: r"fake: the board refuses to read register \d+",
+    CutsResponses: r"fake: the board does not answer for 0\.2 s$",
     Babbles: r"fake: the board does not answer for 0\.2 s \(frames: \d+ malformed\)",
 }
 

@@ -11,14 +11,11 @@ import tty
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.errors import DefinitionError
 from firm_hdl.node import read_description
-from firm_hdl.node.accelerator import load_accelerator
 from firm_hdl.verify.board.description import loop_text
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.verdict import Failed, Passed
-from tests.node.bridge.test_boards import ByteNode, UdpNode
-from tests.node.samples import read
+from tests.node.boards.test_boards import ByteNode, UdpNode
 from tests.verify.board.fakes import BOTH, STRING, LoopNode, described
 
 BOOL = BOTH[0]
@@ -165,20 +162,3 @@ def test_wrong_arguments(arguments, message, capsys):
         main(["verify", *arguments])
     assert left.value.code == 2
     assert message in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("lines", "message"),
-    [
-        ("subscribe:\n  /a: {type: std_msgs/msg/Bool}\n", "needs a publication of std_msgs/msg/Bo"),
-        ("publish:\n  /a: {type: std_msgs/msg/Bool}\n", "needs a subscription of std_msgs/msg/Bo"),
-        ("serve:\n  /a: {type: robot_msgs/srv/Calibrate}\n", "no services, and '/a' is one"),
-    ],
-)
-def test_the_accelerator_refuses_what_it_cannot_loop(lines, message):
-    text = "node: n\ndistro: jazzy\naccelerator: firm_hdl.node.loop:Loop\n"
-    with pytest.raises(DefinitionError) as caught:
-        load_accelerator(read(text + lines))
-    first, source, carets = str(caught.value).splitlines()
-    assert first.startswith("<description>:3:14: error: a loop ") and message in first
-    assert source == "accelerator: firm_hdl.node.loop:Loop" and carets.strip() == "^" * 23

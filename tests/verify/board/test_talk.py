@@ -2,107 +2,69 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import pytest
 
-from firm_hdl.node.frame import FLAG_START, HEADER_BYTES
-from firm_hdl.verify.board.talk import Talk, TalkError, _Window, room_for
+from firm_hdl.node import read_description_text
+from firm_hdl.node.frame import HEADER_BYTES
+from firm_hdl.verify.board.description import loop_text
+from firm_hdl.verify.board.talk import Talk
 from tests.node.bridge.fakes import FakeBoard
 from tests.verify.board.fakes import STRING, LoopNode, described
 
 ONE = described(STRING)
-(LOOP,) = ONE.loops()
-
-
-def node_of(*, link=(1 << 20, 99), came=(1 << 20, 99), back=(1 << 20, 99), kind="udp"):
-    """Return a description and a loop; each memory has a size in bytes, and a number of packets."""
-    stores = [SimpleNamespace(memory_bytes=size, packets=most) for size, most in (came, back)]
-    loop = tuple(SimpleNamespace(stores=[("", store)]) for store in stores)
-    found = SimpleNamespace(memory_bytes=link[0], packets=link[1], kind=kind)
-    return SimpleNamespace(link=found, bus_bytes=8), loop
-
+PACKET = b"\0\1\0\0\2\0\0\0a\0"
+"""It takes 16 bytes of a memory with beats of 8 bytes."""
 
 FOUR = 4 * (HEADER_BYTES + 16)
-"""Room for four packets of 9 to 16 bytes, so two may be under way."""
+"""Room for four such packets and their headers, so two may be under way."""
+
+
+class Counts(FakeBoard):
+    """Counts the messages that are under way at most."""
+
+    most = 0
+
+    def send(self, frames):
+        taken = super().send(frames)
+        self.most = max(self.most, len(self.coming))
+        return taken
 
 
 @pytest.mark.parametrize(
-    ("given", "most"),
+    ("line", "options", "most"),
     [
-        ({"link": (FOUR, 99)}, 2),
-        ({"link": (FOUR - 2, 99)}, 1),
-        ({"came": (FOUR, 99)}, 2),
-        ({"back": (FOUR, 99)}, 2),
-        ({"back": (FOUR - 2, 99)}, 1),
-        ({"link": (1 << 20, 6)}, 3),
-        ({"came": (1 << 20, 4)}, 2),
-        ({"back": (1 << 20, 5)}, 2),
+        ("link: {kind: udp}", f"{{kind: udp, memory_bytes: {FOUR}}}", 2),
+        ("link: {kind: udp}", "{kind: udp, packets: 7}", 3),
+        ("  /loopback/in/std_msgs/String:", f"{{type: {STRING}, memory_bytes: {FOUR}}}", 2),
+        ("  /loopback/out/std_msgs/String:", f"{{type: {STRING}, memory_bytes: {FOUR // 2}}}", 1),
+        ("  /loopback/out/std_msgs/String:", f"{{type: {STRING}, packets: 5}}", 2),
         # One is always sent.
-        ({"back": (1 << 20, 1)}, 1),
-        ({"link": (10, 99)}, 1),
+        ("  /loopback/in/std_msgs/String:", f"{{type: {STRING}, packets: 1}}", 1),
     ],
 )
-def test_half_of_the_least_memory_is_under_way(given, most):
-    window = _Window(*node_of(**given))
-    count = 0
-    while window.has_room(bytes(9)):
-        window.add(bytes(9), True)
-        count += 1
-    assert count == most and window.bytes == most * (HEADER_BYTES + 16)
-    # What came back makes room, however much more there is.
-    window.remove(1)
-    assert window.bytes == (most - 1) * (HEADER_BYTES + 16) and window.has_room(bytes(9))
-    window.remove(99)
-    assert window.bytes == 0
-
-
-def test_packets_that_do_not_come_back_are_removed_with_the_next_that_does():
-    window = _Window(*node_of(link=(FOUR, 99)))
-    for _ in range(3):
-        # Nothing would come back that makes room, so these are sent in any case.
-        assert window.has_room(bytes(16))
-        window.add(bytes(16), False)
-    window.add(bytes(16), True)
-    window.add(bytes(16), False)
-    window.add(bytes(16), True)
-    assert window.bytes == 6 * (HEADER_BYTES + 16) and not window.has_room(b"")
-    window.remove(1)
-    assert window.bytes == 2 * (HEADER_BYTES + 16)
-    window.remove(1)
-    assert window.bytes == 0
-
-
-def test_a_packet_has_to_fit_into_every_memory():
-    assert room_for(*node_of(came=(300, 9), back=(200, 9), link=(500, 9))) == 200
-    assert room_for(*node_of(came=(100, 9), back=(200, 9), link=(500, 9))) == 100
-    # A link that is no stream stores the header, too.
-    assert room_for(*node_of(link=(500, 9))) == 500 - HEADER_BYTES
-    assert room_for(*node_of(came=(600, 9), link=(500, 9), kind="stream")) == 600
-
-
-@pytest.fixture
-def talk():
-    with Talk(FakeBoard(LoopNode(ONE)), ONE, 0.3) as found:
-        found.open()
-        yield found
-
-
-def test_a_talk_closes_its_board():
-    board = FakeBoard(LoopNode(ONE))
-    closed = []
-    board.close = lambda: closed.append(True)
-    with Talk(board, ONE):
-        assert not closed
-    assert closed
-
-
-@pytest.mark.parametrize("bit", [0, 31, 32, 63])
-def test_every_bit_of_a_fingerprint_counts(bit):
-    node = LoopNode(ONE)
-    node.fingerprint ^= 1 << bit
-    with Talk(FakeBoard(node), ONE, 0.3) as talk, pytest.raises(TalkError, match="is another one"):
+def test_half_of_the_least_memory_is_under_way(line, options, most):
+    key = line.partition(":")[0]
+    lines = [
+        f"{key}: {options}" if each.startswith(f"{key}:") else each
+        for each in loop_text([STRING], "lyrical").splitlines()
+    ]
+    node = read_description_text("\n".join(lines))
+    board = Counts(LoopNode(node))
+    with Talk(board, node) as talk:
         talk.open()
+        board.most = 0
+        got = talk.exchange(node.loops()[0], [PACKET] * 9, [True] * 9)
+    assert got == [PACKET] * 9 and board.most == most
+
+
+def test_packets_that_do_not_come_back_hold_no_others():
+    cut = PACKET[:-1]
+    with Talk(FakeBoard(LoopNode(ONE)), ONE) as talk:
+        talk.open()
+        sent = [*[cut] * 40, PACKET, *[cut] * 3, PACKET]
+        assert (
+            talk.exchange(ONE.loops()[0], sent, [each is PACKET for each in sent]) == [PACKET] * 2
+        )
 
 
 def test_what_the_board_lost_before_does_not_count():
@@ -114,29 +76,17 @@ def test_what_the_board_lost_before_does_not_count():
         assert talk.losses() == {"overrun": 2}
 
 
-@pytest.mark.parametrize("waits", [False, True])
-def test_what_waits_to_be_sent_is_sent_as_soon_as_there_is_room(waits):
+def test_what_waits_to_be_sent_is_sent_as_soon_as_there_is_room():
     flushed = []
 
     class Busy(FakeBoard):
-        """A board that has frames to send, or none."""
+        """A board that has frames to send."""
 
-        waits_to_send = waits
+        waits_to_send = True
 
         def flush(self):
             flushed.append(True)
 
     with Talk(Busy(LoopNode(ONE)), ONE, 0.3) as talk:
         talk.open()
-    assert bool(flushed) is waits
-
-
-def test_only_the_first_requests_begin_a_sequence():
-    sent = []
-    board = FakeBoard(LoopNode(ONE), loses=lambda frame: sent.append(frame[1]))
-    with Talk(board, ONE, 0.3) as talk:
-        talk.open()
-        at = len(sent)
-        talk.read([16, 17])
-    assert any(flags & FLAG_START for flags in sent[:at])
-    assert not any(flags & FLAG_START for flags in sent[at:])
+    assert flushed

@@ -28,6 +28,8 @@ class _Worked(Oracle):
     family: ClassVar[str]
     judge_name: ClassVar[str]
     """The name that the worker has for the oracle."""
+    packages: ClassVar[str]
+    """The packages of Debian that have the oracle."""
     release: ClassVar[Release | None] = None
     """The release whose environment has the oracle; `None`: the system has it."""
 
@@ -37,9 +39,10 @@ class _Worked(Oracle):
 
     def missing(self) -> str | None:
         why = self._worker.missing
-        if self.release is None or why is None:
-            return why
-        return f"{why} {self.release.how}"
+        if why is None:
+            return None
+        how = f"(Debian, Ubuntu: apt install {self.packages})"
+        return f"{why} {how if self.release is None else self.release.how}"
 
     def version(self) -> str:
         return self._worker.versions.get(self.judge_name, "")
@@ -91,6 +94,7 @@ class Genmsg(_Worked):
 
     name = judge_name = "genmsg"
     family = "genmsg"
+    packages = "python3-genmsg python3-rosmsg"
     languages: ClassVar = {"ros1": frozenset({"msg", "srv", "action"})}
 
 
@@ -102,6 +106,7 @@ class RosidlAdapter(_Worked):
 
     name = judge_name = "rosidl_adapter"
     family = "rosidl"
+    packages = "python3-rosidl python3-empy"
     languages: ClassVar = {"ros2": frozenset({"msg", "srv", "action"})}
 
 
@@ -114,6 +119,7 @@ class RosidlParser(_Worked):
 
     name = judge_name = "rosidl_parser"
     family = "rosidl"
+    packages = "python3-rosidl"
     languages: ClassVar = {"ros2": frozenset({"msg", "srv", "action", "idl"})}
 
     def alike(self, case: DefinitionCase) -> Mapping[str, str]:

@@ -2,6 +2,1371 @@
 -- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
+-- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.buffer of the Amaranth design.
+-- 11 registers at rising_edge(aclk), synchronous reset rst = '1'.
+-- 1 register at rising_edge(aclk), no reset.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.firm_hdl_pkg.all;
+
+entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer is
+  port (
+    rst             : in  std_logic;
+    aclk            : in  std_logic;
+    packets_valid   : in  std_logic;
+    next_sig        : in  std_logic;
+    freed           : in  unsigned(3 downto 0);
+    packets_payload : in  unsigned(68 downto 0);
+    beat            : out unsigned(73 downto 0);
+    packets_ready   : out std_logic;
+    limit_sig       : out unsigned(6 downto 0);
+    following       : out unsigned(3 downto 0);
+    ended           : out std_logic
+  );
+end entity;
+
+architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer is
+
+  -- Registers.
+  signal packets_ready_q : std_logic := '1';
+  signal limit_sig_q     : unsigned(6 downto 0) := (others => '0');
+  signal following_q     : unsigned(3 downto 0) := (others => '0');
+  signal ended_q         : std_logic := '0';
+  signal full            : std_logic := '0';
+  signal payload         : unsigned(68 downto 0) := (others => '0');
+  signal arrived         : unsigned(3 downto 0) := (others => '0');
+  signal at              : unsigned(3 downto 0) := (others => '0');
+  signal second          : unsigned(10 downto 0) := (others => '0');
+  signal has_second      : std_logic := '0';
+  signal pushed          : unsigned(3 downto 0) := (others => '0');
+  signal popped          : unsigned(3 downto 0) := (others => '0');
+
+  -- Combinational signals.
+  signal arrives        : std_logic;
+  signal used           : unsigned(3 downto 0);
+  signal next_beat      : unsigned(3 downto 0);
+  signal ends_now       : std_logic;
+  signal add_3          : unsigned(6 downto 0);
+  signal newest_0       : unsigned(6 downto 0);
+  signal stored         : std_logic;
+  signal more           : std_logic;
+  signal follows        : std_logic;
+  signal or_14          : std_logic;
+  signal mux_15         : unsigned(10 downto 0);
+  signal mux_22         : std_logic;
+  signal ends_read_data : unsigned(10 downto 0);
+
+  -- Signals that no logic reads, for simulation.
+  signal room            : std_logic;
+  signal ends_write_addr : unsigned(2 downto 0);
+  signal ends_write_data : unsigned(10 downto 0);
+  signal ends_write_en   : std_logic;
+  signal ends_read_addr  : unsigned(2 downto 0);
+  signal end_sig         : unsigned(10 downto 0);
+  signal newest          : unsigned(10 downto 0);
+
+  type ends_array is array (0 to 7) of unsigned(10 downto 0);
+  signal ends : ends_array := (others => (others => '0'));
+begin
+
+  arrives <= packets_valid and packets_ready_q;
+  used <= arrived - freed;
+  next_beat <= at + 1;
+  ends_now <= full and payload(68);
+  add_3 <= unsigned'(at & "000") + payload(67 downto 64);
+  newest_0 <= add_3 when ends_now = '1' else mux(full, next_beat, at) & "000";
+  stored <= '1' when pushed /= popped else '0';
+  more <= stored or ends_now;
+  follows <= ended_q and ends_now;
+  or_14 <= next_sig or not ended_q;
+  mux_15 <= second when has_second = '1' else next_beat & newest_0;
+  mux_22 <= not next_sig or more when has_second = '1' else not next_sig and follows;
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      ends(to_integer(pushed(2 downto 0))) <= next_beat & add_3;
+    end if;
+  end process;
+
+  ends_read_data <= ends(to_integer(popped(2 downto 0)));
+
+  p_aclk : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if rst = '1' then
+        full <= '0';
+        arrived <= (others => '0');
+        at <= (others => '0');
+        packets_ready_q <= '1';
+        limit_sig_q <= (others => '0');
+        following_q <= (others => '0');
+        ended_q <= '0';
+        second <= (others => '0');
+        has_second <= '0';
+        pushed <= (others => '0');
+        popped <= (others => '0');
+      else
+        full <= arrives;
+        arrived <= arrived + arrives;
+        at <= at + full;
+        packets_ready_q <= not used(3) and not (to_std_logic(used = 7) and arrives);
+        if or_14 = '1' then
+          limit_sig_q <= mux_15(6 downto 0);
+          following_q <= mux_15(10 downto 7);
+          ended_q <= has_second or ends_now;
+        end if;
+        if next_sig = '1' or has_second = '0' then
+          if stored = '1' then
+            second <= ends_read_data;
+          else
+            second <= next_beat & add_3;
+          end if;
+        end if;
+        has_second <= mux_22;
+        if has_second = '1' and ends_now = '1' then
+          pushed <= pushed + 1;
+        end if;
+        if next_sig = '1' and has_second = '1' and more = '1' then
+          popped <= popped + 1;
+        end if;
+      end if;
+    end if;
+  end process;
+
+  p_aclk_2 : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      payload <= packets_payload;
+    end if;
+  end process;
+
+  beat <= full & at & payload;
+
+  packets_ready <= packets_ready_q;
+  limit_sig <= limit_sig_q;
+  following <= following_q;
+  ended <= ended_q;
+
+  room <= packets_ready_q;
+  ends_write_addr <= pushed(2 downto 0);
+  ends_write_data <= next_beat & add_3;
+  ends_write_en <= '1';
+  ends_read_addr <= popped(2 downto 0);
+  end_sig <= next_beat & add_3;
+  newest <= next_beat & newest_0;
+
+end architecture;
+
+-- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.sequencer.marks of the Amaranth design.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.firm_hdl_pkg.all;
+
+entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_marks is
+  port (
+    rst       : in  std_logic;
+    aclk      : in  std_logic;
+    mismatch  : out std_logic;
+    beat      : in  unsigned(73 downto 0);
+    header_at : in  unsigned(3 downto 0)
+  );
+end entity;
+
+architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_marks is
+
+  -- Combinational signals.
+  signal headers_write_data : std_logic;
+
+  -- Signals that no logic reads, for simulation.
+  signal headers_write_addr : unsigned(2 downto 0);
+  signal headers_write_en   : std_logic;
+  signal headers_read_addr  : unsigned(2 downto 0);
+  signal headers_read_data  : std_logic;
+
+  type headers_array is array (0 to 7) of unsigned(0 downto 0);
+  signal headers : headers_array := (others => (others => '0'));
+begin
+
+  headers_write_data <= or unsigned'((to_std_logic(beat(15 downto 8) /= 1) and (not beat(68) or
+      to_std_logic(beat(67 downto 64) > 1))) & (to_std_logic(beat(7 downto 0) /= 0) and
+      (not beat(68) or to_std_logic(beat(67 downto 64) > 0))));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if beat(73) = '1' then
+        headers(to_integer(beat(71 downto 69))) <= (0 => headers_write_data);
+      end if;
+    end if;
+  end process;
+
+  mismatch <= headers(to_integer(header_at(2 downto 0)))(0);
+
+  headers_write_addr <= beat(71 downto 69);
+  headers_write_en <= beat(73);
+  headers_read_addr <= header_at(2 downto 0);
+  headers_read_data <= mismatch;
+
+end architecture;
+
+-- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.sequencer of the Amaranth design.
+-- 16 registers at rising_edge(aclk), synchronous reset rst = '1'.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.firm_hdl_pkg.all;
+
+entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer is
+  port (
+    rst            : in  std_logic;
+    aclk           : in  std_logic;
+    orders_valid   : out std_logic;
+    next_sig       : out std_logic;
+    orders_ready   : in  std_logic;
+    beat           : in  unsigned(73 downto 0);
+    limit_sig      : in  unsigned(6 downto 0);
+    following      : in  unsigned(3 downto 0);
+    ended          : in  std_logic;
+    orders_payload : out unsigned(41 downto 0);
+    header_at      : out unsigned(3 downto 0)
+  );
+end entity;
+
+architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer is
+
+  -- Registers.
+  signal bad          : std_logic := '0';
+  signal new_error    : std_logic := '0';
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal code         : unsigned(2 downto 0) := (others => '0');
+  signal items_room   : unsigned(3 downto 0) := (others => '0');
+  signal map_room     : unsigned(3 downto 0) := (others => '0');
+  signal words_last   : std_logic := '1';
+  signal words_less   : std_logic := '0';
+  signal step         : unsigned(6 downto 0) := "0000001";
+  signal map_offset   : unsigned(4 downto 0) := "11001";
+  signal two_word_map : std_logic := '0';
+  signal at_end       : std_logic := '0';
+  signal exit_add     : unsigned(5 downto 0) := "001000";
+  signal rest         : std_logic := '0';
+  signal has_nul      : std_logic := '0';
+  signal first_at     : unsigned(6 downto 0) := (others => '0');
+  signal last_at      : unsigned(6 downto 0) := "0000111";
+
+  -- Combinational signals.
+  signal mismatch_36  : std_logic;
+  signal step_end     : unsigned(6 downto 0);
+  signal left         : unsigned(6 downto 0);
+  signal present      : std_logic;
+  signal ends_message : std_logic;
+  signal ends_packet  : std_logic;
+  signal map_at       : unsigned(6 downto 0);
+  signal sub_12       : unsigned(3 downto 0);
+  signal trailing_34  : std_logic;
+  signal mismatch     : std_logic;
+  signal good         : std_logic;
+  signal cut          : std_logic;
+  signal sub_39       : unsigned(5 downto 0);
+  signal or_83        : unsigned(5 downto 0);
+  signal map_left     : unsigned(6 downto 0);
+  signal drains       : std_logic;
+  signal allowed      : std_logic;
+  signal issue        : std_logic;
+  signal step_to_exit : std_logic;
+  signal exit_sum     : unsigned(6 downto 0);
+  signal early_last   : unsigned(6 downto 0);
+  signal mux_194      : unsigned(2 downto 0);
+  signal and_195      : std_logic;
+  signal mux_210      : unsigned(3 downto 0);
+  signal mux_215      : unsigned(3 downto 0);
+  signal mux_222      : unsigned(3 downto 0);
+  signal mux_278      : unsigned(6 downto 0);
+
+  -- Signals that no logic reads, for simulation.
+  signal default_0     : std_logic;
+  signal default_1     : std_logic;
+  signal default_2     : std_logic;
+  signal default_3     : std_logic;
+  signal default_4     : std_logic;
+  signal default_5     : std_logic;
+  signal trailing      : unsigned(1 downto 0);
+  signal items_at      : unsigned(6 downto 0);
+  signal nul_at        : unsigned(6 downto 0);
+  signal nul_at_28     : unsigned(6 downto 0);
+  signal nonzero       : std_logic;
+  signal nul_within    : unsigned(6 downto 0);
+  signal oldest        : unsigned(3 downto 0);
+  signal words_loads   : std_logic;
+  signal next_packet   : unsigned(6 downto 0);
+  signal tail          : unsigned(5 downto 0);
+  signal to_exit_low   : unsigned(6 downto 0);
+  signal body_sum      : unsigned(6 downto 0);
+  signal to_body_mask  : unsigned(2 downto 0);
+  signal to_body_low   : unsigned(6 downto 0);
+  signal exits_always  : std_logic;
+  signal done          : std_logic;
+  signal wrong_nul     : std_logic;
+  signal begins        : std_logic;
+  signal items_wanted  : unsigned(3 downto 0);
+  signal step_to_body  : std_logic;
+  signal words_down    : std_logic;
+  signal words_keeps   : std_logic;
+  signal to_exit_rest  : std_logic;
+  signal exit_amount   : unsigned(5 downto 0);
+  signal to_exit_mask  : unsigned(2 downto 0);
+  signal to_body_rest  : std_logic;
+  signal body_amount   : unsigned(5 downto 0);
+  signal next_last     : unsigned(6 downto 0);
+  signal words_pending : std_logic;
+  signal words_value   : unsigned(2 downto 0);
+begin
+
+  marks : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_marks
+    port map (
+      aclk      => aclk,
+      rst       => rst,
+      mismatch  => mismatch_36,
+      beat      => beat,
+      header_at => first_at(6 downto 3)
+    );
+
+  step_end <= last_at + 1;
+  left <= limit_sig + not last_at;
+  present <= not left(6);
+  ends_message <= at_end or step(5);
+  ends_packet <= ends_message and ended;
+  map_at <= last_at + sign_extend(map_offset, 7);
+  sub_12 <= map_at(6 downto 3) - two_word_map;
+  trailing_34 <= present and (or left(5 downto 2));
+  mismatch <= '1' when step(0) = '1' and mismatch_36 = '1' and limit_sig /= first_at else '0';
+  good <= present and not (step(0) and mismatch_36);
+  cut <= ended and not present;
+  sub_39 <= unsigned'("000001") - sign_extend(map_offset, 6);
+  or_83 <= (limit_sig(5 downto 0) and not last_at(5 downto 0)) or (limit_sig(5 downto 0) and
+      unsigned'("000001") - sign_extend(map_offset, 6)) or (not last_at(5 downto 0) and
+      unsigned'("000001") - sign_extend(map_offset, 6));
+  map_left <= (limit_sig xor not last_at xor unsigned'(sub_39(5) &
+      (unsigned'("000001") - sign_extend(map_offset, 6)))) + unsigned'(or_83 & '0');
+  drains <= bad and not new_error and (not at_end or ended);
+  allowed <= not bad and (not ends_message or ended);
+  orders_valid <= drains or (allowed and good);
+  issue <= (drains and orders_ready) or (allowed and orders_ready and good);
+  next_sig <= (drains and orders_ready and ends_packet) or (allowed and orders_ready and
+      ends_packet and good);
+  step_to_exit <= issue and not ends_packet;
+  exit_sum <= last_at + exit_add;
+  early_last <= unsigned'(following & "000") + 7 when ends_packet = '1' else exit_sum;
+  mux_194 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends_message, "010", "011"));
+  and_195 <= drains and orders_ready;
+  mux_210 <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0), "000"), 4),
+      "1000") when two_word_map = '1' else mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8),
+      "1000", map_left(3 downto 0)));
+  mux_215 <= mux_210 when code = 1 else mux(to_std_logic(code = 2) or to_std_logic(code = 5),
+      "1000", "0000");
+  mux_222 <= mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8), "1000",
+      map_left(3 downto 0))) when code = 1 else mux(to_std_logic(code = 2), "1000", "0000");
+  mux_278 <= following & "000" when ends_packet = '1' else mux(bad, mux(at_end, limit_sig,
+      first_at), step_end);
+
+  p_aclk : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if rst = '1' then
+        bad <= '0';
+        new_error <= '0';
+        code <= (others => '0');
+        items_room <= (others => '0');
+        map_room <= (others => '0');
+        words_last <= '1';
+        words_less <= '0';
+        step <= "0000001";
+        map_offset <= "11001";
+        two_word_map <= '0';
+        at_end <= '0';
+        exit_add <= "001000";
+        rest <= '0';
+        has_nul <= '0';
+        first_at <= (others => '0');
+        last_at <= "0000111";
+      else
+        if issue = '1' and ends_packet = '1' then
+          bad <= '0';
+        elsif bad = '0' then
+          bad <= mismatch or cut or (ends_message and not ended and trailing_34);
+        end if;
+        if bad = '0' then
+          new_error <= mismatch or cut or (ends_message and not ended and trailing_34);
+          code <= mux_194;
+        end if;
+        if bad = '1' then
+          new_error <= '0';
+          if new_error = '1' then
+            items_room <= mux_215;
+            map_room <= mux_222;
+          elsif and_195 = '1' then
+            items_room <= (others => '0');
+            map_room <= (others => '0');
+          end if;
+        end if;
+        words_last <= words_last;
+        words_less <= words_less;
+        if issue = '1' then
+          if ends_packet = '1' then
+            step <= "0000001";
+            map_offset <= "11001";
+            two_word_map <= '0';
+            at_end <= '0';
+            exit_add <= "001000";
+          else
+            step <= step(5 downto 0) & '0';
+            map_offset <= (or step(4 downto 0)) & (or step(4 downto 0)) & step(4) & '0' &
+                (or step(5 downto 0));
+            two_word_map <= step(4);
+            at_end <= step(5);
+            exit_add <= resize(unsigned'((or step(3 downto 0)) & step(3) & "00"), 6);
+          end if;
+          if ends_packet = '1' then
+            rest <= '0';
+            has_nul <= '0';
+          end if;
+          last_at <= early_last;
+        end if;
+        if issue = '1' or (bad = '1' and at_end = '1') then
+          first_at <= mux_278;
+        end if;
+      end if;
+    end if;
+  end process;
+
+  header_at <= first_at(6 downto 3);
+  orders_payload <= mux(bad, code, mux(trailing_34, "010", "000")) & ends_packet &
+      first_at(6 downto 3) & '0' & not bad & words_last & '0' & mux(bad, map_room, "1000") &
+      mux(bad and not to_std_logic(items_room >= 8), items_room, "1000") &
+      (map_at(5 downto 3) + 1) & (sub_12(2 downto 0) + 1) & map_at(5 downto 0) &
+      sub_12(2 downto 0) & map_at(2 downto 0) & at_end & (or step(5 downto 4)) &
+      (or step(3 downto 2)) & (or unsigned'(step(5) & step(3) & step(1)));
+
+  default_0 <= step(0);
+  default_1 <= step(1);
+  default_2 <= step(2);
+  default_3 <= step(3);
+  default_4 <= step(4);
+  default_5 <= step(5);
+  trailing <= left(1 downto 0);
+  items_at <= sub_12 & map_at(2 downto 0);
+  nul_at <= (others => '0');
+  nul_at_28 <= (others => '0');
+  nonzero <= '0';
+  nul_within <= limit_sig;
+  oldest <= first_at(6 downto 3);
+  words_loads <= '0';
+  next_packet <= following & "000";
+  tail <= (others => '0');
+  to_exit_low <= (others => '0');
+  body_sum <= last_at;
+  to_body_mask <= (others => '0');
+  to_body_low <= (others => '0');
+  exits_always <= '1';
+  done <= '1';
+  wrong_nul <= '0';
+  begins <= '0';
+  items_wanted <= "1000";
+  step_to_body <= '0';
+  words_down <= '0';
+  words_keeps <= '1';
+  to_exit_rest <= '0';
+  exit_amount <= exit_add;
+  to_exit_mask <= (others => '0');
+  to_body_rest <= '0';
+  body_amount <= (others => '0');
+  next_last <= early_last;
+  words_pending <= '0';
+  words_value <= (others => '0');
+
+end architecture;
+
+-- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.queue of the Amaranth design.
+-- 3 registers at rising_edge(aclk), synchronous reset rst = '1'.
+-- 1 register at rising_edge(aclk), no reset.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.firm_hdl_pkg.all;
+
+entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_queue is
+  port (
+    rst       : in  std_logic;
+    aclk      : in  std_logic;
+    i_valid   : in  std_logic;
+    i_ready   : out std_logic;
+    freed     : out unsigned(3 downto 0);
+    o_ready   : in  std_logic;
+    i_payload : in  unsigned(41 downto 0);
+    oldest    : in  unsigned(3 downto 0);
+    o_valid   : out std_logic;
+    o_payload : out unsigned(41 downto 0)
+  );
+end entity;
+
+architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_queue is
+
+  -- Registers.
+  signal o_valid_q   : std_logic := '0';
+  signal o_payload_q : unsigned(41 downto 0) := (others => '0');
+  signal has_second  : std_logic := '0';
+  signal second      : unsigned(41 downto 0) := (others => '0');
+begin
+
+  i_ready <= not has_second;
+  freed <= o_payload_q(37 downto 34) when o_valid_q = '1' else mux(has_second, second(37 downto 34),
+      oldest);
+
+  p_aclk : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if rst = '1' then
+        o_valid_q <= '0';
+        o_payload_q <= (others => '0');
+        has_second <= '0';
+      else
+        if o_ready = '1' then
+          o_valid_q <= i_valid or has_second;
+          if has_second = '1' then
+            o_payload_q <= second;
+          else
+            o_payload_q <= i_payload;
+          end if;
+        end if;
+        if o_ready = '1' then
+          has_second <= '0';
+        elsif i_valid = '1' then
+          has_second <= '1';
+        end if;
+      end if;
+    end if;
+  end process;
+
+  p_aclk_2 : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if has_second = '0' then
+        second <= i_payload;
+      end if;
+    end if;
+  end process;
+
+  o_valid <= o_valid_q;
+  o_payload <= o_payload_q;
+
+end architecture;
+
+-- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.mover of the Amaranth design.
+-- 25 registers at rising_edge(aclk), synchronous reset rst = '1'.
+-- 11 registers at rising_edge(aclk), no reset.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.firm_hdl_pkg.all;
+
+entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover is
+  port (
+    rst                       : in  std_logic;
+    aclk                      : in  std_logic;
+    message_linear_x_ready    : in  std_logic;
+    message_linear_y_ready    : in  std_logic;
+    message_linear_z_ready    : in  std_logic;
+    message_angular_x_ready   : in  std_logic;
+    message_angular_y_ready   : in  std_logic;
+    message_angular_z_ready   : in  std_logic;
+    status_ready              : in  std_logic;
+    orders_ready              : out std_logic;
+    beat                      : in  unsigned(73 downto 0);
+    orders_valid              : in  std_logic;
+    orders_payload            : in  unsigned(41 downto 0);
+    message_linear_x_valid    : out std_logic;
+    message_linear_y_valid    : out std_logic;
+    message_linear_z_valid    : out std_logic;
+    message_angular_x_valid   : out std_logic;
+    message_angular_y_valid   : out std_logic;
+    message_angular_z_valid   : out std_logic;
+    status_valid              : out std_logic;
+    -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+    status_payload            : out unsigned(2 downto 0);
+    message_linear_x_payload  : out unsigned(63 downto 0);
+    message_linear_y_payload  : out unsigned(63 downto 0);
+    message_linear_z_payload  : out unsigned(63 downto 0);
+    message_angular_x_payload : out unsigned(63 downto 0);
+    message_angular_y_payload : out unsigned(63 downto 0);
+    message_angular_z_payload : out unsigned(63 downto 0)
+  );
+end entity;
+
+architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover is
+
+  -- Registers.
+  signal message_linear_x_valid_q    : std_logic := '0';
+  signal message_linear_y_valid_q    : std_logic := '0';
+  signal message_linear_z_valid_q    : std_logic := '0';
+  signal message_angular_x_valid_q   : std_logic := '0';
+  signal message_angular_y_valid_q   : std_logic := '0';
+  signal message_angular_z_valid_q   : std_logic := '0';
+  signal status_valid_q              : std_logic := '0';
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal status_payload_q            : unsigned(2 downto 0) := (others => '0');
+  signal message_linear_x_payload_q  : unsigned(63 downto 0) := (others => '0');
+  signal message_linear_y_payload_q  : unsigned(63 downto 0) := (others => '0');
+  signal message_linear_z_payload_q  : unsigned(63 downto 0) := (others => '0');
+  signal message_angular_x_payload_q : unsigned(63 downto 0) := (others => '0');
+  signal message_angular_y_payload_q : unsigned(63 downto 0) := (others => '0');
+  signal message_angular_z_payload_q : unsigned(63 downto 0) := (others => '0');
+  signal items_word                  : unsigned(63 downto 0) := (others => '0');
+  signal items_good                  : unsigned(7 downto 0) := (others => '0');
+  signal map_word                    : unsigned(63 downto 0) := (others => '0');
+  signal map_good                    : unsigned(7 downto 0) := (others => '0');
+  signal length_good_now             : std_logic := '0';
+  signal last_now                    : std_logic := '0';
+  signal final_now                   : std_logic := '0';
+  signal active_0                    : std_logic := '0';
+  signal active_1                    : std_logic := '0';
+  signal active_2                    : std_logic := '0';
+  signal active_3                    : std_logic := '0';
+  signal active_4                    : std_logic := '0';
+  signal active_5                    : std_logic := '0';
+  signal slow                        : std_logic := '0';
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal status_now                  : unsigned(2 downto 0) := (others => '0');
+  signal ends_now                    : std_logic := '0';
+  signal cut_0                       : std_logic := '0';
+  signal carried                     : unsigned(31 downto 0) := (others => '0');
+  signal cut_1                       : std_logic := '0';
+  signal cut_2                       : std_logic := '0';
+  signal cut_3                       : std_logic := '0';
+  signal cut_4                       : std_logic := '0';
+
+  -- Combinational signals.
+  signal go_0              : std_logic;
+  signal blocked_0         : std_logic;
+  signal go_1              : std_logic;
+  signal blocked_1         : std_logic;
+  signal go_2              : std_logic;
+  signal blocked_2         : std_logic;
+  signal go_3              : std_logic;
+  signal blocked_3         : std_logic;
+  signal go_4              : std_logic;
+  signal blocked_4         : std_logic;
+  signal go_5              : std_logic;
+  signal blocked_5         : std_logic;
+  signal mux_44            : std_logic;
+  signal mux_51            : std_logic;
+  signal mux_58            : std_logic;
+  signal mux_65            : std_logic;
+  signal mux_72            : std_logic;
+  signal mux_79            : std_logic;
+  signal or_126            : std_logic;
+  signal or_142            : std_logic;
+  signal lane_0_items_data : unsigned(7 downto 0);
+  signal lane_0_map_data   : unsigned(7 downto 0);
+  signal lane_1_items_data : unsigned(7 downto 0);
+  signal lane_1_map_data   : unsigned(7 downto 0);
+  signal lane_2_items_data : unsigned(7 downto 0);
+  signal lane_2_map_data   : unsigned(7 downto 0);
+  signal lane_3_items_data : unsigned(7 downto 0);
+  signal lane_3_map_data   : unsigned(7 downto 0);
+  signal lane_4_items_data : unsigned(7 downto 0);
+  signal lane_4_map_data   : unsigned(7 downto 0);
+  signal lane_5_items_data : unsigned(7 downto 0);
+  signal lane_5_map_data   : unsigned(7 downto 0);
+  signal lane_6_items_data : unsigned(7 downto 0);
+  signal lane_6_map_data   : unsigned(7 downto 0);
+  signal lane_7_items_data : unsigned(7 downto 0);
+  signal lane_7_map_data   : unsigned(7 downto 0);
+
+  -- Signals that no logic reads, for simulation.
+  signal take              : std_logic;
+  signal payload_0         : unsigned(63 downto 0);
+  signal payload_1         : unsigned(63 downto 0);
+  signal payload_2         : unsigned(63 downto 0);
+  signal payload_3         : unsigned(63 downto 0);
+  signal payload_4         : unsigned(63 downto 0);
+  signal payload_5         : unsigned(63 downto 0);
+  signal lane_0_write_addr : unsigned(2 downto 0);
+  signal lane_0_write_data : unsigned(7 downto 0);
+  signal lane_0_write_en   : std_logic;
+  signal lane_0_items_addr : unsigned(2 downto 0);
+  signal lane_0_map_addr   : unsigned(2 downto 0);
+  signal lane_1_write_addr : unsigned(2 downto 0);
+  signal lane_1_write_data : unsigned(7 downto 0);
+  signal lane_1_write_en   : std_logic;
+  signal lane_1_items_addr : unsigned(2 downto 0);
+  signal lane_1_map_addr   : unsigned(2 downto 0);
+  signal lane_2_write_addr : unsigned(2 downto 0);
+  signal lane_2_write_data : unsigned(7 downto 0);
+  signal lane_2_write_en   : std_logic;
+  signal lane_2_items_addr : unsigned(2 downto 0);
+  signal lane_2_map_addr   : unsigned(2 downto 0);
+  signal lane_3_write_addr : unsigned(2 downto 0);
+  signal lane_3_write_data : unsigned(7 downto 0);
+  signal lane_3_write_en   : std_logic;
+  signal lane_3_items_addr : unsigned(2 downto 0);
+  signal lane_3_map_addr   : unsigned(2 downto 0);
+  signal lane_4_write_addr : unsigned(2 downto 0);
+  signal lane_4_write_data : unsigned(7 downto 0);
+  signal lane_4_write_en   : std_logic;
+  signal lane_4_items_addr : unsigned(2 downto 0);
+  signal lane_4_map_addr   : unsigned(2 downto 0);
+  signal lane_5_write_addr : unsigned(2 downto 0);
+  signal lane_5_write_data : unsigned(7 downto 0);
+  signal lane_5_write_en   : std_logic;
+  signal lane_5_items_addr : unsigned(2 downto 0);
+  signal lane_5_map_addr   : unsigned(2 downto 0);
+  signal lane_6_write_addr : unsigned(2 downto 0);
+  signal lane_6_write_data : unsigned(7 downto 0);
+  signal lane_6_write_en   : std_logic;
+  signal lane_6_items_addr : unsigned(2 downto 0);
+  signal lane_6_map_addr   : unsigned(2 downto 0);
+  signal lane_7_write_addr : unsigned(2 downto 0);
+  signal lane_7_write_data : unsigned(7 downto 0);
+  signal lane_7_write_en   : std_logic;
+  signal lane_7_items_addr : unsigned(2 downto 0);
+  signal lane_7_map_addr   : unsigned(2 downto 0);
+
+  type lane_0_array is array (0 to 7) of unsigned(7 downto 0);
+  signal lane_0 : lane_0_array := (others => (others => '0'));
+
+  type lane_1_array is array (0 to 7) of unsigned(7 downto 0);
+  signal lane_1 : lane_1_array := (others => (others => '0'));
+
+  type lane_2_array is array (0 to 7) of unsigned(7 downto 0);
+  signal lane_2 : lane_2_array := (others => (others => '0'));
+
+  type lane_3_array is array (0 to 7) of unsigned(7 downto 0);
+  signal lane_3 : lane_3_array := (others => (others => '0'));
+
+  type lane_4_array is array (0 to 7) of unsigned(7 downto 0);
+  signal lane_4 : lane_4_array := (others => (others => '0'));
+
+  type lane_5_array is array (0 to 7) of unsigned(7 downto 0);
+  signal lane_5 : lane_5_array := (others => (others => '0'));
+
+  type lane_6_array is array (0 to 7) of unsigned(7 downto 0);
+  signal lane_6 : lane_6_array := (others => (others => '0'));
+
+  type lane_7_array is array (0 to 7) of unsigned(7 downto 0);
+  signal lane_7 : lane_7_array := (others => (others => '0'));
+begin
+
+  go_0 <= active_0 and not blocked_0;
+  blocked_0 <= active_0 and message_linear_x_valid_q;
+  go_1 <= active_1 and not blocked_1;
+  blocked_1 <= active_1 and message_linear_y_valid_q;
+  go_2 <= active_2 and not blocked_2;
+  blocked_2 <= active_2 and message_linear_z_valid_q;
+  go_3 <= active_3 and not blocked_3;
+  blocked_3 <= active_3 and message_angular_x_valid_q;
+  go_4 <= active_4 and not blocked_4;
+  blocked_4 <= active_4 and message_angular_y_valid_q;
+  go_5 <= active_5 and not blocked_5 and not blocked_4;
+  blocked_5 <= active_5 and message_angular_z_valid_q;
+  orders_ready <= not slow;
+  mux_44 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      1) when orders_ready = '1' else active_0 and not go_0;
+  mux_51 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      2) when orders_ready = '1' else active_1 and not go_1;
+  mux_58 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      3) when orders_ready = '1' else active_2 and not go_2;
+  mux_65 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      4) when orders_ready = '1' else active_3 and not go_3;
+  mux_72 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      5) when orders_ready = '1' else active_4 and not go_4;
+  mux_79 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
+      5) when orders_ready = '1' else active_5 and not go_5;
+  or_126 <= or unsigned'((orders_valid and orders_payload(38) and status_valid_q and
+      not status_ready) & (orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 5) and message_angular_z_valid_q and
+      not message_angular_z_ready) & (orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 5) and message_angular_y_valid_q and
+      not message_angular_y_ready) & (orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 4) and message_angular_x_valid_q and
+      not message_angular_x_ready) & (orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 3) and message_linear_z_valid_q and
+      not message_linear_z_ready) & (orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 2) and message_linear_y_valid_q and
+      not message_linear_y_ready) & (orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 1) and message_linear_x_valid_q and
+      not message_linear_x_ready));
+  or_142 <= or unsigned'((ends_now and status_valid_q and not status_ready) & (blocked_5 and
+      not message_angular_z_ready) & (blocked_4 and not message_angular_y_ready) & (blocked_3 and
+      not message_angular_x_ready) & (blocked_2 and not message_linear_z_ready) & (blocked_1 and
+      not message_linear_y_ready) & (blocked_0 and not message_linear_x_ready));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if beat(73) = '1' then
+        lane_0(to_integer(beat(71 downto 69))) <= beat(7 downto 0);
+      end if;
+    end if;
+  end process;
+
+  lane_0_items_data <= lane_0(to_integer(orders_payload(9 downto 7)));
+
+  lane_0_map_data <= lane_0(to_integer(orders_payload(15 downto 13)));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if beat(73) = '1' then
+        lane_1(to_integer(beat(71 downto 69))) <= beat(15 downto 8);
+      end if;
+    end if;
+  end process;
+
+  lane_1_items_data <= lane_1(to_integer(orders_payload(9 downto 7)));
+
+  lane_1_map_data <= lane_1(to_integer(orders_payload(15 downto 13)));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if beat(73) = '1' then
+        lane_2(to_integer(beat(71 downto 69))) <= beat(23 downto 16);
+      end if;
+    end if;
+  end process;
+
+  lane_2_items_data <= lane_2(to_integer(orders_payload(9 downto 7)));
+
+  lane_2_map_data <= lane_2(to_integer(orders_payload(15 downto 13)));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if beat(73) = '1' then
+        lane_3(to_integer(beat(71 downto 69))) <= beat(31 downto 24);
+      end if;
+    end if;
+  end process;
+
+  lane_3_items_data <= lane_3(to_integer(orders_payload(9 downto 7)));
+
+  lane_3_map_data <= lane_3(to_integer(orders_payload(15 downto 13)));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if beat(73) = '1' then
+        lane_4(to_integer(beat(71 downto 69))) <= beat(39 downto 32);
+      end if;
+    end if;
+  end process;
+
+  lane_4_items_data <= lane_4(to_integer(orders_payload(9 downto 7)));
+
+  lane_4_map_data <= lane_4(to_integer(orders_payload(15 downto 13)));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if beat(73) = '1' then
+        lane_5(to_integer(beat(71 downto 69))) <= beat(47 downto 40);
+      end if;
+    end if;
+  end process;
+
+  lane_5_items_data <= lane_5(to_integer(orders_payload(9 downto 7)));
+
+  lane_5_map_data <= lane_5(to_integer(orders_payload(15 downto 13)));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if beat(73) = '1' then
+        lane_6(to_integer(beat(71 downto 69))) <= beat(55 downto 48);
+      end if;
+    end if;
+  end process;
+
+  lane_6_items_data <= lane_6(to_integer(orders_payload(9 downto 7)));
+
+  lane_6_map_data <= lane_6(to_integer(orders_payload(15 downto 13)));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if beat(73) = '1' then
+        lane_7(to_integer(beat(71 downto 69))) <= beat(63 downto 56);
+      end if;
+    end if;
+  end process;
+
+  lane_7_items_data <= lane_7(to_integer(orders_payload(9 downto 7)));
+
+  lane_7_map_data <= lane_7(to_integer(orders_payload(15 downto 13)));
+
+  p_aclk : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if rst = '1' then
+        message_linear_x_valid_q <= '0';
+        message_linear_y_valid_q <= '0';
+        message_linear_z_valid_q <= '0';
+        message_angular_x_valid_q <= '0';
+        message_angular_y_valid_q <= '0';
+        message_angular_z_valid_q <= '0';
+        status_valid_q <= '0';
+        length_good_now <= '0';
+        last_now <= '0';
+        final_now <= '0';
+        active_0 <= '0';
+        active_1 <= '0';
+        active_2 <= '0';
+        active_3 <= '0';
+        active_4 <= '0';
+        active_5 <= '0';
+        slow <= '0';
+        status_now <= (others => '0');
+        ends_now <= '0';
+        status_payload_q <= (others => '0');
+        cut_0 <= '0';
+        cut_1 <= '0';
+        cut_2 <= '0';
+        cut_3 <= '0';
+        cut_4 <= '0';
+      else
+        if message_linear_x_ready = '1' then
+          message_linear_x_valid_q <= '0';
+        end if;
+        if go_0 = '1' then
+          message_linear_x_valid_q <= '1';
+        end if;
+        if message_linear_y_ready = '1' then
+          message_linear_y_valid_q <= '0';
+        end if;
+        if go_1 = '1' then
+          message_linear_y_valid_q <= '1';
+        end if;
+        if message_linear_z_ready = '1' then
+          message_linear_z_valid_q <= '0';
+        end if;
+        if go_2 = '1' then
+          message_linear_z_valid_q <= '1';
+        end if;
+        if message_angular_x_ready = '1' then
+          message_angular_x_valid_q <= '0';
+        end if;
+        if go_3 = '1' then
+          message_angular_x_valid_q <= '1';
+        end if;
+        if message_angular_y_ready = '1' then
+          message_angular_y_valid_q <= '0';
+        end if;
+        if go_4 = '1' then
+          message_angular_y_valid_q <= '1';
+        end if;
+        if message_angular_z_ready = '1' then
+          message_angular_z_valid_q <= '0';
+        end if;
+        if go_5 = '1' then
+          message_angular_z_valid_q <= '1';
+        end if;
+        if status_ready = '1' then
+          status_valid_q <= '0';
+        end if;
+        if orders_ready = '1' then
+          if ends_now = '1' then
+            status_valid_q <= '1';
+            status_payload_q <= status_now;
+          end if;
+          length_good_now <= orders_payload(32);
+          last_now <= orders_payload(31);
+          final_now <= orders_payload(33);
+          status_now <= orders_payload(41 downto 39);
+          ends_now <= orders_valid and orders_payload(38);
+          cut_0 <= orders_valid and not orders_payload(3) and
+              to_std_logic(orders_payload(2 downto 0) = 0);
+          cut_1 <= orders_valid and not orders_payload(3) and
+              to_std_logic(orders_payload(2 downto 0) = 1);
+          cut_2 <= orders_valid and not orders_payload(3) and
+              to_std_logic(orders_payload(2 downto 0) = 2);
+          cut_3 <= orders_valid and not orders_payload(3) and
+              to_std_logic(orders_payload(2 downto 0) = 3);
+          cut_4 <= orders_valid and not orders_payload(3) and
+              to_std_logic(orders_payload(2 downto 0) = 4);
+        end if;
+        active_0 <= mux_44;
+        active_1 <= mux_51;
+        active_2 <= mux_58;
+        active_3 <= mux_65;
+        active_4 <= mux_72;
+        active_5 <= mux_79;
+        if orders_ready = '1' then
+          slow <= or_126;
+        else
+          slow <= or_142;
+        end if;
+      end if;
+    end if;
+  end process;
+
+  p_aclk_2 : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if orders_ready = '1' then
+        items_word <= lane_7_items_data & lane_6_items_data & lane_5_items_data &
+            lane_4_items_data & lane_3_items_data & lane_2_items_data & lane_1_items_data &
+            lane_0_items_data;
+        items_good <= to_std_logic(orders_payload(25 downto 22) > 7) &
+            to_std_logic(orders_payload(25 downto 22) > 6) &
+            to_std_logic(orders_payload(25 downto 22) > 5) &
+            to_std_logic(orders_payload(25 downto 22) > 4) &
+            to_std_logic(orders_payload(25 downto 22) > 3) &
+            to_std_logic(orders_payload(25 downto 22) > 2) &
+            to_std_logic(orders_payload(25 downto 22) > 1) &
+            to_std_logic(orders_payload(25 downto 22) > 0);
+        map_word <= lane_7_map_data & lane_6_map_data & lane_5_map_data & lane_4_map_data &
+            lane_3_map_data & lane_2_map_data & lane_1_map_data & lane_0_map_data;
+        map_good <= to_std_logic(orders_payload(29 downto 26) > 7) &
+            to_std_logic(orders_payload(29 downto 26) > 6) &
+            to_std_logic(orders_payload(29 downto 26) > 5) &
+            to_std_logic(orders_payload(29 downto 26) > 4) &
+            to_std_logic(orders_payload(29 downto 26) > 3) &
+            to_std_logic(orders_payload(29 downto 26) > 2) &
+            to_std_logic(orders_payload(29 downto 26) > 1) &
+            to_std_logic(orders_payload(29 downto 26) > 0);
+      end if;
+      if orders_ready = '1' and cut_0 = '1' then
+        carried(7 downto 0) <= map_word(39 downto 32);
+      end if;
+      if orders_ready = '1' and cut_0 = '1' then
+        carried(15 downto 8) <= map_word(47 downto 40);
+      end if;
+      if orders_ready = '1' and cut_0 = '1' then
+        carried(23 downto 16) <= map_word(55 downto 48);
+      end if;
+      if orders_ready = '1' and cut_0 = '1' then
+        carried(31 downto 24) <= map_word(63 downto 56);
+      end if;
+      if orders_ready = '1' and cut_1 = '1' then
+        carried(7 downto 0) <= map_word(39 downto 32);
+      end if;
+      if orders_ready = '1' and cut_1 = '1' then
+        carried(15 downto 8) <= map_word(47 downto 40);
+      end if;
+      if orders_ready = '1' and cut_1 = '1' then
+        carried(23 downto 16) <= map_word(55 downto 48);
+      end if;
+      if orders_ready = '1' and cut_1 = '1' then
+        carried(31 downto 24) <= map_word(63 downto 56);
+      end if;
+      if orders_ready = '1' and cut_2 = '1' then
+        carried(7 downto 0) <= map_word(39 downto 32);
+      end if;
+      if orders_ready = '1' and cut_2 = '1' then
+        carried(15 downto 8) <= map_word(47 downto 40);
+      end if;
+      if orders_ready = '1' and cut_2 = '1' then
+        carried(23 downto 16) <= map_word(55 downto 48);
+      end if;
+      if orders_ready = '1' and cut_2 = '1' then
+        carried(31 downto 24) <= map_word(63 downto 56);
+      end if;
+      if orders_ready = '1' and cut_3 = '1' then
+        carried(7 downto 0) <= map_word(39 downto 32);
+      end if;
+      if orders_ready = '1' and cut_3 = '1' then
+        carried(15 downto 8) <= map_word(47 downto 40);
+      end if;
+      if orders_ready = '1' and cut_3 = '1' then
+        carried(23 downto 16) <= map_word(55 downto 48);
+      end if;
+      if orders_ready = '1' and cut_3 = '1' then
+        carried(31 downto 24) <= map_word(63 downto 56);
+      end if;
+      if orders_ready = '1' and cut_4 = '1' then
+        carried(7 downto 0) <= map_word(39 downto 32);
+      end if;
+      if orders_ready = '1' and cut_4 = '1' then
+        carried(15 downto 8) <= map_word(47 downto 40);
+      end if;
+      if orders_ready = '1' and cut_4 = '1' then
+        carried(23 downto 16) <= map_word(55 downto 48);
+      end if;
+      if orders_ready = '1' and cut_4 = '1' then
+        carried(31 downto 24) <= map_word(63 downto 56);
+      end if;
+      if go_0 = '1' then
+        if map_good(3) = '1' then
+          message_linear_x_payload_q <= map_word(31 downto 0) & carried;
+        else
+          message_linear_x_payload_q <= (others => '0');
+        end if;
+      end if;
+      if go_1 = '1' then
+        if map_good(3) = '1' then
+          message_linear_y_payload_q <= map_word(31 downto 0) & carried;
+        else
+          message_linear_y_payload_q <= (others => '0');
+        end if;
+      end if;
+      if go_2 = '1' then
+        if map_good(3) = '1' then
+          message_linear_z_payload_q <= map_word(31 downto 0) & carried;
+        else
+          message_linear_z_payload_q <= (others => '0');
+        end if;
+      end if;
+      if go_3 = '1' then
+        if map_good(3) = '1' then
+          message_angular_x_payload_q <= map_word(31 downto 0) & carried;
+        else
+          message_angular_x_payload_q <= (others => '0');
+        end if;
+      end if;
+      if go_4 = '1' then
+        if items_good(3) = '1' then
+          message_angular_y_payload_q <= items_word(31 downto 0) & carried;
+        else
+          message_angular_y_payload_q <= (others => '0');
+        end if;
+      end if;
+      if go_5 = '1' then
+        if map_good(3) = '1' then
+          message_angular_z_payload_q <= map_word(31 downto 0) & items_word(63 downto 32);
+        else
+          message_angular_z_payload_q <= (others => '0');
+        end if;
+      end if;
+    end if;
+  end process;
+
+  message_linear_x_valid <= message_linear_x_valid_q;
+  message_linear_y_valid <= message_linear_y_valid_q;
+  message_linear_z_valid <= message_linear_z_valid_q;
+  message_angular_x_valid <= message_angular_x_valid_q;
+  message_angular_y_valid <= message_angular_y_valid_q;
+  message_angular_z_valid <= message_angular_z_valid_q;
+  status_valid <= status_valid_q;
+  status_payload <= status_payload_q;
+  message_linear_x_payload <= message_linear_x_payload_q;
+  message_linear_y_payload <= message_linear_y_payload_q;
+  message_linear_z_payload <= message_linear_z_payload_q;
+  message_angular_x_payload <= message_angular_x_payload_q;
+  message_angular_y_payload <= message_angular_y_payload_q;
+  message_angular_z_payload <= message_angular_z_payload_q;
+
+  take <= orders_ready;
+  payload_0 <= message_linear_x_payload_q;
+  payload_1 <= message_linear_y_payload_q;
+  payload_2 <= message_linear_z_payload_q;
+  payload_3 <= message_angular_x_payload_q;
+  payload_4 <= message_angular_y_payload_q;
+  payload_5 <= message_angular_z_payload_q;
+  lane_0_write_addr <= beat(71 downto 69);
+  lane_0_write_data <= beat(7 downto 0);
+  lane_0_write_en <= beat(73);
+  lane_0_items_addr <= orders_payload(9 downto 7);
+  lane_0_map_addr <= orders_payload(15 downto 13);
+  lane_1_write_addr <= beat(71 downto 69);
+  lane_1_write_data <= beat(15 downto 8);
+  lane_1_write_en <= beat(73);
+  lane_1_items_addr <= orders_payload(9 downto 7);
+  lane_1_map_addr <= orders_payload(15 downto 13);
+  lane_2_write_addr <= beat(71 downto 69);
+  lane_2_write_data <= beat(23 downto 16);
+  lane_2_write_en <= beat(73);
+  lane_2_items_addr <= orders_payload(9 downto 7);
+  lane_2_map_addr <= orders_payload(15 downto 13);
+  lane_3_write_addr <= beat(71 downto 69);
+  lane_3_write_data <= beat(31 downto 24);
+  lane_3_write_en <= beat(73);
+  lane_3_items_addr <= orders_payload(9 downto 7);
+  lane_3_map_addr <= orders_payload(15 downto 13);
+  lane_4_write_addr <= beat(71 downto 69);
+  lane_4_write_data <= beat(39 downto 32);
+  lane_4_write_en <= beat(73);
+  lane_4_items_addr <= orders_payload(9 downto 7);
+  lane_4_map_addr <= orders_payload(15 downto 13);
+  lane_5_write_addr <= beat(71 downto 69);
+  lane_5_write_data <= beat(47 downto 40);
+  lane_5_write_en <= beat(73);
+  lane_5_items_addr <= orders_payload(9 downto 7);
+  lane_5_map_addr <= orders_payload(15 downto 13);
+  lane_6_write_addr <= beat(71 downto 69);
+  lane_6_write_data <= beat(55 downto 48);
+  lane_6_write_en <= beat(73);
+  lane_6_items_addr <= orders_payload(9 downto 7);
+  lane_6_map_addr <= orders_payload(15 downto 13);
+  lane_7_write_addr <= beat(71 downto 69);
+  lane_7_write_data <= beat(63 downto 56);
+  lane_7_write_en <= beat(73);
+  lane_7_items_addr <= orders_payload(9 downto 7);
+  lane_7_map_addr <= orders_payload(15 downto 13);
+
+end architecture;
+
+-- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core of the Amaranth design.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.firm_hdl_pkg.all;
+
+entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core is
+  port (
+    rst                       : in  std_logic;
+    aclk                      : in  std_logic;
+    packets_valid             : in  std_logic;
+    message_linear_x_ready    : in  std_logic;
+    message_linear_y_ready    : in  std_logic;
+    message_linear_z_ready    : in  std_logic;
+    message_angular_x_ready   : in  std_logic;
+    message_angular_y_ready   : in  std_logic;
+    message_angular_z_ready   : in  std_logic;
+    status_ready              : in  std_logic;
+    packets_payload           : in  unsigned(68 downto 0);
+    packets_ready             : out std_logic;
+    message_linear_x_valid    : out std_logic;
+    message_linear_y_valid    : out std_logic;
+    message_linear_z_valid    : out std_logic;
+    message_angular_x_valid   : out std_logic;
+    message_angular_y_valid   : out std_logic;
+    message_angular_z_valid   : out std_logic;
+    status_valid              : out std_logic;
+    -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+    status_payload            : out unsigned(2 downto 0);
+    message_linear_x_payload  : out unsigned(63 downto 0);
+    message_linear_y_payload  : out unsigned(63 downto 0);
+    message_linear_z_payload  : out unsigned(63 downto 0);
+    message_angular_x_payload : out unsigned(63 downto 0);
+    message_angular_y_payload : out unsigned(63 downto 0);
+    message_angular_z_payload : out unsigned(63 downto 0)
+  );
+end entity;
+
+architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core is
+
+  -- Combinational signals.
+  signal beat              : unsigned(73 downto 0);
+  signal limit_sig         : unsigned(6 downto 0);
+  signal following         : unsigned(3 downto 0);
+  signal ended             : std_logic;
+  signal i_valid           : std_logic;
+  signal next_sig          : std_logic;
+  signal i_payload         : unsigned(41 downto 0);
+  signal oldest            : unsigned(3 downto 0);
+  signal orders_ready      : std_logic;
+  signal freed             : unsigned(3 downto 0);
+  signal orders_valid_24   : std_logic;
+  signal orders_payload_22 : unsigned(41 downto 0);
+  signal o_ready           : std_logic;
+
+  -- Signals that no logic reads, for simulation.
+  signal orders_payload  : unsigned(41 downto 0);
+  signal orders_valid    : std_logic;
+  signal i_ready         : std_logic;
+  signal o_payload       : unsigned(41 downto 0);
+  signal o_valid         : std_logic;
+  signal orders_ready_27 : std_logic;
+begin
+
+  buffer_sig : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer
+    port map (
+      aclk            => aclk,
+      packets_valid   => packets_valid,
+      rst             => rst,
+      next_sig        => next_sig,
+      freed           => freed,
+      packets_payload => packets_payload,
+      beat            => beat,
+      packets_ready   => packets_ready,
+      limit_sig       => limit_sig,
+      following       => following,
+      ended           => ended
+    );
+
+  sequencer : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer
+    port map (
+      aclk           => aclk,
+      rst            => rst,
+      orders_valid   => i_valid,
+      next_sig       => next_sig,
+      orders_ready   => orders_ready,
+      beat           => beat,
+      limit_sig      => limit_sig,
+      following      => following,
+      ended          => ended,
+      orders_payload => i_payload,
+      header_at      => oldest
+    );
+
+  queue : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_queue
+    port map (
+      aclk      => aclk,
+      rst       => rst,
+      i_valid   => i_valid,
+      i_ready   => orders_ready,
+      freed     => freed,
+      o_ready   => o_ready,
+      i_payload => i_payload,
+      oldest    => oldest,
+      o_valid   => orders_valid_24,
+      o_payload => orders_payload_22
+    );
+
+  mover : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover
+    port map (
+      aclk                      => aclk,
+      message_linear_x_ready    => message_linear_x_ready,
+      message_linear_y_ready    => message_linear_y_ready,
+      message_linear_z_ready    => message_linear_z_ready,
+      message_angular_x_ready   => message_angular_x_ready,
+      message_angular_y_ready   => message_angular_y_ready,
+      message_angular_z_ready   => message_angular_z_ready,
+      status_ready              => status_ready,
+      rst                       => rst,
+      orders_ready              => o_ready,
+      beat                      => beat,
+      orders_valid              => orders_valid_24,
+      orders_payload            => orders_payload_22,
+      message_linear_x_valid    => message_linear_x_valid,
+      message_linear_y_valid    => message_linear_y_valid,
+      message_linear_z_valid    => message_linear_z_valid,
+      message_angular_x_valid   => message_angular_x_valid,
+      message_angular_y_valid   => message_angular_y_valid,
+      message_angular_z_valid   => message_angular_z_valid,
+      status_valid              => status_valid,
+      status_payload            => status_payload,
+      message_linear_x_payload  => message_linear_x_payload,
+      message_linear_y_payload  => message_linear_y_payload,
+      message_linear_z_payload  => message_linear_z_payload,
+      message_angular_x_payload => message_angular_x_payload,
+      message_angular_y_payload => message_angular_y_payload,
+      message_angular_z_payload => message_angular_z_payload
+    );
+
+  orders_payload <= i_payload;
+  orders_valid <= i_valid;
+  i_ready <= orders_ready;
+  o_payload <= orders_payload_22;
+  o_valid <= orders_valid_24;
+  orders_ready_27 <= o_ready;
+
+end architecture;
+
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer of the Amaranth design.
 
 library ieee;
@@ -131,8 +1496,8 @@ begin
       ((and unsigned(s_axis_tkeep(5 downto 0))) and not s_axis_tkeep(6)) &
       ((and unsigned(s_axis_tkeep(4 downto 0))) and not s_axis_tkeep(5)) &
       ((and unsigned(s_axis_tkeep(3 downto 0))) and not s_axis_tkeep(4)));
-  packets_payload_64 <= (and unsigned(s_axis_tkeep)) & or_39 & or_26 &
-      or_13 when s_axis_tlast = '1' else "1000";
+  packets_payload_64 <= (and unsigned(s_axis_tkeep)) & or_39 & or_26 & or_13 when s_axis_tlast =
+      '1' else "1000";
 
   m_axis_status_tdata <= std_logic_vector(resize(status_payload, 8));
 

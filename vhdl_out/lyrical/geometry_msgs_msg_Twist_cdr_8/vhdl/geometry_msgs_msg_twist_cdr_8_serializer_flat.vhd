@@ -2,6 +2,882 @@
 -- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
+-- Module geometry_msgs_msg_Twist_cdr_8_serializer.core.collector of the Amaranth design.
+-- 16 registers at rising_edge(aclk), synchronous reset rst = '1'.
+-- 4 registers at rising_edge(aclk), no reset.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.firm_hdl_pkg.all;
+
+entity geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector is
+  port (
+    rst                       : in  std_logic;
+    aclk                      : in  std_logic;
+    message_linear_x_payload  : in  unsigned(63 downto 0);
+    message_linear_x_valid    : in  std_logic;
+    message_linear_y_payload  : in  unsigned(63 downto 0);
+    message_linear_y_valid    : in  std_logic;
+    message_linear_z_payload  : in  unsigned(63 downto 0);
+    message_linear_z_valid    : in  std_logic;
+    message_angular_x_payload : in  unsigned(63 downto 0);
+    message_angular_x_valid   : in  std_logic;
+    message_angular_y_payload : in  unsigned(63 downto 0);
+    message_angular_y_valid   : in  std_logic;
+    message_angular_z_payload : in  unsigned(63 downto 0);
+    message_angular_z_valid   : in  std_logic;
+    status_ready              : in  std_logic;
+    message_linear_x_ready    : out std_logic;
+    message_linear_y_ready    : out std_logic;
+    message_linear_z_ready    : out std_logic;
+    message_angular_x_ready   : out std_logic;
+    message_angular_y_ready   : out std_logic;
+    message_angular_z_ready   : out std_logic;
+    port_543_0                : out unsigned(127 downto 0);
+    port_547_0                : out unsigned(32 downto 0);
+    status_valid              : out std_logic;
+    -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+    status_payload            : out unsigned(2 downto 0);
+    words_valid               : out std_logic;
+    words_ready               : in  std_logic
+  );
+end entity;
+
+architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector is
+
+  -- Registers.
+  signal port_547_0_q     : unsigned(32 downto 0) := (others => '0');
+  signal status_valid_q   : std_logic := '0';
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal status_payload_q : unsigned(2 downto 0) := (others => '0');
+  signal words_valid_q    : std_logic := '0';
+  signal served_0         : std_logic := '0';
+  signal served_1         : std_logic := '0';
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal error_sig        : unsigned(2 downto 0) := (others => '0');
+  signal map_0            : unsigned(31 downto 0) := (others => '0');
+  signal map_4            : unsigned(31 downto 0) := (others => '0');
+  signal items_0          : unsigned(31 downto 0) := (others => '0');
+  signal items_4          : unsigned(31 downto 0) := (others => '0');
+  signal begun            : std_logic := '0';
+  signal words_last       : std_logic := '1';
+  signal words_less       : std_logic := '0';
+  signal step             : unsigned(5 downto 0) := "000001";
+  signal map_bytes        : unsigned(3 downto 0) := "1000";
+  signal items_bytes      : unsigned(3 downto 0) := (others => '0');
+  signal two_word_map     : std_logic := '0';
+  signal rest             : std_logic := '0';
+  signal has_nul          : std_logic := '0';
+
+  -- Combinational signals.
+  signal left_1_0     : std_logic;
+  signal lacks_1_0    : std_logic;
+  signal left_2_0     : std_logic;
+  signal lacks_2_0    : std_logic;
+  signal left_3_0     : std_logic;
+  signal lacks_3_0    : std_logic;
+  signal left_4_0     : std_logic;
+  signal lacks_4_0    : std_logic;
+  signal left_5_0     : std_logic;
+  signal lacks_5_0    : std_logic;
+  signal left_5_1     : std_logic;
+  signal lacks_5_1    : std_logic;
+  signal go_5_1       : std_logic;
+  signal free         : std_logic;
+  signal or_60        : std_logic;
+  signal complete     : std_logic;
+  signal map_size     : unsigned(4 downto 0);
+  signal begins       : std_logic;
+  signal to_map_0     : unsigned(3 downto 0);
+  signal step_to_exit : std_logic;
+  signal and_94       : std_logic;
+  signal and_99       : std_logic;
+  signal or_118       : unsigned(31 downto 0);
+  signal or_124       : unsigned(31 downto 0);
+  signal or_137       : unsigned(31 downto 0);
+  signal add_154      : unsigned(5 downto 0);
+  signal to_end       : unsigned(5 downto 0);
+  signal end_mask     : unsigned(2 downto 0);
+
+  -- Signals that no logic reads, for simulation.
+  signal default_0     : std_logic;
+  signal default_1     : std_logic;
+  signal default_2     : std_logic;
+  signal default_3     : std_logic;
+  signal default_4     : std_logic;
+  signal default_5     : std_logic;
+  signal words_payload : unsigned(160 downto 0);
+  signal to_map        : unsigned(4 downto 0);
+  signal words_loads   : std_logic;
+  signal done          : std_logic;
+  signal ends          : std_logic;
+  signal go_1_0        : std_logic;
+  signal go_2_0        : std_logic;
+  signal go_3_0        : std_logic;
+  signal go_4_0        : std_logic;
+  signal go_5_0        : std_logic;
+  signal items_size    : unsigned(3 downto 0);
+  signal nul_now       : std_logic;
+  signal step_to_body  : std_logic;
+  signal words_down    : std_logic;
+  signal words_keeps   : std_logic;
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal found         : unsigned(2 downto 0);
+  signal words_pending : std_logic;
+  signal words_value   : unsigned(2 downto 0);
+begin
+
+  left_1_0 <= step(1) and not served_0;
+  lacks_1_0 <= left_1_0 and not message_linear_x_valid;
+  message_linear_x_ready <= left_1_0 and message_linear_x_valid and free;
+  left_2_0 <= step(2) and not served_0;
+  lacks_2_0 <= left_2_0 and not message_linear_y_valid;
+  message_linear_y_ready <= left_2_0 and message_linear_y_valid and free;
+  left_3_0 <= step(3) and not served_0;
+  lacks_3_0 <= left_3_0 and not message_linear_z_valid;
+  message_linear_z_ready <= left_3_0 and message_linear_z_valid and free;
+  left_4_0 <= step(4) and not served_0;
+  lacks_4_0 <= left_4_0 and not message_angular_x_valid;
+  message_angular_x_ready <= left_4_0 and message_angular_x_valid and free;
+  left_5_0 <= step(5) and not served_0;
+  lacks_5_0 <= left_5_0 and not message_angular_y_valid;
+  message_angular_y_ready <= left_5_0 and message_angular_y_valid and free;
+  left_5_1 <= step(5) and not served_1;
+  lacks_5_1 <= left_5_1 and not message_angular_z_valid;
+  go_5_1 <= left_5_1 and message_angular_z_valid and free and not lacks_5_0;
+  free <= not words_valid_q or words_ready;
+  or_60 <= or unsigned'(lacks_5_1 & lacks_5_0 & (step(4) and not message_angular_y_valid) &
+      lacks_4_0 & (step(3) and not message_angular_x_valid) & lacks_3_0 & (step(2) and
+      not message_linear_z_valid) & lacks_2_0 & (step(1) and not message_linear_y_valid) &
+      lacks_1_0 & (step(0) and not message_linear_x_valid));
+  complete <= free and not or_60 and (not step(5) or not status_valid_q or status_ready);
+  map_size <= resize(map_bytes, 5) + mux(two_word_map, "1000", "0000");
+  begins <= begun or (or items_bytes) or (or map_bytes);
+  to_map_0 <= (others => '0') when two_word_map = '1' else items_bytes;
+  step_to_exit <= complete and not step(5);
+  and_94 <= (served_0 or (or unsigned'(message_angular_y_ready & message_angular_x_ready &
+      message_linear_z_ready & message_linear_y_ready & message_linear_x_ready))) and not complete;
+  and_99 <= complete and step(5);
+  or_118 <= mux(step(0), x"00000100", x"00000000") or mux(step(1),
+      message_linear_x_payload(63 downto 32), x"00000000") or mux(step(2),
+      message_linear_y_payload(63 downto 32), x"00000000") or mux(step(3),
+      message_linear_z_payload(63 downto 32), x"00000000");
+  or_124 <= or_118 or mux(step(4), message_angular_x_payload(63 downto 32), x"00000000") or
+      mux(step(5), message_angular_z_payload(63 downto 32), x"00000000");
+  or_137 <= mux(step(0), message_linear_x_payload(31 downto 0), x"00000000") or mux(step(1),
+      message_linear_y_payload(31 downto 0), x"00000000") or mux(step(2),
+      message_linear_z_payload(31 downto 0), x"00000000") or mux(step(3),
+      message_angular_x_payload(31 downto 0), x"00000000");
+  add_154 <= resize(to_map_0, 5) + to_end + 7;
+
+  to_end <= mux(begins, resize(map_size, 6) + 7, "001000") when step(5) = '1' else
+            resize(map_size, 6);
+
+  end_mask <= "111" when step(5) = '1' else
+              (others => '0');
+
+  p_aclk : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if rst = '1' then
+        port_547_0_q <= (others => '0');
+        served_0 <= '0';
+        served_1 <= '0';
+        error_sig <= (others => '0');
+        status_valid_q <= '0';
+        status_payload_q <= (others => '0');
+        begun <= '0';
+        words_valid_q <= '0';
+        words_last <= '1';
+        words_less <= '0';
+        step <= "000001";
+        map_bytes <= "1000";
+        items_bytes <= (others => '0');
+        two_word_map <= '0';
+        rest <= '0';
+        has_nul <= '0';
+      else
+        if free = '1' then
+          port_547_0_q(32) <= to_std_logic(error_sig /= 0);
+          words_valid_q <= complete;
+        end if;
+        if free = '1' then
+          port_547_0_q(13 downto 0) <= resize(unsigned'(to_map_0 & two_word_map & map_bytes &
+              items_bytes), 14);
+          port_547_0_q(28 downto 26) <= add_154(5 downto 3);
+          port_547_0_q(25 downto 14) <= end_mask & to_end & "000";
+          port_547_0_q(31 downto 29) <= resize(unsigned'(not begins & step(5)), 3);
+        end if;
+        served_0 <= and_94;
+        served_1 <= (served_1 or go_5_1) and not complete;
+        if and_99 = '1' then
+          error_sig <= (others => '0');
+          status_payload_q <= error_sig;
+        end if;
+        if status_ready = '1' then
+          status_valid_q <= '0';
+        end if;
+        if and_99 = '1' then
+          status_valid_q <= '1';
+        end if;
+        if complete = '1' then
+          begun <= begins and not step(5);
+          if step(5) = '1' then
+            step <= "000001";
+            map_bytes <= "1000";
+            items_bytes <= (others => '0');
+            two_word_map <= '0';
+          else
+            step <= step(4 downto 0) & '0';
+            map_bytes <= (or step(3 downto 0)) & step(4) & "00";
+            items_bytes <= step(4) & "000";
+            two_word_map <= step(4);
+          end if;
+          if step(5) = '1' then
+            rest <= '0';
+            has_nul <= '0';
+          end if;
+        end if;
+        words_last <= words_last;
+        words_less <= words_less;
+      end if;
+    end if;
+  end process;
+
+  p_aclk_2 : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if free = '1' and unsigned'((step(5) and served_1) & ((or step(4 downto 1)) and served_0)) =
+          0 then
+        map_0 <= or_124;
+      end if;
+      if free = '1' then
+        map_4 <= or_137 or mux(step(4), message_angular_y_payload(31 downto 0), x"00000000");
+      end if;
+      if free = '1' and (step(5) = '0' or served_0 = '0') then
+        items_0 <= message_angular_y_payload(63 downto 32);
+      end if;
+      if free = '1' and (step(5) = '0' or served_1 = '0') then
+        items_4 <= message_angular_z_payload(31 downto 0);
+      end if;
+    end if;
+  end process;
+
+  port_543_0 <= map_4 & map_0 & items_4 & items_0;
+  message_angular_z_ready <= go_5_1;
+
+  port_547_0 <= port_547_0_q;
+  status_valid <= status_valid_q;
+  status_payload <= status_payload_q;
+  words_valid <= words_valid_q;
+
+  default_0 <= step(0);
+  default_1 <= step(1);
+  default_2 <= step(2);
+  default_3 <= step(3);
+  default_4 <= step(4);
+  default_5 <= step(5);
+  words_payload <= port_547_0_q & map_4 & map_0 & items_4 & items_0;
+  to_map <= resize(to_map_0, 5);
+  words_loads <= '0';
+  done <= '1';
+  ends <= step(5);
+  go_1_0 <= message_linear_x_ready;
+  go_2_0 <= message_linear_y_ready;
+  go_3_0 <= message_linear_z_ready;
+  go_4_0 <= message_angular_x_ready;
+  go_5_0 <= message_angular_y_ready;
+  items_size <= items_bytes;
+  nul_now <= '0';
+  step_to_body <= '0';
+  words_down <= '0';
+  words_keeps <= '1';
+  found <= error_sig;
+  words_pending <= '0';
+  words_value <= (others => '0');
+
+end architecture;
+
+-- Module geometry_msgs_msg_Twist_cdr_8_serializer.core.packer of the Amaranth design.
+-- 20 registers at rising_edge(aclk), synchronous reset rst = '1'.
+-- 4 registers at rising_edge(aclk), no reset.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.firm_hdl_pkg.all;
+
+entity geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
+  port (
+    rst               : in  std_logic;
+    aclk              : in  std_logic;
+    packets_ready     : in  std_logic;
+    words_payload_0   : in  unsigned(127 downto 0);
+    words_payload_128 : in  unsigned(32 downto 0);
+    words_valid       : in  std_logic;
+    words_ready       : out std_logic;
+    packets_valid     : out std_logic;
+    packets_payload   : out unsigned(68 downto 0);
+    error_sig         : out std_logic
+  );
+end entity;
+
+architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
+
+  -- Registers.
+  signal words_ready_q      : std_logic := '1';
+  signal packets_valid_q    : std_logic := '0';
+  signal packets_payload_q  : unsigned(68 downto 0) := (others => '0');
+  signal error_sig_q        : std_logic := '0';
+  signal writes             : std_logic := '0';
+  signal items_0_write_data : unsigned(63 downto 0) := (others => '0');
+  signal items_start        : unsigned(6 downto 0) := (others => '0');
+  signal items_size         : unsigned(3 downto 0) := (others => '0');
+  signal map_placed         : unsigned(63 downto 0) := (others => '0');
+  signal map_start          : unsigned(6 downto 0) := (others => '0');
+  signal map_size           : unsigned(3 downto 0) := (others => '0');
+  signal at                 : unsigned(6 downto 0) := (others => '0');
+  signal complete_next      : unsigned(3 downto 0) := (others => '0');
+  signal ends_packet        : std_logic := '0';
+  signal failed             : std_logic := '0';
+  signal waits              : std_logic := '0';
+  signal last_bytes         : unsigned(3 downto 0) := (others => '0');
+  signal bound              : unsigned(3 downto 0) := "0101";
+  signal items_has_0        : unsigned(7 downto 0) := (others => '0');
+  signal map_has_0          : unsigned(7 downto 0) := (others => '0');
+  signal map_has_4          : unsigned(7 downto 0) := (others => '0');
+  signal complete           : unsigned(3 downto 0) := (others => '0');
+  signal last               : unsigned(7 downto 0) := (others => '0');
+  signal first              : unsigned(3 downto 0) := (others => '0');
+
+  -- Combinational signals.
+  signal takes             : std_logic;
+  signal total             : unsigned(6 downto 0);
+  signal total_6           : unsigned(6 downto 0);
+  signal base              : unsigned(6 downto 0);
+  signal end_sig           : unsigned(6 downto 0);
+  signal add_13            : unsigned(3 downto 0);
+  signal map_end           : unsigned(6 downto 0);
+  signal newest            : unsigned(3 downto 0);
+  signal room              : unsigned(3 downto 0);
+  signal items_used_0      : std_logic;
+  signal items_written_0   : std_logic;
+  signal map_used_0        : std_logic;
+  signal map_written_0     : std_logic;
+  signal map_used_4        : std_logic;
+  signal map_written_4     : std_logic;
+  signal ends_write_addr   : unsigned(2 downto 0);
+  signal ends_write_en     : std_logic;
+  signal reads             : std_logic;
+  signal is_last           : std_logic;
+  signal and_139           : std_logic;
+  signal sub_140           : unsigned(2 downto 0);
+  signal items_0_read_data : unsigned(63 downto 0);
+  signal map_0_read_data   : unsigned(31 downto 0);
+  signal map_4_read_data   : unsigned(31 downto 0);
+  signal ends_read_data    : unsigned(4 downto 0);
+
+  -- Signals that no logic reads, for simulation.
+  signal words_payload      : unsigned(160 downto 0);
+  signal map_at             : unsigned(6 downto 0);
+  signal ready              : std_logic;
+  signal items_index_0      : unsigned(2 downto 0);
+  signal items_slot_0       : unsigned(2 downto 0);
+  signal items_0_write_addr : unsigned(2 downto 0);
+  signal items_placed       : unsigned(63 downto 0);
+  signal items_0_write_en   : std_logic;
+  signal items_0_read_addr  : unsigned(2 downto 0);
+  signal map_index_0        : unsigned(2 downto 0);
+  signal map_slot_0         : unsigned(2 downto 0);
+  signal map_0_write_addr   : unsigned(2 downto 0);
+  signal map_0_write_data   : unsigned(31 downto 0);
+  signal map_0_write_en     : std_logic;
+  signal map_0_read_addr    : unsigned(2 downto 0);
+  signal map_index_4        : unsigned(2 downto 0);
+  signal map_slot_4         : unsigned(2 downto 0);
+  signal map_4_write_addr   : unsigned(2 downto 0);
+  signal map_4_write_data   : unsigned(31 downto 0);
+  signal map_4_write_en     : std_logic;
+  signal map_4_read_addr    : unsigned(2 downto 0);
+  signal ends_read_addr     : unsigned(2 downto 0);
+  signal payload            : unsigned(68 downto 0);
+  signal error_now          : std_logic;
+  signal ends_write_data    : unsigned(4 downto 0);
+
+  type items_0_array is array (0 to 7) of unsigned(63 downto 0);
+  signal items_0 : items_0_array := (others => (others => '0'));
+
+  type map_0_array is array (0 to 7) of unsigned(31 downto 0);
+  signal map_0 : map_0_array := (others => (others => '0'));
+
+  type map_4_array is array (0 to 7) of unsigned(31 downto 0);
+  signal map_4 : map_4_array := (others => (others => '0'));
+
+  type ends_array is array (0 to 7) of unsigned(4 downto 0);
+  signal ends : ends_array := (others => (others => '0'));
+begin
+
+  takes <= words_valid and words_ready_q;
+  total <= at + words_payload_128(13 downto 9);
+  total_6 <= base + words_payload_128(22 downto 17);
+  base <= (total and not resize(words_payload_128(16 downto 14), 7)) or
+      resize(words_payload_128(16 downto 14) and "100", 7);
+  end_sig <= (total_6 and not resize(words_payload_128(25 downto 23), 7)) or
+      resize(words_payload_128(25 downto 23) and mux(words_payload_128(29), "000", "100"), 7);
+  add_13 <= base(6 downto 3) + words_payload_128(8);
+  map_end <= unsigned'(add_13 & base(2 downto 0)) + words_payload_128(7 downto 4);
+  newest <= at(6 downto 3) + mux(takes, words_payload_128(28 downto 26), "000");
+  room <= bound - newest;
+  items_used_0 <= '1' when writes = '1' and items_size > 0 else '0';
+  items_written_0 <= lsb(resize(shift_right(items_has_0, to_integer(first(2 downto 0))), 1));
+  map_used_0 <= '1' when writes = '1' and map_size > 0 else '0';
+  map_written_0 <= lsb(resize(shift_right(map_has_0, to_integer(first(2 downto 0))), 1));
+  map_used_4 <= '1' when writes = '1' and map_size > 4 else '0';
+  map_written_4 <= lsb(resize(shift_right(map_has_4, to_integer(first(2 downto 0))), 1));
+  ends_write_addr <= complete_next(2 downto 0) - 1;
+  ends_write_en <= writes and ends_packet;
+  reads <= '1' when complete /= first and (packets_valid_q = '0' or packets_ready = '1') else '0';
+  is_last <= lsb(resize(shift_right(last, to_integer(first(2 downto 0))), 1));
+  and_139 <= writes and not waits;
+  sub_140 <= complete_next(2 downto 0) - 1;
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if items_used_0 = '1' then
+        items_0(to_integer(items_start(5 downto 3))) <= items_0_write_data;
+      end if;
+    end if;
+  end process;
+
+  items_0_read_data <= items_0(to_integer(first(2 downto 0)));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if map_used_0 = '1' then
+        map_0(to_integer(map_start(5 downto 3))) <= map_placed(31 downto 0);
+      end if;
+    end if;
+  end process;
+
+  map_0_read_data <= map_0(to_integer(first(2 downto 0)));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if map_used_4 = '1' then
+        map_4(to_integer(map_start(5 downto 3))) <= map_placed(63 downto 32);
+      end if;
+    end if;
+  end process;
+
+  map_4_read_data <= map_4(to_integer(first(2 downto 0)));
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if ends_write_en = '1' then
+        ends(to_integer(ends_write_addr)) <= failed & last_bytes;
+      end if;
+    end if;
+  end process;
+
+  ends_read_data <= ends(to_integer(first(2 downto 0)));
+
+  p_aclk : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if rst = '1' then
+        writes <= '0';
+        items_start <= (others => '0');
+        items_size <= (others => '0');
+        map_start <= (others => '0');
+        map_size <= (others => '0');
+        at <= (others => '0');
+        complete_next <= (others => '0');
+        ends_packet <= '0';
+        failed <= '0';
+        waits <= '0';
+        last_bytes <= (others => '0');
+        words_ready_q <= '1';
+        bound <= "0101";
+        items_has_0 <= (others => '0');
+        map_has_0 <= (others => '0');
+        map_has_4 <= (others => '0');
+        complete <= (others => '0');
+        last <= (others => '0');
+        packets_valid_q <= '0';
+        first <= (others => '0');
+      else
+        writes <= takes;
+        if takes = '1' then
+          if words_payload_128(8) = '1' then
+            items_start <= base;
+          else
+            items_start <= at;
+          end if;
+          items_size <= words_payload_128(3 downto 0);
+          map_start <= add_13 & base(2 downto 0);
+          map_size <= words_payload_128(7 downto 4);
+          at <= end_sig;
+          complete_next <= end_sig(6 downto 3);
+          ends_packet <= words_payload_128(29);
+          failed <= words_payload_128(32);
+          waits <= words_payload_128(31);
+          if words_payload_128(30) = '1' then
+            last_bytes <= (others => '0');
+          else
+            last_bytes <= resize(map_end(2 downto 0) - 1, 4) + 1;
+          end if;
+        end if;
+        words_ready_q <= not room(3);
+        if reads = '1' then
+          bound <= bound + 1;
+          first <= first + 1;
+        end if;
+        if reads = '1' and first(2 downto 0) = 0 then
+          items_has_0(0) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 0 then
+          items_has_0(0) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 1 then
+          items_has_0(1) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 1 then
+          items_has_0(1) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 2 then
+          items_has_0(2) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 2 then
+          items_has_0(2) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 3 then
+          items_has_0(3) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 3 then
+          items_has_0(3) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 4 then
+          items_has_0(4) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 4 then
+          items_has_0(4) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 5 then
+          items_has_0(5) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 5 then
+          items_has_0(5) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 6 then
+          items_has_0(6) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 6 then
+          items_has_0(6) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 7 then
+          items_has_0(7) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 7 then
+          items_has_0(7) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 0 then
+          map_has_0(0) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 0 then
+          map_has_0(0) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 1 then
+          map_has_0(1) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 1 then
+          map_has_0(1) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 2 then
+          map_has_0(2) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 2 then
+          map_has_0(2) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 3 then
+          map_has_0(3) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 3 then
+          map_has_0(3) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 4 then
+          map_has_0(4) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 4 then
+          map_has_0(4) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 5 then
+          map_has_0(5) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 5 then
+          map_has_0(5) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 6 then
+          map_has_0(6) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 6 then
+          map_has_0(6) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 7 then
+          map_has_0(7) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 7 then
+          map_has_0(7) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 0 then
+          map_has_4(0) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 0 then
+          map_has_4(0) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 1 then
+          map_has_4(1) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 1 then
+          map_has_4(1) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 2 then
+          map_has_4(2) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 2 then
+          map_has_4(2) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 3 then
+          map_has_4(3) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 3 then
+          map_has_4(3) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 4 then
+          map_has_4(4) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 4 then
+          map_has_4(4) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 5 then
+          map_has_4(5) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 5 then
+          map_has_4(5) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 6 then
+          map_has_4(6) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 6 then
+          map_has_4(6) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 7 then
+          map_has_4(7) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 7 then
+          map_has_4(7) <= '1';
+        end if;
+        if and_139 = '1' then
+          complete <= complete_next;
+          if ends_packet = '1' then
+            case sub_140 is
+              when "000" =>
+                last(0) <= '1';
+              when "001" =>
+                last(1) <= '1';
+              when "010" =>
+                last(2) <= '1';
+              when "011" =>
+                last(3) <= '1';
+              when "100" =>
+                last(4) <= '1';
+              when "101" =>
+                last(5) <= '1';
+              when "110" =>
+                last(6) <= '1';
+              when "111" =>
+                last(7) <= '1';
+              when others =>
+                null;
+            end case;
+          end if;
+        end if;
+        if reads = '1' then
+          case first(2 downto 0) is
+            when "000" =>
+              last(0) <= '0';
+            when "001" =>
+              last(1) <= '0';
+            when "010" =>
+              last(2) <= '0';
+            when "011" =>
+              last(3) <= '0';
+            when "100" =>
+              last(4) <= '0';
+            when "101" =>
+              last(5) <= '0';
+            when "110" =>
+              last(6) <= '0';
+            when "111" =>
+              last(7) <= '0';
+            when others =>
+              null;
+          end case;
+        end if;
+        if packets_ready = '1' then
+          packets_valid_q <= '0';
+        end if;
+        if reads = '1' then
+          packets_valid_q <= '1';
+        end if;
+      end if;
+    end if;
+  end process;
+
+  p_aclk_2 : process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if takes = '1' then
+        items_0_write_data <= words_payload_0(63 downto 0);
+        map_placed <= words_payload_0(127 downto 64);
+      end if;
+      if reads = '1' then
+        packets_payload_q(63 downto 0) <= (mux(items_written_0, items_0_read_data(63 downto 32),
+            x"00000000") or mux(map_written_4, map_4_read_data, x"00000000")) &
+            (mux(items_written_0, items_0_read_data(31 downto 0), x"00000000") or mux(map_written_0,
+            map_0_read_data, x"00000000"));
+        packets_payload_q(68) <= is_last;
+        if is_last = '1' then
+          packets_payload_q(67 downto 64) <= ends_read_data(3 downto 0);
+        else
+          packets_payload_q(67 downto 64) <= "1000";
+        end if;
+        error_sig_q <= is_last and ends_read_data(4);
+      end if;
+    end if;
+  end process;
+
+  words_ready <= words_ready_q;
+  packets_valid <= packets_valid_q;
+  packets_payload <= packets_payload_q;
+  error_sig <= error_sig_q;
+
+  words_payload <= words_payload_128 & words_payload_0;
+  map_at <= add_13 & base(2 downto 0);
+  ready <= words_ready_q;
+  items_index_0 <= (others => '0');
+  items_slot_0 <= items_start(5 downto 3);
+  items_0_write_addr <= items_start(5 downto 3);
+  items_placed <= items_0_write_data;
+  items_0_write_en <= items_used_0;
+  items_0_read_addr <= first(2 downto 0);
+  map_index_0 <= (others => '0');
+  map_slot_0 <= map_start(5 downto 3);
+  map_0_write_addr <= map_start(5 downto 3);
+  map_0_write_data <= map_placed(31 downto 0);
+  map_0_write_en <= map_used_0;
+  map_0_read_addr <= first(2 downto 0);
+  map_index_4 <= "100";
+  map_slot_4 <= map_start(5 downto 3);
+  map_4_write_addr <= map_start(5 downto 3);
+  map_4_write_data <= map_placed(63 downto 32);
+  map_4_write_en <= map_used_4;
+  map_4_read_addr <= first(2 downto 0);
+  ends_read_addr <= first(2 downto 0);
+  payload <= packets_payload_q;
+  error_now <= error_sig_q;
+  ends_write_data <= failed & last_bytes;
+
+end architecture;
+
+-- Module geometry_msgs_msg_Twist_cdr_8_serializer.core of the Amaranth design.
+
+library ieee;
+use ieee.std_logic_1164.all;
+use ieee.numeric_std.all;
+
+use work.firm_hdl_pkg.all;
+
+entity geometry_msgs_msg_twist_cdr_8_serializer_flat_core is
+  port (
+    rst                       : in  std_logic;
+    aclk                      : in  std_logic;
+    packets_ready             : in  std_logic;
+    message_linear_x_payload  : in  unsigned(63 downto 0);
+    message_linear_x_valid    : in  std_logic;
+    message_linear_y_payload  : in  unsigned(63 downto 0);
+    message_linear_y_valid    : in  std_logic;
+    message_linear_z_payload  : in  unsigned(63 downto 0);
+    message_linear_z_valid    : in  std_logic;
+    message_angular_x_payload : in  unsigned(63 downto 0);
+    message_angular_x_valid   : in  std_logic;
+    message_angular_y_payload : in  unsigned(63 downto 0);
+    message_angular_y_valid   : in  std_logic;
+    message_angular_z_payload : in  unsigned(63 downto 0);
+    message_angular_z_valid   : in  std_logic;
+    status_ready              : in  std_logic;
+    message_linear_x_ready    : out std_logic;
+    message_linear_y_ready    : out std_logic;
+    message_linear_z_ready    : out std_logic;
+    message_angular_x_ready   : out std_logic;
+    message_angular_y_ready   : out std_logic;
+    message_angular_z_ready   : out std_logic;
+    status_valid              : out std_logic;
+    -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+    status_payload            : out unsigned(2 downto 0);
+    packets_valid             : out std_logic;
+    packets_payload           : out unsigned(68 downto 0);
+    packet_error              : out std_logic
+  );
+end entity;
+
+architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core is
+
+  -- Combinational signals.
+  signal words_payload_0   : unsigned(127 downto 0);
+  signal words_payload_128 : unsigned(32 downto 0);
+  signal words_valid       : std_logic;
+  signal words_ready       : std_logic;
+
+  -- Signals that no logic reads, for simulation.
+  signal words_payload   : unsigned(160 downto 0);
+  signal words_payload_1 : unsigned(160 downto 0);
+  signal error_sig       : std_logic;
+begin
+
+  collector : entity work.geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
+    port map (
+      aclk                      => aclk,
+      message_linear_x_payload  => message_linear_x_payload,
+      message_linear_x_valid    => message_linear_x_valid,
+      message_linear_y_payload  => message_linear_y_payload,
+      message_linear_y_valid    => message_linear_y_valid,
+      message_linear_z_payload  => message_linear_z_payload,
+      message_linear_z_valid    => message_linear_z_valid,
+      message_angular_x_payload => message_angular_x_payload,
+      message_angular_x_valid   => message_angular_x_valid,
+      message_angular_y_payload => message_angular_y_payload,
+      message_angular_y_valid   => message_angular_y_valid,
+      message_angular_z_payload => message_angular_z_payload,
+      message_angular_z_valid   => message_angular_z_valid,
+      status_ready              => status_ready,
+      rst                       => rst,
+      message_linear_x_ready    => message_linear_x_ready,
+      message_linear_y_ready    => message_linear_y_ready,
+      message_linear_z_ready    => message_linear_z_ready,
+      message_angular_x_ready   => message_angular_x_ready,
+      message_angular_y_ready   => message_angular_y_ready,
+      message_angular_z_ready   => message_angular_z_ready,
+      port_543_0                => words_payload_0,
+      port_547_0                => words_payload_128,
+      status_valid              => status_valid,
+      status_payload            => status_payload,
+      words_valid               => words_valid,
+      words_ready               => words_ready
+    );
+
+  packer : entity work.geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer
+    port map (
+      aclk              => aclk,
+      packets_ready     => packets_ready,
+      rst               => rst,
+      words_payload_0   => words_payload_0,
+      words_payload_128 => words_payload_128,
+      words_valid       => words_valid,
+      words_ready       => words_ready,
+      packets_valid     => packets_valid,
+      packets_payload   => packets_payload,
+      error_sig         => packet_error
+    );
+
+  words_payload <= words_payload_128 & words_payload_0;
+  words_payload_1 <= words_payload_128 & words_payload_0;
+  error_sig <= packet_error;
+
+end architecture;
+
 -- Module geometry_msgs_msg_Twist_cdr_8_serializer of the Amaranth design.
 
 library ieee;

@@ -36,29 +36,9 @@ fi
   "$from/geometry_msgs_msg_vector3_cdr_8_pkg.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_pkg.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_components_pkg.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_marks.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_queue.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_flat_core.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_deserializer_flat.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_serializer_flat_core.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_serializer_flat.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_buffer.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_sequencer_marks.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_sequencer.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_queue.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core_mover.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_core.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_record.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_deserializer_record_flat.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_collector.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core_packer.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_core.vhd" \
-  "$from/geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_serializer_record_flat.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_deserializer.vhd" \
   "$from/geometry_msgs_msg_twist_cdr_8_serializer.vhd" \

@@ -1,0 +1,183 @@
+"""Where the next state ends: the part of the sequencer that computes positions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from operator import attrgetter
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+
+from firm_hdl.gateware.flow import Flow
+from firm_hdl.gateware.parse.lengths import StepLength
+from firm_hdl.gateware.positions import Ring, any_of, pick
+from firm_hdl.program import (
+    DeserializerProgram,
+    DeserializerState,
+    Length,
+    NextMap,
+    NextPosition,
+    distance_to,
+)
+
+__all__ = ["NextPositions", "next_positions"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NextPositions:
+    """The last byte of the next state, for each way to it.
+
+    Attributes
+    ----------
+    exit : Value
+        If the next state is an exit.
+    body : Value
+        If it is the body of the run or loop that the state begins.
+    after_rest : Value
+        If it is an exit, and the state begins a run whose items are all in the rest.
+    """
+
+    exit: Value
+    body: Value
+    after_rest: Value
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """A way to the next state: whether it is taken, and the fields of :class:`NextPosition`."""
+
+    taken: Value
+    add: Value
+    mask: Value
+    low: Value
+    over_rest: Value
+
+
+def next_positions(
+    m: Module,
+    program: DeserializerProgram,
+    flow: Flow[DeserializerState],
+    last_at: Value,
+    phase: Value | int,
+    length: StepLength,
+    begins_run: Value,
+) -> NextPositions:
+    """Compute where the next state ends.
+
+    Parameters
+    ----------
+    last_at : Value
+        The last byte of the state's map or word.
+    phase : Value or int
+        Position after the packet's encapsulation header, modulo 8.
+    begins_run : Value(1)
+        The length of the state counts the items of a run.
+    """
+    ring, bus = Ring(program.plan), program.plan.bus_bytes
+
+    def way(
+        name: str, taken: Value, of: Callable[[DeserializerState], NextPosition | None]
+    ) -> _Way:
+        def field(what: str, bits: int) -> Value:
+            def value(state: DeserializerState) -> int:
+                return int(getattr(of(state), what, 0))
+
+            # On a narrow bus, positions are short: their constants are not worth registers.
+            if bus < 8:
+                return flow.select(bits, value)
+            return flow.register(f"{name}_{what}", bits, value)
+
+        low_bits = 3 if bus >= 8 else ring.bits
+        return _Way(
+            taken,
+            field("add", (3 * bus + 8).bit_length()),
+            field("mask", 3),
+            field("low", low_bits),
+            field("over_rest", 1),
+        )
+
+    # The innermost loop that has elements left goes on; else the default exit is taken.
+    exits, free = [], Const(1, 1)
+    for level in reversed(range(program.plan.levels)):
+
+        def again(state: DeserializerState, level: int = level) -> NextPosition | None:
+            return state.again[level] if state.again else None
+
+        def repeats(state: DeserializerState, level: int = level) -> bool:
+            return bool(state.again) and state.again[level] is not None
+
+        if any(map(repeats, program.states)):
+            at_end = (
+                flow.register(f"again_{level}", 1, repeats) if bus >= 8 else flow.select(1, repeats)
+            )
+            taken = at_end & ~flow.levels[level].last
+            exits.append(way(f"again_{level}", free & taken, again))
+            free = free & ~taken
+    exits.append(way("exit", free, attrgetter("exit")))
+    bodies = [way("body", Const(1, 1), attrgetter("body_start"))]
+    over_rest, after_rest = _over_rests(m, program, flow, length, begins_run)
+
+    def last(kind: str, ways: list[_Way]) -> Value:
+        def chosen(what: str, width: int) -> Value:
+            return pick([(each.taken, getattr(each, what)) for each in ways], width)
+
+        amount, total = Signal(len(over_rest), name=f"{kind}_amount"), ring.position(f"{kind}_sum")
+        mask, low = Signal(3, name=f"to_{kind}_mask"), ring.position(f"to_{kind}_low")
+        m.d.comb += [
+            amount.eq(Mux(chosen("over_rest", 1), over_rest, chosen("add", len(over_rest)))),
+            total.eq(last_at + amount),
+            mask.eq(chosen("mask", 3)),
+            low.eq(chosen("low", len(low))),
+        ]
+        if isinstance(phase, int):
+            return (total & ~Cat(mask, Const(0, len(total) - 3))) | low
+        pad, result = Signal(3, name=f"{kind}_pad"), ring.position(f"{kind}_last")
+        m.d.comb += [pad.eq((phase - total) & mask), result.eq(total + pad + low)]
+        return result
+
+    return NextPositions(exit=last("exit", exits), body=last("body", bodies), after_rest=after_rest)
+
+
+def _over_rests(
+    m: Module,
+    program: DeserializerProgram,
+    flow: Flow[DeserializerState],
+    length: StepLength,
+    begins_run: Value,
+) -> tuple[Value, Value]:
+    """Return two values of the state after a run.
+
+    Returns
+    -------
+    Its distance from the run's last word over the rest: a register that is written when the run
+    begins. And its last byte, if the run begins now and has nothing but a rest.
+    """
+    plan = program.plan
+    over_rest = Signal(range(5 * plan.bus_bytes + 16), name="over_rest", reset_less=True)
+    begun = list(_exits_of_runs(program, flow))
+    entry = length.entry
+    if entry is None or not begun:
+        return over_rest, Const(0, Ring(plan).bits)
+    sizes, rests = [], []
+    columns: dict[str, list[Value]] = {}
+    for taken, counted, to in begun:
+        sizes.append((taken, distance_to(plan, to) + counted.has_nul))
+        shift = counted.item_bytes.bit_length() - 1
+        rests.append((taken, Value.cast(entry[counted.rest]) << shift))
+        columns.setdefault(counted.next_last(to), []).append(taken)
+    total = pick(sizes, len(over_rest)) + pick(rests, len(over_rest))
+    with m.If(begins_run):
+        m.d.sync += over_rest.eq(total)
+    cases = [(any_of(on), Value.cast(entry[name])) for name, on in columns.items()]
+    return over_rest, cases[0][1] if len(cases) == 1 else pick(cases, Ring(plan).bits)
+
+
+def _exits_of_runs(
+    program: DeserializerProgram, flow: Flow[DeserializerState]
+) -> Iterator[tuple[Value, Length, NextMap]]:
+    """Yield the exits of states that begin a run: taken, length, and the map that follows."""
+    for each in flow.exits:
+        length, to = program.lengths.get(each.state), each.way.to
+        if length is not None and length.level is None and to is not None:
+            state = program.states[to]
+            yield each.taken, length, NextMap(state.align, state.last_offset)

@@ -1,0 +1,293 @@
+"""The way through a packet and a program: what the two sequencers have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+
+from firm_hdl.gateware.flow import Flow, exceeds
+from firm_hdl.gateware.parse.byte_flags import ByteFlags
+from firm_hdl.gateware.parse.lengths import length_of_step
+from firm_hdl.gateware.parse.next_position import next_positions
+from firm_hdl.gateware.positions import Ring, align_up, any_of
+from firm_hdl.program import DeserializerProgram
+
+__all__ = ["Findings", "Walk"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Findings:
+    """What is wrong with the bytes of a state. Combinational.
+
+    An error is found as soon as its byte has come, even if the state waits for later bytes.
+
+    Attributes
+    ----------
+    header : Value(1)
+        A checked byte of the encapsulation header is wrong.
+    nul : Value(1)
+        A string has no terminator.
+    cut : Value(1)
+        The packet has ended, and bytes of the state are missing.
+    trailing : Value(1)
+        All bytes of the state are present, and more bytes follow than may follow the message.
+    over : Value(1)
+        The state begins a run or loop with a length above its limit. Valid if the state is
+        executed.
+    good : Value(1)
+        All bytes of the state are present, and none of them is wrong.
+    """
+
+    header: Value
+    nul: Value
+    cut: Value
+    trailing: Value
+    over: Value
+    good: Value
+
+
+class Walk:
+    """The place of a sequencer in the packet and in the program. Not a component.
+
+    The registers say where the state ends, not where it starts::
+
+                          last_at
+                             |
+        ... | rest | pad | map | items of the next run ...
+              |                |
+           first_at        step_end
+
+    A length is the end of its state's map. So `last_at` is the length's last byte as well: a table
+    of lengths is read there at the start of the cycle, and says where the next state ends.
+
+    Call :meth:`advance` once.
+
+    Parameters
+    ----------
+    m : Module
+    program : DeserializerProgram
+    arrival : interface of ArrivalSignature(plan)
+    bad : Value(1)
+        The packet has an error. Lengths are 0 from then on, and positions have no meaning.
+
+    Attributes
+    ----------
+    flow : Flow
+        State and counters.
+    length : StepLength
+        The state's length, decoded.
+    begins_nothing, begins_run, begins_loop, is_words, takes_rest, at_end : Value(1)
+        Constants of the state; see :class:`DeserializerState`.
+    last_at : Signal(position)
+        Last byte of the state's map or word.
+    first_at : Signal(position)
+        First byte after the previous state, or the first item of a run.
+    rest : Signal(range(lanes + 1))
+        Items in the rest of the run that the state takes.
+    revisits : Signal(1)
+        The state is that of a length again, which claimed too much: it is left at once. Constants
+        of the state are those of the state after it.
+    step_end : Signal(position)
+        First byte after the state's map or word.
+    left : Signal(position)
+        Bytes in the buffer from `step_end` on; negative if bytes of the state are missing.
+    present : Signal(1)
+        All bytes of the state are in the buffer.
+    ends_message, ends_packet : Signal(1)
+        The message ends with this state, and the packet has ended as well.
+    """
+
+    def __init__(self, m: Module, program: DeserializerProgram, arrival: Any, bad: Value):
+        self.m, self.program, self.arrival, self.bad = m, program, arrival, bad
+        plan = program.plan
+        self.ring = ring = Ring(plan)
+        self.flow = flow = Flow(m, program)
+        # After a length that claims too much, its state begins nothing: `advance` writes the flag.
+        self.may_revisit = program.has_leaves and plan.has_claims
+        self.begins_nothing = flow.register(
+            "begins_nothing", 1, lambda s: s.begins_nothing, written=self.may_revisit
+        )
+        self.begins_run = flow.register("begins_run", 1, lambda s: s.begins_run)
+        self.begins_loop = flow.register("begins_loop", 1, lambda s: s.begins_loop)
+        self.is_words = flow.register("is_words", 1, lambda s: s.is_words)
+        self.takes_rest = flow.register("takes_rest", 1, lambda s: s.takes_rest)
+        self.at_end = flow.register("at_end", 1, lambda s: s.at_end)
+
+        start = program.states[program.start.to or 0].last_offset
+        self.last_at = ring.position("last_at", init=start % (1 << ring.bits))
+        self.first_at = ring.position("first_at")
+        self.rest = Signal(program.rest_bits, name="rest")
+        # There must be a NUL at `nul_at`, after the items of the rest.
+        self.nul_at, self.has_nul = ring.position("nul_at"), Signal(name="has_nul")
+        self.revisits: Value = Signal(name="revisits") if self.may_revisit else Const(0, 1)
+        # Position after the packet's encapsulation header, modulo 8.
+        self.phase: Value | int = plan.header_bytes
+        if plan.bus_bytes < 8:
+            self.phase = Const(plan.header_bytes % 8, 3)
+            if program.aligns:
+                self.phase = Signal(3, name="phase", init=plan.header_bytes % 8)
+
+        self.length = length_of_step(m, program, flow, Value.cast(arrival.beat), self.last_at)
+        self.step_end, self.left = ring.position("step_end"), ring.position("left")
+        self.present = Signal(name="present")
+        # The next state is an exit of this one: whatever the length is, or because of the length.
+        self.exits_always, self.done = Signal(name="exits_always"), Signal(name="done")
+        self.ends_message, self.ends_packet = (
+            Signal(name="ends_message"),
+            Signal(name="ends_packet"),
+        )
+        m.d.comb += [
+            self.step_end.eq(self.last_at + 1),
+            # limit - last_at - 1.
+            self.left.eq(arrival.limit + ~self.last_at),
+            self.present.eq(~self.left[-1]),
+            self.exits_always.eq(self.begins_nothing | (self.is_words & flow.words.last)),
+            self.done.eq(
+                self.exits_always
+                | ((self.begins_run | self.begins_loop) & bad)
+                | self.length.run_skips
+                | self.length.loop_skips
+            ),
+            # Whether a length of 0 ends the message is known late; then the end is its own state.
+            self.ends_message.eq(self.at_end | (flow.exit_ends & self.exits_always)),
+            self.ends_packet.eq(self.ends_message & arrival.ended),
+        ]
+
+    @property
+    def too_early(self) -> Value:
+        """The packet has not begun to arrive.
+
+        Only for the leading states without bytes: others wait for their bytes.
+        """
+        leading = self.flow.on(lambda state: state.is_leading)
+        return leading & ~self.left.any() & ~self.arrival.ended
+
+    def find(self) -> Findings:
+        """Check the bytes of the state; call this once."""
+        m, ring, arrival = self.m, self.ring, self.arrival
+        m.submodules.byte_flags = flags = ByteFlags(self.program)
+        wrong_nul, header, cut = (
+            Signal(name="wrong_nul"),
+            Signal(name="mismatch"),
+            Signal(name="cut"),
+        )
+        trailing, within = Signal(name="trailing"), ring.position("nul_within")
+        too_many = exceeds(self.left[:-1], self.program.plan.max_trailing_bytes)
+        wrong_header = any_of(
+            [self.flow.step[state] & flags.mismatch[k] for k, state in enumerate(flags.states)]
+        )
+        m.d.comb += [
+            Value.cast(flags.beat).eq(Value.cast(arrival.beat)),
+            flags.nul_at.eq(self.nul_at),
+            flags.header_at.eq(ring.beat(self.first_at)),
+            wrong_nul.eq(self.has_nul & self.takes_rest & flags.nonzero),
+            within.eq(arrival.limit - self.nul_at),
+            # The checked bytes of a header are the first bytes of its state, and nothing before the
+            # state is missing. So some of them are there unless the limit is at the state's start.
+            # In a full ring, the distance between the two looks negative.
+            header.eq(wrong_header & (arrival.limit != self.first_at)),
+            cut.eq(arrival.ended & ~self.present),
+            trailing.eq(self.present & too_many),
+        ]
+        return Findings(
+            header=header,
+            # The string's last byte is in the buffer, even if later bytes of the state are not.
+            nul=wrong_nul & (self.present | (~within[-1] & within.any())),
+            cut=cut,
+            trailing=trailing,
+            over=(self.begins_run | self.begins_loop) & self.length.over,
+            good=self.present & ~wrong_nul & ~wrong_header,
+        )
+
+    def advance(
+        self, issue: Value, *, aborts: Value | None = None, revisit: Value | None = None
+    ) -> None:
+        """Add the logic that goes to the next state.
+
+        Parameters
+        ----------
+        issue : Value(1)
+            The state is executed in this cycle.
+        aborts : Value or None
+            The next state is the end of the packet, unless it has ended.
+        revisit : Value or None
+            The length of the state before claims too much: go back to its state, which then begins
+            nothing. Nothing is executed in this cycle.
+        """
+        m, length = self.m, self.length
+        self._take_rest(issue)
+        self._move_on(issue)
+        self.flow.advance(
+            moves=issue,
+            ends=self.ends_packet,
+            done=self.done,
+            count=length.count,
+            single=length.at_most_one_pass,
+            double=length.two_passes,
+            nul=True,
+            aborts=aborts,
+        )
+        if revisit is not None:
+            states = self.program.states
+            begun = {s.body.to: s.number for s in states if s.length is not None and s.body}
+            m.d.sync += self.revisits.eq(revisit | (self.revisits & ~issue))
+            with m.If(revisit):
+                m.d.sync += self.begins_nothing.eq(1)
+                self.flow.go_to({s: self.flow.step[k] for k, s in begun.items() if k is not None})
+
+    def _take_rest(self, issue: Value) -> None:
+        """Store the rest of a run that begins; clear it after the state that takes it."""
+        m, length = self.m, self.length
+        good = ~self.bad & ~length.over
+        is_string = self.flow.on(lambda state: state.begins_string)
+        with m.If(issue):
+            with m.If(self.ends_packet):
+                m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
+            with m.Elif(self.begins_run):
+                m.d.sync += [
+                    self.rest.eq(Mux(good, length.rest, 0)),
+                    self.has_nul.eq(is_string & good & ~length.zero),
+                ]
+            with m.Elif(self.takes_rest | self.revisits):
+                m.d.sync += [self.rest.eq(0), self.has_nul.eq(0)]
+
+    def _move_on(self, issue: Value) -> None:
+        """Compute the positions of the next state."""
+        m, program, ring, plan = self.m, self.program, self.ring, self.program.plan
+        arrival, length, bad = self.arrival, self.length, self.bad
+        start = Signal(ring.bits, name="next_packet")
+        m.d.comb += start.eq(Cat(Const(0, ring.lane_bits), arrival.following))
+        nexts = next_positions(
+            m, program, self.flow, self.last_at, self.phase, length, self.begins_run
+        )
+        # Decisions by a length are late in the cycle, so what they select from comes first.
+        early, last = ring.position("early_last"), ring.position("next_last")
+        begin = start + program.states[program.start.to or 0].last_offset
+        exit_or_body = Mux(self.exits_always, nexts.exit, nexts.body)
+        exit_or_skipped = Mux(length.loop_skips, nexts.exit, early)
+        m.d.comb += [
+            early.eq(Mux(self.ends_packet, begin, exit_or_body)),
+            last.eq(Mux(length.run_skips, nexts.after_rest, exit_or_skipped)),
+        ]
+        # The first item of the run that the state begins; else the end of the state.
+        items_at: Value = self.step_end
+        for align in sorted({each.align for each in program.lengths.values()} - {1}):
+            aligned = align_up(m, self.step_end, 0, align, self.phase)
+            chosen = any_of(
+                [self.flow.step[k] for k, each in program.lengths.items() if each.align == align]
+            )
+            items_at = Mux(chosen & ~length.zero, aligned, items_at)
+        # After an error, `first_at` only frees beats; the end state drops the rest of the packet.
+        kept = Mux(self.at_end, arrival.limit, self.first_at)
+        with m.If(issue | (bad & self.at_end)):
+            m.d.sync += self.first_at.eq(Mux(self.ends_packet, start, Mux(bad, kept, items_at)))
+        with m.If(issue):
+            m.d.sync += self.last_at.eq(last)
+            if program.has_strings:
+                rest = Mux(self.is_words, self.rest, length.rest)
+                m.d.sync += self.nul_at.eq(self.step_end + rest)
+            if isinstance(self.phase, Signal):
+                with m.If(self.ends_packet):
+                    m.d.sync += self.phase.eq(start + plan.header_bytes)

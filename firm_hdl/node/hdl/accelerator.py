@@ -1,0 +1,97 @@
+"""The component around an entity of the user's."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+from amaranth.hdl import ClockSignal, Instance, Module, ResetSignal
+from amaranth.lib import wiring
+
+from firm_hdl.node.accelerator import accelerator_signature
+from firm_hdl.node.description import Description, Hdl
+from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
+from firm_hdl.node.hdl.sources import read_sources
+from firm_hdl.node.hdl.verilog import checked_verilog, preprocessed
+from firm_hdl.node.hdl.vhdl import checked_vhdl, verilog_of_vhdl
+from firm_hdl.node.top import parts_of
+
+__all__ = ["HdlAccelerator"]
+
+
+class HdlAccelerator(wiring.Component):
+    """An accelerator that is an entity of VHDL, or a module of Verilog or SystemVerilog.
+
+    Its files are checked by GHDL or by Verilator.
+
+    Parameters
+    ----------
+    description : Description
+        With `hdl`.
+
+    Attributes
+    ----------
+    sources : mapping of str to str
+        The texts of the files by name, in compile order.
+
+    Members
+    -------
+    As `accelerator_signature` has them.
+
+    Raises
+    ------
+    DefinitionError
+        If a file cannot be read, or is wrong; if there is no such entity, or if its ports are not
+        those of :func:`accelerator_ports`.
+    ProgramMissingError
+        If GHDL or Verilator is not installed.
+    """
+
+    def __init__(self, description: Description):
+        assert description.hdl is not None
+        self.hdl: Hdl = description.hdl
+        self._description = description
+        self.sources: Mapping[str, str] = read_sources(description)
+        wanted = accelerator_ports(description)
+        check = checked_vhdl if self.hdl.language == "vhdl" else checked_verilog
+        self.ports: tuple[AcceleratorPort, ...] = check(description, self.sources, wanted)
+        super().__init__(accelerator_signature(description))
+        self._MustUse__used = True
+
+    @cached_property
+    def modules(self) -> Mapping[str, str]:
+        """Verilog of the entity for a simulation, by file name.
+
+        Raises
+        ------
+        DefinitionError
+            If the VHDL has something that cannot be translated.
+        """
+        if self.hdl.language == "vhdl":
+            text = verilog_of_vhdl(self._description, self.sources, self.ports)
+            return {"accelerator.sv": text}
+        suffix = "v" if self.hdl.language == "verilog" else "sv"
+        return {f"accelerator.{suffix}": self._preprocessed[0]}
+
+    @property
+    def headers(self) -> Mapping[str, str]:
+        """The texts of the files that those of Verilog include, by path."""
+        return {} if self.hdl.language == "vhdl" else self._preprocessed[1]
+
+    @cached_property
+    def _preprocessed(self) -> tuple[str, dict[str, str]]:
+        return preprocessed(self._description)
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        values = {".".join(path): value for path, value in parts_of(self)}
+        connections: dict[str, Any] = {
+            "i_aclk": ClockSignal(),
+            "i_aresetn": ~ResetSignal(allow_reset_less=True),
+        }
+        for port in self.ports:
+            if port.member:
+                connections[f"{port.direction[0]}_{port.name}"] = values[port.member]
+        m.submodules.entity = Instance(self.hdl.entity, **connections)
+        return m

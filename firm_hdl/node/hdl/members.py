@@ -1,0 +1,103 @@
+"""The streams of an accelerator: what its writer has to take, and to offer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from firm_hdl.gateware.members import member_tree
+from firm_hdl.node.description import Description, Topic
+from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
+from firm_hdl.plan import Leaf, build_plan
+from firm_hdl.wire import lay_out
+
+__all__ = ["AcceleratorStream", "accelerator_streams", "members_text"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AcceleratorStream:
+    """A field of a message at an accelerator.
+
+    Attributes
+    ----------
+    topic : Topic
+    message : str
+        Name of the message, such as ``std_srvs/srv/Trigger_Request``.
+    member : str
+        The member of the accelerator, such as ``subscribe.cmd_vel.linear.x``.
+    direction : "in" or "out"
+        The way of its data.
+    type : str
+        What it carries, for people.
+    ports : tuple of AcceleratorPort
+        Data, perhaps `last`, then `valid` and `ready`.
+    """
+
+    topic: Topic
+    message: str
+    member: str
+    direction: Literal["in", "out"]
+    type: str
+    ports: tuple[AcceleratorPort, ...]
+
+    def port(self, name: str) -> AcceleratorPort | None:
+        """Return a port by the last part of its member, such as ``valid``."""
+        return next((each for each in self.ports if each.member.endswith(f".{name}")), None)
+
+
+def accelerator_streams(description: Description) -> tuple[AcceleratorStream, ...]:
+    """List the streams of an accelerator in the order of topics and fields."""
+    return tuple(_streams(description))
+
+
+def _streams(description: Description) -> Iterator[AcceleratorStream]:
+    by_stream: dict[str, list[AcceleratorPort]] = {}
+    for port in accelerator_ports(description):
+        by_stream.setdefault(port.member.rpartition(".")[0], []).append(port)
+    for topic in description.topics:
+        for direction, store in topic.stores:
+            base = f"{topic.kind}.{topic.port}"
+            if topic.kind == "serve":
+                base += ".request" if direction == "in" else ".response"
+            plan = build_plan(
+                lay_out(store.message, description.wire),
+                bus_bytes=description.bus_bytes,
+                max_message_bytes=store.max_message_bytes,
+            )
+            for index, path in member_tree(leaf.path for leaf in plan.leaves).leaves():
+                member = ".".join((base, *path))
+                # The data of `items` is a member of its payload.
+                yield AcceleratorStream(
+                    topic=topic,
+                    message=store.message.name,
+                    member=member,
+                    direction=direction,
+                    type=_described(plan.leaves[index]),
+                    ports=tuple(by_stream[member]),
+                )
+
+
+def _described(leaf: Leaf) -> str:
+    if leaf.kind == "items":
+        return f"items of {leaf.type}, {leaf.lanes} in a transfer"
+    return (
+        "an event"
+        if leaf.kind == "trigger"
+        else f"{leaf.kind}, {leaf.type}".removeprefix("scalar, ")
+    )
+
+
+def members_text(description: Description) -> str:
+    """List the streams of an accelerator as a table of text, with a heading for each message."""
+    streams = accelerator_streams(description)
+    width = max(len(stream.member) for stream in streams)
+    lines = []
+    before = None
+    for stream in streams:
+        if (stream.topic, stream.message) != before:
+            before = stream.topic, stream.message
+            verb = "take" if stream.direction == "in" else "offer"
+            lines += ["", f"{stream.topic.name}, {stream.message}: {verb}"]
+        lines.append(f"  {stream.member:<{width}}  {stream.type}")
+    return "\n".join(lines[1:])

@@ -1,0 +1,68 @@
+# amaranth: UnusedElaboratable=no
+"""The ports of an accelerator in VHDL or Verilog: those of a node without one, turned round.
+
+So an accelerator beside a node and one inside it have the same ports.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from firm_hdl.node.description import Description
+from firm_hdl.node.node import Node
+from firm_hdl.node.top import node_ports
+
+__all__ = ["AcceleratorPort", "accelerator_ports"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AcceleratorPort:
+    """A port of an accelerator, a plain vector.
+
+    Attributes
+    ----------
+    name : str
+    direction : "in" or "out"
+    width : int
+        Width in bits.
+    signed : bool
+        The bits are those of a signed number.
+    member : str
+        The member of the accelerator in Amaranth, such as ``subscribe.cmd_vel.linear.x.data``;
+        empty for clock and reset.
+    is_optional : bool
+        The accelerator may do without it.
+    """
+
+    name: str
+    direction: Literal["in", "out"]
+    width: int
+    signed: bool = False
+    member: str = ""
+    is_optional: bool = False
+
+
+def accelerator_ports(description: Description) -> tuple[AcceleratorPort, ...]:
+    """List the ports: clock, reset, time, then those of the messages in the order of topics."""
+    return tuple(_ports(description))
+
+
+def _ports(description: Description) -> Iterator[AcceleratorPort]:
+    yield AcceleratorPort(name="aclk", direction="in", width=1)
+    yield AcceleratorPort(name="aresetn", direction="in", width=1)
+    node = Node(replace(description, accelerator="", hdl=None))
+    # Only its names are needed.
+    node._MustUse__used = True
+    for port in node_ports(node):
+        group = port.member.partition(".")[0]
+        if group in ("time", "subscribe", "publish", "serve"):
+            yield AcceleratorPort(
+                name=port.name,
+                direction="in" if port.direction == "out" else "out",
+                width=port.width,
+                signed=port.signed,
+                member=port.member,
+                is_optional=group == "time",
+            )

@@ -1,0 +1,247 @@
+"""A file to begin an accelerator with: it has every member, takes all, and offers nothing.
+
+Messages of a subscription go to the publication of the same type, if there is one, as
+:class:`firm_hdl.node.loop.Loop` sends them.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from firm_hdl.errors import UserError
+from firm_hdl.files import write_new
+from firm_hdl.names.identifiers import identifier
+from firm_hdl.node.description import Description
+from firm_hdl.node.hdl.members import AcceleratorStream, accelerator_streams
+from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
+
+__all__ = ["NEW_LANGUAGES", "new_accelerator"]
+
+NEW_LANGUAGES = {
+    "amaranth": "py",
+    "vhdl": "vhd",
+    "verilog": "v",
+    "sv": "sv",
+    "systemverilog": "sv",
+}
+"""Suffix of a file by the name of its language."""
+
+
+def new_accelerator(description: Description, language: str | None = None) -> tuple[str, str]:
+    """Write the skeleton of an accelerator into the folder of a description.
+
+    The description may already name the file.
+
+    Parameters
+    ----------
+    language : str or None
+        A key of `NEW_LANGUAGES`. `None`: what the description says, else ``"amaranth"``.
+
+    Returns
+    -------
+    str, str
+        The path of the file, and the value of `accelerator` that names it.
+
+    Raises
+    ------
+    UserError
+        If the description names a file of another language, if there is such a file already, or if
+        it cannot be written.
+    """
+    hdl = description.hdl
+    said = hdl.language if hdl else "amaranth" if description.accelerator else None
+    wanted = {"sv": "systemverilog"}.get(language or "", language) or said or "amaranth"
+    if said is not None and wanted != said:
+        raise UserError(f"the accelerator of the description is in {said}, not in {wanted}")
+    name = identifier(description.node)
+    if wanted == "amaranth":
+        module, _, path = description.accelerator.partition(":")
+        module, path = module or name, path or name.title().replace("_", "")
+        if "." in path:
+            raise UserError(f"a class inside another one, '{path}', is not written")
+        file = f"{module.replace('.', os.sep)}.py"
+        text, value = "".join(_amaranth(description, path)), f"{module}:{path}"
+    else:
+        file = hdl.files[-1] if hdl else f"{name}.{NEW_LANGUAGES[wanted]}"
+        entity = hdl.entity if hdl else name
+        write = _vhdl if wanted == "vhdl" else _verilog
+        text = "".join(f"{line}\n" for line in write(description, entity))
+        value = f"{{{wanted}: {file}, entity: {entity}}}"
+    place = os.path.normpath(os.path.join(description.folder, file))
+    try:
+        write_new(place, text.encode())
+    except FileExistsError:
+        raise UserError(f"'{place}' is already there, and stays as it is") from None
+    except OSError as error:
+        raise UserError(f"cannot write '{place}': {error.strerror or error}") from None
+    return place, value
+
+
+def _looped(description: Description) -> dict[str, AcceleratorStream]:
+    """Return the streams whose data goes on, by the member of the other one; in both ways."""
+    streams = {stream.member: stream for stream in accelerator_streams(description)}
+    found: dict[str, AcceleratorStream] = {}
+    for came, goes in description.loops():
+        start = f"subscribe.{came.port}."
+        for member, stream in streams.items():
+            if member.startswith(start):
+                other = streams[f"publish.{goes.port}.{member.removeprefix(start)}"]
+                found |= {member: other, other.member: stream}
+    return found
+
+
+def _by_message(
+    description: Description,
+) -> Iterator[tuple[str, list[AcceleratorStream]]]:
+    """Yield the streams of each message, with a line that names it."""
+    streams = accelerator_streams(description)
+    for (topic, message), group in groupby(streams, key=lambda each: (each.topic, each.message)):
+        members = list(group)
+        verb = "takes" if members[0].direction == "in" else "offers"
+        yield f"{verb} {topic.name}: {message}", members
+
+
+def _head(description: Description) -> list[str]:
+    return [
+        f"The accelerator of the node {description.node}.",
+        "A field is transferred when its valid and its ready are 1 at a rising edge of the clock.",
+        "valid must not wait for ready, and data stays while valid waits. All fields have to be",
+        "taken, also those that are not used.",
+    ]
+
+
+def _assigned(
+    port: AcceleratorPort, stream: AcceleratorStream, other: AcceleratorStream | None
+) -> str:
+    """Return the port whose value an output has; ``1`` or ``0`` if it is tied."""
+    last = port.member.rpartition(".")[2]
+    if other is not None and (same := other.port(last)) is not None:
+        return same.name
+    return "1" if last == "ready" else "0"
+
+
+def _outputs(
+    description: Description,
+) -> Iterator[tuple[str, list[tuple[AcceleratorPort, str]]]]:
+    loops = _looped(description)
+    for heading, streams in _by_message(description):
+        yield (
+            heading,
+            [
+                (port, _assigned(port, stream, loops.get(stream.member)))
+                for stream in streams
+                for port in stream.ports
+                if port.direction == "out"
+            ],
+        )
+
+
+def _rows(description: Description, mark: str) -> Iterator[tuple[AcceleratorPort | None, str]]:
+    """Yield ports with a comment, and comments alone, in the order of the declaration."""
+    ports = {port.name: port for port in accelerator_ports(description)}
+    yield ports["aclk"], "Clock; the rising edge is active."
+    yield ports["aresetn"], "Synchronous reset, active low."
+    for port in ports.values():
+        if port.is_optional:
+            yield (
+                port,
+                f"Time of the node: {port.member.partition('.')[2]}. Leave it out or use it.",
+            )
+    for heading, streams in _by_message(description):
+        yield None, f"{mark} It {heading}"
+        for stream in streams:
+            for port in stream.ports:
+                is_data = port.member.rpartition(".")[2] == "data"
+                yield port, stream.type if is_data else ""
+
+
+def _declared(
+    rows: Sequence[tuple[AcceleratorPort | None, str]], text: dict[str, str], end: str, mark: str
+) -> Iterator[str]:
+    """Yield the lines of a declaration of ports, whose last one has no separator."""
+    last = [port for port, _ in rows if port is not None][-1]
+    for port, comment in rows:
+        if port is None:
+            yield ""
+            yield f"    {comment}"
+            continue
+        line = f"    {text[port.name]}{'' if port is last else end}"
+        yield f"{line}  {mark} {comment}" if comment else line
+
+
+def _vhdl(description: Description, entity: str) -> Iterator[str]:
+    rows = list(_rows(description, "--"))
+    ports = [port for port, _ in rows if port is not None]
+    width = max(len(port.name) for port in ports)
+    text = {
+        port.name: f"{port.name:<{width}} : {port.direction:<3} "
+        + ("std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)")
+        for port in ports
+    }
+    yield from (f"-- {line}" for line in _head(description))
+    yield from ("library ieee;", "use ieee.std_logic_1164.all;", "use ieee.numeric_std.all;", "")
+    yield from (f"entity {entity} is", "  port (")
+    yield from _declared(rows, text, ";", "--")
+    yield from ("  );", "end entity;", "", f"architecture rtl of {entity} is", "begin")
+    for heading, outputs in _outputs(description):
+        yield from ("", f"  -- It {heading}")
+        for port, value in outputs:
+            if value in "01":
+                value = f"'{value}'" if port.width == 1 else f"(others => '{value}')"
+            yield f"  {port.name:<{width}} <= {value};"
+    yield from ("", "end architecture;")
+
+
+def _verilog(description: Description, entity: str) -> Iterator[str]:
+    rows = list(_rows(description, "//"))
+    ports = [port for port, _ in rows if port is not None]
+    width = max(len(port.name) for port in ports)
+    text = {
+        port.name: f"{port.direction + 'put':<6} wire "
+        + f"{'signed ' if port.signed else ''}"
+        + ("" if port.width == 1 else f"[{port.width - 1}:0] ")
+        + port.name
+        for port in ports
+    }
+    yield from (f"// {line}" for line in _head(description))
+    yield f"module {entity} ("
+    yield from _declared(rows, text, ",", "//")
+    yield ");"
+    for heading, outputs in _outputs(description):
+        yield from ("", f"  // It {heading}")
+        for port, value in outputs:
+            if value in "01":
+                value = f"{port.width}'b{value}" if port.width == 1 else f"{port.width}'d{value}"
+            yield f"  assign {port.name:<{width}} = {value};"
+    yield from ("", "endmodule")
+
+
+def _amaranth(description: Description, name: str) -> Iterator[str]:
+    loops = _looped(description)
+    yield f'"""The accelerator of the node {description.node}."""\n\n'
+    yield "from amaranth.hdl import Module\nfrom amaranth.lib import wiring\n\n"
+    yield "from firm_hdl.node import accelerator_signature\n\n\n"
+    yield f"class {name}(wiring.Component):\n"
+    yield "    def __init__(self, description):\n"
+    yield "        super().__init__(accelerator_signature(description))\n\n"
+    yield "    def elaborate(self, platform):\n"
+    yield "        m = Module()\n"
+    yield "        # A field is a stream with payload, valid and ready. All have to be taken.\n"
+    yield "        # firm_hdl.accelerator has take_message and offer_message for whole messages.\n"
+    yield "        # The time of the node is in self.time.sec and self.time.nanosec.\n"
+    for heading, streams in _by_message(description):
+        yield f"\n        # It {heading}\n        m.d.comb += [\n"
+        for stream in streams:
+            member, other = f"self.{stream.member}", loops.get(stream.member)
+            yield f"            # {stream.type}\n"
+            if stream.direction == "in":
+                ready = "1" if other is None else f"self.{other.member}.ready"
+                yield f"            {member}.ready.eq({ready}),\n"
+            else:
+                source = None if other is None else f"self.{other.member}"
+                yield f"            {member}.payload.eq({f'{source}.payload' if source else 0}),\n"
+                yield f"            {member}.valid.eq({f'{source}.valid' if source else 0}),\n"
+        yield "        ]\n"
+    yield "        return m\n"

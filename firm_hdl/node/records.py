@@ -1,0 +1,278 @@
+"""The message ports of a node as records of VHDL and as structs of SystemVerilog.
+
+A node without accelerator has its message ports outside. A layer around the node has the types of
+single converters there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from firm_hdl.errors import UserError
+from firm_hdl.export.remarks import remark
+from firm_hdl.export.systemverilog.backend import WAIVERS_TEXT
+from firm_hdl.export.systemverilog.package import shared_packages as struct_packages
+from firm_hdl.export.systemverilog.structs import package_name
+from firm_hdl.export.systemverilog.types import WORDS
+from firm_hdl.export.systemverilog.wrapper import leaf_actual
+from firm_hdl.export.top import Direction, Port, ports_of
+from firm_hdl.export.tree import Tree, tree_of
+from firm_hdl.export.vhdl.constants import comment
+from firm_hdl.export.vhdl.layer import shared_packages as record_packages
+from firm_hdl.export.vhdl.values import values_of
+from firm_hdl.export.vhdl.wrapper import Conversions, Core, Line, entity_around
+from firm_hdl.gateware.members import member_tree
+from firm_hdl.model import Message
+from firm_hdl.names.identifiers import flat_names
+from firm_hdl.node.description import SERVICE_PARTS, Description, Store
+from firm_hdl.node.top import NodePort
+from firm_hdl.plan import Plan
+
+__all__ = ["MessagePort", "message_ports", "record_files", "struct_files"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MessagePort:
+    """A message at the top level of a node.
+
+    Attributes
+    ----------
+    name, ready : str
+        Names of the record with data and valid, and of the record with ready.
+    member : str
+        The member of :class:`Node`, such as ``subscribe.cmd_vel``.
+    message : Message
+    direction : Direction
+        ``deserializer`` if the message comes out of the node.
+    plan : Plan
+    ports : mapping of str to Port
+        The plain ports of the message's leaves, by their names at the node.
+    """
+
+    name: str
+    ready: str
+    member: str
+    message: Message
+    direction: Direction
+    plan: Plan
+    ports: Mapping[str, Port]
+
+    def tree(self, reserved: Collection[str] = ()) -> Tree:
+        """Return the records of the message; `reserved` as for :func:`tree_of`."""
+        return tree_of(self.message, self.plan, reserved)
+
+
+def message_ports(description: Description, ports: Sequence[NodePort]) -> list[MessagePort]:
+    """List the messages that come out of a node, and go into it.
+
+    Parameters
+    ----------
+    ports : sequence of NodePort
+        All ports of the top level.
+
+    Raises
+    ------
+    UserError
+        If two types of the node would have one package of records.
+    """
+    found = list(_found(description))
+    taken = [port.name for port in ports]
+    paths = [tuple(member.split(".")) for member, _, _ in found]
+    names = flat_names([*paths, *((*path, "rdy") for path in paths)], taken)
+    by_member = {port.member: port.name for port in ports}
+    messages = []
+    for path, (member, direction, store) in zip(paths, found, strict=True):
+        plan = description.plan(store)
+        places = dict(member_tree(leaf.path for leaf in plan.leaves).leaves())
+        own = {
+            by_member[".".join((member, *places[port.leaf], port.member))]: port
+            for port in ports_of(plan, direction)
+            if port.leaf is not None
+        }
+        messages.append(
+            MessagePort(
+                name=names[path],
+                ready=names[(*path, "rdy")],
+                member=member,
+                message=store.message,
+                direction=direction,
+                plan=plan,
+                ports=own,
+            )
+        )
+    _check_packages(messages)
+    return messages
+
+
+def other_ports(ports: Sequence[NodePort], messages: Sequence[MessagePort]) -> list[NodePort]:
+    """Return the ports of a node that belong to no message."""
+    own = {name for each in messages for name in each.ports}
+    return [port for port in ports if port.name not in own]
+
+
+def _found(description: Description) -> Iterator[tuple[str, Direction, Store]]:
+    """Yield the member, the direction and the type of each message."""
+    for topic in description.topics:
+        for way, store in topic.stores:
+            base = f"{topic.kind}.{topic.port}"
+            member = f"{base}.{SERVICE_PARTS[way]}" if topic.kind == "serve" else base
+            yield member, "deserializer" if way == "in" else "serializer", store
+
+
+def _check_packages(messages: Sequence[MessagePort]) -> None:
+    """Refuse types whose names differ only where packages of VHDL do not."""
+    owners: dict[str, str] = {}
+    for each in messages:
+        for package in each.tree().packages:
+            owner = owners.setdefault(package.name, package.message.name)
+            if owner != package.message.name:
+                raise UserError(
+                    f"{package.message.name} and {owner} would have one package of VHDL, "
+                    f"'{package.name}', so the node has no records"
+                )
+
+
+def record_files(
+    name: str,
+    ports: Sequence[NodePort],
+    messages: Sequence[MessagePort],
+    *,
+    vhdl_ports: Mapping[str, str],
+    header: str,
+) -> dict[str, str]:
+    """Write the packages of all messages, and the entity ``NAME_records``.
+
+    Parameters
+    ----------
+    name : str
+        The entity with plain ports.
+    vhdl_ports : mapping of str to str
+        Names of its ports, by those of the netlist.
+    header : str
+        Lines of a comment at the head of the entity's file.
+
+    Returns
+    -------
+    dict of str to str
+        Texts by file name, in compile order; they compile after the node.
+    """
+    files: dict[str, str] = {}
+    # An actual is the port of the same name, unless it is a part of a record.
+    actuals = {port.name: port.name for port in ports}
+    lines = [_line(port) for port in other_ports(ports, messages)]
+    signals: list[tuple[str, str]] = []
+    assignments: list[str] = []
+    packages: dict[str, None] = {}
+    for each in messages:
+        tree = each.tree()
+        files |= record_packages(each.plan, tree, values_of(tree, each.plan))
+        packages[tree.package.name] = None
+        names = {port.name: outer for outer, port in each.ports.items()}
+        made = Conversions(
+            each.plan, tree, each.direction, msg=each.name, rdy=each.ready, names=names
+        )
+        actuals |= {outer: made.actual(port) for outer, port in each.ports.items()}
+        signals += made.signals
+        assignments += made.assignments
+        lines += _lines(each, f"work.{tree.package.name}")
+    entity = f"{name}_records"
+    head = [
+        *comment(header, ""),
+        *comment(f"The node with records of messages. {name} has plain ports.", ""),
+    ]
+    core = Core(entity=name, names=dict(vhdl_ports))
+    text = entity_around(entity, packages, lines, core, actuals, signals, assignments)
+    files[f"{entity}.vhd"] = "".join([*head, *text])
+    return files
+
+
+def _line(port: NodePort) -> Line:
+    kind = "std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)"
+    return port.name, f"{port.direction:3} {kind}", f"{port.member}."
+
+
+def _lines(port: MessagePort, package: str) -> list[Line]:
+    root = port.tree().root
+    forwards, backwards = ("out", "in ") if port.direction == "deserializer" else ("in ", "out")
+    # Two types of a node may have the same name, in packages of their own.
+    return [
+        (port.name, f"{forwards} {package}.{root.type}", f"Data and valid of {port.message.name}."),
+        (port.ready, f"{backwards} {package}.{root.ready_type}", "Ready of the fields."),
+    ]
+
+
+def struct_files(
+    name: str,
+    module: str,
+    ports: Sequence[NodePort],
+    messages: Sequence[MessagePort],
+    *,
+    header: str,
+) -> dict[str, str]:
+    """Write the packages of all messages, the module ``NAME_sv``, and the list of files.
+
+    Parameters
+    ----------
+    module : str
+        The module of Verilog, ``MODULE.v`` in the folder above.
+    header : str
+        Lines of a comment at the head of the module's file.
+
+    Returns
+    -------
+    dict of str to str
+        Texts by file name, in compile order; then ``files.f`` and waivers of Verilator.
+    """
+    files: dict[str, str] = {}
+    for each in messages:
+        files |= struct_packages(each.plan, each.tree(WORDS))
+    top = f"{name}_sv"
+    listed = [*files, f"../{module}.v", f"{top}.sv"]
+    files[f"{top}.sv"] = "".join(
+        [
+            *remark(header, ""),
+            *remark(f"The node with structs of messages. {module} has plain ports.", ""),
+            f"\nmodule {top} (\n",
+            *_ports(ports, messages),
+            ");\n",
+            *_core(module, ports, messages),
+            f"\nendmodule : {top}\n",
+        ]
+    )
+    files["files.f"] = "".join(f"{file}\n" for file in listed)
+    files["waivers.vlt"] = WAIVERS_TEXT
+    return files
+
+
+def _ports(ports: Sequence[NodePort], messages: Sequence[MessagePort]) -> Iterator[str]:
+    ways = {"in": "input", "out": "output"}
+    lines: list[tuple[str, str, str, str]] = []
+    for port in other_ports(ports, messages):
+        kind = "logic" if port.width == 1 else f"logic [{port.width - 1}:0]"
+        lines.append((ways[port.direction], kind, port.name, f"{port.member}."))
+    for each in messages:
+        root, own = each.tree(WORDS).root, package_name(each.tree(WORDS).package.name)
+        forward, backward = (
+            ("output", "input") if each.direction == "deserializer" else ("input", "output")
+        )
+        about = f"Data and valid of {each.message.name}."
+        lines += [
+            (forward, f"{own}::{root.type}", each.name, about),
+            (backward, f"{own}::{root.ready_type}", each.ready, "Ready of the fields."),
+        ]
+    for number, (way, kind, name, meaning) in enumerate(lines):
+        end = "," if number < len(lines) - 1 else ""
+        yield from remark(meaning)
+        yield f"  {way:6} {kind} {name}{end}\n"
+
+
+def _core(module: str, ports: Sequence[NodePort], messages: Sequence[MessagePort]) -> Iterator[str]:
+    actuals = {port.name: port.name for port in ports}
+    for each in messages:
+        nodes = {node.leaf: node for node in each.tree(WORDS).root.leaves()}
+        for name, port in each.ports.items():
+            actuals[name] = leaf_actual(port, nodes[port.leaf], each.name, each.ready)
+    width = max(map(len, actuals))
+    joined = ",\n".join(f"    .{name:{width}} ({actual})" for name, actual in actuals.items())
+    yield f"\n  {module} node (\n{joined}\n  );\n"

@@ -1,0 +1,51 @@
+"""The program: a plan as the circuit of one direction needs it, one state per step.
+
+The plan says what a converter does with the bytes of a packet, and serves both directions. A
+program is what remains to be transcribed into registers and logic: constants that a circuit
+registers together with the number of the state, transitions, and decoded lengths.
+"""
+
+from firm_hdl.program.control import Load, Transition
+from firm_hdl.program.deserializer import (
+    DeserializerProgram,
+    DeserializerState,
+    NextPosition,
+    align_addend,
+    deserializer_program,
+    distance_to,
+)
+from firm_hdl.program.lanes import StartLanes, WordLanes, start_lanes
+from firm_hdl.program.lengths import Length, NextMap
+from firm_hdl.program.serializer import (
+    LENGTH_BITS,
+    SerializerProgram,
+    SerializerState,
+    WireByte,
+    serializer_program,
+)
+from firm_hdl.program.state import AnyState, Program, State, Transfer
+
+__all__ = [
+    "LENGTH_BITS",
+    "AnyState",
+    "DeserializerProgram",
+    "DeserializerState",
+    "Length",
+    "Load",
+    "NextMap",
+    "NextPosition",
+    "Program",
+    "SerializerProgram",
+    "SerializerState",
+    "StartLanes",
+    "State",
+    "Transfer",
+    "Transition",
+    "WireByte",
+    "WordLanes",
+    "align_addend",
+    "deserializer_program",
+    "distance_to",
+    "serializer_program",
+    "start_lanes",
+]

@@ -1,0 +1,250 @@
+"""The program of a deserializer or parser: the states of its sequencer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import takewhile
+
+from firm_hdl.plan.ir import Fixed, RunStep
+from firm_hdl.plan.tree import Plan
+from firm_hdl.program.control import Control, control_of, start_of
+from firm_hdl.program.lanes import StartLanes, start_lanes, word_lanes
+from firm_hdl.program.lengths import Length, NextMap, length_of
+from firm_hdl.program.state import Program, State, common_fields, repeated_leaves
+
+__all__ = [
+    "DeserializerProgram",
+    "DeserializerState",
+    "NextPosition",
+    "align_addend",
+    "deserializer_program",
+    "distance_to",
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NextPosition:
+    """The way from a state's last byte to the last byte of the next state.
+
+    To align a position, a circuit adds a distance, clears low bits, and sets them.
+
+    Attributes
+    ----------
+    add : int
+        The distance before alignment. It includes what the rounding and the next state's own bytes
+        need, if alignment counts from a constant; else it is 1.
+    mask : int
+        The low bits that alignment clears.
+    low : int
+        Their new value; a distance after alignment, if alignment does not count from a constant.
+    over_rest : bool
+        The rest of a run comes between: its distance, a register, replaces `add`.
+    """
+
+    add: int
+    mask: int
+    low: int
+    over_rest: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeserializerState(State):
+    """A state of the sequencer.
+
+    Attributes
+    ----------
+    at_end : bool
+        The message is complete; the state waits for the end of the packet.
+    last_offset : int
+        Distance from the first byte of the map or word to its last one; -1 if it has none.
+    map_offset : int
+        Distance from the last byte to the first one of the map's last word.
+    checks : tuple of (int, int)
+        Lane and value of the bytes of the encapsulation header that are checked in the state.
+    is_leading : bool
+        No byte of the packet comes before the end of the state.
+    exit, body_start : NextPosition or None
+        Of the last exit, and of the body.
+    again : tuple of NextPosition or None
+        By loop: of the exit that repeats it.
+    """
+
+    at_end: bool = False
+    last_offset: int
+    map_offset: int
+    checks: tuple[tuple[int, int], ...] = ()
+    is_leading: bool = False
+    exit: NextPosition | None = None
+    body_start: NextPosition | None = None
+    again: tuple[NextPosition | None, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeserializerProgram(Program[DeserializerState]):
+    """The program of a deserializer or parser.
+
+    Attributes
+    ----------
+    has_leaves : bool
+        Whether the circuit writes leaves. A parser does not, and skips elements without bytes.
+    length_lanes : tuple of int
+        Lanes of the last byte of lengths, in ascending order.
+    repeated_leaves : frozenset of int
+        The leaves that may transfer in two states in a row.
+    carried_bytes : int
+        Most bytes of a transfer that a state leaves to a later one.
+    ends_at_once : bool
+        A packet may end in the state in which it starts.
+    """
+
+    has_leaves: bool
+    length_lanes: tuple[int, ...]
+    repeated_leaves: frozenset[int]
+    carried_bytes: int
+    ends_at_once: bool
+
+    @property
+    def has_strings(self) -> bool:
+        """Whether any run ends in a NUL."""
+        return any(run.terminated for run in self.plan.runs)
+
+    @property
+    def count_bits(self) -> int:
+        """Bits of the largest legal length."""
+        return max((each.max_count.bit_length() for each in self.lengths.values()), default=1)
+
+    @property
+    def rest_bits(self) -> int:
+        """Bits of the number of items in a rest."""
+        return self.plan.max_run_lanes.bit_length()
+
+
+def align_addend(align: int, phase: int, shift: int = 0) -> int:
+    """Return the addend after which clearing the low bits rounds a position up.
+
+    Parameters
+    ----------
+    align : int
+        A power of two, at most 8. Aligned positions are `phase` plus a multiple of `align`.
+    shift : int
+        Bytes that are added after the rounding.
+    """
+    return align - 1 - phase % align + (phase % align + shift) // align * align
+
+
+def deserializer_program(plan: Plan, *, has_leaves: bool = True) -> DeserializerProgram:
+    """Return the program of a deserializer, or of a parser if there are no leaves."""
+    start, control = start_of(plan), control_of(plan)
+    starts = start_lanes(plan)
+    items, map_ = word_lanes(plan, starts)
+    number = len(plan.steps)
+    end = DeserializerState(number=number, at_end=True, last_offset=-1, map_offset=1)
+    leading = len(list(takewhile(lambda s: not (s.bytes or isinstance(s, RunStep)), plan.steps)))
+    states = tuple(
+        _state(plan, index, control, is_leading=index < leading, has_leaves=has_leaves)
+        for index in range(number)
+    )
+    parts = [part for step in plan.steps for part in step.parts]
+    return DeserializerProgram(
+        plan=plan,
+        states=(*states, end),
+        start=start,
+        end=number,
+        items=items,
+        map=map_,
+        has_leaves=has_leaves,
+        length_lanes=_length_lanes(plan, control, starts),
+        repeated_leaves=repeated_leaves(states, start),
+        carried_bytes=max((part.first for part in parts), default=0),
+        ends_at_once=states[start.to or 0].exits[-1].to is None,
+    )
+
+
+def _state(
+    plan: Plan, number: int, control: Sequence[Control], *, is_leading: bool, has_leaves: bool
+) -> DeserializerState:
+    step, mine, bus = plan.steps[number], control[number], plan.bus_bytes
+    exits, is_counted = mine.exits, isinstance(step, RunStep) and plan.runs[step.run].counted
+    again: list[NextPosition | None] = [None] * plan.levels
+    for each in exits[:-1]:
+        assert each.level is not None
+        again[each.level] = _next(plan, _next_map(plan, each.to), over_rest=is_counted)
+    body_start = None
+    if mine.begin is not None and mine.body is not None:
+        # The body of a run starts with its first item, and is aligned like that.
+        length, body = length_of(plan, mine.begin), _next_map(plan, mine.body.to)
+        align = body.align if length.level is not None else length.align
+        body_start = _next(plan, replace(body, align=align))
+    elif mine.body is not None:
+        body_start = _next(plan, NextMap(1, bus - 1))
+    own = _next_map(plan, number)
+    fields = common_fields(plan, number, mine)
+    if mine.begin is not None:
+        fields["length"] = _length(plan, control, number, has_leaves=has_leaves)
+    fixed = [item for item in step.slices if isinstance(item, Fixed) and item.check]
+    return DeserializerState(
+        **fields,
+        last_offset=own.last_offset,
+        map_offset=(step.bytes > bus) * bus - own.last_offset,
+        checks=tuple((item.at + k, byte) for item in fixed for k, byte in enumerate(item.data)),
+        is_leading=is_leading,
+        exit=_next(plan, _next_map(plan, exits[-1].to), over_rest=is_counted),
+        body_start=body_start,
+        again=tuple(again),
+    )
+
+
+def _next_map(plan: Plan, number: int | None) -> NextMap:
+    """Return the map or word of a step; `None` is the end of the packet."""
+    if number is None:
+        return NextMap(1, -1)
+    step = plan.steps[number]
+    size = plan.bus_bytes if isinstance(step, RunStep) else step.bytes
+    return NextMap(step.align, size - 1)
+
+
+def _next(plan: Plan, to: NextMap, *, over_rest: bool = False) -> NextPosition:
+    """Return the way to the last byte of a map or word that follows."""
+    # On a narrow bus, packets start at any offset modulo 8: alignment counts from a register.
+    low = (plan.header_bytes + to.last_offset) % to.align if plan.bus_bytes >= 8 else to.last_offset
+    return NextPosition(add=distance_to(plan, to), mask=to.align - 1, low=low, over_rest=over_rest)
+
+
+def distance_to(plan: Plan, to: NextMap) -> int:
+    """Return the distance from a state's last byte to that of the next one, before alignment."""
+    if plan.bus_bytes < 8:
+        return 1
+    if to.align == 1:
+        return 1 + to.last_offset
+    return 1 + align_addend(to.align, plan.header_bytes, to.last_offset)
+
+
+def _length(plan: Plan, control: Sequence[Control], number: int, *, has_leaves: bool) -> Length:
+    """Return the length of a step that begins a loop or a run."""
+    mine = control[number]
+    assert mine.begin is not None
+    assert mine.body is not None
+    length = length_of(plan, mine.begin)
+    if length.level is None:
+        nexts = tuple(_next_map(plan, each.to) for each in mine.exits if each.to is not None)
+        return replace(length, nexts=nexts)
+    to = mine.body.to or 0
+    body = plan.steps[to]
+    is_empty = not isinstance(body, RunStep) and not body.bytes and control[to].begin is None
+    return replace(length, counts_nothing=is_empty and not has_leaves)
+
+
+def _length_lanes(
+    plan: Plan, control: Sequence[Control], starts: Sequence[StartLanes]
+) -> tuple[int, ...]:
+    return tuple(
+        sorted(
+            {
+                (lane + step.bytes - 1) % plan.bus_bytes
+                for step, mine, start in zip(plan.steps, control, starts, strict=True)
+                if mine.begin is not None
+                for lane in start.map
+            }
+        )
+    )

@@ -1,0 +1,133 @@
+"""The lengths of a message: what each of them counts, and what is decoded from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from firm_hdl.plan.ir import Begin, BeginLoop, Claim
+from firm_hdl.plan.tree import Plan
+
+__all__ = ["Length", "NextMap", "length_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class NextMap:
+    """The map or word of a state that follows the items of a run.
+
+    Attributes
+    ----------
+    align : int
+    last_offset : int
+        Distance from its first byte to its last one; -1 if it has none.
+    """
+
+    align: int
+    last_offset: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Length:
+    """A length, with which a state begins a loop or a run.
+
+    The properties that are texts name columns of the table of decoded lengths. States whose lengths
+    need the same value share a column. So the number of columns grows with the kinds of lengths,
+    not with the number of lengths.
+
+    Attributes
+    ----------
+    leaf : int
+    limit : int
+        Largest legal number of elements or items.
+    level : int or None
+        The loop whose elements are counted; `None`: the items of a run.
+    lanes, item_bytes : int
+        Items of a word, and bytes of an item.
+    has_nul : bool
+        Whether a NUL follows the items. The length on the wire counts the NUL, too.
+    align : int
+        Alignment of the first item.
+    claim : Claim or None
+    counts_nothing : bool
+        The elements have no bytes, and nobody asks for them: only their number is checked.
+    nexts : tuple of NextMap
+        Of a run: what may follow its items.
+    """
+
+    leaf: int
+    limit: int
+    level: int | None
+    lanes: int = 1
+    item_bytes: int = 0
+    has_nul: bool = False
+    align: int = 1
+    claim: Claim | None = None
+    counts_nothing: bool = False
+    nexts: tuple[NextMap, ...] = ()
+
+    @property
+    def max_count(self) -> int:
+        """The largest legal value on the wire."""
+        return self.limit + self.has_nul
+
+    @property
+    def word(self) -> int:
+        """The largest value on the wire of which all items are in the rest."""
+        return self.lanes + self.has_nul
+
+    @property
+    def kind(self) -> str:
+        """What is counted: equal for lengths whose items have one size."""
+        if self.level is not None:
+            return "nothing" if self.counts_nothing else "loop"
+        return f"run_{self.item_bytes}{'_nul' if self.has_nul else ''}"
+
+    @property
+    def over(self) -> str:
+        """The value is above `max_count`."""
+        return f"over_{self.max_count}"
+
+    @property
+    def skips(self) -> str:
+        """The body is skipped: no element, no word before the rest, or an illegal length."""
+        return f"skips_{self.kind}_{self.max_count}"
+
+    @property
+    def at_most_one_pass(self) -> str:
+        """At most one pass of the body."""
+        return f"at_most_one_{self.kind}"
+
+    @property
+    def two_passes(self) -> str:
+        """Two passes of the body; valid only if `at_most_one_pass` is 0."""
+        return f"two_{self.kind}"
+
+    @property
+    def rest(self) -> str:
+        """Items of the rest."""
+        return f"rest_{self.kind}"
+
+    @property
+    def charged(self) -> str | None:
+        """The value is large enough to be charged to the budget; `None`: it has no claim."""
+        return None if self.claim is None else f"charged_{self.claim.least}"
+
+    def next_last(self, following: NextMap) -> str:
+        """The last byte of what follows, if all items are in the rest."""
+        return f"last_{self.kind}_{self.align}_{following.align}_{following.last_offset + 1}"
+
+
+def length_of(plan: Plan, begin: Begin) -> Length:
+    """Return the length that begins a loop or a run."""
+    if isinstance(begin, BeginLoop):
+        return Length(leaf=begin.length, limit=begin.limit, level=begin.level, claim=begin.claim)
+    items = plan.items_leaf(begin.run)
+    return Length(
+        leaf=begin.length,
+        limit=begin.limit,
+        level=None,
+        lanes=items.lanes,
+        item_bytes=items.item_bytes,
+        has_nul=plan.has_nul(begin),
+        align=begin.align,
+        claim=begin.claim,
+    )

@@ -1,0 +1,162 @@
+"""The program of a serializer: the states of its collector."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from firm_hdl.plan.geometry import first_step, may_end_empty, most_beats, only_ends
+from firm_hdl.plan.ir import Fixed, Part, RunStep, Step
+from firm_hdl.plan.tree import Plan
+from firm_hdl.program.control import Control, control_of, start_of
+from firm_hdl.program.lanes import start_lanes, word_lanes
+from firm_hdl.program.state import Program, State, common_fields
+
+__all__ = [
+    "LENGTH_BITS",
+    "SerializerProgram",
+    "SerializerState",
+    "WireByte",
+    "serializer_program",
+]
+
+LENGTH_BITS = 32
+"""Width of lengths. Counters have this width, because the items of any length are taken."""
+
+
+@dataclass(frozen=True, slots=True)
+class WireByte:
+    """A byte of a state's words.
+
+    Attributes
+    ----------
+    leaf : int or None
+        The leaf that the byte belongs to; `None` for a constant.
+    at : int
+        Number of the byte in the transfer, or the value of the constant.
+    slot : int
+        Number of the byte's transfer in the state; -1 for a constant, or if a later state takes the
+        transfer.
+    """
+
+    leaf: int | None
+    at: int
+    slot: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SerializerState(State):
+    """A state of the collector.
+
+    Attributes
+    ----------
+    word_bytes, item_word_bytes : int
+        Bytes in the word of the map and in that of items. The rest, whose size varies, is not
+        counted.
+    map_mask, map_addend : int
+        To align the map: the low bits to clear, and the addend of the rounding, if alignment counts
+        from a constant.
+    is_final_tail : bool
+        The state always ends the packet, and takes nothing but a rest.
+    may_wait_for_status : bool
+        The state may take its length, and then wait until `status` is free. A length is the last
+        transfer of its state; so nothing else can delay the state after it.
+    precedes_leaves : bool
+        Only constants come before the end of the state.
+    items, map : tuple of (int, WireByte)
+        Lanes and bytes of the two words.
+    """
+
+    word_bytes: int
+    item_word_bytes: int
+    map_mask: int
+    map_addend: int
+    is_final_tail: bool
+    may_wait_for_status: bool
+    precedes_leaves: bool
+    items: tuple[tuple[int, WireByte], ...]
+    map: tuple[tuple[int, WireByte], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SerializerProgram(Program[SerializerState]):
+    """The program of a serializer.
+
+    Attributes
+    ----------
+    most_beats : int
+        Largest number of beats that a state touches, its padding included.
+    may_end_without_bytes : bool
+        A packet may end in a state without bytes. Then its last beat may be full before it is known
+        to be the last one.
+    """
+
+    most_beats: int
+    may_end_without_bytes: bool
+
+
+def serializer_program(plan: Plan) -> SerializerProgram:
+    """Return the program of a serializer."""
+    start, control = start_of(plan), control_of(plan)
+    items, map_ = word_lanes(plan, start_lanes(plan))
+    return SerializerProgram(
+        plan=plan,
+        states=tuple(_state(plan, number, each) for number, each in enumerate(control)),
+        start=start,
+        most_counted=(1 << LENGTH_BITS) - 1,
+        items=items,
+        map=map_,
+        most_beats=most_beats(plan),
+        may_end_without_bytes=may_end_empty(plan),
+    )
+
+
+def _state(plan: Plan, number: int, control: Control) -> SerializerState:
+    step, bus = plan.steps[number], plan.bus_bytes
+    fields = common_fields(plan, number, control)
+    two_words, counted = fields["two_word_map"], fields["is_counted"]
+    may_end = any(each.to is None or only_ends(plan.steps[each.to]) for each in control.exits)
+    words: dict[str, list[tuple[int, WireByte]]] = {"items": [], "map": []}
+    for name, lane, byte in _bytes(plan, step):
+        words[name].append((lane, byte))
+    return SerializerState(
+        **fields,
+        word_bytes=bus if fields["is_words"] and not counted else step.bytes - bus * two_words,
+        item_word_bytes=bus if two_words or counted else 0,
+        map_mask=step.align - 1,
+        map_addend=step.align - 1 - plan.header_bytes % step.align if bus >= 8 else 0,
+        is_final_tail=only_ends(step),
+        may_wait_for_status=control.begin is not None and may_end,
+        precedes_leaves=number < first_step(plan),
+        items=tuple(words["items"]),
+        map=tuple(words["map"]),
+    )
+
+
+def _bytes(plan: Plan, step: Step) -> Iterator[tuple[str, int, WireByte]]:
+    """Yield the bytes of a step's words: the word, the lane, and the byte."""
+    bus, slot = plan.bus_bytes, 0
+    if step.rest is not None:
+        yield from (("items", *each) for each in _run_word(plan, step.rest, slot))
+        slot += 1
+    for item in step.slices:
+        found = [WireByte(None, 0, -1)] * item.bytes
+        if isinstance(item, Fixed):
+            found = [WireByte(None, value, -1) for value in item.data]
+        elif isinstance(item, Part):
+            number = slot if item.completes else -1
+            found = [WireByte(item.leaf, item.first + k, number) for k in range(item.bytes)]
+            slot += item.completes
+        for k, byte in enumerate(found, item.at):
+            name = "items" if step.bytes > bus > k else "map"
+            yield name, k % bus if step.bytes > bus else k, byte
+    if isinstance(step, RunStep):
+        name = "items" if plan.runs[step.run].counted else "map"
+        yield from ((name, *each) for each in _run_word(plan, step.run, slot))
+
+
+def _run_word(plan: Plan, run: int, slot: int) -> Iterator[tuple[int, WireByte]]:
+    """Yield the bytes of a transfer of items, with their lanes."""
+    items = plan.items_leaf(run)
+    leaf = plan.runs[run].items
+    return ((k, WireByte(leaf, k, slot)) for k in range(items.lanes * items.item_bytes))

@@ -1,0 +1,212 @@
+"""What the programs of both directions have in common: states, and the transfers of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from firm_hdl.plan.ir import Part, Run, RunStep, Step
+from firm_hdl.plan.tree import Plan
+from firm_hdl.program.control import Control, Transition
+from firm_hdl.program.lanes import WordLanes
+from firm_hdl.program.lengths import Length, length_of
+
+__all__ = ["AnyState", "Program", "State", "Transfer", "common_fields", "repeated_leaves"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Transfer:
+    """A transfer that a state completes.
+
+    Attributes
+    ----------
+    leaf : int
+    part : Part or None
+        Its bytes in the map; `None` for a word or the rest of a run.
+    run : Run or None
+        The run of the word or rest.
+    is_rest : bool
+    counts_nul : bool
+        The transfer is a length, which on the wire counts a NUL as well.
+    """
+
+    leaf: int
+    part: Part | None = None
+    run: Run | None = None
+    is_rest: bool = False
+    counts_nul: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class State:
+    """What a converter does in one cycle.
+
+    A state takes the rest of a run, then a map: bytes whose places are static. The state of a run's
+    words takes one word instead.
+
+    Attributes
+    ----------
+    number : int
+    body : Transition or None
+        Into the body of the run or loop that `length` counts, or to the next word of the same run.
+    exits : tuple of Transition
+        The other transitions; see :class:`Control`.
+    is_words, is_counted : bool
+        The state takes a word of a run, and a length counts the items of this run.
+    takes_rest : bool
+        The state takes the rest of a run before its map.
+    rest_unit : int
+        Bytes of an item of this rest; 0 without.
+    align, map_bytes : int
+        Alignment and size of the map.
+    two_word_map : bool
+        The map has more bytes than a bus word.
+    length : Length or None
+        The length at the end of the map.
+    transfers : tuple of Transfer
+        In wire order.
+    cut : Part or None
+        The bytes of a transfer that a later state completes.
+    """
+
+    number: int
+    body: Transition | None = None
+    exits: tuple[Transition, ...] = ()
+    is_words: bool = False
+    is_counted: bool = False
+    takes_rest: bool = False
+    rest_unit: int = 0
+    align: int = 1
+    map_bytes: int = 0
+    two_word_map: bool = False
+    length: Length | None = None
+    transfers: tuple[Transfer, ...] = ()
+    cut: Part | None = None
+
+    def successors(self) -> Iterator[Transition]:
+        """Yield all transitions: the body, then the exits."""
+        if self.body is not None:
+            yield self.body
+        yield from self.exits
+
+    @property
+    def begins_nothing(self) -> bool:
+        """The state always takes an exit."""
+        return self.length is None and not self.is_words
+
+    @property
+    def begins_run(self) -> bool:
+        """A length of the state counts the items of a run."""
+        return self.length is not None and self.length.level is None
+
+    @property
+    def begins_string(self) -> bool:
+        """A length of the state counts the items of a run and a NUL."""
+        return self.length is not None and self.length.has_nul
+
+    @property
+    def begins_loop(self) -> bool:
+        """A length of the state counts the elements of a loop."""
+        return self.length is not None and self.length.level is not None
+
+
+AnyState = TypeVar("AnyState", bound=State)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Program(Generic[AnyState]):
+    """A plan as a circuit of one direction needs it.
+
+    Attributes
+    ----------
+    plan : Plan
+    states : tuple of State
+        By number; that of a state is also the index of its step in the plan.
+    start : Transition
+        To the first state of each packet.
+    end : int or None
+        The state that waits for the end of the packet; `None`: there is none.
+    most_counted : int or None
+        Largest length that a counter is loaded with; `None`: the length's own limit.
+    items, map : WordLanes
+        Where the two words of a state may be: the rest, counted items or the first word of a map
+        with two, and the map or another word.
+    """
+
+    plan: Plan
+    states: tuple[AnyState, ...]
+    start: Transition
+    end: int | None = None
+    most_counted: int | None = None
+    items: WordLanes
+    map: WordLanes
+
+    @property
+    def lengths(self) -> dict[int, Length]:
+        """The lengths, by state."""
+        return {each.number: each.length for each in self.states if each.length is not None}
+
+    @property
+    def aligns(self) -> bool:
+        """Whether anything has padding of variable size before it."""
+        runs = (length.align > 1 for length in self.lengths.values())
+        return any(each.align > 1 for each in self.states) or any(runs)
+
+    def most_loaded(self, level: int | None) -> int:
+        """Return the largest number that is loaded into the counter of a loop, or of words."""
+        ways = [self.start, *(way for each in self.states for way in each.successors())]
+        most = [load.number for way in ways for load in way.loads if load.level == level]
+        most += [
+            (self.most_counted or length.max_count) // length.lanes
+            for length in self.lengths.values()
+            if length.level == level
+        ]
+        return max([1, *most])
+
+
+def common_fields(plan: Plan, number: int, control: Control) -> dict[str, Any]:
+    """Return the fields that states of both directions have."""
+    step = plan.steps[number]
+    cut = [part for part in step.parts if not part.completes]
+    return {
+        "number": number,
+        "body": control.body,
+        "exits": control.exits,
+        "is_words": isinstance(step, RunStep),
+        "is_counted": isinstance(step, RunStep) and plan.runs[step.run].counted,
+        "takes_rest": step.rest is not None,
+        "rest_unit": 0 if step.rest is None else plan.item_bytes(step.rest),
+        "align": step.align,
+        "map_bytes": step.bytes,
+        "two_word_map": step.bytes > plan.bus_bytes,
+        "length": None if control.begin is None else length_of(plan, control.begin),
+        "transfers": tuple(_transfers(plan, step, control)),
+        "cut": cut[0] if cut else None,
+    }
+
+
+def _transfers(plan: Plan, step: Step, control: Control) -> Iterator[Transfer]:
+    """Yield the transfers that a step completes, in wire order."""
+    if step.rest is not None:
+        run = plan.runs[step.rest]
+        yield Transfer(leaf=run.items, run=run, is_rest=True)
+    begin = control.begin
+    for part in step.parts:
+        if part.completes:
+            counts_nul = begin is not None and part.leaf == begin.length and plan.has_nul(begin)
+            yield Transfer(leaf=part.leaf, part=part, counts_nul=counts_nul)
+    if isinstance(step, RunStep):
+        run = plan.runs[step.run]
+        yield Transfer(leaf=run.items, run=run)
+
+
+def repeated_leaves(states: Sequence[State], start: Transition) -> frozenset[int]:
+    """Return the leaves that may transfer in two states in a row."""
+    leaves = [{transfer.leaf for transfer in state.transfers} for state in states]
+    repeated: set[int] = set()
+    for state in states:
+        for way in state.successors():
+            to = start.to if way.to is None else way.to
+            repeated |= leaves[state.number] & leaves[to or 0]
+    return frozenset(repeated)

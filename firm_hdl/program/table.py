@@ -1,0 +1,126 @@
+"""Programs as text: one line for each state, with all that differs from an empty state."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from firm_hdl.plan import Plan
+from firm_hdl.program.deserializer import DeserializerState, NextPosition, deserializer_program
+from firm_hdl.program.lengths import Length
+from firm_hdl.program.serializer import SerializerState, WireByte, serializer_program
+from firm_hdl.program.state import AnyState, Program, State, Transfer
+
+__all__ = ["program_text"]
+
+
+def program_text(plan: Plan) -> str:
+    """Return the programs of the deserializer and the serializer of a plan."""
+    packets, leaves = deserializer_program(plan), serializer_program(plan)
+    lines = [f"{plan.message} on {plan.wire}, bus of {plan.bus_bytes} bytes"]
+    ends = f", lengths end in {_lanes(packets.length_lanes)}" if packets.lengths else ""
+    lines += [f"deserializer: {_head(packets)}{ends}"]
+    for state in packets.states:
+        lines.append(f"  {state.number}: {'; '.join(_deserializer(plan, state))}")
+    lines += [f"serializer: {_head(leaves)}, at most {leaves.most_beats} beats a state"]
+    for each in leaves.states:
+        lines.append(f"  {each.number}: {'; '.join(_serializer(plan, each))}")
+    return "\n".join(lines) + "\n"
+
+
+def _head(program: Program[AnyState]) -> str:
+    texts = [f"start {program.start}"]
+    for name, word in (("items", program.items), ("map", program.map)):
+        if word.used:
+            texts.append(f"{name} from {_lanes(word.lanes)}, unit {word.unit}")
+    return ", ".join(texts)
+
+
+def _lanes(lanes: tuple[int, ...]) -> str:
+    return f"lane{'s' * (len(lanes) > 1)} {' '.join(map(str, lanes))}"
+
+
+def _common(plan: Plan, state: State) -> Iterator[str]:
+    """Yield what a state takes."""
+    if state.takes_rest:
+        yield f"rest x {state.rest_unit}"
+    if state.map_bytes:
+        align = f" at multiple of {state.align}" if state.align > 1 else ""
+        yield f"map of {state.map_bytes}{align}{' in two words' * state.two_word_map}"
+    if state.transfers:
+        yield " ".join(_transfer(plan, each) for each in state.transfers)
+    if state.cut is not None:
+        yield f"begins {plan.leaves[state.cut.leaf]}"
+
+
+def _transfer(plan: Plan, transfer: Transfer) -> str:
+    kind = "" if transfer.run is None else "(rest)" if transfer.is_rest else "(word)"
+    return f"{plan.leaves[transfer.leaf]}{kind}"
+
+
+def _length(length: Length) -> str:
+    texts = [f"counts {length.kind} up to {length.max_count}"]
+    if length.align > 1:
+        texts.append(f"at multiple of {length.align}")
+    if length.claim is not None:
+        texts.append(f"claims {length.claim.bytes} each from {length.claim.least} on")
+    return ", ".join(texts)
+
+
+def _deserializer(plan: Plan, state: DeserializerState) -> Iterator[str]:
+    if state.at_end:
+        yield "end of the packet"
+        return
+    yield from _common(plan, state)
+    if state.checks:
+        yield f"checks {' '.join(f'{lane}={byte:02x}' for lane, byte in state.checks)}"
+    if state.is_leading:
+        yield "waits for the packet"
+    if state.length is not None:
+        yield _length(state.length)
+    if state.body is not None:
+        yield f"body {state.body}{_position(state.body_start)}"
+    for way in state.exits:
+        position = state.exit if way.level is None else state.again[way.level]
+        yield f"to {way}{_position(position)}"
+
+
+def _position(position: NextPosition | None) -> str:
+    """Return the way to the next last byte: what is added, and what alignment makes of it."""
+    if position is None:
+        return ""
+    add = "+rest" if position.over_rest else f"+{position.add}"
+    return f" ({add}, align {position.mask + 1} | {position.low})" if position.mask else f" ({add})"
+
+
+def _serializer(plan: Plan, state: SerializerState) -> Iterator[str]:
+    yield from _common(plan, state)
+    for name, word in (("items", state.items), ("map", state.map)):
+        if word:
+            yield f"{name} = {_word(word)}"
+    if state.length is not None:
+        yield _length(state.length)
+    if state.precedes_leaves:
+        yield "constants only"
+    if state.is_final_tail:
+        yield "skipped without a rest"
+    if state.may_wait_for_status:
+        yield "may wait for status"
+    if state.body is not None:
+        yield f"body {state.body}"
+    for way in state.exits:
+        yield f"to {way}"
+
+
+def _word(word: tuple[tuple[int, WireByte], ...]) -> str:
+    """Return the bytes of a word: constants, and stretches of transfers as `slot[bytes]@lane`."""
+    texts: list[str] = []
+    previous: tuple[int, WireByte] | None = None
+    for lane, byte in word:
+        if byte.leaf is None:
+            texts.append(f"{byte.at:02x}")
+        elif previous == (lane - 1, WireByte(byte.leaf, byte.at - 1, byte.slot)):
+            texts[-1] = f"{texts[-1].partition('..')[0]}..{byte.at}"
+        else:
+            texts.append(f"leaf{byte.leaf}:{byte.at}")
+        previous = lane, byte
+    return " ".join(texts)

@@ -1,0 +1,1 @@
+"""Tests of accelerators in VHDL and Verilog."""

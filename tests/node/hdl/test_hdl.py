@@ -1,0 +1,313 @@
+# amaranth: UnusedElaboratable=no
+"""Accelerators in VHDL, Verilog and SystemVerilog."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+import yaml
+
+from firm_hdl.cases.stimuli import stimuli
+from firm_hdl.cli import main
+from firm_hdl.equivalence.vhdl_side import read_vhdl
+from firm_hdl.errors import DefinitionError
+from firm_hdl.jobs.programs import find_ghdl
+from firm_hdl.node import read_description
+from firm_hdl.node.accelerator import load_accelerator
+from firm_hdl.node.build import build_node
+from firm_hdl.node.hdl import new_accelerator
+from firm_hdl.node.hdl.netlist import verilog_of
+from tests.node.samples import LIBRARY, PACKAGES
+
+DESCRIPTION = """\
+node: Relay
+distro: jazzy
+bus_bytes: 4
+subscribe:
+  /came: {type: std_msgs/msg/UInt16}
+  /text: {type: std_msgs/msg/String, memory_bytes: 256}
+publish:
+  /goes: {type: std_msgs/msg/UInt16}
+serve:
+  ~/calibrate: {type: robot_msgs/srv/Calibrate, memory_bytes: 256}
+"""
+
+PORT = "subscribe_came_data_data"
+
+
+SMALL = """\
+node: Relay
+distro: jazzy
+bus_bytes: 4
+subscribe:
+  /came: {type: std_msgs/msg/UInt16}
+publish:
+  /goes: {type: std_msgs/msg/UInt16}
+"""
+
+
+def described(folder, value="", text=DESCRIPTION):
+    text += f"accelerator: {value}\n" if value else ""
+    (folder / "node.yaml").write_text(text)
+    return read_description(folder / "node.yaml", library=LIBRARY)
+
+
+@pytest.fixture
+def written(tmp_path):
+    """Write the skeleton of an accelerator, with changes; return its description."""
+
+    def write(language, *changes, description=DESCRIPTION):
+        place, value = new_accelerator(described(tmp_path, text=description), language)
+        text = Path(place).read_text()
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new)
+        Path(place).write_text(text)
+        return described(tmp_path, value, description)
+
+    return write
+
+
+@pytest.mark.parametrize("language", ["amaranth", "vhdl", "verilog", "sv"])
+def test_what_node_new_writes_is_an_accelerator(language, tmp_path, monkeypatch, capsys):
+    described(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    command = ["node", "new", "node.yaml", "--language", language, "--path", str(PACKAGES)]
+    assert main(command) == 0
+    said = capsys.readouterr().out
+    (value,) = [line for line in said.splitlines() if line.startswith("accelerator: ")]
+    description = described(tmp_path, value.removeprefix("accelerator: "))
+    accelerator = load_accelerator(description)
+    accelerator._MustUse__used = True
+    suffix = {"amaranth": "py", "vhdl": "vhd", "verilog": "v", "sv": "sv"}[language]
+    text = (tmp_path / f"Relay.{suffix}").read_text()
+    # It has each member, and passes messages on where types are the same.
+    for member in ("subscribe.came.data", "subscribe.text.data.items", "publish.goes.data"):
+        assert member.replace(".", "." if language == "amaranth" else "_") in text
+    # A second one would overwrite the user's work.
+    assert main(command) == 1
+    assert "is already there, and stays as it is" in capsys.readouterr().err
+
+
+def test_members_are_listed(tmp_path, capsys):
+    described(tmp_path)
+    file = str(tmp_path / "node.yaml")
+    assert main(["node", "info", file, "--members", "--path", str(PACKAGES)]) == 0
+    said = capsys.readouterr().out
+    assert "/text, std_msgs/msg/String: take\n  subscribe.text.data.length " in said
+    assert " items of uint8, 4 in a transfer\n" in said
+    assert "Calibrate_Response: offer\n" in said
+
+
+MISTAKES = [
+    ("vhdl", ("begin\n", "begin begin\n"), r"^\S*Relay\.vhd:\d+:\d+: error: .*begin"),
+    ("vhdl", ("Relay is", "other is"), "there is no entity 'Relay' in 'Relay.vhd'"),
+    ("vhdl", (PORT, "x"), f"'Relay' has no port '{PORT}'"),
+    ("vhdl", (f"{PORT}  ", f"more : in bit; {PORT}  "), "no member for the port 'more'"),
+    (
+        "vhdl",
+        (": out std_logic_vector(31", ": out std_logic_vector(30"),
+        "must have 32 bits, not 31",
+    ),
+    (
+        "vhdl",
+        (": out std_logic_vector(31", ": out unsigned(31"),
+        r"std_logic_vector\(31 downto 0\)",
+    ),
+    ("sv", ("endmodule", "end"), r"^\S*Relay\.sv:\d+:\d+: error: "),
+    ("sv", ("module Relay", "module other"), "there is no module 'Relay' in 'Relay.sv'"),
+    ("sv", (PORT, "x"), f"'Relay' has no port '{PORT}'"),
+    ("sv", ("module Relay (", "module Relay ( input more,"), "no member for the port 'more'"),
+    ("sv", (f"[15:0] {PORT}", f"[14:0] {PORT}"), f"port '{PORT}' of 'Relay' must have 16 bits"),
+]
+
+
+@pytest.mark.parametrize(("language", "change", "text"), MISTAKES)
+def test_mistakes_are_shown_where_they_are(written, language, change, text):
+    with pytest.raises(DefinitionError) as caught:
+        load_accelerator(written(language, change))
+    assert re.search(text, str(caught.value)), str(caught.value)
+
+
+READ = [
+    ("{vhdl: a.vhd}", ("vhdl", ("a.vhd",), "a")),
+    ("{verilog: [b.v, x/a.v], entity: Top}", ("verilog", ("b.v", "x/a.v"), "Top")),
+    ("{vdhl: a.vhd}", "an accelerator has no 'vdhl'; did you mean 'vhdl'?"),
+    ("{entity: a}", "an accelerator has the files of one of vhdl, verilog, systemverilog"),
+    ("{vhdl: a.vhd, verilog: a.v}", "an accelerator has the files of one of"),
+    ("{vhdl: 3.vhd}", "'3' is no name of an entity or a module: name the 'entity'"),
+    ("{vhdl: design.vhd}", "'design' is a keyword of VHDL or SystemVerilog: name the 'entity'"),
+    ("{vhdl: a.vhd, entity: 'a b'}", "'a b' is no name of an entity"),
+    ("a.vhd", "or as {vhdl: wheels.vhd, entity: wheels}"),
+    ("{vhdl: []}", "'vhdl' has no file"),
+]
+
+
+@pytest.mark.parametrize(("value", "want"), READ)
+def test_the_description_names_files(tmp_path, value, want):
+    if isinstance(want, str):
+        with pytest.raises(DefinitionError, match=re.escape(want)):
+            described(tmp_path, value)
+    else:
+        hdl = described(tmp_path, value).hdl
+        assert (hdl.language, hdl.files, hdl.entity) == want
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    description = described(tmp_path, "{vhdl: a.vhd}")
+    with pytest.raises(DefinitionError, match=r"node.yaml:\d+:14: error: cannot read '.*a\.vhd'"):
+        load_accelerator(description)
+
+
+def test_a_node_of_vhdl_is_built_and_runs(written, tmp_path, ghdl):
+    description = written("vhdl", description=SMALL)
+    built = build_node(description, tmp_path, stimuli=stimuli)
+    # Node and entity have one name.
+    assert built.folder.name == "Relay_node"
+    files = (built.folder / "vhdl" / "files.txt").read_text().split()
+    assert files[0] == "accelerator/Relay.vhd"
+    core = yaml.safe_load((built.folder / "Relay_node.core").read_text().partition("\n")[2])
+    assert core["targets"]["sim"]["filesets"][:2] == ["accelerator", "vhdl"]
+    assert "sim_verilog" not in core["targets"]
+    assert not (built.folder / "run_iverilog.sh").exists()
+    said = subprocess.run(
+        ["sh", built.folder / "vhdl" / "run_ghdl.sh"], capture_output=True, text=True, check=True
+    )
+    assert "PASS node Relay_node: " in said.stdout
+    # A change of the user's file makes the folder outdated.
+    assert build_node(description, tmp_path, stimuli=stimuli).was_current
+    source = tmp_path / "Relay.vhd"
+    source.write_text(source.read_text() + "-- changed\n")
+    assert not build_node(description, tmp_path, stimuli=stimuli).was_current
+
+
+def test_a_node_of_systemverilog_is_built_and_runs(written, tmp_path, iverilog, verilator):
+    (tmp_path / "ready.svh").write_text("`define TAKEN 1'b1\n")
+    include = [
+        ("module Relay", '`include "ready.svh"\nmodule Relay'),
+        ("endmodule", "wire taken = `TAKEN;\nendmodule"),
+    ]
+    description = written("sv", *include, description=SMALL)
+    built = build_node(description, tmp_path, stimuli=stimuli)
+    core = yaml.safe_load((built.folder / "Relay_node.core").read_text().partition("\n")[2])
+    assert core["filesets"]["accelerator"]["files"] == [
+        "accelerator/Relay.sv",
+        {"accelerator/ready.svh": {"is_include_file": True}},
+    ]
+    run = ["sh", built.folder / "run_iverilog.sh"]
+    said = subprocess.run(run, capture_output=True, text=True, check=True)
+    assert "PASS node Relay_node: " in said.stdout
+
+
+# What a netlist of GHDL can have: memories, long constants, signed arithmetic, both edges.
+DESIGN = """\
+library ieee; use ieee.std_logic_1164.all; use ieee.numeric_std.all;
+entity noise is
+  port (aclk, aresetn : in std_logic; o : out std_logic_vector(127 downto 0));
+end entity;
+architecture rtl of noise is
+  type memory_t is array (0 to 15) of unsigned(7 downto 0);
+  signal memory : memory_t := (others => x"5a");
+  constant TABLE : memory_t := (x"11", x"22", x"33", others => x"7f");
+  constant LONG : unsigned(63 downto 0) := x"123456789abcdef0";
+  signal n : unsigned(31 downto 0) := x"00000001";
+  signal a, b, c, d : signed(7 downto 0) := (others => '0');
+  signal q : unsigned(7 downto 0) := (others => '0');
+  signal late : std_logic := '0';
+  signal s : unsigned(2 downto 0);
+begin
+  a <= signed(n(7 downto 0));
+  b <= signed(n(18 downto 11));
+  s <= n(30 downto 28);
+  process (aclk) begin
+    if rising_edge(aclk) then
+      n <= n(30 downto 0) & (n(31) xor n(21) xor n(1) xor n(0));
+      memory(to_integer(n(3 downto 0))) <= unsigned(a xor b);
+      q <= memory(to_integer(n(9 downto 6)));
+      case s is
+        when "000" => c <= a + b;
+        when "001" => c <= a - b;
+        when "010" | "011" => c <= not a;
+        when "100" => c <= abs a;
+        when "101" => c <= a ror to_integer(s);
+        when "110" => null;
+        when others => c <= -b;
+      end case;
+    end if;
+    if falling_edge(aclk) then
+      late <= n(5);
+    end if;
+  end process;
+  process (aclk, aresetn) begin
+    if aresetn = '0' then d <= x"a5"; elsif rising_edge(aclk) then d <= d + a; end if;
+  end process;
+  o <= std_logic_vector(a * b) & std_logic_vector(a / 3) & std_logic_vector(a rem 5)
+    & std_logic_vector(a mod 5) & std_logic_vector(shift_right(a, to_integer(s)))
+    & std_logic_vector(minimum(a, b)) & std_logic_vector(maximum(unsigned(a), unsigned(b)))
+    & std_logic_vector(c) & std_logic_vector(d) & std_logic_vector(q)
+    & std_logic_vector(TABLE(to_integer(n(3 downto 0))))
+    & std_logic_vector(LONG(63 downto 33) xor n(30 downto 0)) & (late xor (xor c));
+end architecture;
+"""
+
+BENCH = """\
+library ieee; use ieee.std_logic_1164.all; use std.textio.all;
+entity tb is end entity;
+architecture sim of tb is
+  signal aclk : std_logic := '0';
+  signal aresetn : std_logic := '1';
+  signal o : std_logic_vector(127 downto 0);
+begin
+  dut : entity work.noise port map (aclk => aclk, aresetn => aresetn, o => o);
+  process
+  begin
+    for n in 0 to 299 loop
+      aresetn <= '0' when n mod 50 = 1 else '1';
+      wait for 4 ns;
+      write(output, to_string(o) & LF);
+      aclk <= '1';
+      wait for 4 ns;
+      aclk <= '0';
+      wait for 4 ns;
+    end loop;
+    wait;
+  end process;
+end architecture;
+"""
+
+BENCH_VERILOG = """\
+module tb;
+  reg aclk = 0, aresetn = 1;
+  wire [127:0] o;
+  integer n;
+  noise dut (.aclk(aclk), .aresetn(aresetn), .o(o));
+  initial for (n = 0; n < 300; n = n + 1) begin
+    aresetn = n % 50 != 1;
+    #4 $display("%b", o);
+    aclk = 1;
+    #4 aclk = 0;
+    #4;
+  end
+endmodule
+"""
+
+
+def test_the_netlist_of_an_entity_does_what_the_vhdl_does(tmp_path, ghdl, iverilog):
+    (tmp_path / "design.vhd").write_text(DESIGN)
+    (tmp_path / "tb.vhd").write_text(BENCH)
+    (tmp_path / "tb.v").write_text(BENCH_VERILOG)
+
+    def run(*command):
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+        return done.stdout
+
+    run(find_ghdl(), "-a", "--std=08", "design.vhd", "tb.vhd")
+    dump = run(find_ghdl(), "--synth", "--std=08", "-dm", "--out=dump", "noise")
+    (tmp_path / "design.v").write_text(verilog_of(read_vhdl(dump), name="noise", names={}))
+    run("iverilog", "-g2012", "-o", "tb.vvp", "design.v", "tb.v")
+    want = run(find_ghdl(), "--elab-run", "--std=08", "tb", "--ieee-asserts=disable").split()
+    assert len(want) == 300 and len({*want}) > 290
+    assert run("vvp", "-n", "tb.vvp").split() == want

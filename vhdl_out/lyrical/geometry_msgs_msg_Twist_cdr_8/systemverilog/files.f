@@ -1,8 +1,0 @@
-firm_hdl_sv_pkg.sv
-firm_hdl_bus_8_sv_pkg.sv
-geometry_msgs_msg_vector3_cdr_8_sv_pkg.sv
-geometry_msgs_msg_twist_cdr_8_sv_pkg.sv
-../geometry_msgs_msg_Twist_cdr_8_deserializer_verilog.v
-../geometry_msgs_msg_Twist_cdr_8_serializer_verilog.v
-geometry_msgs_msg_Twist_cdr_8_deserializer_sv.sv
-geometry_msgs_msg_Twist_cdr_8_serializer_sv.sv
