@@ -37,8 +37,10 @@ MAY_IMPORT = {
     "metrics": {"errors", "model", "frontend", "identity", "wire"},
     "plan": {"model", "wire"},
     "estimates": {"plan"},
-    "program": {"plan", "wire"},
-    "gateware": {"model", "wire", "plan", "program"},
+    # Knows the circuits' pipeline.
+    "timing": {"plan"},
+    "program": {"plan", "timing", "wire"},
+    "gateware": {"model", "wire", "plan", "timing", "program"},
     # `jobs`: compilers.
     "sim": {
         *("errors", "garbage", "jobs", "rtlil", "verilog", "model", "wire", "plan", "gateware"),
@@ -48,14 +50,14 @@ MAY_IMPORT = {
 MAY_IMPORT["accelerator"] = {"gateware", "model", "plan", "sim", "wire"}
 MAY_IMPORT["export"] = {
     *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl", "verilog"),
-    *("model", "frontend", "wire", "plan", "estimates", "gateware"),
+    *("model", "frontend", "wire", "plan", "timing", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
     # `terminal`: names of peers are printed. `equivalence`, `jobs`: accelerators in VHDL and
     # Verilog are read by GHDL and Verilator.
     *("firm_hdl", "errors", "files", "garbage", "names", "rtlil", "rtps", "terminal", "vhdl"),
-    *("model", "frontend", "identity", "wire", "metrics", "plan", "estimates", "gateware"),
-    *("sim", "export", "equivalence", "jobs"),
+    *("model", "frontend", "identity", "wire", "metrics", "plan", "timing", "estimates"),
+    *("gateware", "sim", "export", "equivalence", "jobs"),
 }
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {
@@ -65,7 +67,7 @@ MAY_IMPORT["covering"] = {
 MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
     "cases",
-    *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil"}),
+    *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil", "timing"}),
     *("arguments", "drawing", "export", "identity", "node", "recordings", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
@@ -78,7 +80,7 @@ MAY_IMPORT["bench"] = {
 }
 MAY_IMPORT["cli"] = {
     *("firm_hdl", "arguments", "errors", "jobs", "terminal"),
-    *("names", "model", "frontend", "plan", "program", "estimates", "export"),
+    *("names", "model", "frontend", "plan", "timing", "program", "estimates", "export"),
     *("identity", "metrics", "node", "cases", "covering", "verify", "equivalence", "bench"),
 }
 MAY_IMPORT["__main__"] = {"cli"}

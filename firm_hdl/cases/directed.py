@@ -14,7 +14,7 @@ from firm_hdl.cases.make import Case, make_cases
 from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.plan import Edge, Plan, decode, encode
 from firm_hdl.plan.edges import edges
-from firm_hdl.plan.tree import Constant, Item, Loop, Run, Step, numbered, walk
+from firm_hdl.plan.tree import Constant, Item, Loop, Run, Step, numbered
 
 __all__ = ["bare_packets", "more_cases"]
 
@@ -96,9 +96,10 @@ def bare_packets(plan: Plan, cases: Iterable[Case]) -> list[tuple[Case, bytes]]:
 
 def _bare_edges(plan: Plan) -> frozenset[Edge]:
     """Return the decisions that only a CDR string of length 0 takes, which has not even a NUL."""
-    strings = {run.leaf for run in walk(plan.items) if isinstance(run, Run) and run.count.nul}
     return frozenset(
-        Edge(index, "no rest") for index, step in _after_runs(plan.items, 0) if step.rest in strings
+        Edge(index, "no rest")
+        for index, step in _after_runs(plan.items, 0)
+        if step.rest is not None and plan.run_of[step.rest].count.nul
     )
 
 

@@ -148,7 +148,7 @@ def _info(args: argparse.Namespace) -> None:
     from firm_hdl.estimates import estimate_text
     from firm_hdl.export.manifest import figures_of
     from firm_hdl.frontend import load_all
-    from firm_hdl.plan.timing import describe, recovery_text, timing
+    from firm_hdl.timing import describe, recovery_text, timing
 
     messages = args.document["messages"] = []
     for message in load_all(library_of(args), args.types):

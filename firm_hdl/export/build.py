@@ -27,13 +27,13 @@ from firm_hdl.export.manifest import (
 )
 from firm_hdl.export.options import Options
 from firm_hdl.export.top import DIRECTIONS, MAX_INPUT_BITS, ports_of
-from firm_hdl.export.vhdl.neighbours import check_packages
+from firm_hdl.export.vhdl.backend import check_packages
 from firm_hdl.frontend import Library, load_all
 from firm_hdl.jobs.executors import ExecutorError, run_each
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan, build_plan, to_yaml
-from firm_hdl.plan.timing import Timing, describe, timing
+from firm_hdl.timing import Timing, describe, timing
 from firm_hdl.wire import Wire, lay_out
 from firm_hdl.wire.picture import to_svg
 
@@ -52,7 +52,7 @@ class Built:
     was_current : bool
         The folder was current, and nothing was written.
     description : str
-        Size and timing of the converters, as text; see :func:`firm_hdl.plan.timing.describe`.
+        Size and timing of the converters, as text; see :func:`firm_hdl.timing.describe`.
     kept : tuple of str
         Outdated files that the user changed, and that stay; paths in the folder.
     """

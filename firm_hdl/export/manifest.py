@@ -21,7 +21,7 @@ from firm_hdl.export.top import field_of, leaf_names
 from firm_hdl.gateware.signatures import LATENCY_CYCLES, Status
 from firm_hdl.model import Constant, Message, closure
 from firm_hdl.plan import Leaf, Plan, to_yaml
-from firm_hdl.plan.timing import LINE_RATES, Cost, Timing, clock_mhz
+from firm_hdl.timing import LINE_RATES, Cost, Timing, clock_mhz
 
 __all__ = [
     "FORMAT",

@@ -13,7 +13,7 @@ from firm_hdl.gateware.flow import Flow, exceeds, last_word
 from firm_hdl.gateware.positions import Ring, any_of, pick
 from firm_hdl.gateware.signatures import Status, StatusSignature
 from firm_hdl.gateware.words import words_layout, write_bytes
-from firm_hdl.plan import LoopEnd, Plan
+from firm_hdl.plan import Plan
 from firm_hdl.program import (
     LENGTH_BITS,
     Length,
@@ -119,7 +119,8 @@ class Collector(wiring.Component):
         takes_rest = flow.register("takes_rest", 1, lambda s: s.takes_rest)
         # Items in the rest of the last run, and whether a NUL follows them, until a state takes
         # them.
-        rest, has_nul = Signal(plan.max_run_lanes.bit_length()), Signal()
+        rest = Signal(plan.max_run_lanes.bit_length())
+        has_nul = Signal()
         # By number of a transfer in its state: it was taken in an earlier cycle.
         most = max(len(each.transfers) for each in program.states)
         served = [Signal(name=f"served_{k}") for k in range(most)]
@@ -145,7 +146,8 @@ class Collector(wiring.Component):
 
         # What follows the state: an exit (`done`), and the end of the message. A last state that
         # only takes a rest is skipped if there is no rest.
-        done, ends = Signal(), Signal()
+        done = Signal()
+        ends = Signal()
         is_begin = begins_run | begins_loop
         tails = {each.number for each in program.states if each.is_final_tail}
         to_tail = any_of([each.taken for each in flow.exits if each.way.to in tails])
@@ -162,7 +164,8 @@ class Collector(wiring.Component):
         # Take the leaves of the state in wire order, each as soon as it is offered. A producer may
         # offer a leaf only after an earlier one was taken. So a state must not wait until all its
         # leaves are offered; `served` records which of them were taken.
-        free, complete = Signal(), Signal()
+        free = Signal()
+        complete = Signal()
         readers: dict[int, list[_Reader]] = {}
         for state in program.states:
             readers[state.number] = []
@@ -194,6 +197,8 @@ class Collector(wiring.Component):
             for state in program.states
             if state.cut is not None
         ]
+        # The last state also waits for room for the status: so a status is never lost, and `status`
+        # needs only one register.
         m.d.comb += [
             free.eq(~self.words.valid | self.words.ready),
             complete.eq(free & ~any_of(missing) & (~ends | ~status.valid | status.ready)),
@@ -217,7 +222,8 @@ class Collector(wiring.Component):
 
         # The packet's first error. Items of a state come before its length in wire order, so their
         # error counts.
-        error, found = Signal(Status), Signal(Status)
+        error = Signal(Status)
+        found = Signal(Status)
         wrong_items = any_of(
             [
                 reader.go & (leaves[reader.transfer.leaf].payload.last != _last(flow, reader))
@@ -262,6 +268,7 @@ class Collector(wiring.Component):
             single=of_length(lambda length: length.at_most_one_pass),
             nul=False,
         )
+        # The rest waits for the state that takes it; in between are only words of its own run.
         with m.If(complete):
             with m.If(ends):
                 m.d.sync += [rest.eq(0), has_nul.eq(0)]
@@ -291,11 +298,14 @@ class Collector(wiring.Component):
         map_mask = flow.register("map_mask", 3, lambda s: s.map_mask)
         map_addend = flow.register("map_addend", 3, lambda s: s.map_addend)
         two_word_map = flow.register("two_word_map", 1, lambda s: s.two_word_map)
-        items, map_size = Signal(range(bus + 1), name="items_size"), Signal(range(2 * bus + 1))
-        to_map, to_end = Signal.like(words.to_map), Signal.like(words.to_end)
+        items = Signal(range(bus + 1), name="items_size")
+        map_size = Signal(range(2 * bus + 1))
+        to_map = Signal.like(words.to_map)
+        to_end = Signal.like(words.to_end)
         end_mask = Signal(max(3, ring.lane_bits))
         # Whether the packet has a byte before this state, and whether it has one after the state.
-        begun, begins = Signal(), Signal()
+        begun = Signal()
+        begins = Signal()
         m.d.comb += [
             items.eq(Mux(takes_rest, flow.rest_bytes(rest), item_word)),
             map_size.eq(map_bytes + Mux(two_word_map, bus, 0)),
@@ -350,13 +360,13 @@ def _last(flow: Flow[SerializerState], reader: _Reader) -> Value:
     """Return the value that `items.last` must have in a transfer."""
     part, run = reader.transfer.part, reader.transfer.run
     if part is not None:
-        if isinstance(part.end, LoopEnd):
-            return flow.levels[part.end.level].last
-        return Const(part.end is not None, 1)
+        if part.level is not None:
+            return flow.levels[part.level].last
+        return Const(part.last, 1)
     assert run is not None
     if run.counted:
         return Const(reader.transfer.is_rest, 1)
-    return flow.words.last & run.last
+    return flow.words.last & (not run.has_tail)
 
 
 def _items_align(

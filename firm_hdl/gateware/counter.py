@@ -25,6 +25,17 @@ class _Load:
 class Counter:
     """Count words or elements down to the last one. Not a component: logic of one module.
 
+    The number is loaded a cycle after the flags, because a length is read from its memory late. A
+    count of the first cycle is still to be subtracted then (`pending`)::
+
+        cycle          | 0          | 1            | 2            | 3
+        state          | length 3   | body         | body         | body
+        last, double   | 0, 0       |              |              |
+        value - less   |            | (old)        | 3            | 2
+        pending        |            | 0            | 1            | 1
+        down           |            | 1            | 1            | 1
+        last           | (old)      | 0            | 0            | 1
+
     `last` is updated at once, the number one cycle later, so that no wide logic depends on a late
     signal. Call `load`, `preload` and `down` as often as needed, then `add_logic` once.
 

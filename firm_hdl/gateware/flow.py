@@ -105,6 +105,12 @@ class Flow(Generic[AnyState]):
 
     def __init__(self, m: Module, program: Program[AnyState]):
         self.m, self.program = m, program
+        # Everything of a state is a register that is written when the state is chosen. So nothing
+        # but the choice itself, by a late bit of a length, comes between two states:
+        #
+        #   step, constants --> table read at `last_at` --> skips --> choice --> step, constants
+        #
+        # One-hot, because a choice is then an AND-OR of bits without a decoder before it.
         self._registers: list[_Register] = []
         self._is_complete = False
         count, most = len(program.states), REGISTER_BITS
@@ -183,11 +189,11 @@ class Flow(Generic[AnyState]):
         rest : Value
             Number of items in the rest.
         """
-        units = {state.rest_unit for state in self.program.states if state.takes_rest}
-        cases = [
-            (self.on(lambda s, unit=unit: s.rest_unit == unit), rest << (unit.bit_length() - 1))
-            for unit in sorted(units)
-        ]
+        units: dict[int, list[Value]] = {}
+        for state in self.program.states:
+            if state.takes_rest:
+                units.setdefault(state.rest_unit, []).append(self.step[state.number])
+        cases = [(any_of(on), rest << (unit.bit_length() - 1)) for unit, on in units.items()]
         if len(cases) == 1:
             return cases[0][1]
         return pick(cases, self.program.plan.bus_bytes.bit_length())
@@ -227,8 +233,11 @@ class Flow(Generic[AnyState]):
         m, program, self._is_complete = self.m, self.program, True
         to_exit, to_body = Signal(name="step_to_exit"), Signal(name="step_to_body")
         m.d.comb += [to_exit.eq(moves & ~ends & done), to_body.eq(moves & ~ends & ~done)]
+        # At most one exit is taken, and at most one state has a body: each way is one AND, and the
+        # next value of a register is an OR of them (`pick`).
         exits = [(each.taken, each.way) for each in self.exits]
         bodies = [(self.step[s.number], s.body) for s in program.states if s.body is not None]
+        # Ways that load the same number into the same counter share its logic.
         loads: dict[tuple[int | None, int], list[Value]] = {}
         for when, ways in (
             (moves & ends, [(Const(1, 1), program.start)]),
@@ -275,7 +284,9 @@ class Flow(Generic[AnyState]):
             chosen = [self.step[number] for number, length in lengths if length.level == level]
             if chosen:
                 counter.preload(any_of(chosen), count, single, double)
-        # Of n items in words of w, (n - 1) // w words are taken before the rest.
+        # Of n items in words of w, (n - 1) // w words are taken before the rest. With a NUL, n is
+        # one less than the length on the wire. The division is a shift; what it rounds away is the
+        # bit `less`, so that no subtraction of wide numbers comes before the counter.
         groups: dict[tuple[int, bool], list[Value]] = {}
         for number, length in lengths:
             if length.level is None:

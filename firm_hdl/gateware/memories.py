@@ -85,9 +85,11 @@ class BlockMemory:
 
     def __init__(self, m: Module, shape: ShapeLike, depth: int):
         bits, address = Shape.cast(shape).width, ceil_log2(depth)
-        self.write_at, self.read_at = Signal(address), Signal(address)
+        self.write_at = Signal(address)
+        self.read_at = Signal(address)
         self.write_word = Signal(shape)
-        self.writes, self.reads = Signal(), Signal()
+        self.writes = Signal()
+        self.reads = Signal()
         step = max(1, BLOCK_BITS // depth)
         parts = range(0, bits, step)
         self.word: Value = Cat(

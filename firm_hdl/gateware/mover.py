@@ -13,8 +13,7 @@ from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import order_layout
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
 from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
-from firm_hdl.plan import LoopEnd, Part
-from firm_hdl.program import DeserializerProgram, DeserializerState, Transfer
+from firm_hdl.program import DeserializerProgram, DeserializerState, Part, Transfer
 
 __all__ = ["Mover"]
 
@@ -95,7 +94,9 @@ class Mover(wiring.Component):
         writers = self._writers(m, take)
 
         # The status of a packet is sent with its last order.
-        ends, ends_now, status_now = Signal(), Signal(), Signal.like(order.status)
+        ends = Signal()
+        ends_now = Signal()
+        status_now = Signal.like(order.status)
         m.d.comb += ends.eq(self.orders.valid & order.ends)
         with m.If(take):
             m.d.sync += [ends_now.eq(ends), status_now.eq(order.status)]
@@ -224,7 +225,8 @@ class _Words:
         self.word: dict[str, Signal] = {}
         self.good: dict[str, Signal] = {}
         order = mover.orders.payload
-        self.length_good, self.last = Signal(), Signal()
+        self.length_good = Signal()
+        self.last = Signal()
         self.final = Signal.like(order.final)
         with m.If(take):
             m.d.sync += [
@@ -301,7 +303,7 @@ class _Words:
         if run is not None:
             # A word or the rest of a run.
             name = "items" if run.counted else "map"
-            m.d.sync += payload.last.eq(self.last & run.last)
+            m.d.sync += payload.last.eq(self.last & (not run.has_tail))
             for lane in range(leaf.lanes):
                 value = self.word[name][8 * lane * size : 8 * (lane + 1) * size]
                 good = self.good[name][(lane + 1) * size - 1]
@@ -310,9 +312,9 @@ class _Words:
         assert part is not None
         if leaf.kind == "items":
             # A transfer of static size.
-            last: Value = Const(part.end is not None)
-            if isinstance(part.end, LoopEnd):
-                last = self.final[part.end.level]
+            last: Value = Const(part.last)
+            if part.level is not None:
+                last = self.final[part.level]
             m.d.sync += payload.last.eq(last)
             for lane in range(leaf.lanes):
                 value, good = Const(0), Const(1)

@@ -64,7 +64,9 @@ class Packer(wiring.Component):
         plan, program, ring, bus = self.plan, self.program, self.ring, self.plan.bus_bytes
         words, packets = self.words.payload, self.packets
         # Words are taken in this cycle; they are written in this cycle; a beat is read.
-        takes, writes, reads = Signal(), Signal(), Signal()
+        takes = Signal()
+        writes = Signal()
+        reads = Signal()
         m.d.comb += takes.eq(self.words.valid & self.words.ready)
         m.d.sync += writes.eq(takes)
 
@@ -89,7 +91,9 @@ class Packer(wiring.Component):
         # The first beat that these words do not complete. The packet may end without another byte:
         # then a beat that is just full is held back. A state of an empty packet has none to hold.
         complete_next = Signal(ring.beat_bits)
-        ends_packet, failed, waits = Signal(), Signal(), Signal()
+        ends_packet = Signal()
+        failed = Signal()
+        waits = Signal()
         last_bytes = Signal(range(bus + 1))
         sent = Mux(words.last | words.empty, end, end - 1)
         done = ring.beat(sent if program.may_end_without_bytes else end)
@@ -110,7 +114,8 @@ class Packer(wiring.Component):
         # `words.ready` is high only if the ring has room for the largest state after these words.
         # `bound`: the last beat in which a state may start.
         bound = Signal(ring.beat_bits, init=ring.depth - program.most_beats)
-        newest, room = Signal(ring.beat_bits), Signal(ring.beat_bits)
+        newest = Signal(ring.beat_bits)
+        room = Signal(ring.beat_bits)
         ready = Signal(init=1)
         m.d.comb += [
             newest.eq(ring.beat(at) + Mux(takes, words.max_beats, 0)),
@@ -123,13 +128,15 @@ class Packer(wiring.Component):
 
         # Second cycle: write the words. Beats before `complete` can be sent; beats of constants
         # only are held until the first leaf is taken.
-        complete, first = Signal(ring.beat_bits), Signal(ring.beat_bits)
+        complete = Signal(ring.beat_bits)
+        first = Signal(ring.beat_bits)
         slot = (complete_next - 1)[: ring.beat_bits - 1]
         layout = data.StructLayout({"count": range(bus + 1), "error": 1})
         ends = LutMemory(m, "ends", layout, ring.depth)
         write, read = ends.write, ends.reader()
         # By slot: whether the beat is the last one of its packet.
-        last, is_last = Signal(ring.depth), Signal()
+        last = Signal(ring.depth)
+        is_last = Signal()
         m.d.comb += [
             write.addr.eq(slot),
             write.data.count.eq(last_bytes),

@@ -19,7 +19,6 @@ from firm_hdl.wire import Wire, lay_out
 
 __all__ = [
     "Parser",
-    "PlanParser",
     "parser_plan",
 ]
 
@@ -56,15 +55,55 @@ def parser_plan(
     )
 
 
-class PlanParser(Component):
-    """A :class:`Parser` of a plan that :func:`parser_plan` made.
+class Parser(Component):
+    """Judge packets, without extracting their messages.
+
+    Each packet ends in one transfer on `status`, the same as from a :class:`Deserializer` with the
+    same parameters. `status` becomes valid 4 cycles after the transfer of the packet's last beat,
+    if one step of `plan` ends in this beat. Each further step adds a cycle, and an error at most 4.
+
+    Each step takes a cycle, and one beat per cycle is accepted. A bus word with several lengths has
+    several steps: for example two for two empty strings on a bus of 8 bytes. So a packet occupies
+    the parser for as many cycles as it has beats, or steps before its first error, whichever is
+    more, and for at most 4 cycles more after an error: 6 if lengths claim too much together. Bytes
+    that lengths claim but that never arrive cost nothing. Up to 8 beats (16 on a bus of 1 or 2
+    bytes) wait in a buffer while the parser catches up; then `packets.ready` goes low.
+
+    `packets.ready`, `status.valid`, `status.payload` and `sizes` are registers; no path leads from
+    an input to an output. While a status waits, only one more packet can end, or two in
+    consecutive cycles. One clock domain, `sync`; its reset discards all packets inside.
 
     Parameters
     ----------
+    message, wire, bus_bytes, max_message_bytes
+        As for :class:`Deserializer`.
+    plan : Plan or None
+        The plan by :func:`parser_plan`, if there is one; the other parameters do not count then.
+
+    Members
+    -------
+    packets : In(PacketSignature(bus_bytes))
+    status : Out(StatusSignature)
+    sizes : Out(sizes_layout())
+        Sizes of the packet of `status`; valid with `status`.
+
+    Attributes
+    ----------
     plan : Plan
+        The plan of the message's outline: arrays of bytes stand for the fields between lengths.
     """
 
-    def __init__(self, plan: Plan):
+    def __init__(
+        self,
+        message: Message,
+        *,
+        wire: Wire | None = None,
+        bus_bytes: int = 8,
+        max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+        plan: Plan | None = None,
+    ):
+        if plan is None:
+            plan = parser_plan(message, wire, bus_bytes, max_message_bytes)
         self.plan = plan
         super().__init__(
             {
@@ -97,53 +136,6 @@ class PlanParser(Component):
         with m.If(verdicts.moves):
             m.d.sync += self.sizes.packet.eq(sizes.bytes)
         return m
-
-
-class Parser(PlanParser):
-    """Judge packets, without extracting their messages.
-
-    Each packet ends in one transfer on `status`, the same as from a :class:`Deserializer` with the
-    same parameters. `status` becomes valid 4 cycles after the transfer of the packet's last beat,
-    if one step of `plan` ends in this beat. Each further step adds a cycle, and an error at most 4.
-
-    Each step takes a cycle, and one beat per cycle is accepted. A bus word with several lengths has
-    several steps: for example two for two empty strings on a bus of 8 bytes. So a packet occupies
-    the parser for as many cycles as it has beats, or steps before its first error, whichever is
-    more, and for at most 4 cycles more after an error: 6 if lengths claim too much together. Bytes
-    that lengths claim but that never arrive cost nothing. Up to 8 beats (16 on a bus of 1 or 2
-    bytes) wait in a buffer while the parser catches up; then `packets.ready` goes low.
-
-    `packets.ready`, `status.valid`, `status.payload` and `sizes` are registers; no path leads from
-    an input to an output. While a status waits, only one more packet can end, or two in
-    consecutive cycles. One clock domain, `sync`; its reset discards all packets inside.
-
-    Parameters
-    ----------
-    message, wire, bus_bytes, max_message_bytes
-        As for :class:`Deserializer`.
-
-    Members
-    -------
-    packets : In(PacketSignature(bus_bytes))
-    status : Out(StatusSignature)
-    sizes : Out(sizes_layout())
-        Sizes of the packet of `status`; valid with `status`.
-
-    Attributes
-    ----------
-    plan : Plan
-        The plan of the message's outline: arrays of bytes stand for the fields between lengths.
-    """
-
-    def __init__(
-        self,
-        message: Message,
-        *,
-        wire: Wire | None = None,
-        bus_bytes: int = 8,
-        max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
-    ):
-        super().__init__(parser_plan(message, wire, bus_bytes, max_message_bytes))
 
 
 class VerdictQueue(wiring.Component):
@@ -180,7 +172,8 @@ class VerdictQueue(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         came, first = self.came, self.first
-        second, third = Signal(came.shape()), Signal(came.shape())
+        second = Signal(came.shape())
+        third = Signal(came.shape())
         takes = Signal()
         m.d.comb += [
             self.has_room.eq(~second.ends),
@@ -232,7 +225,8 @@ class PacketSizes(wiring.Component):
         m = Module()
         ring, beat = self.ring, self.beat
         # The counter of beats has overflowed.
-        over, total = Signal(), Signal(SIZE_BITS + 1)
+        over = Signal()
+        total = Signal(SIZE_BITS + 1)
         # A packet has at least one beat, so the ring holds at most `depth` packets. Three packets
         # that are judged may wait as well.
         memory = LutMemory(m, "ends", SIZE_BITS, 2 * ring.depth)

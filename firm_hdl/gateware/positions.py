@@ -8,8 +8,8 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data
 
 from firm_hdl.plan import Plan
-from firm_hdl.plan.geometry import ring_beats
 from firm_hdl.program import align_addend
+from firm_hdl.timing.rings import ring_beats
 
 __all__ = [
     "Ring",
@@ -24,7 +24,10 @@ __all__ = [
 
 
 class Ring:
-    """The shape of positions: a lane of a bus word, the word's slot in the ring, and a lap bit.
+    """The shape of positions: a lane of a bus word, the word's slot in the ring, and a lap bit::
+
+        | lap | slot | lane |      8 words of 8 bytes: 1 + 3 + 3 bits
+        |<- beat --->|
 
     A position is a number of `bits` bits, with the lane in the lowest ones and the lap bit in the
     highest one. It counts bytes and wraps around. The sign of the difference compares two positions
@@ -117,7 +120,8 @@ def align_up(
         low = align.bit_length() - 1
         m.d.comb += total.eq(value + (distance + align_addend(align, phase, shift)))
         return Cat(Const((phase + shift) % align, low), total[low:])
-    pad, result = Signal(3), Signal(len(value))
+    pad = Signal(3)
+    result = Signal(len(value))
     m.d.comb += [
         total.eq(value + distance),
         pad.eq((phase - total) & (align - 1)),

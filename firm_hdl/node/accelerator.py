@@ -9,7 +9,7 @@ import sys
 import sysconfig
 import traceback
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import Any
@@ -152,11 +152,9 @@ def elaborate_accelerator(description: Description, accelerator: Any, platform: 
         At the name in the description: if the code of the accelerator raises an exception, or if
         it uses a clock domain that it does not have.
     """
-    if not description.accelerator:
+    own = f"'{description.accelerator}'"
+    with _reported(description, own) if description.accelerator else nullcontext():
         fragment = Fragment.get(accelerator, platform)
-    else:
-        with _reported(description, f"'{description.accelerator}'"):
-            fragment = Fragment.get(accelerator, platform)
     collector = DomainCollector()
     collector(fragment)
     # Amaranth would make ports of the node of such a clock, which no list of ports has.

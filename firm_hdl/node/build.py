@@ -56,7 +56,6 @@ def build_node(
     description: Description,
     out: str | os.PathLike[str] = "node_out",
     *,
-    accelerator: Any = None,
     force: bool = False,
     stimuli: Stimuli | None = None,
 ) -> BuiltDesign:
@@ -66,8 +65,6 @@ def build_node(
     ----------
     out : path
         Created if it does not exist.
-    accelerator : component or None
-        As for :class:`Node`.
     force : bool
         Write the folder even if it is current.
     stimuli : callable or None
@@ -85,7 +82,7 @@ def build_node(
         # Both would be one entity.
         name += "_node"
     folder = design_folder(out, name)
-    node = Node(description, accelerator)
+    node = Node(description)
     try:
         ports = node_ports(node)
     except ValueError as error:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Literal
+from typing import Any, Literal
 
 from firm_hdl.node.description import Description
 
@@ -23,7 +23,6 @@ __all__ = [
     "RATE_FRACTION_BITS",
     "REQUEST",
     "RESPONSE",
-    "ControlField",
     "ControlRequest",
     "ControlResponse",
     "Operation",
@@ -76,31 +75,17 @@ class Result(IntEnum):
     ARGUMENT = 2
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ControlField:
-    """A field of a control message: its name and its bytes; fields follow without gaps."""
+REQUEST = {"operation": 1, "reserved": 3, "argument": 4, "seconds": 4, "nanoseconds": 4}
+"""The fields of a request and their bytes; fields follow without gaps."""
 
-    name: str
-    bytes: int
-
-
-REQUEST = (
-    ControlField(name="operation", bytes=1),
-    ControlField(name="reserved", bytes=3),
-    ControlField(name="argument", bytes=4),
-    ControlField(name="seconds", bytes=4),
-    ControlField(name="nanoseconds", bytes=4),
-)
-"""The fields of a request."""
-
-RESPONSE = (
-    ControlField(name="operation", bytes=1),
-    ControlField(name="result", bytes=1),
-    ControlField(name="reserved", bytes=2),
-    ControlField(name="value", bytes=4),
-    ControlField(name="seconds", bytes=4),
-    ControlField(name="nanoseconds", bytes=4),
-)
+RESPONSE = {
+    "operation": 1,
+    "result": 1,
+    "reserved": 2,
+    "value": 4,
+    "seconds": 4,
+    "nanoseconds": 4,
+}
 """The fields of a response. `value` is that of the register, else 0; the time is the node's, in the
 cycle in which the request was done, and before a `SET_TIME`."""
 
@@ -117,7 +102,7 @@ class ControlRequest:
     def encode(self) -> bytes:
         """Write the request; a number that does not fit raises an `OverflowError`."""
         return b"".join(
-            getattr(self, each.name, 0).to_bytes(each.bytes, "little") for each in REQUEST
+            getattr(self, name, 0).to_bytes(size, "little") for name, size in REQUEST.items()
         )
 
 
@@ -152,17 +137,13 @@ class ControlResponse:
         """
         if len(data) != CONTROL_BYTES:
             raise ValueError(f"a response has {CONTROL_BYTES} bytes, not {len(data)}")
-        values, at = {}, 0
-        for each in RESPONSE:
-            values[each.name] = int.from_bytes(data[at : at + each.bytes], "little")
-            at += each.bytes
-        return cls(
-            operation=values["operation"],
-            result=Result(values["result"]),
-            value=values["value"],
-            seconds=values["seconds"],
-            nanoseconds=values["nanoseconds"],
-        )
+        values: dict[str, Any] = {}
+        at = 0
+        for name, size in RESPONSE.items():
+            values[name] = int.from_bytes(data[at : at + size], "little")
+            at += size
+        del values["reserved"]
+        return cls(**values | {"result": Result(values["result"])})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,7 +16,7 @@ from firm_hdl.node.control import IDENTITY, registers
 from firm_hdl.node.description import SERVICE_PARTS, Description, Direction, Store, Topic
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
 from firm_hdl.node.reading import LINK_OPTIONS
-from firm_hdl.plan.timing import Cost, timing
+from firm_hdl.timing import Cost, timing
 
 __all__ = ["facts_of", "summary", "warnings_of"]
 

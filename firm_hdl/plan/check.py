@@ -27,7 +27,6 @@ from firm_hdl.plan.tree import (
     Slice,
     Step,
     numbered,
-    walk,
 )
 from firm_hdl.wire import RULES, Layout
 
@@ -232,7 +231,7 @@ def _joint(plan: Plan, before: Item | None, item: Item | None) -> Iterator[str]:
 
 def _header(plan: Plan) -> Iterator[str]:
     rules = RULES[plan.wire]
-    slices = [each for item in walk(plan.items) if isinstance(item, Step) for each in item.slices]
+    slices = [each for step in plan.steps if isinstance(step, Step) for each in step.slices]
     fixed = [item for item in slices if isinstance(item, Fixed)]
     if fixed != slices[: len(fixed)]:
         yield "fixed bytes follow the header"
@@ -248,13 +247,11 @@ def _header(plan: Plan) -> Iterator[str]:
 def _transfers(plan: Plan) -> Iterator[str]:
     transfers: dict[int, list[Run | Part]] = {}
     order: list[int] = []
-    for item in walk(plan.items):
-        found: Sequence[Run | Part] = ()
-        if isinstance(item, Run):
-            found = [item]
-        elif isinstance(item, Step):
-            found = [part for part in item.parts if part.completes]
+    for step in plan.steps:
+        found: Sequence[Run | Part] = [step] if isinstance(step, Run) else step.parts
         for each in found:
+            if isinstance(each, Part) and not each.completes:
+                continue
             order.append(each.leaf)
             transfers.setdefault(each.leaf, []).append(each)
     for now, after in pairwise([-1, *order]):

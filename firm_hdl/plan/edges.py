@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from firm_hdl.plan.interpret import Edge
 from firm_hdl.plan.offsets import paddings
-from firm_hdl.plan.tree import Item, Length, Loop, Plan, Run, Step, numbered, walk
+from firm_hdl.plan.tree import Item, Length, Loop, Plan, Run, Step, numbered
 
 __all__ = ["edges"]
 
@@ -27,23 +27,12 @@ def edges(plan: Plan) -> frozenset[Edge]:
     found = set(_ways(plan, plan.items, 0, 0, NEXT))
     for index, counts in paddings(plan).items():
         found.update(Edge(index, f"padding {count}") for count in counts)
-    # Runs of which a packet can have any item.
-    filled = {run.leaf for run in walk(plan.items) if isinstance(run, Run) and run.count.most}
-    for index, item in _steps(plan.items, 0):
-        if isinstance(item, Step) and item.rest is not None:
+    for index, step in enumerate(plan.steps):
+        if isinstance(step, Step) and step.rest is not None:
             found.add(Edge(index, "no rest"))
-            if item.rest in filled:
+            if plan.run_of[step.rest].count.most:
                 found.add(Edge(index, "rest"))
     return frozenset(found)
-
-
-def _steps(items: Sequence[Item], first: int) -> Iterator[tuple[int, Step | Run]]:
-    """Yield all steps and runs with their numbers."""
-    for index, item in numbered(items, first):
-        if isinstance(item, Loop):
-            yield from _steps(item.body, index)
-        else:
-            yield index, item
 
 
 def _ways(

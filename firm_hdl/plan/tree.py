@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Literal, TypeAlias
+from typing import ClassVar, Literal, TypeAlias
 
 from firm_hdl.model import PRIMITIVE_OF, Primitive, Wire
 from firm_hdl.wire import RULES
@@ -298,6 +298,11 @@ class Run:
 
     steps: ClassVar[int] = 1
 
+    @property
+    def counted(self) -> bool:
+        """Whether a length counts the items."""
+        return isinstance(self.count, Length)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Loop:
@@ -390,18 +395,38 @@ class Plan:
         """Return the largest count that fits in one word of a run, its NUL included."""
         return self.leaves[run.leaf].lanes + run.count.nul
 
-    # The linked steps, until gateware is made from the tree.
+    @cached_property
+    def steps(self) -> tuple[Step | Run, ...]:
+        """All steps and runs, in wire order."""
+        return tuple(item for item in walk(self.items) if not isinstance(item, Loop))
 
     @cached_property
-    def linked(self) -> Any:
-        from firm_hdl.plan.link import link
+    def begins(self) -> dict[int, Run | Loop]:
+        """What the length in a step counts, by the number of the step."""
+        return dict(_begins(self.items, 0))
 
-        return link(self)
+    @cached_property
+    def run_of(self) -> dict[int, Run]:
+        """The runs, by their leaves."""
+        return {step.leaf: step for step in self.steps if isinstance(step, Run)}
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        return getattr(self.linked, name)
+    @property
+    def has_claims(self) -> bool:
+        """Whether lengths share a budget."""
+        return any(length.charge is not None for length in self.lengths.values())
+
+    @property
+    def max_run_lanes(self) -> int:
+        """Lanes of the widest run; 1 without runs."""
+        return max((self.leaves[leaf].lanes for leaf in self.run_of), default=1)
+
+
+def _begins(items: Sequence[Item], first: int) -> Iterator[tuple[int, Run | Loop]]:
+    for index, item in numbered(items, first):
+        if isinstance(item, Run | Loop) and isinstance(item.count, Length):
+            yield index - 1, item
+        if isinstance(item, Loop):
+            yield from _begins(item.body, index)
 
 
 def _levels(items: Sequence[Item]) -> int:

@@ -25,7 +25,6 @@ from firm_hdl.plan.tree import (
     Slice,
     Step,
     numbered,
-    walk,
 )
 
 __all__ = ["counted", "to_yaml"]
@@ -68,15 +67,15 @@ class _Printer:
 
     def lines(self) -> Iterator[str]:
         plan = self.plan
-        steps = sum(item.steps for item in plan.items)
-        runs = sum(isinstance(item, Run) for item in walk(plan.items))
+        runs = len(plan.run_of)
+        steps = len(plan.steps) - runs
         yield (
             f"# Plan of {plan.message} on {plan.wire}, bus of {counted(plan.bus_bytes, 'byte')}: "
-            f"{counted(len(plan.leaves), 'leaf', 'leaves')}, {counted(steps - runs, 'step')}, "
+            f"{counted(len(plan.leaves), 'leaf', 'leaves')}, {counted(steps, 'step')}, "
             f"{counted(runs, 'run')}, {counted(plan.levels, 'loop level')}."
         )
         yield from LEGEND.splitlines()
-        if any(length.charge for length in plan.lengths.values()):
+        if plan.has_claims:
             yield from CHARGE_LEGEND.splitlines()
         yield f"message: {_plain(plan.message)}"
         yield f"wire: {plan.wire}"

@@ -23,7 +23,7 @@ from firm_hdl.program.serializer import (
     WireByte,
     serializer_program,
 )
-from firm_hdl.program.state import AnyState, Program, State, Transfer
+from firm_hdl.program.state import AnyState, Part, Program, State, Transfer
 
 __all__ = [
     "LENGTH_BITS",
@@ -34,6 +34,7 @@ __all__ = [
     "Load",
     "NextMap",
     "NextPosition",
+    "Part",
     "Program",
     "SerializerProgram",
     "SerializerState",

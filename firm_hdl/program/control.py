@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
-from firm_hdl.plan.ir import RUN_COUNTER, Begin, Jump, RunStep
-from firm_hdl.plan.tree import Plan
+from firm_hdl.plan.tree import Item, Length, Loop, Plan, Run, Step, numbered
 
 __all__ = ["Control", "Load", "Transition", "control_of", "start_of"]
 
@@ -60,47 +60,80 @@ class Control:
 
     Attributes
     ----------
+    item : Step or Run
+        What the state does.
+    level : int
+        Number of loops around the state.
     body : Transition or None
         Into the body of the run or loop that a length of the state counts, or to the next word of
         the same run. `None`: the state always takes an exit.
     exits : tuple of Transition
         In the order in which they are tried: the innermost loop first. The last one is always
         possible.
-    begin : Begin or None
-        The run or loop that a length of the state counts.
+    begin : Run, Loop or None
+        What a length of the state counts.
     """
 
+    item: Step | Run
+    level: int
     body: Transition | None
     exits: tuple[Transition, ...]
-    begin: Begin | None
+    begin: Run | Loop | None = None
 
 
 def start_of(plan: Plan) -> Transition:
     """Return the transition to the first state of each packet."""
-    return _transition(plan, plan.start)
+    return _enter(plan, plan.items, 0, 0)
 
 
 def control_of(plan: Plan) -> tuple[Control, ...]:
-    """Return the transitions of each step."""
-    found = []
-    for index, step in enumerate(plan.steps):
-        body = Transition(to=index) if isinstance(step, RunStep) else None
-        if step.begin is not None:
-            body = _transition(plan, step.begin.body)
-        repeats = [_transition(plan, jump, level) for level, jump in step.exits.repeats]
-        exits = (*repeats, _transition(plan, step.exits.default))
-        found.append(Control(body=body, exits=exits, begin=step.begin))
-    return tuple(found)
+    """Return the transitions of each step and run."""
+    return tuple(_block(plan, plan.items, 0, 0, (Transition(to=None),)))
 
 
-def _transition(plan: Plan, jump: Jump, level: int | None = None) -> Transition:
-    loads = []
-    for counter, count in jump.enter:
-        if counter == RUN_COUNTER:
-            assert jump.step is not None
-            run = plan.steps[jump.step]
-            assert isinstance(run, RunStep)
-            loads.append(Load(level=None, number=count // plan.items_leaf(run.run).lanes))
-        else:
-            loads.append(Load(level=int(counter), number=count))
-    return Transition(to=jump.step, loads=tuple(loads), level=level)
+def _block(
+    plan: Plan, items: Sequence[Item], first: int, level: int, after: tuple[Transition, ...]
+) -> Iterator[Control]:
+    """Yield the control of items inside `level` loops; `after` are the exits behind the last."""
+    # From the end: what comes after each item decides its exits.
+    behind = [after]
+    places = [*numbered(items, first)]
+    for place in range(len(items) - 1, 0, -1):
+        index, item = places[place]
+        # The exits of a step before a length's run or loop are those behind the run or loop.
+        is_begun = _begun(item) is not None
+        behind.append(behind[-1] if is_begun else (_enter(plan, items[place:], index, level),))
+    behind.reverse()
+    for place, (index, item) in enumerate(places):
+        exits = behind[place]
+        match item:
+            case Step():
+                body, begin = None, _begun(*items[place + 1 : place + 2])
+                if isinstance(begin, Run):
+                    body = Transition(to=index + 1)
+                elif begin is not None:
+                    body = _enter(plan, begin.body, index + 1, level + 1)
+                yield Control(item=item, level=level, body=body, exits=exits, begin=begin)
+            case Run():
+                yield Control(item=item, level=level, body=Transition(to=index), exits=exits)
+            case Loop():
+                again = replace(_enter(plan, item.body, index, level + 1), level=level)
+                yield from _block(plan, item.body, index, level + 1, (again, *exits))
+
+
+def _begun(item: Item | None = None) -> Run | Loop | None:
+    """Return an item if a length counts it."""
+    if isinstance(item, Run | Loop) and isinstance(item.count, Length):
+        return item
+    return None
+
+
+def _enter(plan: Plan, items: Sequence[Item], index: int, level: int) -> Transition:
+    """Return the transition to the first of items that are inside `level` loops."""
+    first, loads = items[0], list[Load]()
+    while isinstance(first, Loop):
+        loads.append(Load(level=level, number=first.count.most))
+        first, level = first.body[0], level + 1
+    if isinstance(first, Run):
+        loads.append(Load(level=None, number=first.count.most // plan.leaves[first.leaf].lanes))
+    return Transition(to=index, loads=tuple(loads))

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 
-from firm_hdl.plan.ir import Fixed, RunStep
-from firm_hdl.plan.tree import Plan
+from firm_hdl.plan.tree import Fixed, Plan, Run, Step
 from firm_hdl.program.control import Control, control_of, start_of
 from firm_hdl.program.lanes import StartLanes, start_lanes, word_lanes
 from firm_hdl.program.lengths import Length, NextMap, length_of
@@ -107,7 +106,7 @@ class DeserializerProgram(Program[DeserializerState]):
     @property
     def has_strings(self) -> bool:
         """Whether any run ends in a NUL."""
-        return any(run.terminated for run in self.plan.runs)
+        return any(length.nul for length in self.plan.lengths.values())
 
     @property
     def count_bits(self) -> int:
@@ -140,12 +139,12 @@ def deserializer_program(plan: Plan, *, has_leaves: bool = True) -> Deserializer
     items, map_ = word_lanes(plan, starts)
     number = len(plan.steps)
     end = DeserializerState(number=number, at_end=True, last_offset=-1, map_offset=1)
-    leading = len(list(takewhile(lambda s: not (s.bytes or isinstance(s, RunStep)), plan.steps)))
+    leading = len(list(takewhile(lambda s: isinstance(s, Step) and not s.bytes, plan.steps)))
     states = tuple(
         _state(plan, index, control, is_leading=index < leading, has_leaves=has_leaves)
         for index in range(number)
     )
-    parts = [part for step in plan.steps for part in step.parts]
+    parts = [part for step in plan.steps if isinstance(step, Step) for part in step.parts]
     return DeserializerProgram(
         plan=plan,
         states=(*states, end),
@@ -164,8 +163,9 @@ def deserializer_program(plan: Plan, *, has_leaves: bool = True) -> Deserializer
 def _state(
     plan: Plan, number: int, control: Sequence[Control], *, is_leading: bool, has_leaves: bool
 ) -> DeserializerState:
-    step, mine, bus = plan.steps[number], control[number], plan.bus_bytes
-    exits, is_counted = mine.exits, isinstance(step, RunStep) and plan.runs[step.run].counted
+    mine, bus = control[number], plan.bus_bytes
+    step, exits = mine.item, mine.exits
+    is_counted = isinstance(step, Run) and step.counted
     again: list[NextPosition | None] = [None] * plan.levels
     for each in exits[:-1]:
         assert each.level is not None
@@ -173,8 +173,8 @@ def _state(
     body_start = None
     if mine.begin is not None and mine.body is not None:
         # The body of a run starts with its first item, and is aligned like that.
-        length, body = length_of(plan, mine.begin), _next_map(plan, mine.body.to)
-        align = body.align if length.level is not None else length.align
+        body = _next_map(plan, mine.body.to)
+        align = mine.begin.align if isinstance(mine.begin, Run) else body.align
         body_start = _next(plan, replace(body, align=align))
     elif mine.body is not None:
         body_start = _next(plan, NextMap(1, bus - 1))
@@ -182,12 +182,13 @@ def _state(
     fields = common_fields(plan, number, mine)
     if mine.begin is not None:
         fields["length"] = _length(plan, control, number, has_leaves=has_leaves)
-    fixed = [item for item in step.slices if isinstance(item, Fixed) and item.check]
+    places = step.places if isinstance(step, Step) else ()
+    fixed = [(at, item) for at, item in places if isinstance(item, Fixed) and item.check]
     return DeserializerState(
         **fields,
         last_offset=own.last_offset,
-        map_offset=(step.bytes > bus) * bus - own.last_offset,
-        checks=tuple((item.at + k, byte) for item in fixed for k, byte in enumerate(item.data)),
+        map_offset=(own.last_offset >= bus) * bus - own.last_offset,
+        checks=tuple((at + k, byte) for at, item in fixed for k, byte in enumerate(item.data)),
         is_leading=is_leading,
         exit=_next(plan, _next_map(plan, exits[-1].to), over_rest=is_counted),
         body_start=body_start,
@@ -200,8 +201,10 @@ def _next_map(plan: Plan, number: int | None) -> NextMap:
     if number is None:
         return NextMap(1, -1)
     step = plan.steps[number]
-    size = plan.bus_bytes if isinstance(step, RunStep) else step.bytes
-    return NextMap(step.align, size - 1)
+    if isinstance(step, Run):
+        # The state before has aligned the items that a length counts.
+        return NextMap(1 if step.counted else step.align, plan.bus_bytes - 1)
+    return NextMap(step.align, step.bytes - 1)
 
 
 def _next(plan: Plan, to: NextMap, *, over_rest: bool = False) -> NextPosition:
@@ -223,15 +226,14 @@ def distance_to(plan: Plan, to: NextMap) -> int:
 def _length(plan: Plan, control: Sequence[Control], number: int, *, has_leaves: bool) -> Length:
     """Return the length of a step that begins a loop or a run."""
     mine = control[number]
-    assert mine.begin is not None
+    length = length_of(plan, mine)
+    assert length is not None
     assert mine.body is not None
-    length = length_of(plan, mine.begin)
     if length.level is None:
         nexts = tuple(_next_map(plan, each.to) for each in mine.exits if each.to is not None)
         return replace(length, nexts=nexts)
-    to = mine.body.to or 0
-    body = plan.steps[to]
-    is_empty = not isinstance(body, RunStep) and not body.bytes and control[to].begin is None
+    to = control[mine.body.to or 0]
+    is_empty = isinstance(to.item, Step) and not to.item.bytes and to.begin is None
     return replace(length, counts_nothing=is_empty and not has_leaves)
 
 
@@ -241,9 +243,9 @@ def _length_lanes(
     return tuple(
         sorted(
             {
-                (lane + step.bytes - 1) % plan.bus_bytes
-                for step, mine, start in zip(plan.steps, control, starts, strict=True)
-                if mine.begin is not None
+                (lane + mine.item.bytes - 1) % plan.bus_bytes
+                for mine, start in zip(control, starts, strict=True)
+                if mine.begin is not None and isinstance(mine.item, Step)
                 for lane in start.map
             }
         )

@@ -10,8 +10,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from firm_hdl.plan.ir import BeginRun, RunStep, Step
-from firm_hdl.plan.tree import Plan
+from firm_hdl.plan.tree import Plan, Run, Step
 from firm_hdl.program.control import Transition, control_of, start_of
 from firm_hdl.wire import residues as rs
 
@@ -60,16 +59,17 @@ def word_lanes(plan: Plan, starts: Sequence[StartLanes]) -> tuple[WordLanes, Wor
     map_lanes: set[int] = set()
     item_sizes, map_sizes = {bus}, {bus}
     for step, start in zip(plan.steps, starts, strict=True):
+        if isinstance(step, Run):
+            (item_lanes if step.counted else map_lanes).update(start.map)
+            continue
         map_sizes.add(step.bytes)
         if step.rest is not None:
             item_lanes.update(start.first)
-            item_sizes.add(plan.item_bytes(step.rest))
-        if isinstance(step, RunStep) and plan.runs[step.run].counted:
-            item_lanes.update(start.map)
-        elif step.bytes or isinstance(step, RunStep):
+            item_sizes.add(plan.leaves[step.rest].item_bytes)
+        if step.bytes:
             map_lanes.update(start.map)
-            if step.bytes > bus:
-                item_lanes.update(start.map)
+        if step.bytes > bus:
+            item_lanes.update(start.map)
     items, map_ = (
         WordLanes(
             lanes=tuple(sorted(lanes)) or (0,), unit=math.gcd(*lanes, *sizes), used=bool(lanes)
@@ -91,16 +91,20 @@ def start_lanes(plan: Plan) -> tuple[StartLanes, ...]:
         after_header = rs.advance(residues, -plan.header_bytes, modulus)
         return rs.advance(rs.aligned(after_header, align, modulus), plan.header_bytes, modulus)
 
-    def map_start(step: Step, residues: int) -> int:
-        if step.rest is not None:
-            residues = rs.spread(residues, plan.item_bytes(step.rest), modulus)
+    def map_start(step: Step | Run, residues: int) -> int:
+        if isinstance(step, Run) and step.counted:
+            # The state before has aligned the items.
+            return residues
+        if isinstance(step, Step) and step.rest is not None:
+            residues = rs.spread(residues, plan.leaves[step.rest].item_bytes, modulus)
         return aligned(residues, step.align)
 
     def successors(index: int, residues: int) -> Iterator[tuple[Transition, int]]:
         step, begin, body = plan.steps[index], control[index].begin, control[index].body
         # The words of a run are as wide as the bus: any number of them ends in the same lane.
-        after = into_body = rs.advance(map_start(step, residues), step.bytes, modulus)
-        if isinstance(begin, BeginRun):
+        size = step.bytes if isinstance(step, Step) else 0
+        after = into_body = rs.advance(map_start(step, residues), size, modulus)
+        if isinstance(begin, Run):
             into_body = aligned(after, begin.align)
         if begin is not None and body is not None:
             yield body, into_body

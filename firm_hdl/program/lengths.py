@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from firm_hdl.plan.ir import Begin, BeginLoop, Claim
-from firm_hdl.plan.tree import Plan
+from firm_hdl.plan.tree import Charge, Constant, Loop, Plan
+from firm_hdl.program.control import Control
 
 __all__ = ["Length", "NextMap", "length_of"]
 
@@ -46,7 +46,7 @@ class Length:
         Whether a NUL follows the items. The length on the wire counts the NUL, too.
     align : int
         Alignment of the first item.
-    claim : Claim or None
+    charge : Charge or None
     counts_nothing : bool
         The elements have no bytes, and nobody asks for them: only their number is checked.
     nexts : tuple of NextMap
@@ -60,7 +60,7 @@ class Length:
     item_bytes: int = 0
     has_nul: bool = False
     align: int = 1
-    claim: Claim | None = None
+    charge: Charge | None = None
     counts_nothing: bool = False
     nexts: tuple[NextMap, ...] = ()
 
@@ -108,26 +108,30 @@ class Length:
 
     @property
     def charged(self) -> str | None:
-        """The value is large enough to be charged to the budget; `None`: it has no claim."""
-        return None if self.claim is None else f"charged_{self.claim.least}"
+        """The value is large enough to be charged to the budget; `None`: it claims nothing."""
+        return None if self.charge is None else f"charged_{self.charge.charged_from}"
 
     def next_last(self, following: NextMap) -> str:
         """The last byte of what follows, if all items are in the rest."""
         return f"last_{self.kind}_{self.align}_{following.align}_{following.last_offset + 1}"
 
 
-def length_of(plan: Plan, begin: Begin) -> Length:
-    """Return the length that begins a loop or a run."""
-    if isinstance(begin, BeginLoop):
-        return Length(leaf=begin.length, limit=begin.limit, level=begin.level, claim=begin.claim)
-    items = plan.items_leaf(begin.run)
+def length_of(plan: Plan, control: Control) -> Length | None:
+    """Return the length with which a state begins a loop or a run."""
+    begin = control.begin
+    if begin is None or isinstance(begin.count, Constant):
+        return None
+    count = begin.count
+    if isinstance(begin, Loop):
+        return Length(leaf=count.leaf, limit=count.limit, level=control.level, charge=count.charge)
+    items = plan.leaves[begin.leaf]
     return Length(
-        leaf=begin.length,
-        limit=begin.limit,
+        leaf=count.leaf,
+        limit=count.limit,
         level=None,
         lanes=items.lanes,
         item_bytes=items.item_bytes,
-        has_nul=plan.has_nul(begin),
+        has_nul=count.nul,
         align=begin.align,
-        claim=begin.claim,
+        charge=count.charge,
     )

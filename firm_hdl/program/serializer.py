@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from firm_hdl.plan.geometry import first_step, may_end_empty, most_beats, only_ends
-from firm_hdl.plan.ir import Fixed, Part, RunStep, Step
-from firm_hdl.plan.tree import Plan
+from firm_hdl.plan.tree import Fixed, Part, Plan, Run, Step
 from firm_hdl.program.control import Control, control_of, start_of
 from firm_hdl.program.lanes import start_lanes, word_lanes
 from firm_hdl.program.state import Program, State, common_fields
+from firm_hdl.timing.rings import ends_in_tail, first_step, may_end_empty, most_beats
 
 __all__ = [
     "LENGTH_BITS",
@@ -112,20 +111,21 @@ def serializer_program(plan: Plan) -> SerializerProgram:
 
 
 def _state(plan: Plan, number: int, control: Control) -> SerializerState:
-    step, bus = plan.steps[number], plan.bus_bytes
-    fields = common_fields(plan, number, control)
-    two_words, counted = fields["two_word_map"], fields["is_counted"]
-    may_end = any(each.to is None or only_ends(plan.steps[each.to]) for each in control.exits)
+    bus, fields = plan.bus_bytes, common_fields(plan, number, control)
+    align, two_words, counted = fields["align"], fields["two_word_map"], fields["is_counted"]
+    tail = len(plan.steps) - 1 if ends_in_tail(plan) else None
+    may_end = any(each.to in (None, tail) for each in control.exits)
     words: dict[str, list[tuple[int, WireByte]]] = {"items": [], "map": []}
-    for name, lane, byte in _bytes(plan, step):
+    for name, lane, byte in _bytes(plan, control.item):
         words[name].append((lane, byte))
+    takes_word = fields["is_words"] and not counted
     return SerializerState(
         **fields,
-        word_bytes=bus if fields["is_words"] and not counted else step.bytes - bus * two_words,
+        word_bytes=bus if takes_word else fields["map_bytes"] - bus * two_words,
         item_word_bytes=bus if two_words or counted else 0,
-        map_mask=step.align - 1,
-        map_addend=step.align - 1 - plan.header_bytes % step.align if bus >= 8 else 0,
-        is_final_tail=only_ends(step),
+        map_mask=align - 1,
+        map_addend=align - 1 - plan.header_bytes % align if bus >= 8 else 0,
+        is_final_tail=number == tail,
         may_wait_for_status=control.begin is not None and may_end,
         precedes_leaves=number < first_step(plan),
         items=tuple(words["items"]),
@@ -133,13 +133,17 @@ def _state(plan: Plan, number: int, control: Control) -> SerializerState:
     )
 
 
-def _bytes(plan: Plan, step: Step) -> Iterator[tuple[str, int, WireByte]]:
+def _bytes(plan: Plan, step: Step | Run) -> Iterator[tuple[str, int, WireByte]]:
     """Yield the bytes of a step's words: the word, the lane, and the byte."""
+    if isinstance(step, Run):
+        name = "items" if step.counted else "map"
+        yield from ((name, *each) for each in _run_word(plan, step.leaf))
+        return
     bus, slot = plan.bus_bytes, 0
     if step.rest is not None:
-        yield from (("items", *each) for each in _run_word(plan, step.rest, slot))
+        yield from (("items", *each) for each in _run_word(plan, step.rest))
         slot += 1
-    for item in step.slices:
+    for at, item in step.places:
         found = [WireByte(None, 0, -1)] * item.bytes
         if isinstance(item, Fixed):
             found = [WireByte(None, value, -1) for value in item.data]
@@ -147,16 +151,12 @@ def _bytes(plan: Plan, step: Step) -> Iterator[tuple[str, int, WireByte]]:
             number = slot if item.completes else -1
             found = [WireByte(item.leaf, item.first + k, number) for k in range(item.bytes)]
             slot += item.completes
-        for k, byte in enumerate(found, item.at):
+        for k, byte in enumerate(found, at):
             name = "items" if step.bytes > bus > k else "map"
             yield name, k % bus if step.bytes > bus else k, byte
-    if isinstance(step, RunStep):
-        name = "items" if plan.runs[step.run].counted else "map"
-        yield from ((name, *each) for each in _run_word(plan, step.run, slot))
 
 
-def _run_word(plan: Plan, run: int, slot: int) -> Iterator[tuple[int, WireByte]]:
+def _run_word(plan: Plan, leaf: int) -> Iterator[tuple[int, WireByte]]:
     """Yield the bytes of a transfer of items, with their lanes."""
-    items = plan.items_leaf(run)
-    leaf = plan.runs[run].items
-    return ((k, WireByte(leaf, k, slot)) for k in range(items.lanes * items.item_bytes))
+    items = plan.leaves[leaf]
+    return ((k, WireByte(leaf, k, 0)) for k in range(items.lanes * items.item_bytes))

@@ -6,13 +6,38 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from firm_hdl.plan.ir import Part, Run, RunStep, Step
-from firm_hdl.plan.tree import Plan
+from firm_hdl.plan import tree
+from firm_hdl.plan.tree import Plan, Run, Step
 from firm_hdl.program.control import Control, Transition
 from firm_hdl.program.lanes import WordLanes
 from firm_hdl.program.lengths import Length, length_of
 
-__all__ = ["AnyState", "Program", "State", "Transfer", "common_fields", "repeated_leaves"]
+__all__ = ["AnyState", "Part", "Program", "State", "Transfer", "common_fields", "repeated_leaves"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """Bytes of a transfer in the map of a state.
+
+    Attributes
+    ----------
+    at : int
+        Offset of the part in the map.
+    bytes, leaf, first, size : int
+        As in the plan's part.
+    last : bool
+        Whether the transfer can be the last one of its leaf.
+    level : int or None
+        The transfer is the last one only in the last element of this loop.
+    """
+
+    at: int
+    bytes: int
+    leaf: int
+    first: int
+    size: int
+    last: bool
+    level: int | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,38 +192,58 @@ class Program(Generic[AnyState]):
 
 def common_fields(plan: Plan, number: int, control: Control) -> dict[str, Any]:
     """Return the fields that states of both directions have."""
-    step = plan.steps[number]
-    cut = [part for part in step.parts if not part.completes]
-    return {
-        "number": number,
-        "body": control.body,
-        "exits": control.exits,
-        "is_words": isinstance(step, RunStep),
-        "is_counted": isinstance(step, RunStep) and plan.runs[step.run].counted,
+    step = control.item
+    fields: dict[str, Any] = {"number": number, "body": control.body, "exits": control.exits}
+    if isinstance(step, Run):
+        word = Transfer(leaf=step.leaf, run=step)
+        # The state before has aligned the items that a length counts.
+        align = 1 if step.counted else step.align
+        return fields | {
+            "is_words": True,
+            "is_counted": step.counted,
+            "align": align,
+            "map_bytes": 0,
+            "two_word_map": False,
+            "transfers": (word,),
+        }
+    length, parts = length_of(plan, control), parts_of(step, control.level)
+    cut = [part for part in parts if part.first + part.bytes < part.size]
+    transfers = []
+    if step.rest is not None:
+        transfers.append(Transfer(leaf=step.rest, run=plan.run_of[step.rest], is_rest=True))
+    for part in parts:
+        if part not in cut:
+            counts_nul = length is not None and part.leaf == length.leaf and length.has_nul
+            transfers.append(Transfer(leaf=part.leaf, part=part, counts_nul=counts_nul))
+    return fields | {
+        "is_words": False,
+        "is_counted": False,
         "takes_rest": step.rest is not None,
-        "rest_unit": 0 if step.rest is None else plan.item_bytes(step.rest),
+        "rest_unit": 0 if step.rest is None else plan.leaves[step.rest].item_bytes,
         "align": step.align,
         "map_bytes": step.bytes,
         "two_word_map": step.bytes > plan.bus_bytes,
-        "length": None if control.begin is None else length_of(plan, control.begin),
-        "transfers": tuple(_transfers(plan, step, control)),
+        "length": length,
+        "transfers": tuple(transfers),
         "cut": cut[0] if cut else None,
     }
 
 
-def _transfers(plan: Plan, step: Step, control: Control) -> Iterator[Transfer]:
-    """Yield the transfers that a step completes, in wire order."""
-    if step.rest is not None:
-        run = plan.runs[step.rest]
-        yield Transfer(leaf=run.items, run=run, is_rest=True)
-    begin = control.begin
-    for part in step.parts:
-        if part.completes:
-            counts_nul = begin is not None and part.leaf == begin.length and plan.has_nul(begin)
-            yield Transfer(leaf=part.leaf, part=part, counts_nul=counts_nul)
-    if isinstance(step, RunStep):
-        run = plan.runs[step.run]
-        yield Transfer(leaf=run.items, run=run)
+def parts_of(step: Step, level: int) -> list[Part]:
+    """Return the parts of a step that is inside `level` loops."""
+    return [
+        Part(
+            at=at,
+            bytes=item.bytes,
+            leaf=item.leaf,
+            first=item.first,
+            size=item.size,
+            last=item.last is not None,
+            level=level - 1 if item.last == "in loop" else None,
+        )
+        for at, item in step.places
+        if isinstance(item, tree.Part)
+    ]
 
 
 def repeated_leaves(states: Sequence[State], start: Transition) -> frozenset[int]:

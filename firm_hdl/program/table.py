@@ -61,8 +61,8 @@ def _length(length: Length) -> str:
     texts = [f"counts {length.kind} up to {length.max_count}"]
     if length.align > 1:
         texts.append(f"at multiple of {length.align}")
-    if length.claim is not None:
-        texts.append(f"claims {length.claim.bytes} each from {length.claim.least} on")
+    if length.charge is not None:
+        texts.append(f"claims {length.charge.bytes} each from {length.charge.charged_from} on")
     return ", ".join(texts)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Value, Wire
+from firm_hdl.rtlil.ir import Assign, Bits, Cell, Module, Slice, Statement, Value, Wire
 from firm_hdl.vhdl.expr import Declared
 from firm_hdl.vhdl.graph import Graph
 from firm_hdl.vhdl.instance import component_names
@@ -251,13 +251,46 @@ def part_names(module: Module) -> dict[str, str]:
     return names
 
 
+def _next_names(graph: Graph) -> dict[str, str]:
+    """Name generated wires after the register of whose next value they are a part."""
+    names: dict[str, str] = {}
+    for wire, cell in graph.register_of.items():
+        register = graph.name_of.get(wire, wire)
+        if register.startswith("$"):
+            continue
+        process = graph.next_state.get(wire)
+        whole = Assign(target=(Slice(wire, 0, graph.width[wire]),), value=cell.ports["D"])
+        for each in _assignments((whole,) if process is None else process.body):
+            (target,) = each.target
+            assert isinstance(target, Slice)
+            position = target.low
+            for chunk in each.value:
+                if isinstance(chunk, Slice) and chunk.wire.startswith("$") and chunk.low == 0:
+                    is_whole = chunk.width == graph.width[wire]
+                    name = f"{register}_next" if is_whole else f"{register}_next_{position}"
+                    names.setdefault(chunk.wire, name)
+                position += chunk.width
+    return names
+
+
+def _assignments(body: tuple[Statement, ...]) -> Iterator[Assign]:
+    for statement in body:
+        if isinstance(statement, Assign):
+            yield statement
+        else:
+            for case in statement.cases:
+                yield from _assignments(case.body)
+
+
 def _drivers(graph: Graph, child_names: Mapping[str, Mapping[str, str]]) -> dict[str, _Driver]:
     """List the wires that this module drives, with their drivers."""
     drivers: dict[str, _Driver] = {}
-    hints = part_names(graph.module)
+    parts, nexts = part_names(graph.module), _next_names(graph)
 
     def add(kind: DriverKind, wire: str, name: str) -> None:
-        drivers[wire] = _Driver(kind=kind, name=hints.get(wire, name))
+        if kind != "register":
+            name = nexts.get(wire, name)
+        drivers[wire] = _Driver(kind=kind, name=parts.get(wire, name))
 
     for cell in graph.cells:
         if graph.is_instance(cell):

@@ -1,21 +1,23 @@
 """The drivers and readers of each wire of a module, and the expressions that need no signal.
 
 Amaranth gives every operator a wire of its own, including the carry bits that nothing reads. The
-passes of :mod:`firm_hdl.vhdl.passes` narrow each generated wire to the bits that are read. Then the
-wire takes over the name of a signal with the same value, or it is folded into the expression that
-reads it.
+passes narrow each generated wire to the bits that are read. Then the wire takes over the name of a
+signal with the same value, or it is folded into the expression that reads it. Each pass takes a
+graph and returns another one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
-from firm_hdl.rtlil.ir import Assign, Cell, Module, Process, Slice, Spec
-from firm_hdl.vhdl.uses import Use, statement_uses, uses_of
+from firm_hdl.rtlil.ir import Assign, Cell, Module, Process, Slice, Spec, spec_width
+from firm_hdl.vhdl.uses import INLINE, Use, output, statement_uses, uses_of
 
-__all__ = ["Connection", "Graph", "only", "target_of"]
+__all__ = ["Connection", "Graph", "graph_of", "only", "target_of"]
+
 
 Connection: TypeAlias = "tuple[Spec, Spec]"
 """A target and the value that drives it."""
@@ -111,3 +113,316 @@ def target_of(process: Process) -> str | None:
             assert isinstance(chunk, Slice)
             return chunk.wire
     return None
+
+
+_COMPARISONS = frozenset("$eq $ne $lt $le $gt $ge".split())
+
+# Largest number of operands in an expression, and of copies of a comparison.
+_MAX_OPERANDS = 6
+_MAX_REPEATS = 3
+
+
+def graph_of(
+    module: Module,
+    modules: Mapping[str, Module],
+    is_foldable: Callable[[Cell, int], bool] = lambda cell, width: True,
+) -> Graph:
+    """Build the graph of a module.
+
+    Parameters
+    ----------
+    modules : mapping of str to Module
+        All modules of the design, by name.
+    is_foldable : callable
+        Whether the language can write the operator in an expression, given the bits of its result
+        that are read.
+    """
+    graph = Graph(
+        module=module,
+        modules=modules,
+        cells=tuple(i for i in module.items if isinstance(i, Cell) and _has_bits(i)),
+        processes=tuple(i for i in module.items if isinstance(i, Process) and target_of(i)),
+        width={name: wire.width for name, wire in module.wires.items()},
+    )
+    for run_pass in PASSES:
+        graph = run_pass(graph)
+    return _fold(graph, is_foldable)
+
+
+def _drop_division_guards(graph: Graph) -> Graph:
+    """Replace a division and its multiplexer for divisor 0 by the division.
+
+    `floor_div` and `floor_mod` of the VHDL package give 0 for divisor 0.
+    """
+    divisions = {
+        output(cell): cell for cell in graph.cells if cell.kind in ("$divfloor", "$modfloor")
+    }
+    tests = {output(cell): cell for cell in graph.cells if cell.kind == "$reduce_bool"}
+    guards: set[str] = set()
+    cells: list[Cell] = []
+    for cell in graph.cells:
+        source = only(cell.ports["B"]) if cell.kind == "$mux" else None
+        test = only(cell.ports["S"]) if cell.kind == "$mux" else None
+        if (
+            source is not None
+            and source.bare
+            and source.wire in divisions
+            and test is not None
+            and test.wire in tests
+            and tests[test.wire].ports["A"] == divisions[source.wire].ports["B"]
+        ):
+            division = divisions[source.wire]
+            guards.add(source.wire)
+            ports = {**division.ports, "Y": cell.ports["Y"]}
+            cell = Cell(
+                kind=division.kind,
+                name=cell.name,
+                parameters=division.parameters,
+                ports=ports,
+                attributes=cell.attributes,
+                line=division.line,
+            )
+        cells.append(cell)
+    kept = (
+        cell
+        for cell in cells
+        if cell.kind not in ("$divfloor", "$modfloor") or output(cell) not in guards
+    )
+    return replace(graph, cells=tuple(kept))
+
+
+def _sort_connections(graph: Graph) -> Graph:
+    """Separate connections that drive a wire from those that only give a value another name."""
+    module = graph.module
+    read = {chunk.wire for use in graph.uses() for chunk in use.spec if isinstance(chunk, Slice)}
+    read |= {c.wire for _, value in module.connections for c in value if isinstance(c, Slice)}
+    drives: list[Connection] = []
+    aliases: list[Connection] = []
+    for target, value in module.connections:
+        if not target:
+            continue
+        chunk = target[0]
+        assert isinstance(chunk, Slice)
+        wire = module.wires[chunk.wire]
+        if wire.direction is not None or wire.name in read:
+            drives.append((target, value))
+        elif not _is_redundant_name(graph, wire.name, value):
+            aliases.append((target, value))
+    return replace(graph, drives=tuple(drives), aliases=tuple(aliases))
+
+
+def _is_redundant_name(graph: Graph, name: str, value: Spec) -> bool:
+    """Return whether a name is a field of a signal, or a second copy of a name."""
+    cut = min((i for i in (name.find("."), name.find("[")) if i > 0), default=0)
+    if cut and name[:cut] in graph.module.wires:
+        return True
+    base, _, number = name.rpartition("$")
+    source = only(value)
+    return (
+        number.isdecimal()
+        and source is not None
+        and source.wire == base
+        and source.width == graph.width[base]
+    )
+
+
+def _narrow(graph: Graph) -> Graph:
+    """Give generated wires the width that is read; drop operators that nothing reads."""
+    drivers = {
+        output(cell): cell
+        for cell in graph.cells
+        if cell.kind in INLINE and output(cell).startswith("$")
+    }
+    width = dict(graph.width)
+    needed: Counter[str] = Counter()
+    pending: list[str] = []
+
+    def demand(spec: Spec) -> None:
+        for chunk in spec:
+            if isinstance(chunk, Slice) and chunk.low + chunk.width > needed[chunk.wire]:
+                needed[chunk.wire] = chunk.low + chunk.width
+                if chunk.wire in drivers:
+                    pending.append(chunk.wire)
+
+    for cell in graph.cells:
+        if cell.kind not in INLINE or output(cell) not in drivers:
+            for use in uses_of(cell, width):
+                demand(use.spec)
+    for process in graph.processes:
+        for use in statement_uses(process.body):
+            demand(use.spec)
+    for value in graph.connected():
+        demand(value)
+    while pending:
+        name = pending.pop()
+        width[name] = needed[name]
+        for use in uses_of(drivers[name], width):
+            demand(use.spec)
+    kept = (
+        cell
+        for cell in graph.cells
+        if cell.kind not in INLINE or output(cell) not in drivers or needed[output(cell)]
+    )
+    return replace(graph, cells=tuple(kept), width=width)
+
+
+def _adopt_names(graph: Graph) -> Graph:
+    """Give generated wires the names of the signals to which they are connected as a whole."""
+    name_of: dict[str, str] = {}
+    drives = list(graph.drives)
+    aliases = list(graph.aliases)
+    for connections in (drives, aliases):
+        kept: list[Connection] = []
+        for target, value in connections:
+            to, source = target[0], only(value)
+            if (
+                isinstance(to, Slice)
+                and source is not None
+                and source.wire.startswith("$")
+                and source.wire not in name_of
+                and to.bare
+                and source.low == 0
+                and source.width == graph.width[source.wire]
+                and graph.module.wires[to.wire].direction != "inout"
+                and not _is_driven(source.wire, drives)
+            ):
+                name_of[source.wire] = to.wire
+            else:
+                kept.append((target, value))
+        connections[:] = kept
+    return replace(graph, drives=tuple(drives), aliases=tuple(aliases), name_of=name_of)
+
+
+def _is_driven(wire: str, drives: list[Connection]) -> bool:
+    return any(to[0].wire == wire for to, _ in drives if isinstance(to[0], Slice))
+
+
+def _pair_registers(graph: Graph) -> Graph:
+    """Find the registers, and the processes that compute the next value of a single register."""
+    specs = [*(use.spec for use in graph.uses()), *graph.connected()]
+    reads = Counter(chunk.wire for spec in specs for chunk in spec if isinstance(chunk, Slice))
+    by_target = {target_of(process): process for process in graph.processes}
+    registers = {output(cell): cell for cell in graph.cells if cell.kind in ("$dff", "$adff")}
+    next_state: dict[str, Process] = {}
+    for register, cell in registers.items():
+        chunk = only(cell.ports["D"])
+        if (
+            chunk is not None
+            and chunk.wire in by_target
+            and chunk.wire.startswith("$")
+            and chunk.wire not in graph.name_of
+            and chunk.width == graph.width[chunk.wire]
+            and reads[chunk.wire] == 1
+        ):
+            next_state[register] = by_target[chunk.wire]
+    paired = {id(process) for process in next_state.values()}
+    others = tuple(process for process in graph.processes if id(process) not in paired)
+    return replace(graph, processes=others, register_of=registers, next_state=next_state)
+
+
+def _uses_with_registers(graph: Graph) -> Iterator[Use]:
+    """Yield all values that are read; for a register, the values that its process reads."""
+    for cell in graph.cells:
+        process = graph.next_state.get(output(cell)) if cell.kind in ("$dff", "$adff") else None
+        for use in uses_of(cell, graph.width):
+            if process is None or use.spec != cell.ports["D"]:
+                yield use
+        if process is not None:
+            yield from statement_uses(process.body)
+    for process in graph.processes:
+        yield from statement_uses(process.body)
+    for value in graph.connected():
+        yield Use(value, True)
+
+
+def _fold(graph: Graph, is_foldable: Callable[[Cell, int], bool]) -> Graph:
+    """Find the generated wires whose expression can be written where they are read."""
+    count: Counter[str] = Counter()
+    fixed: set[str] = set()
+    for use in _uses_with_registers(graph):
+        for chunk in use.spec:
+            if isinstance(chunk, Slice):
+                count[chunk.wire] += 1
+                whole = chunk.low == 0 and chunk.width == graph.width[chunk.wire]
+                if not use.inline or not whole:
+                    fixed.add(chunk.wire)
+    candidates = {
+        output(cell): cell
+        for cell in graph.cells
+        if cell.kind in INLINE
+        and output(cell).startswith("$")
+        and output(cell) not in graph.name_of
+        and output(cell) not in fixed
+        and is_foldable(cell, graph.width[output(cell)])
+    }
+    folded: dict[str, Cell] = {}
+    leaves: dict[str, int] = defaultdict(lambda: 1)
+    for name in _in_order(candidates):
+        cell = candidates[name]
+        weight = sum(
+            leaves[chunk.wire] if isinstance(chunk, Slice) else 1
+            for port, spec in cell.ports.items()
+            if port != "Y"
+            for chunk in spec
+        )
+        if weight <= _MAX_OPERANDS and (count[name] == 1 or _may_repeat(cell, count[name], folded)):
+            leaves[name] = weight
+            folded[name] = cell
+    return replace(graph, folded=folded)
+
+
+def _may_repeat(cell: Cell, uses: int, folded: dict[str, Cell]) -> bool:
+    """Return whether an expression may have copies: an inverted bit, or a simple comparison."""
+    specs = [spec for port, spec in cell.ports.items() if port != "Y"]
+    if any(len(spec) > 1 for spec in specs):
+        return False
+    if any(isinstance(c, Slice) and c.wire in folded for spec in specs for c in spec):
+        return False
+    if cell.kind == "$not":
+        return spec_width(cell.ports["A"]) == 1
+    return cell.kind in _COMPARISONS and uses <= _MAX_REPEATS
+
+
+def _in_order(candidates: dict[str, Cell]) -> Iterator[str]:
+    """Yield wires so that operands come before the operators that read them."""
+    done: set[str] = set()
+    for root in candidates:
+        stack = [(root, False)]
+        while stack:
+            name, visited = stack.pop()
+            if visited:
+                yield name
+                continue
+            if name in done:
+                continue
+            done.add(name)
+            stack.append((name, True))
+            for port, spec in candidates[name].ports.items():
+                if port != "Y":
+                    stack.extend(
+                        (chunk.wire, False)
+                        for chunk in spec
+                        if isinstance(chunk, Slice)
+                        and chunk.wire in candidates
+                        and chunk.wire not in done
+                    )
+
+
+def _has_bits(cell: Cell) -> bool:
+    """Return whether the result of a cell has any bits."""
+    for port in ("Y", "Q"):
+        if cell.kind.startswith("$") and port in cell.ports and not cell.ports[port]:
+            return False
+    if cell.kind == "$memrd_v2":
+        return bool(cell.ports["DATA"])
+    return cell.kind != "$memwr_v2" or bool(cell.ports["DATA"])
+
+
+PASSES: tuple[Callable[[Graph], Graph], ...] = (
+    _drop_division_guards,
+    _sort_connections,
+    _narrow,
+    _adopt_names,
+    _pair_registers,
+)
+"""The passes in order: each pass relies on those before it."""

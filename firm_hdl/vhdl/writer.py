@@ -12,8 +12,8 @@ from typing import Any, ClassVar
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Spec, Statement, Value, cut
 from firm_hdl.vhdl.declare import Role, Signal, attributes_of, declare, enumeration, remark_of
 from firm_hdl.vhdl.expr import Declared, Values
+from firm_hdl.vhdl.graph import graph_of
 from firm_hdl.vhdl.memory import MemoryText, memory_id
-from firm_hdl.vhdl.passes import graph_of
 from firm_hdl.vhdl.process import Statements, flatten
 from firm_hdl.vhdl.registers import Registers
 from firm_hdl.vhdl.uses import INLINE, output

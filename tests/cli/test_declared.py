@@ -12,6 +12,7 @@ import pytest
 from firm_hdl.cli import _parser, main, parser_of_all
 from firm_hdl.cli.table import COMMANDS
 from firm_hdl.errors import UserError
+from firm_hdl.export.options import EXTRAS
 
 ORIGINS = {"distro": None, "path": [], "bag": [], "depends": []}
 PLAN = {"wire": None, "bus_bytes": 8, "max_message_bytes": 16 << 20}
@@ -245,6 +246,12 @@ def test_limits_of_options(option, good, bad, capsys):
             assert is_refused(*words_of(command, f"--{option.replace('_', '-')}={text}"))
 
 
+def test_an_extra_that_does_not_exist_is_named(capsys):
+    assert is_refused("build", "a/B", "--with", "tools,tool")
+    said = "'tool' is not one of systemverilog, tools, documents, all"
+    assert said in capsys.readouterr().err
+
+
 def test_messages_of_a_recording_have_a_limit_of_their_own(capsys):
     for number in (1, (1 << 31) - 1):
         assert parsed("verify", "--max-message-bytes", str(number))["max_message_bytes"] == number
@@ -258,6 +265,8 @@ def test_messages_of_a_recording_have_a_limit_of_their_own(capsys):
         (["md5", "--all"], "all", True),
         (["proto", "--no-quotes"], "no_quotes", True),
         (["build", "a/B", "--force"], "force", True),
+        (["build", "a/B", "--with", "tools,documents"], "extras", {"tools", "documents"}),
+        (["build", "a/B", "--with", "all"], "extras", {*EXTRAS}),
         (["cover", "--branches"], "branches", True),
         (["metrics", "--format", "json"], "format", "json"),
         (["metrics", "--format", "csv"], "format", "csv"),

@@ -196,7 +196,10 @@ def test_no_module_has_the_name_of_an_entity_in_another_case(folders):
         assert not {name.lower() for name in modules} & {name.lower() for name in entities}
 
 
-_OF_VERILOG = r"^ *(?:input|output|wire|reg|function)\b(?: wire)?(?: \[\d+:\d+\])? (\w+) ?[;=,\[]"
+_OF_VERILOG = (
+    r"^ *(?:input wire|output wire|input|wire|reg|function)\b *(?:\[\d+:\d+\])? *"
+    r"(?!wire\b)(\w+) ?(?:[;=,\[]|$| //)"
+)
 
 
 def declared(folder: Path) -> set[str]:

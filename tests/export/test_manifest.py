@@ -13,8 +13,8 @@ from firm_hdl.export.options import Options
 from firm_hdl.export.top import DIRECTIONS, leaf_names, ports_of
 from firm_hdl.model import PRIMITIVES, Constant, Field, Message, String
 from firm_hdl.plan import build_plan
-from firm_hdl.plan.timing import timing
 from firm_hdl.rtlil import netlist_of
+from firm_hdl.timing import timing
 from firm_hdl.wire import lay_out
 from tests.export.conftest import EVERYTHING
 from tests.frontend.workspace import library

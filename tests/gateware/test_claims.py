@@ -10,11 +10,10 @@ from functools import cache
 import pytest
 
 from firm_hdl import Deserializer, Parser
-from firm_hdl.gateware.parser import PlanParser
 from firm_hdl.gateware.signatures import LATENCY_CYCLES
 from firm_hdl.plan import build_plan, decode
-from firm_hdl.plan.recovery import recovery
 from firm_hdl.sim import RunOptions, Stalls
+from firm_hdl.timing.recovery import recovery
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.gateware import test_parser
@@ -183,7 +182,7 @@ def test_a_parser_with_a_larger_budget_is_found():
     larger = with_charges(
         plan, lambda charge: replace(charge, budget=charge.budget and charge.budget + 1)
     )
-    parser = PlanParser(larger)
+    parser = Parser(BOOK, plan=larger)
     seen = test_parser.run(parser, [numbers(100, 80, 301), numbers(100, 80, 302)])
     assert [status.name for status in seen.statuses] == ["TRUNCATED", "LENGTH"]
     assert decode(plan, numbers(100, 80, 301)).status == "LENGTH"

@@ -17,7 +17,7 @@ from firm_hdl import Parser, Status, load_message
 from firm_hdl.gateware.parse import OrderQueue
 from firm_hdl.gateware.parser import PacketSizes
 from firm_hdl.model import PRIMITIVES, Field, Message, Sequence
-from firm_hdl.plan import BeginLoop, build_plan, decode, encode
+from firm_hdl.plan import Loop, build_plan, decode, encode
 from firm_hdl.sim import Stalls, to_transfers
 from firm_hdl.sim.bench import Job, RunOptions
 from firm_hdl.sim.payloads import all_beats, beats_of
@@ -140,8 +140,8 @@ def random_packets(message, bus_bytes, count):
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes, max_message_bytes=MOST)
     rng = random.Random(f"{message.name} {bus_bytes}")
     counts = {
-        index: [0, 1, 2, 3] if isinstance(begin, BeginLoop) else [0, 1, 3, 5, 9, 20]
-        for index, begin in plan.begins.items()
+        begin.count.leaf: [0, 1, 2, 3] if isinstance(begin, Loop) else [0, 1, 3, 5, 9, 20]
+        for begin in plan.begins.values()
     }
 
     def payloads(index, leaf):

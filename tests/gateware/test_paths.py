@@ -13,7 +13,7 @@ from amaranth.back import rtlil
 
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.gateware.signatures import leaf_streams
-from firm_hdl.plan import RunStep
+from firm_hdl.plan import Run
 from firm_hdl.rtlil import parse
 from firm_hdl.rtlil.ir import Assign, Cell, Design, Module, Slice, Spec, Statement
 from tests.strategies import make
@@ -143,9 +143,11 @@ def allowed(tx) -> dict[str, set[str]]:
     plan, names = tx.plan, names_of(tx)
     found: dict[str, set[str]] = {}
     for step in plan.steps:
-        leaves = [plan.runs[index].items for index in (step.rest,) if index is not None]
-        leaves += [part.leaf for part in step.parts if part.completes]
-        leaves += [plan.runs[step.run].items] if isinstance(step, RunStep) else []
+        if isinstance(step, Run):
+            leaves = [step.leaf]
+        else:
+            leaves = [leaf for leaf in (step.rest,) if leaf is not None]
+            leaves += [part.leaf for part in step.parts if part.completes]
         for number, leaf in enumerate(leaves):
             valids = {f"{names[each]}valid" for each in leaves[: number + 1]}
             found.setdefault(f"{names[leaf]}ready", set()).update(valids)

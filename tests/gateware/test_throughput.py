@@ -11,15 +11,15 @@ import pytest
 from firm_hdl import Deserializer, Library, Serializer, load_message
 from firm_hdl.gateware.signatures import LATENCY_CYCLES
 from firm_hdl.plan import build_plan, decode, encode
-from firm_hdl.plan.cycles import (
+from firm_hdl.sim import Harness, Stalls, leaf_name, to_transfers
+from firm_hdl.sim.bench import Job, RunOptions
+from firm_hdl.sim.payloads import all_beats, encoder_of
+from firm_hdl.timing.cycles import (
     cycles_between,
     deserializer_cycles,
     packet_of,
     serializer_cycles,
 )
-from firm_hdl.sim import Harness, Stalls, leaf_name, to_transfers
-from firm_hdl.sim.bench import Job, RunOptions
-from firm_hdl.sim.payloads import all_beats, encoder_of
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.gateware.traffic import random_packets

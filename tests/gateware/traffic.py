@@ -78,7 +78,7 @@ def random_packets(
         while True:
             if leaf.kind == "length":
                 possible = sizes[leaf.path[:-1] not in strings]
-                yield min(rng.choice(possible), plan.begins[index].limit)
+                yield min(rng.choice(possible), plan.lengths[index].limit)
             elif leaf.kind == "items":
                 yield tuple(rng.getrandbits(bits) + low for _ in range(leaf.lanes)), False
             else:

@@ -80,7 +80,12 @@ class BridgeProcess:
     def engine(self):
         """Return the process of its simulation."""
         children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children")
-        (found,) = children.read_text().split()
+        # Another child may be Yosys, which stays for the next design.
+        (found,) = (
+            number
+            for number in children.read_text().split()
+            if b"simulation-" in Path(f"/proc/{number}/cmdline").read_bytes()
+        )
         return int(found)
 
     def _read(self):

@@ -5,33 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
-from firm_hdl.plan import decode
-from firm_hdl.plan.tree import Charge, Fixed, Item, Length, Loop, Plan, Step, numbered, walk
+from firm_hdl.plan import Charge, Fixed, Item, Length, Loop, Plan, Step, decode
 
 __all__ = ["header_of", "next_length", "with_charges"]
 
 
 def header_of(plan: Plan) -> bytes:
-    steps = [item for item in walk(plan.items) if isinstance(item, Step)]
+    steps = [step for step in plan.steps if isinstance(step, Step)]
     return b"".join(s.data for step in steps for s in step.slices if isinstance(s, Fixed))
 
 
 def next_length(plan: Plan, packet: bytes) -> tuple[int, Length] | None:
     """Return where the interpreter finds the first length behind a packet, and the length."""
-    before = dict(_lengths(plan.items, 0))
     for visit in decode(plan, packet).steps:
-        if visit.step in before and visit.end > len(packet):
-            return visit.end - 4, before[visit.step]
+        begin = plan.begins.get(visit.step)
+        if begin is not None and isinstance(begin.count, Length) and visit.end > len(packet):
+            return visit.end - 4, begin.count
     return None
-
-
-def _lengths(items: Sequence[Item], first: int) -> Iterator[tuple[int, Length]]:
-    """Yield the lengths, with the numbers of the steps that they end."""
-    for index, item in numbered(items, first):
-        if not isinstance(item, Step) and isinstance(item.count, Length):
-            yield index - 1, item.count
-        if isinstance(item, Loop):
-            yield from _lengths(item.body, index)
 
 
 def with_charges(plan: Plan, change: Callable[[Charge], Charge | None]) -> Plan:

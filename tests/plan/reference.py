@@ -33,8 +33,8 @@ class Reference:
         self.cdr = plan.wire == "cdr"
         self.packet = packet
         self.lanes = {str(leaf): leaf.lanes for leaf in plan.leaves}
-        self.limits = {str(plan.leaves[n]): begin.limit for n, begin in plan.begins.items()}
-        self.claims = {str(plan.leaves[n]): begin.claim for n, begin in plan.begins.items()}
+        self.limits = {str(plan.leaves[n]): length.limit for n, length in plan.lengths.items()}
+        self.charges = {str(plan.leaves[n]): length.charge for n, length in plan.lengths.items()}
         self.budget = 0
         self.position = 0
         self.status = "OK"
@@ -127,13 +127,13 @@ class Reference:
 
     def pay(self, path: tuple[str, ...], wire: int) -> bool:
         """Take what a nested length claims from the budget; return whether the budget suffices."""
-        claim = self.claims[".".join(path)]
-        if claim is None:
+        charge = self.charges[".".join(path)]
+        if charge is None:
             return True
-        if claim.total is not None:
-            self.budget = claim.total
-        if wire >= claim.least:
-            self.budget -= wire * claim.bytes - claim.saved
+        if charge.budget is not None:
+            self.budget = charge.budget
+        if wire >= charge.charged_from:
+            self.budget -= wire * charge.bytes - charge.padding_credit
         return self.budget >= 0
 
     def items(

@@ -152,7 +152,7 @@ def test_max_message_bytes_bounds_every_length(bus_bytes):
     message = make("ros2", {"s": "string", "q": "float64[]"})
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes, max_message_bytes=40)
     # 12 bytes are the header and both lengths; 28 are left, 1 of them for the NUL.
-    lengths = {str(plan.leaves[leaf]): begin.limit for leaf, begin in plan.begins.items()}
+    lengths = {str(plan.leaves[leaf]): length.limit for leaf, length in plan.lengths.items()}
     assert lengths == {"s.length": 27, "q.length": 3}
     over = bytes.fromhex("000100001d000000") + bytes(40)
     assert decode(plan, over).status == "LENGTH"
@@ -170,7 +170,7 @@ def test_max_message_bytes_bounds_every_length(bus_bytes):
 )
 def test_of_a_bound_and_the_room_the_smaller_counts(fields, limits):
     plan = build_plan(lay_out(make("ros2", fields)), bus_bytes=8, max_message_bytes=40)
-    assert {str(plan.leaves[n]): begin.limit for n, begin in plan.begins.items()} == limits
+    assert {str(plan.leaves[n]): length.limit for n, length in plan.lengths.items()} == limits
 
 
 @every_bus

@@ -6,8 +6,7 @@ from itertools import product
 
 import pytest
 
-from firm_hdl.plan import build_plan, decode, encode
-from firm_hdl.plan.ir import RunStep
+from firm_hdl.plan import Run, build_plan, decode, encode
 from firm_hdl.program import deserializer_program, start_lanes
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out
@@ -62,7 +61,7 @@ def visited(plan, packet):
     """Return the step of each cycle, and the lane where its own word starts."""
     for visit in decode(plan, packet).steps:
         step = plan.steps[visit.step]
-        taken = visit.bytes if isinstance(step, RunStep) else step.bytes
+        taken = visit.bytes if isinstance(step, Run) else step.bytes
         yield visit.step, (visit.end - taken) % plan.bus_bytes
 
 

@@ -233,6 +233,18 @@ def test_datagrams_that_wait_take_limited_memory(station, monkeypatch):
     assert station.core.outbox and station.core.counters["dropped"] == dropped
 
 
+def test_an_endpoint_can_be_removed_twice():
+    network = Network()
+    one, two = network.station(), network.station()
+    writer, reader = one.writer(), two.reader()
+    assert network.run(5, lambda: len(writer.matched) == 1)
+    for _ in range(2):
+        one.core.remove(writer.guid, network.now)
+        two.core.remove(reader.guid, network.now)
+    assert network.run(5, lambda: not list(two.core.remotes(writers=True)))
+    assert writer.matched == reader.matched == ()
+
+
 def test_an_endpoint_that_is_removed_takes_no_memory():
     network = Network()
     one, two = network.station(), network.station()

@@ -196,6 +196,9 @@ def test_a_set_has_at_most_256_numbers():
     full = NumberSet.of(5, range(400))
     assert (full.base, full.members) == (5, tuple(range(5, 5 + 256)))
     assert full.bitmap("<") == bytes.fromhex("00010000") + b"\xff" * 32
+    gap = Gap(reader=1, writer=2, start=1, numbers=full)
+    (read,) = message.read(message.write(OTHER, [gap]), ME).received
+    assert read.submessage == gap
 
 
 def test_a_size_of_0_means_to_the_end():

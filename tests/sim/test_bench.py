@@ -54,13 +54,6 @@ class Run:
         return self.bench.run(self.job)
 
 
-def test_payloads_leave_in_the_next_cycle():
-    run = Run([[5, 6, 7]])
-    # 0, 1 and 2 in; 1, 2 and 3 out; four cycles of silence.
-    assert run.go() == 8
-    assert run.taken == {"o0": [(1, 5), (2, 6), (3, 7)]}
-
-
 class RelayBench:
     """A relay, a counter of clock edges without a reset, and one with a reset."""
 
@@ -154,23 +147,6 @@ def test_deadline_is_the_most_cycles_without_a_transfer():
     assert silent.bench.cycles == 8
     with pytest.raises(DeadlineError, match=r"^No transfer in 1001 cycles"):
         Run([[1]], expected=2).go()
-
-
-def test_missed_deadline_names_offering_sources():
-    run = Run([list(range(9)), [1]], fault="block", expected=99, deadline=20)
-    with pytest.raises(DeadlineError, match=r"offered and not taken: i0$"):
-        run.go()
-    assert [value for _, value in run.taken["o0"]] == [0, 1, 2, 3]
-
-
-@pytest.mark.parametrize(("limit", "ends"), [(8, True), (7, False)])
-def test_limit_is_the_most_cycles_of_a_run(limit, ends):
-    run = Run([[5, 6, 7]], limit=limit)
-    if ends:
-        assert run.go() == 8
-    else:
-        with pytest.raises(DeadlineError, match=r"^No end after 7 cycles; outstanding: something$"):
-            run.go()
 
 
 @pytest.mark.parametrize(("fault", "rule"), [("drop", "2"), ("change", "3")])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 from amaranth.hdl import Cat, Module
 from amaranth.lib import wiring
-from rosbags.typesys import Stores, get_typestore
 
 from firm_hdl.frontend import load_message
 from firm_hdl.gateware import Deserializer, Serializer
@@ -82,26 +81,6 @@ def test_packets_become_messages(stalls):
     assert got == [VALUE] * 2
 
 
-def test_rosbags_objects_become_packets():
-    store = get_typestore(Stores.ROS2_HUMBLE)
-    value = store.deserialize_cdr(PACKET, "sensor_msgs/msg/CompressedImage")
-    tx = Serializer(IMAGE)
-    port = MessagePort(tx.message, IMAGE)
-    got = []
-
-    async def source(ctx):
-        await port.send(ctx, value)
-
-    async def sink(ctx):
-        got.extend(await receive_packets(ctx, tx.packets, 1))
-
-    async def statuses(ctx):
-        assert await receive_statuses(ctx, tx.status, 1) == [Status.OK]
-
-    run_testbenches(tx, source, sink, statuses)
-    assert got == [PACKET]
-
-
 @pytest.mark.parametrize(("wire", "packet"), [("ros1", b"\7\2\0\0\0hi"), ("cdr", None)])
 def test_a_port_has_the_bus_and_the_wire_of_its_converter(wire, packet):
     message, value, got = make("ros2", {"a": "uint8", "s": "string"}), {"a": 7, "s": "hi"}, []
@@ -120,26 +99,6 @@ def test_a_port_has_the_bus_and_the_wire_of_its_converter(wire, packet):
 
     run_testbenches(tx, source, sink, statuses)
     assert got == [packet or b"\0\1\0\0\7\0\0\0\3\0\0\0hi\0"]
-
-
-def test_leaves_are_offered_independently():
-    dut = Wires(IMAGE)
-    i, o = MessagePort(dut.i, IMAGE), MessagePort(dut.o, IMAGE)
-    last = max(o.streams)
-    got = []
-
-    async def source(ctx):
-        await i.send(ctx, VALUE)
-
-    async def sink(ctx):
-        # Only the last leaf is taken at first: the sender must not wait for the others.
-        ctx.set(o.streams[last].ready, 1)
-        for _ in range(9):
-            _, _, valid = await ctx.tick().sample(o.streams[last].valid)
-            got.append(valid)
-
-    run_testbenches(dut, sink, background=[source])
-    assert got == [1, 1, 1, 1, 1, 0, 0, 0, 0]
 
 
 def test_one_message_is_taken_and_no_more():
@@ -216,19 +175,3 @@ def test_deadline_of_a_message_allows_for_the_longest_stall_of_any_leaf(leaf):
     with pytest.raises(DeadlineError, match=message):
         run_testbenches(dut, source, sink)
     assert got == [dict.fromkeys("rgba", 1.0)]
-
-
-def test_missing_leaves_are_told_in_the_order_of_the_message_with_their_numbers():
-    message = make("ros2", {"v": "uint8[]", "n": "uint8"})
-    dut = Wires(message)
-    i, o = MessagePort(dut.i, message), MessagePort(dut.o, message)
-
-    async def source(ctx):
-        # Nine items take two transfers, and none of them comes.
-        await i.send_transfers(ctx, {0: [9]})
-
-    async def sink(ctx):
-        await o.receive(ctx, deadline=3)
-
-    with pytest.raises(DeadlineError, match=r": message\.v\.items \(2\), message\.n \(1\)$"):
-        run_testbenches(dut, source, sink)

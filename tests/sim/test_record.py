@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import random
-
 import pytest
 
 from firm_hdl.gateware.signatures import packet_layout
@@ -66,12 +64,3 @@ def test_counts_of_beats_that_are_not_the_last_are_noise_where_that_is_asked_for
 
     assert counts() == [{4}, {1}]
     assert counts(counts=True) == [{0, 1, 2, 3, 4}, {1}]
-
-
-def test_noise_leaves_the_bytes_of_a_packet_as_they_are():
-    noise = random.Random(1)
-    for beat in packet_beats(b"abcdef", 4, noise, counts=True):
-        parts = packet_layout(4).from_bits(beat)
-        text = b"ef" if parts.last else b"abcd"
-        assert bytes(parts.data)[: len(text)] == text
-        assert parts.count == 2 or not parts.last

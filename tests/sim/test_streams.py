@@ -10,7 +10,6 @@ from firm_hdl.gateware.signatures import Status, packet_layout
 from firm_hdl.sim import (
     DeadlineError,
     Stalls,
-    StreamRuleError,
     receive,
     receive_packets,
     receive_statuses,
@@ -90,35 +89,6 @@ def test_deadline_of_packets_reports_the_partial_packet():
     )
     with pytest.raises(DeadlineError, match=message):
         run_testbenches(dut, sink, background=[source])
-
-
-def test_receive_packets_checks_their_rules():
-    dut = Relay(packet_layout(4))
-    bad = packet_layout(4).const({"data": [0] * 4, "count": 1, "last": 0})
-
-    async def source(ctx):
-        await send(ctx, dut.i, [bad])
-
-    async def sink(ctx):
-        await receive_packets(ctx, dut.o, 1, name="answers")
-
-    with pytest.raises(StreamRuleError, match=r"^Stream 'answers' breaks rule 5 in cycle 0: "):
-        run_testbenches(dut, source, sink)
-
-
-def test_statuses_are_statuses():
-    dut = Relay(Status)
-    got = []
-
-    async def source(ctx):
-        await send(ctx, dut.i, [Status.OK, Status.TRUNCATED])
-
-    async def sink(ctx):
-        got.extend(await receive_statuses(ctx, dut.o, 2))
-
-    run_testbenches(dut, source, sink)
-    assert got == [Status.OK, Status.TRUNCATED]
-    assert all(isinstance(each, Status) for each in got)
 
 
 def test_a_stream_has_the_stalls_of_its_name():

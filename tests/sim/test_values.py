@@ -32,20 +32,6 @@ def test_items_go_a_bus_word_per_transfer_with_last_on_the_last():
     }
 
 
-def test_an_empty_sequence_has_a_length_only():
-    assert transfers({"a": "uint8[]"}, {"a": []}) == {"a.length": [0], "a.items": []}
-
-
-def test_elements_transfer_one_after_the_other():
-    value = {"ps": [{"x": -1, "s": "a"}, {"x": 2, "s": "bc"}]}
-    assert transfers({"ps": (INNER, "[]")}, value) == {
-        "ps.length": [2],
-        "ps.item.x": [-1, 2],
-        "ps.item.s.length": [1, 2],
-        "ps.item.s.items": [((97, 0, 0, 0), True), ((98, 99, 0, 0), True)],
-    }
-
-
 def test_an_empty_message_is_a_trigger_on_ros1_and_an_octet_on_cdr():
     assert transfers({}, {}, dialect="ros1") == {"trigger": [1]}
     name = "structure_needs_at_least_one_member"

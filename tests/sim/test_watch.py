@@ -7,7 +7,7 @@ from amaranth.hdl import ClockDomain, Module
 from amaranth.sim import Simulator
 
 from firm_hdl.gateware.signatures import packet_layout
-from firm_hdl.sim import Stalls, StreamRuleError, StreamRules, receive, send, watch
+from firm_hdl.sim import Stalls, StreamRuleError, receive, send, watch
 from firm_hdl.sim.payloads import packet_beats
 from firm_hdl.sim.watch import PacketRules
 from tests.sim.components import Relay, run_testbenches
@@ -101,25 +101,6 @@ def test_a_watcher_begins_anew_with_each_simulation():
     assert [each.last for each in seen] == [0, 1]
 
 
-def test_rules_follow_each_stream_on_its_own():
-    rules = StreamRules(["a", "b"])
-    payloads = [5, 6]
-    rules.check(0, 0b11, 0b01, payloads.__getitem__)
-    payloads[0] = 7
-    rules.check(1, 0b11, 0b11, payloads.__getitem__)
-    rules.check(2, 0b00, 0b00, payloads.__getitem__)
-    rules.check(3, 0b01, 0b00, payloads.__getitem__)
-    with pytest.raises(StreamRuleError, match=r"^Stream 'a' breaks rule 2 in cycle 4"):
-        rules.check(4, 0b10, 0b11, payloads.__getitem__)
-
-
-def test_change_in_the_cycle_of_the_transfer_is_seen():
-    rules = StreamRules(["a"])
-    rules.check(0, 1, 0, lambda number: 1)
-    with pytest.raises(StreamRuleError, match="rule 3 in cycle 1"):
-        rules.check(1, 1, 1, lambda number: 2)
-
-
 def beat(count, last, bus_bytes=4):
     return packet_layout(bus_bytes).const({"data": [0] * bus_bytes, "count": count, "last": last})
 
@@ -147,20 +128,6 @@ def test_beats_of_packets_are_right(size):
     for packet in (bytes(size), bytes(size)):
         for cycle, bits in enumerate(packet_beats(packet, 4)):
             rules.check(cycle, bits)
-
-
-def test_watch_knows_packet_streams():
-    dut = Relay(packet_layout(4))
-    short = beat(2, 0)
-
-    async def source(ctx):
-        await send(ctx, dut.i, [short])
-
-    async def sink(ctx):
-        await receive(ctx, dut.o, 1)
-
-    with pytest.raises(StreamRuleError, match=r"^Stream 'packets' breaks rule 5 in cycle"):
-        run_testbenches(dut, source, sink, background=[watch({"packets": dut.o})])
 
 
 def test_a_beat_is_checked_in_the_cycle_of_its_transfer_and_cycles_of_a_reset_count():

@@ -57,8 +57,7 @@ def test_bench_does_not_pass_with_a_silent_ghdl(fake, capsys, status):
     output = capsys.readouterr().out
     why = "ended without a word: it has not passed" if status == 0 else "exit status 1"
     assert f"FAIL {name} (lyrical)\n" in output and why in output
-    (row,) = [line.split() for line in output.splitlines() if line.startswith("lyrical")]
-    assert row[:6] == ["lyrical", "1", "0", "1", "0", "0"]
+    assert "lyrical     0 of    1 benches pass (8-byte bus)\n" in output
 
 
 @pytest.mark.parametrize(
@@ -74,8 +73,10 @@ def test_bench_does_not_pass_with_a_silent_ghdl(fake, capsys, status):
         for status in SILENT
     ],
 )
-def test_cross_check_does_not_pass_with_a_silent_simulator(fake, simulator, names, status):
-    fake(SILENT[status], *names)
+def test_cross_check_does_not_pass_with_a_silent_simulator(
+    fake, monkeypatch, simulator, names, status
+):
+    monkeypatch.setenv(simulator.upper(), fake(SILENT[status], *names))
     result = accept("lyrical", BOOL, Options(simulator=simulator, **FEW))
     (failure,) = result.verdict.failures
     assert ("did not write " if status == 0 else "exit status 1") in failure

@@ -9,7 +9,7 @@ import pytest
 
 import firm_hdl
 from firm_hdl.export.primitives import TYPES_NAME
-from firm_hdl.export.vhdl.parts import PARTS
+from firm_hdl.export.vhdl.bench import PARTS
 from firm_hdl.vhdl.package import PACKAGE, PACKAGE_NAME
 
 FOLDER = Path(firm_hdl.__file__).parent

@@ -14,7 +14,7 @@ from firm_hdl.identity import proto
 from firm_hdl.metrics import metrics_of
 from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence
 from firm_hdl.plan import build_plan
-from firm_hdl.plan.timing import timing
+from firm_hdl.timing import timing
 from firm_hdl.wire import MAX_LEAVES, MAX_LEVELS, lay_out, refusals
 from tests.frontend.workspace import make_files
 from tests.steps import calls_at_most
@@ -109,7 +109,7 @@ def test_text_that_explodes_is_counted_not_written(tmp_path, distro):
 
 
 def test_loops_in_loops_end_the_search_for_the_hardest_packet(monkeypatch):
-    monkeypatch.setattr("firm_hdl.plan.timing.MAX_TRANSFERS", 100)
+    monkeypatch.setattr("firm_hdl.timing.figures.MAX_TRANSFERS", 100)
     top = chain(10, lambda kind: Sequence(element=kind, bound=None))
     plan = build_plan(lay_out(top))
     with calls_at_most(110_000):
@@ -126,7 +126,7 @@ def test_figures_of_too_large_types_are_refused():
 
 def test_limit_of_a_length_is_the_documented_one():
     plan = build_plan(lay_out(load_message("sensor_msgs/msg/PointCloud2")))
-    limits = {str(plan.leaves[leaf]): begin.limit for leaf, begin in plan.begins.items()}
+    limits = {str(plan.leaves[leaf]): length.limit for leaf, length in plan.lengths.items()}
     limit = limits["fields.length"]
     # 4 bytes of encapsulation, 24 up to the fields, 16 each with padding, and 17 after them.
     fits = (plan.max_message_bytes - 4 - 24 - 17) // 16

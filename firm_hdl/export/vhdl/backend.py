@@ -2,21 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
-from firm_hdl.export.backend import Converters, Output
+from firm_hdl.export.backend import BuildError, Converters, Output
+from firm_hdl.export.folder import read_manifest
 from firm_hdl.export.packaging import packaging
 from firm_hdl.export.primitives import TYPES_NAME
 from firm_hdl.export.record_top import RecordTop, why_no_record
 from firm_hdl.export.top import DIRECTIONS, Direction
-from firm_hdl.export.vhdl.bench import RUN_SCRIPT, STIMULI, bench, run_script
-from firm_hdl.export.vhdl.bench_views import View, flat_view, record_view, stream_view
+from firm_hdl.export.tree import tree_of
+from firm_hdl.export.vhdl.bench import (
+    PARTS,
+    RUN_SCRIPT,
+    STIMULI,
+    View,
+    bench,
+    flat_view,
+    packets_text,
+    record_view,
+    run_script,
+    stream_view,
+)
 from firm_hdl.export.vhdl.constants import comment
 from firm_hdl.export.vhdl.layer import flat_package, user_layer
-from firm_hdl.export.vhdl.neighbours import FOLDER, SECTION
-from firm_hdl.export.vhdl.parts import PARTS, packets_text
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
@@ -25,7 +37,14 @@ from firm_hdl.rtlil.ir import Design
 from firm_hdl.vhdl.convert import convert
 from firm_hdl.vhdl.package import PACKAGE_NAME
 
-__all__ = ["to_vhdl", "write"]
+__all__ = ["check_packages", "to_vhdl", "write"]
+
+FOLDER = "vhdl"
+"""Subfolder of a type's folder."""
+
+SECTION = "vhdl"
+"""Key of the manifest's entry about the subfolder."""
+
 
 COMMON = (f"{TYPES_NAME}.vhd", f"{PACKAGE_NAME}.vhd")
 """Files that are the same for all types."""
@@ -209,3 +228,43 @@ def _add_flat(parts: _Parts, converters: Converters, cores: Mapping[Direction, C
         "constants": [entry.entry(package) for entry in constants],
         "shared_packages": [],
     }
+
+
+def check_packages(folders: Mapping[Path, Converters]) -> None:
+    """Refuse messages in neighbouring folders that use one package name for two ROS types.
+
+    Within a message, the second of two equal names gets a number. A design with both messages
+    compiles each file name once, so a name must belong to the same type in all folders.
+
+    Raises
+    ------
+    BuildError
+    """
+    owners: dict[Path, tuple[str, Path]] = {}
+    for folder, converters in folders.items():
+        if converters.options.ports != "records":
+            continue
+        for package in tree_of(converters.message, converters.plan).packages:
+            file, owner = folder.parent / package.name, package.message.name
+            if file not in owners:
+                owners[file] = _owner(file, folders) or (owner, folder)
+            other, other_folder = owners[file]
+            if other != owner:
+                raise BuildError(
+                    f"{converters.message.name}: the VHDL package '{package.name}' would be that "
+                    f"of {owner}, but in '{other_folder}' it is that of {other}; build one of them "
+                    "into another folder (--out), and compile it into another library"
+                )
+
+
+def _owner(file: Path, made_anew: Collection[Path]) -> tuple[str, Path] | None:
+    """Return the type that owns a package in a folder that is not built now, and that folder."""
+    for path in sorted(file.parent.glob(f"[!.]*/{FOLDER}/{file.name}.vhd")):
+        folder = path.parent.parent
+        found = None if folder in made_anew else read_manifest(folder)
+        # The manifest may be damaged.
+        with suppress(AttributeError, KeyError, TypeError):
+            for each in (found or {SECTION: {"shared_packages": []}})[SECTION]["shared_packages"]:
+                if each["name"] == file.name and each["message"]:
+                    return str(each["message"]), folder
+    return None

@@ -16,10 +16,8 @@ from firm_hdl.export.constants import NamedConstant, named_constants
 from firm_hdl.export.primitives import TYPES_NAME, bus_name
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
 from firm_hdl.export.tree import Tree, tree_of
-from firm_hdl.export.vhdl.bus import bus_package
 from firm_hdl.export.vhdl.constants import comment, declarations, quoted
-from firm_hdl.export.vhdl.package import constants_of, message_package
-from firm_hdl.export.vhdl.types import types_package
+from firm_hdl.export.vhdl.package import bus_package, constants_of, message_package, types_package
 from firm_hdl.export.vhdl.values import ValueType, values_of
 from firm_hdl.export.vhdl.wrapper import (
     IEEE,

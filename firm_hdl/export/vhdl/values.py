@@ -14,8 +14,7 @@ from firm_hdl.export.primitives import PRIMITIVE_BITS, primitive_name
 from firm_hdl.export.remarks import origin
 from firm_hdl.export.tree import Node, Package, Tree
 from firm_hdl.export.vhdl.constants import quoted
-from firm_hdl.export.vhdl.records import record_elements
-from firm_hdl.export.vhdl.types import data_type
+from firm_hdl.export.vhdl.package import data_type, record_elements
 from firm_hdl.gateware.limits import MAX_CELL_BITS
 from firm_hdl.model import Array, Field, Message
 from firm_hdl.plan import Plan

@@ -14,11 +14,11 @@ from firm_hdl.gateware.packets.fifo import PacketFifo
 from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
 from firm_hdl.gateware.packets.status import GateStatus, GateStatusSignature
 from firm_hdl.gateware.packets.tail_drop import MOST_DROPPED, TailDrop, tail_drop_layout
-from firm_hdl.gateware.parser import PlanParser, parser_plan
+from firm_hdl.gateware.parser import Parser, parser_plan
 from firm_hdl.gateware.signatures import PacketSignature, Status, packet_layout
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
-from firm_hdl.plan.geometry import ring_beats
+from firm_hdl.timing.rings import ring_beats
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["PacketGate"]
@@ -113,7 +113,7 @@ class PacketGate(Component):
         max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
     ):
         check_policy(when_full)
-        self.bus_bytes, self.when_full = bus_bytes, when_full
+        self.message, self.bus_bytes, self.when_full = message, bus_bytes, when_full
         self.plan = parser_plan(message, wire, bus_bytes, max_message_bytes)
         self.shape = MemoryShape(bus_bytes, memory_bytes, packets)
         least = lay_out(message, wire).min_bytes
@@ -134,7 +134,7 @@ class PacketGate(Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.submodules.parser = parser = PlanParser(self.plan)
+        m.submodules.parser = parser = Parser(self.message, plan=self.plan)
         m.submodules.fifo = fifo = PacketFifo(
             self.bus_bytes,
             self.shape.memory_bytes,
@@ -201,7 +201,7 @@ class _Verdicts:
         self,
         m: Module,
         gate: PacketGate,
-        parser: PlanParser,
+        parser: Parser,
         fifo: PacketFifo,
         waiting: SyncFIFO,
     ):

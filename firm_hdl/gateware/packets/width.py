@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
@@ -47,11 +48,7 @@ class PacketWidth(Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         m.submodules.slice = out = StreamSlice(packet_layout(self.out_bytes))
-        m.d.comb += [
-            self.packets_out.payload.eq(out.o.payload),
-            self.packets_out.valid.eq(out.o.valid),
-            out.o.ready.eq(self.packets_out.ready),
-        ]
+        wiring.connect(m, out.o, wiring.flipped(self.packets_out))
         if self.in_bytes > self.out_bytes:
             self._split(m, out)
         else:
@@ -91,10 +88,8 @@ class PacketWidth(Component):
         m.submodules.wide = wide = StreamSlice(packet_layout(self.in_bytes))
         beat = wide.o.payload
         number, final, is_final = Signal(range(ratio)), Signal(range(ratio)), Signal()
+        wiring.connect(m, wiring.flipped(self.packets_in), wide.i)
         m.d.comb += [
-            wide.i.payload.eq(self.packets_in.payload),
-            wide.i.valid.eq(self.packets_in.valid),
-            self.packets_in.ready.eq(wide.i.ready),
             # An empty packet has one beat, too.
             final.eq(Mux(beat.last, Mux(beat.count == 0, 0, (beat.count - 1)[low:]), ratio - 1)),
             is_final.eq(number == final),

@@ -49,9 +49,9 @@ class Budget(wiring.Component):
 
     def __init__(self, program: DeserializerProgram):
         self.claims = {
-            number: length.claim
+            number: length.charge
             for number, length in program.lengths.items()
-            if length.claim is not None
+            if length.charge is not None
         }
         super().__init__(
             {
@@ -67,9 +67,9 @@ class Budget(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         claims, step = self.claims, self.step
-        total = max(claim.total or 0 for claim in claims.values())
+        total = max(claim.budget or 0 for claim in claims.values())
         # Items may shorten later padding by so many bytes: each length claims as many less.
-        padding_credit = max(claim.saved for claim in claims.values())
+        padding_credit = max(claim.padding_credit for claim in claims.values())
         # What is left can be negative; and a legal length claims at most the budget and the credit.
         width = (total + padding_credit).bit_length() + 1
 
@@ -79,7 +79,7 @@ class Budget(wiring.Component):
             multiplies.eq(loads & ~self.cancels),
             subtracts.eq(multiplies),
         ]
-        renewed = any_of([step[number] for number, claim in claims.items() if claim.total])
+        renewed = any_of([step[number] for number, claim in claims.items() if claim.budget])
         for k in (1, 2, 3):
             before, renewed = renewed, Signal(name=f"renews_{k}")
             m.d.sync += renewed.eq(before)

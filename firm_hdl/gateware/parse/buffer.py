@@ -81,6 +81,12 @@ class Buffer(wiring.Component):
         ends_now = Signal()
         layout = data.StructLayout({"limit": ring.bits, "following": ring.beat_bits})
         end = Signal(layout)
+        #   cycle           | 0         | 1         | 2
+        #   packets         | last beat |           |
+        #   arrival.beat    |           | valid     |
+        #   newest          |           | the end   |
+        #   limit, ended    |           |           | the end, 1
+        #
         # The end of the arriving packet if its last beat is written now; else how far it has come.
         newest = Signal(layout)
         first_missing = Mux(beat.valid, next_beat, at)
@@ -99,7 +105,8 @@ class Buffer(wiring.Component):
         """Register a beat if the ring has room; return the ring position it is written to."""
         ring, packets, beat = self.ring, self.packets, self.arrival.beat
         payload = Signal(packets.payload.shape(), name="payload", reset_less=True)
-        # Counts of beats: transferred on `packets`, and written to the ring.
+        # Counts of beats: transferred on `packets`, and written to the ring. `room` is computed a
+        # cycle ahead, so it counts with the beat that arrives now.
         arrived, at = Signal(ring.beat_bits, name="arrived"), Signal(ring.beat_bits, name="at")
         used, full = Signal(ring.beat_bits, name="used"), Signal(name="full")
         room, arrives = Signal(name="room", init=1), Signal(name="arrives")

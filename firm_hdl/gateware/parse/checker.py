@@ -100,8 +100,10 @@ class Checker(wiring.Component):
             found.over.eq(issue & now.over & ~bad),
         ]
         # The packet's first error in wire order, of this cycle or an earlier one.
-        failed, first_code = Signal(), Signal(Status, reset_less=True)
-        fails, code = Signal(), Signal(Status)
+        failed = Signal()
+        first_code = Signal(Status, reset_less=True)
+        fails = Signal()
+        code = Signal(Status)
         m.d.comb += [
             fails.eq(failed | found.header | found.nul | found.cut | found.trails | found.over),
             code.eq(Mux(found.trails, Status.TRAILING, Status.LENGTH)),
@@ -141,7 +143,9 @@ class Checker(wiring.Component):
                 m.d.sync += [failed.eq(1), first_code.eq(Status.LENGTH), bad.eq(1)]
 
         # Execute the state if its bytes are present; after an error, only its end waits.
-        ready, allowed, drains = Signal(), Signal(), Signal()
+        ready = Signal()
+        allowed = Signal()
+        drains = Signal()
         m.d.comb += [
             ready.eq((self.may_end | ~walk.ends_packet) & ~found.over),
             allowed.eq(

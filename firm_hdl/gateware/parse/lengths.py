@@ -80,7 +80,10 @@ class Lengths(wiring.Component):
         m = Module()
         ring, lanes = self.ring, self.program.length_lanes
         phase = self._phase(m)
-        # The first bytes of a length may be in earlier beats.
+        # The first bytes of a length may be in earlier beats. A lane stands for its last byte:
+        #
+        #   history | a b c | beat 0 1 2 3 4 5 6 7      lane 1: b c 0 1, lane 7: 4 5 6 7
+        #
         history = Signal(8 * (LENGTH_BYTES - 1), reset_less=True)
         stream = Cat(history, self.beat.data)
         with m.If(self.beat.valid):
@@ -95,7 +98,8 @@ class Lengths(wiring.Component):
             self._decode(m, length, lane, phase, entry)
             entries.append(self._store(m, f"entry_{lane}", Value.cast(entry), self.key))
             counts.append(self._store(m, f"count_{lane}", length[: len(self.count)], key))
-        # Select the lane of the key; only lanes in which lengths end occur.
+        # Select the lane of the key. Only lanes in which lengths end occur, so the last one needs
+        # no comparison, and bits that all of them share are not compared.
         _, constant = constant_low_lane_bits(lanes, self.plan.bus_bytes)
         selections = (Value.cast(self.entry), self.key, entries), (self.count, key, counts)
         for target, at, values in selections:
@@ -138,10 +142,14 @@ class Lengths(wiring.Component):
         self, m: Module, length: Signal, lane: int, phase: Value | int, entry: data.View
     ) -> None:
         """Decode all columns of an entry, as if a length ended in a lane of the beat."""
+        # Every lane is decoded in every beat, whether or not a length ends there: an entry that is
+        # no length is never looked up. So no decision about the packet comes before the write.
         zero = ~length.any()
         columns: dict[str, Value] = {"zero": zero}
         for each in self.program.lengths.values():
             over = exceeds(length, each.max_count)
+            # An illegal length skips the body, too: then the state takes an exit, and the error
+            # code is all that remains of the length.
             if each.level is not None:
                 skips = Const(1, 1) if each.counts_nothing else zero
                 one, two = length == 1, length == 2
@@ -159,8 +167,8 @@ class Lengths(wiring.Component):
                 each.at_most_one_pass: one,
                 each.two_passes: two,
             }
-            if each.claim is not None and each.charged is not None:
-                columns[each.charged] = exceeds(length, each.claim.least - 1)
+            if each.charge is not None and each.charged is not None:
+                columns[each.charged] = exceeds(length, each.charge.charged_from - 1)
         m.d.comb += [entry[name].eq(value) for name, value in columns.items()]
 
     def _next_last(

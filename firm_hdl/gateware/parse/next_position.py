@@ -96,6 +96,12 @@ def next_positions(
             field("over_rest", 1),
         )
 
+    # All fields are registers that belong to the state. What is late is only which exit is taken,
+    # and whether the length skips the body (the caller selects by that).
+    #
+    #   next last_at = ((last_at + add) & ~mask) | low           alignment counts from a constant
+    #   next last_at = last_at + add + padding + low             from the register `phase`
+    #
     # The innermost loop that has elements left goes on; else the default exit is taken.
     exits, free = [], Const(1, 1)
     for level in reversed(range(program.plan.levels)):
@@ -152,6 +158,13 @@ def _over_rests(
     Its distance from the run's last word over the rest: a register that is written when the run
     begins. And its last byte, if the run begins now and has nothing but a rest.
     """
+    # The words of a run are counted from its length, not from positions. So the distance over the
+    # rest is known when the run begins, and waits in a register until the last word:
+    #
+    #   cycle       | 0             | 1      | ... | n      | n + 1
+    #   state       | begins a run  | word   |     | word   | the state with the rest
+    #   over_rest   |               | valid  |     | added to last_at
+    #
     plan = program.plan
     over_rest = Signal(range(5 * plan.bus_bytes + 16), name="over_rest", reset_less=True)
     begun = list(_exits_of_runs(program, flow))

@@ -102,6 +102,7 @@ class OrderQueue(wiring.Component):
         # The order that came while `o` was waiting.
         second = Signal(self.i.payload.shape(), reset_less=True)
         has_second = Signal()
+        # Without a budget, the first register is `o` itself.
         first, valid, ready = self.o.payload, self.o.valid, self.o.ready
         if self.stalls:
             shape = first.shape()
@@ -129,6 +130,15 @@ class OrderQueue(wiring.Component):
 
         That a length is refused is a bit of its own: the orders' own bits come late in the cycle.
         """
+        # The newest order is `second`, if there is one; else `first`. While it waits, the orders
+        # before it go on, so that their leaves are not delayed by the check.
+        #
+        #   cycle          | 0       | 1       | 2       | 3       | 4       | 5
+        #   i              | length  |         |         |         |         | blank
+        #   stall_newest   |         | 1       | 1       | 1       | 1       |
+        #   zero_length    |         |         |         |         | 1       |
+        #   first          |         | length  | length  | length  | length  | length, refused
+        #   o.valid        |         | 0       | 0       | 0       | 0       | 1
         waits, ready = Signal(name="waits"), Signal(name="moves")
         first_refused, second_refused = Signal(name="first_refused"), Signal(name="second_refused")
         m.d.comb += [

@@ -81,7 +81,8 @@ class Sequencer(wiring.Component):
         m = Module()
         program, arrival, ready = self.program, self.arrival, self.orders.ready
         # The packet has an error; it was found in the cycle before, in this state.
-        bad, new_error = Signal(), Signal()
+        bad = Signal()
+        new_error = Signal()
         code = Signal(Status)
         walk = Walk(m, program, arrival, bad)
         found = walk.find()
@@ -126,7 +127,8 @@ class Sequencer(wiring.Component):
 
         # The order. Without an error, it is given if it is allowed and the bytes are good. `good`
         # is late in the cycle; so it is a factor of its own, and all else is computed before it.
-        drains, allowed = Signal(), Signal()
+        drains = Signal()
+        allowed = Signal()
         m.d.comb += [
             drains.eq(bad & ~new_error & (~walk.at_end | arrival.ended)),
             allowed.eq(~bad & (~walk.ends_message | arrival.ended) & ~walk.too_early & ~pending),
@@ -179,7 +181,8 @@ class Sequencer(wiring.Component):
         m.d.comb += [map_at.eq(walk.last_at + offset), items_at.eq(first_word)]
 
         # After an error: good bytes of the two words, from the cycle after `new_error` on.
-        items_room, map_room = Signal(range(bus + 1)), Signal(range(bus + 1))
+        items_room = Signal(range(bus + 1))
+        map_room = Signal(range(bus + 1))
         map_left = ring.position("map_left")
         # limit - map_at, as one sum from registers.
         m.d.comb += map_left.eq(sum_of_three(limit, ~walk.last_at, (1 - offset)))

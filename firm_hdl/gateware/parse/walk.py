@@ -129,6 +129,7 @@ class Walk:
             if program.aligns:
                 self.phase = Signal(3, name="phase", init=plan.header_bytes % 8)
 
+        # The length is looked up at a register, so the read of the table starts with the cycle.
         self.length = length_of_step(m, program, flow, Value.cast(arrival.beat), self.last_at)
         self.step_end, self.left = ring.position("step_end"), ring.position("left")
         self.present = Signal(name="present")
@@ -279,7 +280,8 @@ class Walk:
                 [self.flow.step[k] for k, each in program.lengths.items() if each.align == align]
             )
             items_at = Mux(chosen & ~length.zero, aligned, items_at)
-        # After an error, `first_at` only frees beats; the end state drops the rest of the packet.
+        # After an error, `first_at` only frees beats. It must not pass the packet's end; so it
+        # stays until the end state, which drops the rest of the packet as it arrives.
         kept = Mux(self.at_end, arrival.limit, self.first_at)
         with m.If(issue | (bad & self.at_end)):
             m.d.sync += self.first_at.eq(Mux(self.ends_packet, start, Mux(bad, kept, items_at)))

@@ -214,7 +214,7 @@ class _Writer:
         if value is not None:
             fields |= {"seconds": SECONDS, "nanoseconds": NANOSECONDS}
         packet = b"".join(
-            fields.get(each.name, 0).to_bytes(each.bytes, "little") for each in RESPONSE
+            fields.get(name, 0).to_bytes(size, "little") for name, size in RESPONSE.items()
         )
         unknown = range(8, 16) if value is None else range(0)
         self._expect(NodeMessage(topic=CONTROL_TOPIC, packet=packet, tag=self._tag), unknown)

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from firm_hdl.errors import UserError
 from firm_hdl.node.accelerator import conflicts_reported
@@ -28,6 +28,17 @@ slower than its messages would always be."""
 _OPTIONS = ("-O1",)
 
 
+@contextmanager
+def _reported() -> Iterator[None]:
+    """Make the errors of a simulation those of a board, or of its user."""
+    try:
+        yield
+    except BuildError as error:
+        raise UserError(str(error)) from None
+    except SimulationError as error:
+        raise BoardError(str(error)) from None
+
+
 class SimulatedBoard(Board):
     """A node that runs live in a :class:`.FastSimulation`, as fast as the engine can.
 
@@ -41,8 +52,6 @@ class SimulatedBoard(Board):
     ----------
     description : Description
         With an accelerator.
-    accelerator : component class or None
-        Called with the description for an accelerator in place of the one that is named there.
     engine : {"auto", "verilator", "amaranth"}
     report : callable or None
         Told the stages of a compilation.
@@ -68,19 +77,18 @@ class SimulatedBoard(Board):
         self,
         description: Description,
         *,
-        accelerator: Any = None,
         engine: EngineName = "auto",
         report: Report | None = None,
         wave: Path | None = None,
     ) -> None:
         super().__init__("sim")
-        if accelerator is None and not description.accelerator:
+        if not description.accelerator:
             raise UserError(
                 "a simulated board needs an 'accelerator' in the description of the node: without "
                 "one, nothing takes its messages"
             )
         self._description = replace(description, link=Link(kind="stream"))
-        self._accelerator, self._engine, self._report = accelerator, engine, report
+        self._engine, self._report = engine, report
         self._wave = wave
         if wave is not None:
             try:
@@ -91,11 +99,6 @@ class SimulatedBoard(Board):
         self._simulation: FastSimulation | None = None
         self._is_open = False
 
-    @property
-    def engine(self) -> str:
-        """The engine that runs; empty before the board is open."""
-        return self._simulation.engine if self._simulation else ""
-
     def compile(self) -> None:
         """Elaborate and compile the node, which :meth:`open` does otherwise.
 
@@ -104,30 +107,23 @@ class SimulatedBoard(Board):
         UserError
             If it cannot be compiled.
         """
-        try:
+        with _reported():
             self._simulation = self._start()
-        except BuildError as error:
-            raise UserError(str(error)) from None
         self.close()
 
     def open(self) -> None:
         """Elaborate and compile the node unless that was done before, and let it run."""
-        try:
+        with _reported():
             if self._simulation is None:
                 self._simulation = self._start()
             else:
                 self._simulation.restart()
             self._simulation.stall(_IN, _STALLS)
             self._simulation.go_live()
-        except BuildError as error:
-            raise UserError(str(error)) from None
-        except SimulationError as error:
-            raise BoardError(str(error)) from None
         self._is_open = True
 
     def _start(self) -> FastSimulation:
-        make = self._accelerator
-        node = Node(self._description, make(self._description) if make else None)
+        node = Node(self._description)
         outputs = (each.name for each in ports_of(node).streams if not each.is_input)
         ignored = [name for name in outputs if name != _OUT]
         with conflicts_reported(self._description):
@@ -142,23 +138,17 @@ class SimulatedBoard(Board):
             )
 
     def fileno(self) -> int:
-        try:
+        with _reported():
             return self._running().fileno()
-        except SimulationError as error:
-            raise BoardError(str(error)) from None
 
     def send(self, frames: Sequence[bytes]) -> bool:
-        try:
+        with _reported():
             self._running().send_packets(_IN, frames)
-        except SimulationError as error:
-            raise BoardError(str(error)) from None
         return True
 
     def receive(self) -> list[bytes]:
-        try:
+        with _reported():
             return self._running().receive_packets(_OUT)
-        except SimulationError as error:
-            raise BoardError(str(error)) from None
 
     def close(self) -> None:
         self._is_open = False

@@ -12,6 +12,7 @@ from firm_hdl.gateware import PacketSignature
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.signatures import packet_layout
 from firm_hdl.node.bytestream import CRC_BYTES, MOST_IN_BLOCK
+from firm_hdl.node.gateware.streams import passes
 
 __all__ = ["ByteFrameReader", "ByteFrameWriter", "CobsDecoder", "CobsEncoder"]
 
@@ -56,9 +57,7 @@ class CobsEncoder(wiring.Component):
             write.addr.eq(size),
             write.data.eq(byte),
             read.addr.eq(sent),
-            self.o.payload.eq(out.o.payload),
-            self.o.valid.eq(out.o.valid),
-            out.o.ready.eq(self.o.ready),
+            *passes(out.o, self.o),
         ]
         with m.FSM():
             with m.State("BEGIN"):
@@ -130,9 +129,7 @@ class CobsDecoder(wiring.Component):
             out.i.payload.ends.eq(is_end),
             out.i.payload.bad.eq(~is_code),
             out.i.valid.eq(self.i.valid & Mux(is_end | is_code, inside & (is_end | zero), 1)),
-            self.o.payload.eq(out.o.payload),
-            self.o.valid.eq(out.o.valid),
-            out.o.ready.eq(self.o.ready),
+            *passes(out.o, self.o),
         ]
         with m.If(moves):
             m.d.sync += inside.eq(~is_end)
@@ -167,9 +164,7 @@ class ByteFrameWriter(wiring.Component):
         m.d.comb += [
             out.payload.count.eq(1),
             crc.data.eq(beat.data[0]),
-            self.o.payload.eq(cobs.o.payload),
-            self.o.valid.eq(cobs.o.valid),
-            cobs.o.ready.eq(self.o.ready),
+            *passes(cobs.o, self.o),
         ]
         with m.FSM():
             with m.State("FRAME"):
@@ -232,9 +227,7 @@ class ByteFrameReader(wiring.Component):
         waiting, count = Signal(8 * (CRC_BYTES + 1)), Signal(range(CRC_BYTES + 2))
         is_full, ends = count == CRC_BYTES + 1, came.payload.ends
         m.d.comb += [
-            cobs.i.payload.eq(self.i.payload),
-            cobs.i.valid.eq(self.i.valid),
-            self.i.ready.eq(cobs.i.ready),
+            *passes(self.i, cobs.i),
             moves.eq(came.valid & came.ready),
             came.ready.eq(out.i.ready),
             crc.data.eq(came.payload.byte),

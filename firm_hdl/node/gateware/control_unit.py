@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
@@ -12,7 +12,7 @@ from amaranth.utils import ceil_log2
 
 from firm_hdl.gateware import PacketSignature
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
-from firm_hdl.node.control import CONTROL_BYTES, REQUEST, RESPONSE, ControlField, Operation, Result
+from firm_hdl.node.control import CONTROL_BYTES, REQUEST, RESPONSE, Operation, Result
 from firm_hdl.node.gateware.streams import TAG_BITS, time_layout
 
 __all__ = ["ByteCounter", "ControlUnit", "RegisterReader", "read_cycles"]
@@ -223,8 +223,8 @@ class ControlUnit(wiring.Component):
                 m.d.sync += [number.eq(0), sends.eq(0)]
 
 
-def _layout(fields: tuple[ControlField, ...]) -> data.StructLayout:
-    return data.StructLayout({each.name: 8 * each.bytes for each in fields})
+def _layout(fields: Mapping[str, int]) -> data.StructLayout:
+    return data.StructLayout({name: 8 * size for name, size in fields.items()})
 
 
 _GROUP = 16

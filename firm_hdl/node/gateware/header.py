@@ -15,6 +15,7 @@ from firm_hdl.node.gateware.streams import (
     LinkSignature,
     header_layout,
     link_layout,
+    passes,
 )
 
 __all__ = ["HeaderInsert", "HeaderStrip", "header_beats"]
@@ -175,9 +176,7 @@ class HeaderStrip(wiring.Component):
             out.i.payload.topic.eq(header.topic),
             out.i.payload.tag.eq(header.tag),
             out.i.payload.length.eq(header.length),
-            self.o.payload.eq(out.o.payload),
-            self.o.valid.eq(out.o.valid),
-            out.o.ready.eq(self.o.ready),
+            *passes(out.o, self.o),
         ]
         with m.If(self.frames.valid & self.frames.ready):
             with m.If(in_header):

@@ -13,8 +13,8 @@ from firm_hdl.gateware.packets.counters import counters_layout
 from firm_hdl.gateware.packets.memory import WhenFull
 from firm_hdl.node.control import GATE_COUNTERS
 from firm_hdl.node.description import Store
-from firm_hdl.node.gateware.streams import TAG_BITS
-from firm_hdl.plan.geometry import ring_beats
+from firm_hdl.node.gateware.streams import TAG_BITS, passes
+from firm_hdl.timing.rings import ring_beats
 from firm_hdl.wire import Wire
 
 __all__ = ["RequestGate", "TaggedFifo"]
@@ -80,9 +80,7 @@ class TaggedFifo(wiring.Component):
         out = self.packets_out
         m.d.sync += [tag.eq(self.tag_in), tag_ended.eq(tag)]
         m.d.comb += [
-            fifo.packets_in.payload.eq(self.packets_in.payload),
-            fifo.packets_in.valid.eq(self.packets_in.valid),
-            self.packets_in.ready.eq(fifo.packets_in.ready),
+            *passes(self.packets_in, fifo.packets_in),
             fifo.abort.eq(self.abort),
             tags.w_data.eq(tag_ended),
             tags.w_en.eq(fifo.ended & (fifo.outcome == Outcome.KEPT)),
@@ -163,9 +161,7 @@ class RequestGate(wiring.Component):
         m.submodules.good = good = SyncFIFO(width=TAG_BITS, depth=store.packets + 2)
         took, out = fifo.packets_out, self.packets_out
         m.d.comb += [
-            fifo.packets_in.payload.eq(self.packets_in.payload),
-            fifo.packets_in.valid.eq(self.packets_in.valid),
-            self.packets_in.ready.eq(fifo.packets_in.ready),
+            *passes(self.packets_in, fifo.packets_in),
             fifo.tag_in.eq(self.tag_in),
             gate.packets_in.payload.eq(took.payload),
             gate.packets_in.valid.eq(took.valid & judged.w_rdy),

@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
+from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases.effort import all_cases
 from firm_hdl.cases.user_oracle import judge_of
 from firm_hdl.cases.values import Plain, from_objects
+from firm_hdl.errors import DefinitionError
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.clients.judge import LibraryComparison, LibraryResult
@@ -169,9 +171,12 @@ def judge_library(given: tuple[Request, Sequence[str]], test: Test) -> Record:
     library = test.system.removeprefix("sut ")
 
     def run(trial: Trial) -> None:
-        message = library_of(test.distro, request).message(test.type)
-        wire = request.wire or message.wire
-        values = _values(test.distro, message, wire, request)
+        try:
+            message = library_of(test.distro, request).message(test.type)
+            wire = request.wire or message.wire
+            values = _values(test.distro, message, wire, request)
+        except (DefinitionError, ValueError) as error:
+            raise NotJudgedError(str(error)) from None
         trial.watch.enter("testing")
         result = None
         for reference in _references(library, wire, installed):

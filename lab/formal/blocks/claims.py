@@ -13,7 +13,7 @@ from amaranth.hdl import Array, Cat, Mux, Signal, Value
 
 from firm_hdl.frontend import load_message
 from firm_hdl.gateware.parse.budget import Budget
-from firm_hdl.plan import Begin, Plan, build_plan
+from firm_hdl.plan import Charge, Length, Plan, build_plan
 from firm_hdl.program import deserializer_program
 from firm_hdl.wire import lay_out
 from lab.formal.bugs import Bug
@@ -31,10 +31,13 @@ LATENCY = 3
 """Cycles from a step to the cycle that takes its claim from the budget."""
 
 
-def _begins(plan: Plan) -> list[tuple[int, Begin]]:
-    """Return the steps with a claim."""
-    found = [(index, step.begin) for index, step in enumerate(plan.steps)]
-    return [(index, begin) for index, begin in found if begin is not None and begin.claim]
+def _charged(plan: Plan) -> list[tuple[int, Length, Charge]]:
+    """Return the steps with a length that is charged."""
+    return [
+        (index, begin.count, begin.count.charge)
+        for index, begin in plan.begins.items()
+        if isinstance(begin.count, Length) and begin.count.charge is not None
+    ]
 
 
 def _late(scene: Scene, value: Value, cycles: int, name: str) -> Value:
@@ -58,7 +61,7 @@ class _Steps:
         The length of the step of the cycle before.
     """
 
-    def __init__(self, scene: Scene, plan: Plan, begins: list[tuple[int, Begin]]):
+    def __init__(self, scene: Scene, plan: Plan, begins: list[tuple[int, Length, Charge]]):
         choice = scene.free(range(len(begins) + 1), "step_choice")
         scene.assume(choice <= len(begins))
         self.issue, self.bad = scene.free(1, "issue"), scene.free(1, "bad")
@@ -69,16 +72,16 @@ class _Steps:
         self.number = number
         self.counted = scene.free(1, "counted")
         self.starts = self.issue & self.counted & ~self.bad & (number < len(begins))
-        most = max(plan.max_count(begin) for _, begin in begins)
+        most = max(length.most for _, length, _ in begins)
         self.count = scene.free(range(most + 1), "count")
         # What is counted is large enough, and not over its limit.
-        largest = Array([*(plan.max_count(begin) for _, begin in begins), 0])
-        least = Array([*(begin.claim.least for _, begin in begins if begin.claim), 0])
+        largest = Array([*(length.most for _, length, _ in begins), 0])
+        least = Array([*(charge.charged_from for _, _, charge in begins), 0])
         started = scene.was(self.starts, "starts")
         fits = (self.count >= least[before]) & (self.count <= largest[before])
         scene.assume(~started | fits)
         self.step = Signal(len(plan.steps) + 1, name="step")
-        for place, (index, _) in enumerate(begins):
+        for place, (index, _, _) in enumerate(begins):
             scene.m.d.comb += self.step[index].eq(number == place)
 
 
@@ -88,7 +91,7 @@ def _study(distro: str) -> Study:
     def build(scene: Scene) -> None:
         layout = lay_out(load_message(name, distro=distro))
         plan = build_plan(layout, bus_bytes=8, max_message_bytes=MOST_BYTES)
-        begins = _begins(plan)
+        begins = _charged(plan)
         steps = _Steps(scene, plan, begins)
         scene.m.submodules.block = block = Budget(deserializer_program(plan))
         scene.m.d.comb += [
@@ -110,9 +113,11 @@ def _study(distro: str) -> Study:
     )
 
 
-def _check(scene: Scene, block: Budget, steps: _Steps, begins: list[tuple[int, Begin]]) -> None:
+def _check(
+    scene: Scene, block: Budget, steps: _Steps, begins: list[tuple[int, Length, Charge]]
+) -> None:
     m = scene.m
-    claims = [begin.claim for _, begin in begins if begin.claim is not None]
+    claims = [charge for _, _, charge in begins]
     number = _late(scene, steps.number, LATENCY, "number_late")
     starts = _late(scene, steps.starts, LATENCY, "starts_late")
     count = _late(scene, Value.cast(steps.count), LATENCY - 1, "count_late")
@@ -121,9 +126,9 @@ def _check(scene: Scene, block: Budget, steps: _Steps, begins: list[tuple[int, B
     width = len(steps.count) + 8
     budget, known = Signal(width, name="budget"), Signal(name="known")
     sizes = Array([*(claim.bytes for claim in claims), 0])
-    totals = Array([*(claim.total or 0 for claim in claims), 0])
-    renews = Array([*(int(claim.total is not None) for claim in claims), 0])[number]
-    saved = max(claim.saved for claim in claims)
+    totals = Array([*(claim.budget or 0 for claim in claims), 0])
+    renews = Array([*(int(claim.budget is not None) for claim in claims), 0])[number]
+    saved = max(claim.padding_credit for claim in claims)
     now, left = Signal(width, name="budget_now"), Signal(width + 1, name="budget_left")
     exceeds, is_known = Signal(name="ref_exceeds"), Signal(name="known_now")
     m.d.comb += [

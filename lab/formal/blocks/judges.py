@@ -18,7 +18,7 @@ from firm_hdl.gateware.packets.writer import PacketWriter
 from firm_hdl.gateware.parse.buffer import Buffer
 from firm_hdl.gateware.parse.checker import Checker
 from firm_hdl.gateware.parse.walk import Walk
-from firm_hdl.gateware.parser import PacketSizes, Parser, PlanParser, VerdictQueue
+from firm_hdl.gateware.parser import PacketSizes, Parser, VerdictQueue
 from firm_hdl.gateware.signatures import Status
 from lab.formal.blocks.converters import DATA_DEPTH
 from lab.formal.bugs import Bug
@@ -117,7 +117,7 @@ def _parser(name: str, depth: int) -> Study:
         "valid stays": Bug(
             VerdictQueue.elaborate, "takes.eq(~first.ends | self", "takes.eq(1 | self"
         ),
-        "payload stays": Bug(PlanParser.elaborate, "with m.If(verdicts.moves):", "with m.If(1):"),
+        "payload stays": Bug(Parser.elaborate, "with m.If(verdicts.moves):", "with m.If(1):"),
         "one status": Bug(VerdictQueue.elaborate, "second.ends.eq(0)", "second.ends.eq(1)"),
         "statuses": Bug(Checker.elaborate, "Status.TRUNCATED", "Status.LENGTH"),
         "sizes": Bug(PacketSizes.elaborate, "self.beats.eq(0), over", "self.beats.eq(1), over"),

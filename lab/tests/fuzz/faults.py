@@ -78,7 +78,7 @@ FAULTS = [
         ),
         (
             "an error that is forgotten",
-            r"new_error <= \w+_\d+;",
+            r"new_error <= stops & .*;",
             r"new_error <= 1'b0;",
             "a wrong value|an extra transfer|no status",
         ),
@@ -96,8 +96,8 @@ FAULTS = [
         ),
         (
             "last is missing from some transfers",
-            r"last_now <= (orders_payload\S+);",
-            r"last_now <= \1 & ~items_good[3];",
+            r"payload_q\[32\] <= last;",
+            r"payload_q[32] <= last & ~items_good[3];",
             "a wrong value on data.items",
         ),
         (

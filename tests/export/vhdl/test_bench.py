@@ -9,7 +9,7 @@ import pytest
 from firm_hdl import load_message
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases.stimuli import stimuli
-from firm_hdl.export.vhdl.parts import packets_text
+from firm_hdl.export.vhdl.bench import packets_text
 from tests.depth import by_depth
 from tests.export.vhdl.test_layer import nasty, plan_of, vhdl_of, write
 from tests.tools import run_script

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.export.vhdl.parts import PARTS, packets_text
+from firm_hdl.export.vhdl.bench import PARTS, packets_text
 from tests.export.vhdl.test_bench import write_folder
 from tests.tools import run_script
 

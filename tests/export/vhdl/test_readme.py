@@ -11,7 +11,7 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.cases.stimuli import stimuli
-from firm_hdl.export.vhdl.parts import PARTS
+from firm_hdl.export.vhdl.bench import PARTS
 from tests.examples.test_examples import load
 from tests.export.vhdl.test_layer import analyse, plan_of, vhdl_of, write
 

@@ -14,7 +14,7 @@ from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.export.backend import Output
 from firm_hdl.export.record_top import RecordTop, why_no_record
 from firm_hdl.export.tree import taken_names, tree_of
-from firm_hdl.export.vhdl.parts import packets_text
+from firm_hdl.export.vhdl.bench import packets_text
 from firm_hdl.export.vhdl.values import values_of
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan

@@ -10,7 +10,7 @@ import subprocess
 from firm_hdl.export.constants import named_constants
 from firm_hdl.export.tree import tree_of
 from firm_hdl.export.vhdl.constants import comment, declarations
-from firm_hdl.export.vhdl.types import types_package
+from firm_hdl.export.vhdl.package import types_package
 from firm_hdl.gateware import record_layout
 from firm_hdl.names.identifiers import scope_names
 from firm_hdl.plan import build_plan

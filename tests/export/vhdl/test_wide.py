@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl import load_message
-from firm_hdl.export.vhdl.parts import packets_text
+from firm_hdl.export.vhdl.bench import packets_text
 from tests.depth import by_depth
 from tests.export.vhdl.test_layer import analyse, vhdl_of, write
 from tests.tools import run_script

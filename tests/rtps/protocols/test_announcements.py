@@ -144,6 +144,43 @@ def strangers(count, host=9):
     ]
 
 
+def test_strangers_give_way_to_those_who_come_later():
+    announcer = Announcer()
+    announcer.listen(ONE, 0.0)
+    announcer.listen(TWO, 0.0)
+    announcer.ranks = {ONE.prefix: 2, TWO.prefix: 1}
+    flood = strangers(1000)
+    for number, each in enumerate(flood):
+        announcer.listen(each, 0.001 * number)
+    assert len(announcer.peers) == 256 and {ONE, TWO} <= set(announcer.peers)
+    assert announcer._counters == {"displaced": 1000 - 254}
+    # The first 32 were met at once. Of the others, who said nothing more, the last ones are left.
+    assert announcer.peers[2:] == (*flood[:32], *flood[-222:])
+    assert announcer.found == [each.prefix for each in (ONE, TWO, *flood[:32])]
+    # Whoever says something more is met then, and stays for longer than they do.
+    announcer.hear(flood[-222].prefix, None, 100, 1.0)
+    assert announcer.found[-1] == flood[-222].prefix
+    for each in strangers(300, host=8):
+        announcer.listen(each, 1.0)
+    assert announcer.peers[34] == flood[-222] and len(announcer.peers) == 256
+    # One that is matched stays as long as it says something.
+    announcer.ranks |= {each.prefix: 2 for each in flood}
+    announcer.ranks |= {each.prefix: 2 for each in announcer.peers if each != TWO}
+    late = participant(200)
+    for peer in announcer.peers:
+        announcer.hear(peer.prefix, None, 100, 1.0)
+    announcer.listen(late, 1.0)
+    assert late in announcer.peers and TWO not in announcer.peers
+    announcer.ranks[late.prefix] = 2
+    announcer.hear(late.prefix, None, 100, 1.0)
+    other = participant(201)
+    announcer.listen(other, 9.0)
+    assert other not in announcer.peers and announcer._counters["no_place"] == 1
+    announcer.hear(ONE.prefix, None, 100, 9.0)
+    announcer.listen(other, 11.5)
+    assert other in announcer.peers and ONE in announcer.peers
+
+
 def test_a_host_does_not_take_the_places_of_others():
     announcer = Announcer()
     flood = strangers(1000)

@@ -138,18 +138,6 @@ def test_a_renamed_design_has_the_ports_and_clocks_of_its_component(engine):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_packet_in_parts(start, engine):
-    simulation = start(engine)
-    simulation.stall("packets_out", [True, True, True, False])
-    simulation.send_packets("packets_in", [bytes(40), b"end"])
-    simulation.run(30)
-    assert simulation.receive_packets("packets_out") == []
-    simulation.stall("packets_out", [])
-    simulation.run_until({"packets_out": 2})
-    assert simulation.receive_packets("packets_out") == [bytes(40), b"end"]
-
-
-@pytest.mark.parametrize("engine", ENGINES)
 def test_live(start, engine):
     simulation = start(engine, ignored=["class"])
     simulation.go_live(quiet=200, nap_cycles=10, nap_ms=1)

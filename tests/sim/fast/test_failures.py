@@ -329,14 +329,3 @@ def test_names_and_values_that_are_wrong(start):
         with pytest.raises(ValueError, match=message):
             use()
     simulation.run(1)
-
-
-def test_payloads_that_are_ignored_cannot_be_waited_for(start):
-    simulation = start("amaranth", ignored=["class"])
-    with pytest.raises(ValueError, match="'class' is ignored"):
-        simulation.run_until({"class": 1})
-
-
-def test_stalls_of_a_stream_that_is_always_ready(start):
-    with pytest.raises(ValueError, match="always ready"):
-        start("amaranth", {"echo_out": Stalls.bits("10")})

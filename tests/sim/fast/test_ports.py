@@ -93,14 +93,6 @@ def test_values_as_bits(shape, value, bits):
     assert found.plain[0].bits(value) == found.streams[0].bits(value) == bits
 
 
-@pytest.mark.parametrize(("width", "value"), [(5, 32), (5, -17), (1, 2), (1, -2), (0, 1)])
-def test_numbers_that_do_not_fit_are_refused(width, value):
-    found = ports({"p": In(width), "s": In(stream.Signature(width))})
-    for port in (found.plain[0], found.streams[0]):
-        with pytest.raises(ValueError, match=rf"^'{port.name}' has {width} bits, too few for"):
-            port.bits(value)
-
-
 @pytest.mark.parametrize(
     ("shape", "bits", "value"),
     [
@@ -117,13 +109,6 @@ def test_numbers_that_do_not_fit_are_refused(width, value):
 def test_bits_as_values(shape, bits, value):
     found = ports({"p": Out(shape), "s": Out(stream.Signature(shape))})
     assert found.plain[0].view(bits) == found.streams[0].view(bits) == value
-
-
-def test_bits_of_a_layout_have_its_members():
-    found = ports({"p": Out(PAIR), "s": Out(stream.Signature(PAIR))})
-    for port in (found.plain[0], found.streams[0]):
-        view = port.view(0x213)
-        assert (view.low, view.high) == (3, 0x21)
 
 
 def test_a_name_that_is_wrong_is_told_with_those_that_there_are():

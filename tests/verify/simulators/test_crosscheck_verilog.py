@@ -178,7 +178,7 @@ def test_verilog_that_is_refused_is_a_failure(of_verilog, monkeypatch):
         (
             Verilator,
             "VERILATOR",
-            r"Verilator is not installed \(Debian, Ubuntu: apt install verilator g\+\+\)",
+            r".* needs Verilator: Verilator is not installed \(Debian, Ubuntu: apt install .*",
         ),
     ],
 )
@@ -190,7 +190,7 @@ def test_error_for_a_missing_simulator_explains_the_installation(
     with pytest.raises(ProgramMissingError, match=f"^{output}$"):
         kind()
     monkeypatch.setenv(variable, "nowhere")
-    output = f"^{kind.title} is 'nowhere' in the environment, but there is no such command$"
+    output = f"{kind.title} is 'nowhere' in the environment, but there is no such command"
     with pytest.raises(ProgramMissingError, match=output):
         kind()
 

@@ -200,4 +200,4 @@ def test_mutations_have_results_that_a_run_goes_on_with_and_a_report_shows(
     # Other definitions make other mutations.
     (Path(source) / "q" / "msg" / "B.msg").write_text("int8 y\n")
     assert main([*words, "p/A", "q/B"]) == 1
-    assert "; mutated was" in capsys.readouterr().err
+    assert "; mutated noetic was" in capsys.readouterr().err

@@ -33,10 +33,10 @@ def test_a_change_fails_until_it_is_accepted(folder, capsys):
     assert main(["golden", "check", str(folder)]) == 1
     assert capsys.readouterr().out == (
         f"{paths[0]}: sensor_msgs/msg/Imu\n"
-        "    steps[header.stamp.nanosec].starts.limit: 9 -> 16776903\n"
+        "    plan[run of header.frame_id.items].limit: 9 -> 16776903\n"
         f"{paths[1]}: std_msgs/msg/String\n"
-        "    steps[data.length].starts.limit: 9 -> 16777207\n"
-        "   2 types: steps[*].starts.limit\n"
+        "    plan[run of data.items].limit: 9 -> 16777207\n"
+        "   2 types: plan[*].limit\n"
         "2 golden plans, 2 differ\n"
     )
     assert [path.read_text() for path in paths] == before

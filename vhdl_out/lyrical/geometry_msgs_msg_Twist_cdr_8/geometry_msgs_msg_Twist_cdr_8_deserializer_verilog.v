@@ -6,21 +6,21 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   input wire         rst,
   input wire         aclk,
   input wire         packets_valid,
-  input wire         next_sig,
+  input wire         arrival_next,
   input wire [3:0]   freed,
   input wire [68:0]  packets_payload,
-  output wire [73:0] beat,
+  output wire [73:0] arrival_beat,
   output wire        packets_ready,
-  output wire [6:0]  limit_sig,
-  output wire [3:0]  following,
-  output wire        ended
+  output wire [6:0]  arrival_limit,
+  output wire [3:0]  arrival_following,
+  output wire        arrival_ended
 );
 
   // Registers.
   reg packets_ready_q = 1'b1;
-  reg [6:0] limit_sig_q = 7'd0;
-  reg [3:0] following_q = 4'd0;
-  reg ended_q = 1'b0;
+  reg [6:0] arrival_limit_q = 7'd0;
+  reg [3:0] arrival_following_q = 4'd0;
+  reg arrival_ended_q = 1'b0;
   reg full = 1'b0;
   reg [68:0] payload = 69'd0;
   reg [3:0] arrived = 4'd0;
@@ -41,8 +41,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   wire more;
   wire follows;
   wire or_14;
-  wire [10:0] mux_15;
-  wire mux_22;
+  wire [10:0] arrival_limit_next;
+  wire has_second_next;
   wire [10:0] ends_read_data;
 
   // Signals that no logic reads, for simulation.
@@ -69,10 +69,10 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   assign newest_0 = ends_now ? add_3 : {full ? next_beat : at, 3'd0};
   assign stored = pushed != popped;
   assign more = stored | ends_now;
-  assign follows = ended_q & ends_now;
-  assign or_14 = next_sig | ~ended_q;
-  assign mux_15 = has_second ? second : {next_beat, newest_0};
-  assign mux_22 = has_second ? (~next_sig | more) : (~next_sig & follows);
+  assign follows = arrival_ended_q & ends_now;
+  assign or_14 = arrival_next | ~arrival_ended_q;
+  assign arrival_limit_next = has_second ? second : {next_beat, newest_0};
+  assign has_second_next = has_second ? (~arrival_next | more) : (~arrival_next & follows);
 
   always @(posedge aclk) begin
     ends[pushed[2:0]] <= {next_beat, add_3};
@@ -85,9 +85,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
       arrived <= 4'd0;
       at <= 4'd0;
       packets_ready_q <= 1'b1;
-      limit_sig_q <= 7'd0;
-      following_q <= 4'd0;
-      ended_q <= 1'b0;
+      arrival_limit_q <= 7'd0;
+      arrival_following_q <= 4'd0;
+      arrival_ended_q <= 1'b0;
       second <= 11'd0;
       has_second <= 1'b0;
       pushed <= 4'd0;
@@ -98,22 +98,22 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
       at <= at + {3'd0, full};
       packets_ready_q <= ~used[3] & ~((used == 4'd7) & arrives);
       if (or_14) begin
-        limit_sig_q <= mux_15[6:0];
-        following_q <= mux_15[10:7];
-        ended_q <= has_second | ends_now;
+        arrival_limit_q <= arrival_limit_next[6:0];
+        arrival_following_q <= arrival_limit_next[10:7];
+        arrival_ended_q <= has_second | ends_now;
       end
-      if (next_sig || !has_second) begin
+      if (arrival_next || !has_second) begin
         if (stored) begin
           second <= ends_read_data;
         end else begin
           second <= {next_beat, add_3};
         end
       end
-      has_second <= mux_22;
+      has_second <= has_second_next;
       if (has_second && ends_now) begin
         pushed <= pushed + 4'd1;
       end
-      if (next_sig && has_second && more) begin
+      if (arrival_next && has_second && more) begin
         popped <= popped + 4'd1;
       end
     end
@@ -123,12 +123,12 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
     payload <= packets_payload;
   end
 
-  assign beat = {full, at, payload};
+  assign arrival_beat = {full, at, payload};
 
   assign packets_ready = packets_ready_q;
-  assign limit_sig = limit_sig_q;
-  assign following = following_q;
-  assign ended = ended_q;
+  assign arrival_limit = arrival_limit_q;
+  assign arrival_following = arrival_following_q;
+  assign arrival_ended = arrival_ended_q;
 
   assign room = packets_ready_q;
   assign ends_write_addr = pushed[2:0];
@@ -139,7 +139,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   assign newest = {next_beat, newest_0};
 endmodule
 
-module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_marks (
+module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_flags (
   input wire        rst,
   input wire        aclk,
   output wire       mismatch,
@@ -183,63 +183,62 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   input wire         rst,
   input wire         aclk,
   output wire        orders_valid,
-  output wire        next_sig,
+  output wire        arrival_next,
   input wire         orders_ready,
   input wire [73:0]  beat,
-  input wire [6:0]   limit_sig,
-  input wire [3:0]   following,
-  input wire         ended,
+  input wire [6:0]   arrival_limit,
+  input wire [3:0]   arrival_following,
+  input wire         arrival_ended,
   output wire [41:0] orders_payload,
   output wire [3:0]  header_at
 );
 
   // Registers.
   reg bad = 1'b0;
-  reg new_error = 1'b0;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   reg [2:0] code = 3'd0;
+  reg new_error = 1'b0;
   reg [3:0] items_room = 4'd0;
   reg [3:0] map_room = 4'd0;
-  reg words_last = 1'b1;
-  reg words_less = 1'b0;
-  reg [6:0] step = 7'd1;
-  reg [4:0] map_offset = 5'd25;
-  reg two_word_map = 1'b0;
-  reg at_end = 1'b0;
-  reg [5:0] exit_add = 6'd8;
   reg rest = 1'b0;
   reg has_nul = 1'b0;
   reg [6:0] first_at = 7'd0;
   reg [6:0] last_at = 7'd7;
+  reg words_last = 1'b1;
+  reg words_less = 1'b0;
+  reg [6:0] step = 7'd1;
+  reg at_end = 1'b0;
+  reg [4:0] map_offset = 5'd25;
+  reg two_word_map = 1'b0;
+  reg [5:0] exit_add = 6'd8;
 
   // Combinational signals.
-  wire mismatch_36;
+  wire mismatch_31;
   wire [6:0] step_end;
   wire [6:0] left;
   wire present;
   wire ends_message;
   wire ends_packet;
-  wire [6:0] map_at;
-  wire [3:0] sub_12;
-  wire trailing_34;
   wire mismatch;
-  wire good;
   wire cut;
-  wire [5:0] sub_39;
-  wire [5:0] or_83;
-  wire [6:0] map_left;
+  wire trailing;
+  wire stops;
   wire drains;
   wire allowed;
   wire issue;
-  wire step_to_exit;
+  wire [6:0] map_at;
+  wire [3:0] sub_77;
+  wire [5:0] sub_88;
+  wire [5:0] or_132;
+  wire [6:0] map_left;
   wire [6:0] exit_sum;
   wire [6:0] early_last;
-  wire [2:0] mux_194;
-  wire and_195;
-  wire [3:0] mux_210;
-  wire [3:0] mux_215;
-  wire [3:0] mux_222;
-  wire [6:0] mux_278;
+  wire step_to_exit;
+  wire and_187;
+  wire and_201;
+  wire and_203;
+  wire [3:0] items_room_next;
+  wire [6:0] first_at_next;
 
   // Signals that no logic reads, for simulation.
   wire default_0;
@@ -248,151 +247,174 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   wire default_3;
   wire default_4;
   wire default_5;
-  wire [1:0] trailing;
-  wire [6:0] items_at;
+  wire [73:0] arrival_beat;
   wire [6:0] nul_at;
-  wire [6:0] nul_at_28;
+  wire [6:0] nul_at_23;
   wire nonzero;
   wire [6:0] nul_within;
   wire [3:0] oldest;
-  wire words_loads;
+  wire [6:0] items_at;
   wire [6:0] next_packet;
-  wire [5:0] tail;
+  wire [5:0] over_rest;
   wire [6:0] to_exit_low;
   wire [6:0] body_sum;
-  wire [2:0] to_body_mask;
   wire [6:0] to_body_low;
+  wire words_loads;
   wire exits_always;
   wire done;
   wire wrong_nul;
-  wire begins;
   wire [3:0] items_wanted;
+  wire [5:0] exit_amount;
+  wire [2:0] to_exit_mask;
+  wire [5:0] body_amount;
+  wire [2:0] to_body_mask;
+  wire [6:0] next_last;
   wire step_to_body;
   wire words_down;
   wire words_keeps;
-  wire to_exit_rest;
-  wire [5:0] exit_amount;
-  wire [2:0] to_exit_mask;
-  wire to_body_rest;
-  wire [5:0] body_amount;
-  wire [6:0] next_last;
   wire words_pending;
   wire [2:0] words_value;
 
-  geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_marks marks (
+  geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_flags byte_flags (
     .aclk      (aclk),
     .rst       (rst),
-    .mismatch  (mismatch_36),
+    .mismatch  (mismatch_31),
     .beat      (beat),
     .header_at (first_at[6:3])
   );
 
   assign step_end = last_at + 7'd1;
-  assign left = limit_sig + ~last_at;
+  assign left = arrival_limit + ~last_at;
   assign present = ~left[6];
   assign ends_message = at_end | step[5];
-  assign ends_packet = ends_message & ended;
+  assign ends_packet = ends_message & arrival_ended;
+  assign mismatch = step[0] & mismatch_31 & (arrival_limit != first_at);
+  assign cut = arrival_ended & ~present;
+  assign trailing = present & (|left[5:2]);
+  assign stops = mismatch | cut | (ends_message & ~arrival_ended & trailing);
+  assign drains = bad & ~new_error & (~at_end | arrival_ended);
+  assign allowed = ~bad & (~ends_message | arrival_ended);
+  assign orders_valid = drains | (allowed & present & ~(step[0] & mismatch_31));
+  assign issue = (drains & orders_ready) | (allowed & orders_ready & present & ~(step[0] &
+      mismatch_31));
+  assign arrival_next = (drains & orders_ready & ends_packet) | (allowed & orders_ready &
+      ends_packet & present & ~(step[0] & mismatch_31));
   assign map_at = last_at + {{2{map_offset[4]}}, map_offset};
-  assign sub_12 = map_at[6:3] - {3'd0, two_word_map};
-  assign trailing_34 = present & (|left[5:2]);
-  assign mismatch = step[0] & mismatch_36 & (limit_sig != first_at);
-  assign good = present & ~(step[0] & mismatch_36);
-  assign cut = ended & ~present;
-  assign sub_39 = 6'd1 - {{1{map_offset[4]}}, map_offset};
-  assign or_83 = (limit_sig[5:0] & ~last_at[5:0]) | (limit_sig[5:0] & (6'd1 - {{1{map_offset[4]}},
-      map_offset})) | (~last_at[5:0] & (6'd1 - {{1{map_offset[4]}}, map_offset}));
-  assign map_left = (limit_sig ^ ~last_at ^ {sub_39[5], 6'd1 - {{1{map_offset[4]}},
-      map_offset}}) + {or_83, 1'b0};
-  assign drains = bad & ~new_error & (~at_end | ended);
-  assign allowed = ~bad & (~ends_message | ended);
-  assign orders_valid = drains | (allowed & good);
-  assign issue = (drains & orders_ready) | (allowed & orders_ready & good);
-  assign next_sig = (drains & orders_ready & ends_packet) | (allowed & orders_ready & ends_packet &
-      good);
-  assign step_to_exit = issue & ~ends_packet;
+  assign sub_77 = map_at[6:3] - {3'd0, two_word_map};
+  assign sub_88 = 6'd1 - {{1{map_offset[4]}}, map_offset};
+  assign or_132 = (arrival_limit[5:0] & ~last_at[5:0]) | (arrival_limit[5:0] &
+      (6'd1 - {{1{map_offset[4]}}, map_offset})) | (~last_at[5:0] & (6'd1 - {{1{map_offset[4]}},
+      map_offset}));
+  assign map_left = (arrival_limit ^ ~last_at ^ {sub_88[5], 6'd1 - {{1{map_offset[4]}},
+      map_offset}}) + {or_132, 1'b0};
   assign exit_sum = last_at + {1'd0, exit_add};
-  assign early_last = ends_packet ? ({following, 3'd0} + 7'd7) : exit_sum;
-  assign mux_194 = mismatch ? 3'd4 : (cut ? 3'd1 : (ends_message ? 3'd2 : 3'd3));
-  assign and_195 = drains & orders_ready;
-  assign mux_210 = two_word_map ? (map_left[6] ? {1'b0, (&map_left[6:3]) ? map_left[2:0] : 3'd0} :
-      4'd8) : (map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]));
-  assign mux_215 = (code == 3'd1) ? mux_210 : (((code == 3'd2) || (code == 3'd5)) ? 4'd8 : 4'd0);
-  assign mux_222 = (code == 3'd1) ? (map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 :
-      map_left[3:0])) : ((code == 3'd2) ? 4'd8 : 4'd0);
-  assign mux_278 = ends_packet ? {following, 3'd0} : (bad ? (at_end ? limit_sig : first_at) :
-      step_end);
+  assign early_last = ends_packet ? ({arrival_following, 3'd0} + 7'd7) : exit_sum;
+  assign step_to_exit = issue & ~ends_packet;
+  assign and_187 = issue & ends_packet;
+  assign and_201 = bad & new_error;
+  assign and_203 = bad & drains & orders_ready;
+  assign items_room_next = two_word_map ? (map_left[6] ? {1'b0, (&map_left[6:3]) ? map_left[2:0] :
+      3'd0} : 4'd8) : (map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]));
+  assign first_at_next = ends_packet ? {arrival_following, 3'd0} : (bad ? (at_end ? arrival_limit :
+      first_at) : step_end);
 
   always @(posedge aclk) begin
     if (rst) begin
       bad <= 1'b0;
-      new_error <= 1'b0;
       code <= 3'd0;
+      new_error <= 1'b0;
       items_room <= 4'd0;
       map_room <= 4'd0;
-      words_last <= 1'b1;
-      words_less <= 1'b0;
-      step <= 7'd1;
-      map_offset <= 5'd25;
-      two_word_map <= 1'b0;
-      at_end <= 1'b0;
-      exit_add <= 6'd8;
       rest <= 1'b0;
       has_nul <= 1'b0;
       first_at <= 7'd0;
       last_at <= 7'd7;
+      words_last <= 1'b1;
+      words_less <= 1'b0;
+      step <= 7'd1;
+      at_end <= 1'b0;
+      map_offset <= 5'd25;
+      two_word_map <= 1'b0;
+      exit_add <= 6'd8;
     end else begin
-      if (issue && ends_packet) begin
+      if (and_187) begin
         bad <= 1'b0;
       end else if (!bad) begin
-        bad <= mismatch | cut | (ends_message & ~ended & trailing_34);
+        bad <= stops;
+        if (ends_message) begin
+          code <= 3'd2;
+        end else begin
+          code <= 3'd3;
+        end
+        if (mismatch) begin
+          code <= 3'd4;
+        end else if (cut) begin
+          code <= 3'd1;
+        end
       end
-      if (!bad) begin
-        new_error <= mismatch | cut | (ends_message & ~ended & trailing_34);
-        code <= mux_194;
-      end
-      if (bad) begin
-        new_error <= 1'b0;
-        if (new_error) begin
-          items_room <= mux_215;
-          map_room <= mux_222;
-        end else if (and_195) begin
+      new_error <= stops & ~bad;
+      if (and_201) begin
+        if ((code == 3'd2) || (code == 3'd5)) begin
+          items_room <= 4'd8;
+        end else begin
           items_room <= 4'd0;
+        end
+        if (code == 3'd1) begin
+          items_room <= items_room_next;
+        end
+        if (code == 3'd2) begin
+          map_room <= 4'd8;
+        end else begin
           map_room <= 4'd0;
         end
-      end
-      words_last <= words_last;
-      words_less <= words_less;
-      if (issue) begin
-        if (ends_packet) begin
-          step <= 7'd1;
-          map_offset <= 5'd25;
-          two_word_map <= 1'b0;
-          at_end <= 1'b0;
-          exit_add <= 6'd8;
-        end else begin
-          step <= {step[5:0], 1'b0};
-          map_offset <= {|step[4:0], |step[4:0], step[4], 1'b0, |step[5:0]};
-          two_word_map <= step[4];
-          at_end <= step[5];
-          exit_add <= {2'd0, |step[3:0], step[3], 2'd0};
+        if (code == 3'd1) begin
+          if (map_left[6]) begin
+            map_room <= 4'd0;
+          end else begin
+            if (map_left >= 7'd8) begin
+              map_room <= 4'd8;
+            end else begin
+              map_room <= map_left[3:0];
+            end
+          end
         end
+      end else if (and_203) begin
+        items_room <= 4'd0;
+        map_room <= 4'd0;
+      end
+      if (issue) begin
         if (ends_packet) begin
           rest <= 1'b0;
           has_nul <= 1'b0;
         end
         last_at <= early_last;
+        if (ends_packet) begin
+          step <= 7'd1;
+          at_end <= 1'b0;
+          map_offset <= 5'd25;
+          two_word_map <= 1'b0;
+          exit_add <= 6'd8;
+        end else begin
+          step <= {step[5:0], 1'b0};
+          at_end <= step[5];
+          map_offset <= {|step[4:0], |step[4:0], step[4], 1'b0, |step[5:0]};
+          two_word_map <= step[4];
+          exit_add <= {2'd0, |step[3:0], step[3], 2'd0};
+        end
       end
       if (issue || (bad && at_end)) begin
-        first_at <= mux_278;
+        first_at <= first_at_next;
       end
+      words_last <= words_last;
+      words_less <= words_less;
     end
   end
 
   assign header_at = first_at[6:3];
-  assign orders_payload = {bad ? code : (trailing_34 ? 3'd2 : 3'd0), ends_packet, first_at[6:3],
-      1'b0, ~bad, words_last, 1'b0, bad ? map_room : 4'd8, (bad && (items_room < 4'd8)) ?
-      items_room : 4'd8, map_at[5:3] + 3'd1, sub_12[2:0] + 3'd1, map_at[5:0], sub_12[2:0],
-      map_at[2:0], at_end, |step[5:4], |step[3:2], |{step[5], step[3], step[1]}};
+  assign orders_payload = {bad ? code : (trailing ? 3'd2 : 3'd0), ends_packet, first_at[6:3], 1'b0,
+      ~bad, words_last, 1'b0, bad ? map_room : 4'd8, (bad && (items_room < 4'd8)) ? items_room :
+      4'd8, map_at[5:3] + 3'd1, sub_77[2:0] + 3'd1, map_at[5:0], sub_77[2:0], map_at[2:0], at_end,
+      |step[5:4], |step[3:2], |{step[5], step[3], step[1]}};
 
   assign default_0 = step[0];
   assign default_1 = step[1];
@@ -400,34 +422,31 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign default_3 = step[3];
   assign default_4 = step[4];
   assign default_5 = step[5];
-  assign trailing = left[1:0];
-  assign items_at = {sub_12, map_at[2:0]};
+  assign arrival_beat = beat;
   assign nul_at = 7'd0;
-  assign nul_at_28 = 7'd0;
+  assign nul_at_23 = 7'd0;
   assign nonzero = 1'b0;
-  assign nul_within = limit_sig;
+  assign nul_within = arrival_limit;
   assign oldest = first_at[6:3];
-  assign words_loads = 1'b0;
-  assign next_packet = {following, 3'd0};
-  assign tail = 6'd0;
+  assign items_at = {sub_77, map_at[2:0]};
+  assign next_packet = {arrival_following, 3'd0};
+  assign over_rest = 6'd0;
   assign to_exit_low = 7'd0;
   assign body_sum = last_at;
-  assign to_body_mask = 3'd0;
   assign to_body_low = 7'd0;
+  assign words_loads = 1'b0;
   assign exits_always = 1'b1;
   assign done = 1'b1;
   assign wrong_nul = 1'b0;
-  assign begins = 1'b0;
   assign items_wanted = 4'd8;
+  assign exit_amount = exit_add;
+  assign to_exit_mask = 3'd0;
+  assign body_amount = 6'd0;
+  assign to_body_mask = 3'd0;
+  assign next_last = early_last;
   assign step_to_body = 1'b0;
   assign words_down = 1'b0;
   assign words_keeps = 1'b1;
-  assign to_exit_rest = 1'b0;
-  assign exit_amount = exit_add;
-  assign to_exit_mask = 3'd0;
-  assign to_body_rest = 1'b0;
-  assign body_amount = 6'd0;
-  assign next_last = early_last;
   assign words_pending = 1'b0;
   assign words_value = 3'd0;
 endmodule
@@ -533,51 +552,52 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   reg [63:0] message_angular_x_payload_q = 64'd0;
   reg [63:0] message_angular_y_payload_q = 64'd0;
   reg [63:0] message_angular_z_payload_q = 64'd0;
+  reg length_good = 1'b0;
+  reg last = 1'b0;
+  reg final_sig = 1'b0;
   reg [63:0] items_word = 64'd0;
   reg [7:0] items_good = 8'd0;
   reg [63:0] map_word = 64'd0;
   reg [7:0] map_good = 8'd0;
-  reg length_good_now = 1'b0;
-  reg last_now = 1'b0;
-  reg final_now = 1'b0;
-  reg active_0 = 1'b0;
-  reg active_1 = 1'b0;
-  reg active_2 = 1'b0;
-  reg active_3 = 1'b0;
-  reg active_4 = 1'b0;
-  reg active_5 = 1'b0;
-  reg slow = 1'b0;
-  // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  reg [2:0] status_now = 3'd0;
-  reg ends_now = 1'b0;
   reg cut_0 = 1'b0;
   reg [31:0] carried = 32'd0;
   reg cut_1 = 1'b0;
   reg cut_2 = 1'b0;
   reg cut_3 = 1'b0;
   reg cut_4 = 1'b0;
+  reg active_0 = 1'b0;
+  reg active_1 = 1'b0;
+  reg active_2 = 1'b0;
+  reg active_3 = 1'b0;
+  reg active_4 = 1'b0;
+  reg active_5 = 1'b0;
+  reg ends_now = 1'b0;
+  // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  reg [2:0] status_now = 3'd0;
+  reg slow = 1'b0;
 
   // Combinational signals.
-  wire go_0;
   wire blocked_0;
-  wire go_1;
+  wire go_0;
   wire blocked_1;
-  wire go_2;
+  wire go_1;
   wire blocked_2;
-  wire go_3;
+  wire go_2;
   wire blocked_3;
-  wire go_4;
+  wire go_3;
   wire blocked_4;
-  wire go_5;
+  wire go_4;
   wire blocked_5;
-  wire mux_44;
-  wire mux_51;
-  wire mux_58;
-  wire mux_65;
-  wire mux_72;
-  wire mux_79;
-  wire or_126;
-  wire or_142;
+  wire go_5;
+  wire ends;
+  wire active_0_next;
+  wire active_1_next;
+  wire active_2_next;
+  wire active_3_next;
+  wire active_4_next;
+  wire active_5_next;
+  wire or_165;
+  wire or_181;
   wire [7:0] lane_0_items_data;
   wire [7:0] lane_0_map_data;
   wire [7:0] lane_1_items_data;
@@ -597,12 +617,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
 
   // Signals that no logic reads, for simulation.
   wire take;
-  wire [63:0] payload_0;
-  wire [63:0] payload_1;
-  wire [63:0] payload_2;
-  wire [63:0] payload_3;
-  wire [63:0] payload_4;
-  wire [63:0] payload_5;
   wire [2:0] lane_0_write_addr;
   wire [7:0] lane_0_write_data;
   wire lane_0_write_en;
@@ -643,6 +657,12 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire lane_7_write_en;
   wire [2:0] lane_7_items_addr;
   wire [2:0] lane_7_map_addr;
+  wire [63:0] payload_0;
+  wire [63:0] payload_1;
+  wire [63:0] payload_2;
+  wire [63:0] payload_3;
+  wire [63:0] payload_4;
+  wire [63:0] payload_5;
 
   reg [7:0] lane_0 [0:7];
   integer lane_0_at;
@@ -700,42 +720,42 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
       lane_7[lane_7_at] = 8'd0;
   end
 
-  assign go_0 = active_0 & ~blocked_0;
   assign blocked_0 = active_0 & message_linear_x_valid_q;
-  assign go_1 = active_1 & ~blocked_1;
+  assign go_0 = active_0 & ~blocked_0;
   assign blocked_1 = active_1 & message_linear_y_valid_q;
-  assign go_2 = active_2 & ~blocked_2;
+  assign go_1 = active_1 & ~blocked_1;
   assign blocked_2 = active_2 & message_linear_z_valid_q;
-  assign go_3 = active_3 & ~blocked_3;
+  assign go_2 = active_2 & ~blocked_2;
   assign blocked_3 = active_3 & message_angular_x_valid_q;
-  assign go_4 = active_4 & ~blocked_4;
+  assign go_3 = active_3 & ~blocked_3;
   assign blocked_4 = active_4 & message_angular_y_valid_q;
-  assign go_5 = active_5 & ~blocked_5 & ~blocked_4;
+  assign go_4 = active_4 & ~blocked_4;
   assign blocked_5 = active_5 & message_angular_z_valid_q;
+  assign go_5 = active_5 & ~blocked_5 & ~blocked_4;
+  assign ends = orders_valid & orders_payload[38];
   assign orders_ready = ~slow;
-  assign mux_44 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_0_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd1)) : (active_0 & ~go_0);
-  assign mux_51 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_1_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd2)) : (active_1 & ~go_1);
-  assign mux_58 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_2_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd3)) : (active_2 & ~go_2);
-  assign mux_65 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_3_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd4)) : (active_3 & ~go_3);
-  assign mux_72 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_4_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd5)) : (active_4 & ~go_4);
-  assign mux_79 = orders_ready ? (orders_valid & ~orders_payload[3] &
+  assign active_5_next = orders_ready ? (orders_valid & ~orders_payload[3] &
       (orders_payload[2:0] == 3'd5)) : (active_5 & ~go_5);
-  assign or_126 = |{orders_valid & orders_payload[38] & status_valid_q & ~status_ready,
+  assign or_165 = |{ends & status_valid_q & ~status_ready, orders_valid & ~orders_payload[3] &
+      (orders_payload[2:0] == 3'd5) & message_angular_z_valid_q & ~message_angular_z_ready,
       orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd5) &
-      message_angular_z_valid_q & ~message_angular_z_ready, orders_valid & ~orders_payload[3] &
-      (orders_payload[2:0] == 3'd5) & message_angular_y_valid_q & ~message_angular_y_ready,
-      orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd4) &
-      message_angular_x_valid_q & ~message_angular_x_ready, orders_valid & ~orders_payload[3] &
-      (orders_payload[2:0] == 3'd3) & message_linear_z_valid_q & ~message_linear_z_ready,
-      orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd2) & message_linear_y_valid_q &
-      ~message_linear_y_ready, orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd1) &
-      message_linear_x_valid_q & ~message_linear_x_ready};
-  assign or_142 = |{ends_now & status_valid_q & ~status_ready, blocked_5 & ~message_angular_z_ready,
+      message_angular_y_valid_q & ~message_angular_y_ready, orders_valid & ~orders_payload[3] &
+      (orders_payload[2:0] == 3'd4) & message_angular_x_valid_q & ~message_angular_x_ready,
+      orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd3) & message_linear_z_valid_q &
+      ~message_linear_z_ready, orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd2) &
+      message_linear_y_valid_q & ~message_linear_y_ready, orders_valid & ~orders_payload[3] &
+      (orders_payload[2:0] == 3'd1) & message_linear_x_valid_q & ~message_linear_x_ready};
+  assign or_181 = |{ends_now & status_valid_q & ~status_ready, blocked_5 & ~message_angular_z_ready,
       blocked_4 & ~message_angular_y_ready, blocked_3 & ~message_angular_x_ready, blocked_2 &
       ~message_linear_z_ready, blocked_1 & ~message_linear_y_ready, blocked_0 &
       ~message_linear_x_ready};
@@ -813,24 +833,24 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
       message_angular_y_valid_q <= 1'b0;
       message_angular_z_valid_q <= 1'b0;
       status_valid_q <= 1'b0;
-      length_good_now <= 1'b0;
-      last_now <= 1'b0;
-      final_now <= 1'b0;
+      length_good <= 1'b0;
+      last <= 1'b0;
+      final_sig <= 1'b0;
+      cut_0 <= 1'b0;
+      cut_1 <= 1'b0;
+      cut_2 <= 1'b0;
+      cut_3 <= 1'b0;
+      cut_4 <= 1'b0;
       active_0 <= 1'b0;
       active_1 <= 1'b0;
       active_2 <= 1'b0;
       active_3 <= 1'b0;
       active_4 <= 1'b0;
       active_5 <= 1'b0;
-      slow <= 1'b0;
-      status_now <= 3'd0;
       ends_now <= 1'b0;
+      status_now <= 3'd0;
       status_payload_q <= 3'd0;
-      cut_0 <= 1'b0;
-      cut_1 <= 1'b0;
-      cut_2 <= 1'b0;
-      cut_3 <= 1'b0;
-      cut_4 <= 1'b0;
+      slow <= 1'b0;
     end else begin
       if (message_linear_x_ready) begin
         message_linear_x_valid_q <= 1'b0;
@@ -876,27 +896,27 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
           status_valid_q <= 1'b1;
           status_payload_q <= status_now;
         end
-        length_good_now <= orders_payload[32];
-        last_now <= orders_payload[31];
-        final_now <= orders_payload[33];
-        status_now <= orders_payload[41:39];
-        ends_now <= orders_valid & orders_payload[38];
+        length_good <= orders_payload[32];
+        last <= orders_payload[31];
+        final_sig <= orders_payload[33];
         cut_0 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd0);
         cut_1 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd1);
         cut_2 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd2);
         cut_3 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd3);
         cut_4 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd4);
+        ends_now <= ends;
+        status_now <= orders_payload[41:39];
       end
-      active_0 <= mux_44;
-      active_1 <= mux_51;
-      active_2 <= mux_58;
-      active_3 <= mux_65;
-      active_4 <= mux_72;
-      active_5 <= mux_79;
+      active_0 <= active_0_next;
+      active_1 <= active_1_next;
+      active_2 <= active_2_next;
+      active_3 <= active_3_next;
+      active_4 <= active_4_next;
+      active_5 <= active_5_next;
       if (orders_ready) begin
-        slow <= or_126;
+        slow <= or_165;
       end else begin
-        slow <= or_142;
+        slow <= or_181;
       end
     end
   end
@@ -1034,12 +1054,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign message_angular_z_payload = message_angular_z_payload_q;
 
   assign take = orders_ready;
-  assign payload_0 = message_linear_x_payload_q;
-  assign payload_1 = message_linear_y_payload_q;
-  assign payload_2 = message_linear_z_payload_q;
-  assign payload_3 = message_angular_x_payload_q;
-  assign payload_4 = message_angular_y_payload_q;
-  assign payload_5 = message_angular_z_payload_q;
   assign lane_0_write_addr = beat[71:69];
   assign lane_0_write_data = beat[7:0];
   assign lane_0_write_en = beat[73];
@@ -1080,6 +1094,12 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign lane_7_write_en = beat[73];
   assign lane_7_items_addr = orders_payload[9:7];
   assign lane_7_map_addr = orders_payload[15:13];
+  assign payload_0 = message_linear_x_payload_q;
+  assign payload_1 = message_linear_y_payload_q;
+  assign payload_2 = message_linear_z_payload_q;
+  assign payload_3 = message_angular_x_payload_q;
+  assign payload_4 = message_angular_y_payload_q;
+  assign payload_5 = message_angular_z_payload_q;
 endmodule
 
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
@@ -1113,54 +1133,59 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
 );
 
   // Combinational signals.
-  wire [73:0] beat;
-  wire [6:0] limit_sig;
-  wire [3:0] following;
-  wire ended;
+  wire [73:0] arrival_beat;
+  wire [6:0] arrival_limit;
+  wire [3:0] arrival_following;
+  wire arrival_ended;
   wire i_valid;
-  wire next_sig;
+  wire arrival_next;
   wire [41:0] i_payload;
   wire [3:0] oldest;
   wire orders_ready;
   wire [3:0] freed;
-  wire orders_valid_24;
+  wire orders_valid_26;
   wire [41:0] orders_payload_22;
   wire o_ready;
 
   // Signals that no logic reads, for simulation.
   wire [41:0] orders_payload;
-  wire orders_valid;
   wire i_ready;
+  wire orders_valid;
   wire [41:0] o_payload;
+  wire orders_ready_25;
   wire o_valid;
-  wire orders_ready_27;
+  wire [73:0] beat;
+  wire stall_newest;
+  wire stall_newest_38;
+  wire zero_length;
+  wire zero_length_40;
 
   geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer buffer_sig (
-    .aclk            (aclk),
-    .packets_valid   (packets_valid),
-    .rst             (rst),
-    .next_sig        (next_sig),
-    .freed           (freed),
-    .packets_payload (packets_payload),
-    .beat            (beat),
-    .packets_ready   (packets_ready),
-    .limit_sig       (limit_sig),
-    .following       (following),
-    .ended           (ended)
+    .aclk              (aclk),
+    .packets_valid     (packets_valid),
+    .rst               (rst),
+    .arrival_next      (arrival_next),
+    .freed             (freed),
+    .packets_payload   (packets_payload),
+    .arrival_beat      (arrival_beat),
+    .packets_ready     (packets_ready),
+    .arrival_limit     (arrival_limit),
+    .arrival_following (arrival_following),
+    .arrival_ended     (arrival_ended)
   );
 
   geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer sequencer (
-    .aclk           (aclk),
-    .rst            (rst),
-    .orders_valid   (i_valid),
-    .next_sig       (next_sig),
-    .orders_ready   (orders_ready),
-    .beat           (beat),
-    .limit_sig      (limit_sig),
-    .following      (following),
-    .ended          (ended),
-    .orders_payload (i_payload),
-    .header_at      (oldest)
+    .aclk              (aclk),
+    .rst               (rst),
+    .orders_valid      (i_valid),
+    .arrival_next      (arrival_next),
+    .orders_ready      (orders_ready),
+    .beat              (arrival_beat),
+    .arrival_limit     (arrival_limit),
+    .arrival_following (arrival_following),
+    .arrival_ended     (arrival_ended),
+    .orders_payload    (i_payload),
+    .header_at         (oldest)
   );
 
   geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_queue queue (
@@ -1172,7 +1197,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
     .o_ready   (o_ready),
     .i_payload (i_payload),
     .oldest    (oldest),
-    .o_valid   (orders_valid_24),
+    .o_valid   (orders_valid_26),
     .o_payload (orders_payload_22)
   );
 
@@ -1187,8 +1212,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
     .status_ready              (status_ready),
     .rst                       (rst),
     .orders_ready              (o_ready),
-    .beat                      (beat),
-    .orders_valid              (orders_valid_24),
+    .beat                      (arrival_beat),
+    .orders_valid              (orders_valid_26),
     .orders_payload            (orders_payload_22),
     .message_linear_x_valid    (message_linear_x_valid),
     .message_linear_y_valid    (message_linear_y_valid),
@@ -1207,11 +1232,16 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
   );
 
   assign orders_payload = i_payload;
-  assign orders_valid = i_valid;
   assign i_ready = orders_ready;
+  assign orders_valid = i_valid;
   assign o_payload = orders_payload_22;
-  assign o_valid = orders_valid_24;
-  assign orders_ready_27 = o_ready;
+  assign orders_ready_25 = o_ready;
+  assign o_valid = orders_valid_26;
+  assign beat = arrival_beat;
+  assign stall_newest = 1'b0;
+  assign stall_newest_38 = 1'b0;
+  assign zero_length = 1'b0;
+  assign zero_length_40 = 1'b0;
 endmodule
 
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog (

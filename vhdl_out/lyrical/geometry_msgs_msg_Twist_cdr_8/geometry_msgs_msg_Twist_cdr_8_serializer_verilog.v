@@ -24,8 +24,8 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   output wire         message_angular_x_ready,
   output wire         message_angular_y_ready,
   output wire         message_angular_z_ready,
-  output wire [127:0] port_543_0,
-  output wire [32:0]  port_547_0,
+  output wire [127:0] port_545_0,
+  output wire [32:0]  port_549_0,
   output wire         status_valid,
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   output wire [2:0]   status_payload,
@@ -34,7 +34,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
 );
 
   // Registers.
-  reg [32:0] port_547_0_q = 33'd0;
+  reg [32:0] port_549_0_q = 33'd0;
   reg status_valid_q = 1'b0;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   reg [2:0] status_payload_q = 3'd0;
@@ -43,10 +43,10 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   reg served_1 = 1'b0;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   reg [2:0] error_sig = 3'd0;
-  reg [31:0] map_0 = 32'd0;
-  reg [31:0] map_4 = 32'd0;
   reg [31:0] items_0 = 32'd0;
   reg [31:0] items_4 = 32'd0;
+  reg [31:0] map_0 = 32'd0;
+  reg [31:0] map_4 = 32'd0;
   reg begun = 1'b0;
   reg words_last = 1'b1;
   reg words_less = 1'b0;
@@ -78,12 +78,12 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   wire begins;
   wire [3:0] to_map_0;
   wire step_to_exit;
-  wire and_94;
-  wire and_99;
-  wire [31:0] or_118;
-  wire [31:0] or_124;
-  wire [31:0] or_137;
-  wire [5:0] add_154;
+  wire served_0_next;
+  wire and_101;
+  wire [31:0] or_129;
+  wire [31:0] map_0_next;
+  wire [31:0] or_148;
+  wire [5:0] add_155;
   wire [5:0] to_end;
   wire [2:0] end_mask;
 
@@ -105,7 +105,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   wire go_4_0;
   wire go_5_0;
   wire [3:0] items_size;
-  wire nul_now;
   wire step_to_body;
   wire words_down;
   wire words_keeps;
@@ -132,26 +131,26 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   assign lacks_5_1 = left_5_1 & ~message_angular_z_valid;
   assign go_5_1 = left_5_1 & message_angular_z_valid & free & ~lacks_5_0;
   assign free = ~words_valid_q | words_ready;
-  assign or_60 = |{lacks_5_1, lacks_5_0, step[4] & ~message_angular_y_valid, lacks_4_0, step[3] &
-      ~message_angular_x_valid, lacks_3_0, step[2] & ~message_linear_z_valid, lacks_2_0, step[1] &
-      ~message_linear_y_valid, lacks_1_0, step[0] & ~message_linear_x_valid};
+  assign or_60 = |{step[4] & ~message_angular_y_valid, step[3] & ~message_angular_x_valid, step[2] &
+      ~message_linear_z_valid, step[1] & ~message_linear_y_valid, step[0] & ~message_linear_x_valid,
+      lacks_5_1, lacks_5_0, lacks_4_0, lacks_3_0, lacks_2_0, lacks_1_0};
   assign complete = free & ~or_60 & (~step[5] | ~status_valid_q | status_ready);
   assign map_size = {1'd0, map_bytes} + {1'd0, two_word_map ? 4'd8 : 4'd0};
   assign begins = begun | (|items_bytes) | (|map_bytes);
   assign to_map_0 = two_word_map ? 4'd0 : items_bytes;
   assign step_to_exit = complete & ~step[5];
-  assign and_94 = (served_0 | (|{message_angular_y_ready, message_angular_x_ready,
+  assign served_0_next = (served_0 | (|{message_angular_y_ready, message_angular_x_ready,
       message_linear_z_ready, message_linear_y_ready, message_linear_x_ready})) & ~complete;
-  assign and_99 = complete & step[5];
-  assign or_118 = (step[0] ? 32'd256 : 32'd0) | (step[1] ? message_linear_x_payload[63:32] :
+  assign and_101 = complete & step[5];
+  assign or_129 = (step[0] ? 32'd256 : 32'd0) | (step[1] ? message_linear_x_payload[63:32] :
       32'd0) | (step[2] ? message_linear_y_payload[63:32] : 32'd0) | (step[3] ?
       message_linear_z_payload[63:32] : 32'd0);
-  assign or_124 = or_118 | (step[4] ? message_angular_x_payload[63:32] : 32'd0) | (step[5] ?
+  assign map_0_next = or_129 | (step[4] ? message_angular_x_payload[63:32] : 32'd0) | (step[5] ?
       message_angular_z_payload[63:32] : 32'd0);
-  assign or_137 = (step[0] ? message_linear_x_payload[31:0] : 32'd0) | (step[1] ?
+  assign or_148 = (step[0] ? message_linear_x_payload[31:0] : 32'd0) | (step[1] ?
       message_linear_y_payload[31:0] : 32'd0) | (step[2] ? message_linear_z_payload[31:0] : 32'd0) |
       (step[3] ? message_angular_x_payload[31:0] : 32'd0);
-  assign add_154 = {1'd0, 1'b0, to_map_0} + to_end + 6'd7;
+  assign add_155 = {1'd0, 1'b0, to_map_0} + to_end + 6'd7;
 
   assign to_end = step[5] ? (begins ? ({1'd0, map_size} + 6'd7) : 6'd8) :
       {1'b0, map_size};
@@ -161,7 +160,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
 
   always @(posedge aclk) begin
     if (rst) begin
-      port_547_0_q <= 33'd0;
+      port_549_0_q <= 33'd0;
       served_0 <= 1'b0;
       served_1 <= 1'b0;
       error_sig <= 3'd0;
@@ -179,25 +178,26 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
       has_nul <= 1'b0;
     end else begin
       if (free) begin
-        port_547_0_q[32] <= error_sig != 3'd0;
+        port_549_0_q[13:0] <= {1'b0, to_map_0, two_word_map, map_bytes, items_bytes};
+        port_549_0_q[28:26] <= add_155[5:3];
+        port_549_0_q[25:14] <= {end_mask, to_end, 3'd0};
+        port_549_0_q[30] <= ~begins;
         words_valid_q <= complete;
       end
       if (free) begin
-        port_547_0_q[13:0] <= {1'b0, to_map_0, two_word_map, map_bytes, items_bytes};
-        port_547_0_q[28:26] <= add_154[5:3];
-        port_547_0_q[25:14] <= {end_mask, to_end, 3'd0};
-        port_547_0_q[31:29] <= {1'b0, ~begins, step[5]};
+        port_549_0_q[29] <= step[5];
+        port_549_0_q[32:31] <= {error_sig != 3'd0, 1'b0};
       end
-      served_0 <= and_94;
+      served_0 <= served_0_next;
       served_1 <= (served_1 | go_5_1) & ~complete;
-      if (and_99) begin
+      if (and_101) begin
         error_sig <= 3'd0;
         status_payload_q <= error_sig;
       end
       if (status_ready) begin
         status_valid_q <= 1'b0;
       end
-      if (and_99) begin
+      if (and_101) begin
         status_valid_q <= 1'b1;
       end
       if (complete) begin
@@ -224,24 +224,24 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   end
 
   always @(posedge aclk) begin
-    if (free && !(|{step[5] & served_1, (|step[4:1]) & served_0})) begin
-      map_0 <= or_124;
-    end
-    if (free) begin
-      map_4 <= or_137 | (step[4] ? message_angular_y_payload[31:0] : 32'd0);
-    end
     if (free && (!step[5] || !served_0)) begin
       items_0 <= message_angular_y_payload[63:32];
     end
     if (free && (!step[5] || !served_1)) begin
       items_4 <= message_angular_z_payload[31:0];
     end
+    if (free && !(|{step[5] & served_1, (|step[4:1]) & served_0})) begin
+      map_0 <= map_0_next;
+    end
+    if (free) begin
+      map_4 <= or_148 | (step[4] ? message_angular_y_payload[31:0] : 32'd0);
+    end
   end
 
-  assign port_543_0 = {map_4, map_0, items_4, items_0};
+  assign port_545_0 = {map_4, map_0, items_4, items_0};
   assign message_angular_z_ready = go_5_1;
 
-  assign port_547_0 = port_547_0_q;
+  assign port_549_0 = port_549_0_q;
   assign status_valid = status_valid_q;
   assign status_payload = status_payload_q;
   assign words_valid = words_valid_q;
@@ -252,7 +252,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   assign default_3 = step[3];
   assign default_4 = step[4];
   assign default_5 = step[5];
-  assign words_payload = {port_547_0_q, map_4, map_0, items_4, items_0};
+  assign words_payload = {port_549_0_q, map_4, map_0, items_4, items_0};
   assign to_map = {1'b0, to_map_0};
   assign words_loads = 1'b0;
   assign done = 1'b1;
@@ -263,7 +263,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   assign go_4_0 = message_angular_x_ready;
   assign go_5_0 = message_angular_y_ready;
   assign items_size = items_bytes;
-  assign nul_now = 1'b0;
   assign step_to_body = 1'b0;
   assign words_down = 1'b0;
   assign words_keeps = 1'b1;
@@ -304,11 +303,11 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   reg waits = 1'b0;
   reg [3:0] last_bytes = 4'd0;
   reg [3:0] bound = 4'd5;
-  reg [7:0] items_has_0 = 8'd0;
-  reg [7:0] map_has_0 = 8'd0;
-  reg [7:0] map_has_4 = 8'd0;
   reg [3:0] complete = 4'd0;
   reg [7:0] last = 8'd0;
+  reg [7:0] items_0_has = 8'd0;
+  reg [7:0] map_0_has = 8'd0;
+  reg [7:0] map_4_has = 8'd0;
   reg [3:0] first = 4'd0;
 
   // Combinational signals.
@@ -317,26 +316,26 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   wire [6:0] total_6;
   wire [6:0] base;
   wire [6:0] end_sig;
-  wire [3:0] add_13;
+  wire [3:0] map_start_next_3;
   wire [6:0] map_end;
   wire [3:0] newest;
   wire [3:0] room;
-  wire items_used_0;
-  wire items_written_0;
-  wire map_used_0;
-  wire map_written_0;
-  wire map_used_4;
-  wire map_written_4;
   wire [2:0] ends_write_addr;
   wire ends_write_en;
+  wire items_used_0;
+  wire items_0_written;
+  wire map_used_0;
+  wire map_0_written;
+  wire map_used_4;
+  wire map_4_written;
   wire reads;
   wire is_last;
-  wire and_139;
-  wire [2:0] sub_140;
+  wire and_43;
+  wire [2:0] sub_44;
+  wire [4:0] ends_read_data;
   wire [63:0] items_0_read_data;
   wire [31:0] map_0_read_data;
   wire [31:0] map_4_read_data;
-  wire [4:0] ends_read_data;
 
   // Signals that no logic reads, for simulation.
   wire [160:0] words_payload;
@@ -362,8 +361,14 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   wire [2:0] map_4_read_addr;
   wire [2:0] ends_read_addr;
   wire [68:0] payload;
-  wire error_now;
   wire [4:0] ends_write_data;
+
+  reg [4:0] ends [0:7];
+  integer ends_at;
+  initial begin
+    for (ends_at = 0; ends_at < 8; ends_at = ends_at + 1)
+      ends[ends_at] = 5'd0;
+  end
 
   reg [63:0] items_0 [0:7];
   integer items_0_at;
@@ -386,13 +391,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
       map_4[map_4_at] = 32'd0;
   end
 
-  reg [4:0] ends [0:7];
-  integer ends_at;
-  initial begin
-    for (ends_at = 0; ends_at < 8; ends_at = ends_at + 1)
-      ends[ends_at] = 5'd0;
-  end
-
   assign takes = words_valid & words_ready_q;
   assign total = at + {2'd0, words_payload_128[13:9]};
   assign total_6 = base + {1'd0, words_payload_128[22:17]};
@@ -400,22 +398,29 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
       3'd4};
   assign end_sig = (total_6 & ~{4'd0, words_payload_128[25:23]}) | {4'd0, words_payload_128[25:23] &
       (words_payload_128[29] ? 3'd0 : 3'd4)};
-  assign add_13 = base[6:3] + {3'd0, words_payload_128[8]};
-  assign map_end = {add_13, base[2:0]} + {3'd0, words_payload_128[7:4]};
+  assign map_start_next_3 = base[6:3] + {3'd0, words_payload_128[8]};
+  assign map_end = {map_start_next_3, base[2:0]} + {3'd0, words_payload_128[7:4]};
   assign newest = at[6:3] + {1'd0, takes ? words_payload_128[28:26] : 3'd0};
   assign room = bound - newest;
-  assign items_used_0 = writes & (items_size > 4'd0);
-  assign items_written_0 = items_has_0[first[2:0]];
-  assign map_used_0 = writes & (map_size > 4'd0);
-  assign map_written_0 = map_has_0[first[2:0]];
-  assign map_used_4 = writes & (map_size > 4'd4);
-  assign map_written_4 = map_has_4[first[2:0]];
   assign ends_write_addr = complete_next[2:0] - 3'd1;
   assign ends_write_en = writes & ends_packet;
+  assign items_used_0 = writes & (items_size > 4'd0);
+  assign items_0_written = items_0_has[first[2:0]];
+  assign map_used_0 = writes & (map_size > 4'd0);
+  assign map_0_written = map_0_has[first[2:0]];
+  assign map_used_4 = writes & (map_size > 4'd4);
+  assign map_4_written = map_4_has[first[2:0]];
   assign reads = (complete != first) & (~packets_valid_q | packets_ready);
   assign is_last = last[first[2:0]];
-  assign and_139 = writes & ~waits;
-  assign sub_140 = complete_next[2:0] - 3'd1;
+  assign and_43 = writes & ~waits;
+  assign sub_44 = complete_next[2:0] - 3'd1;
+
+  always @(posedge aclk) begin
+    if (ends_write_en) begin
+      ends[ends_write_addr] <= {failed, last_bytes};
+    end
+  end
+  assign ends_read_data = ends[first[2:0]];
 
   always @(posedge aclk) begin
     if (items_used_0) begin
@@ -439,13 +444,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign map_4_read_data = map_4[first[2:0]];
 
   always @(posedge aclk) begin
-    if (ends_write_en) begin
-      ends[ends_write_addr] <= {failed, last_bytes};
-    end
-  end
-  assign ends_read_data = ends[first[2:0]];
-
-  always @(posedge aclk) begin
     if (rst) begin
       writes <= 1'b0;
       items_start <= 7'd0;
@@ -460,11 +458,11 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
       last_bytes <= 4'd0;
       words_ready_q <= 1'b1;
       bound <= 4'd5;
-      items_has_0 <= 8'd0;
-      map_has_0 <= 8'd0;
-      map_has_4 <= 8'd0;
       complete <= 4'd0;
       last <= 8'd0;
+      items_0_has <= 8'd0;
+      map_0_has <= 8'd0;
+      map_4_has <= 8'd0;
       packets_valid_q <= 1'b0;
       first <= 4'd0;
     end else begin
@@ -476,7 +474,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
           items_start <= at;
         end
         items_size <= words_payload_128[3:0];
-        map_start <= {add_13, base[2:0]};
+        map_start <= {map_start_next_3, base[2:0]};
         map_size <= words_payload_128[7:4];
         at <= end_sig;
         complete_next <= end_sig[6:3];
@@ -494,130 +492,10 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
         bound <= bound + 4'd1;
         first <= first + 4'd1;
       end
-      if (reads && (first[2:0] == 3'd0)) begin
-        items_has_0[0] <= 1'b0;
-      end else if (items_used_0 && (items_start[5:3] == 3'd0)) begin
-        items_has_0[0] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd1)) begin
-        items_has_0[1] <= 1'b0;
-      end else if (items_used_0 && (items_start[5:3] == 3'd1)) begin
-        items_has_0[1] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd2)) begin
-        items_has_0[2] <= 1'b0;
-      end else if (items_used_0 && (items_start[5:3] == 3'd2)) begin
-        items_has_0[2] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd3)) begin
-        items_has_0[3] <= 1'b0;
-      end else if (items_used_0 && (items_start[5:3] == 3'd3)) begin
-        items_has_0[3] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd4)) begin
-        items_has_0[4] <= 1'b0;
-      end else if (items_used_0 && (items_start[5:3] == 3'd4)) begin
-        items_has_0[4] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd5)) begin
-        items_has_0[5] <= 1'b0;
-      end else if (items_used_0 && (items_start[5:3] == 3'd5)) begin
-        items_has_0[5] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd6)) begin
-        items_has_0[6] <= 1'b0;
-      end else if (items_used_0 && (items_start[5:3] == 3'd6)) begin
-        items_has_0[6] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd7)) begin
-        items_has_0[7] <= 1'b0;
-      end else if (items_used_0 && (items_start[5:3] == 3'd7)) begin
-        items_has_0[7] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd0)) begin
-        map_has_0[0] <= 1'b0;
-      end else if (map_used_0 && (map_start[5:3] == 3'd0)) begin
-        map_has_0[0] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd1)) begin
-        map_has_0[1] <= 1'b0;
-      end else if (map_used_0 && (map_start[5:3] == 3'd1)) begin
-        map_has_0[1] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd2)) begin
-        map_has_0[2] <= 1'b0;
-      end else if (map_used_0 && (map_start[5:3] == 3'd2)) begin
-        map_has_0[2] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd3)) begin
-        map_has_0[3] <= 1'b0;
-      end else if (map_used_0 && (map_start[5:3] == 3'd3)) begin
-        map_has_0[3] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd4)) begin
-        map_has_0[4] <= 1'b0;
-      end else if (map_used_0 && (map_start[5:3] == 3'd4)) begin
-        map_has_0[4] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd5)) begin
-        map_has_0[5] <= 1'b0;
-      end else if (map_used_0 && (map_start[5:3] == 3'd5)) begin
-        map_has_0[5] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd6)) begin
-        map_has_0[6] <= 1'b0;
-      end else if (map_used_0 && (map_start[5:3] == 3'd6)) begin
-        map_has_0[6] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd7)) begin
-        map_has_0[7] <= 1'b0;
-      end else if (map_used_0 && (map_start[5:3] == 3'd7)) begin
-        map_has_0[7] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd0)) begin
-        map_has_4[0] <= 1'b0;
-      end else if (map_used_4 && (map_start[5:3] == 3'd0)) begin
-        map_has_4[0] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd1)) begin
-        map_has_4[1] <= 1'b0;
-      end else if (map_used_4 && (map_start[5:3] == 3'd1)) begin
-        map_has_4[1] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd2)) begin
-        map_has_4[2] <= 1'b0;
-      end else if (map_used_4 && (map_start[5:3] == 3'd2)) begin
-        map_has_4[2] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd3)) begin
-        map_has_4[3] <= 1'b0;
-      end else if (map_used_4 && (map_start[5:3] == 3'd3)) begin
-        map_has_4[3] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd4)) begin
-        map_has_4[4] <= 1'b0;
-      end else if (map_used_4 && (map_start[5:3] == 3'd4)) begin
-        map_has_4[4] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd5)) begin
-        map_has_4[5] <= 1'b0;
-      end else if (map_used_4 && (map_start[5:3] == 3'd5)) begin
-        map_has_4[5] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd6)) begin
-        map_has_4[6] <= 1'b0;
-      end else if (map_used_4 && (map_start[5:3] == 3'd6)) begin
-        map_has_4[6] <= 1'b1;
-      end
-      if (reads && (first[2:0] == 3'd7)) begin
-        map_has_4[7] <= 1'b0;
-      end else if (map_used_4 && (map_start[5:3] == 3'd7)) begin
-        map_has_4[7] <= 1'b1;
-      end
-      if (and_139) begin
+      if (and_43) begin
         complete <= complete_next;
         if (ends_packet) begin
-          case (sub_140)
+          case (sub_44)
             3'd0: last[0] <= 1'b1;
             3'd1: last[1] <= 1'b1;
             3'd2: last[2] <= 1'b1;
@@ -643,6 +521,126 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
           default: ;
         endcase
       end
+      if (reads && (first[2:0] == 3'd0)) begin
+        items_0_has[0] <= 1'b0;
+      end else if (items_used_0 && (items_start[5:3] == 3'd0)) begin
+        items_0_has[0] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd1)) begin
+        items_0_has[1] <= 1'b0;
+      end else if (items_used_0 && (items_start[5:3] == 3'd1)) begin
+        items_0_has[1] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd2)) begin
+        items_0_has[2] <= 1'b0;
+      end else if (items_used_0 && (items_start[5:3] == 3'd2)) begin
+        items_0_has[2] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd3)) begin
+        items_0_has[3] <= 1'b0;
+      end else if (items_used_0 && (items_start[5:3] == 3'd3)) begin
+        items_0_has[3] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd4)) begin
+        items_0_has[4] <= 1'b0;
+      end else if (items_used_0 && (items_start[5:3] == 3'd4)) begin
+        items_0_has[4] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd5)) begin
+        items_0_has[5] <= 1'b0;
+      end else if (items_used_0 && (items_start[5:3] == 3'd5)) begin
+        items_0_has[5] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd6)) begin
+        items_0_has[6] <= 1'b0;
+      end else if (items_used_0 && (items_start[5:3] == 3'd6)) begin
+        items_0_has[6] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd7)) begin
+        items_0_has[7] <= 1'b0;
+      end else if (items_used_0 && (items_start[5:3] == 3'd7)) begin
+        items_0_has[7] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd0)) begin
+        map_0_has[0] <= 1'b0;
+      end else if (map_used_0 && (map_start[5:3] == 3'd0)) begin
+        map_0_has[0] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd1)) begin
+        map_0_has[1] <= 1'b0;
+      end else if (map_used_0 && (map_start[5:3] == 3'd1)) begin
+        map_0_has[1] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd2)) begin
+        map_0_has[2] <= 1'b0;
+      end else if (map_used_0 && (map_start[5:3] == 3'd2)) begin
+        map_0_has[2] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd3)) begin
+        map_0_has[3] <= 1'b0;
+      end else if (map_used_0 && (map_start[5:3] == 3'd3)) begin
+        map_0_has[3] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd4)) begin
+        map_0_has[4] <= 1'b0;
+      end else if (map_used_0 && (map_start[5:3] == 3'd4)) begin
+        map_0_has[4] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd5)) begin
+        map_0_has[5] <= 1'b0;
+      end else if (map_used_0 && (map_start[5:3] == 3'd5)) begin
+        map_0_has[5] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd6)) begin
+        map_0_has[6] <= 1'b0;
+      end else if (map_used_0 && (map_start[5:3] == 3'd6)) begin
+        map_0_has[6] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd7)) begin
+        map_0_has[7] <= 1'b0;
+      end else if (map_used_0 && (map_start[5:3] == 3'd7)) begin
+        map_0_has[7] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd0)) begin
+        map_4_has[0] <= 1'b0;
+      end else if (map_used_4 && (map_start[5:3] == 3'd0)) begin
+        map_4_has[0] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd1)) begin
+        map_4_has[1] <= 1'b0;
+      end else if (map_used_4 && (map_start[5:3] == 3'd1)) begin
+        map_4_has[1] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd2)) begin
+        map_4_has[2] <= 1'b0;
+      end else if (map_used_4 && (map_start[5:3] == 3'd2)) begin
+        map_4_has[2] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd3)) begin
+        map_4_has[3] <= 1'b0;
+      end else if (map_used_4 && (map_start[5:3] == 3'd3)) begin
+        map_4_has[3] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd4)) begin
+        map_4_has[4] <= 1'b0;
+      end else if (map_used_4 && (map_start[5:3] == 3'd4)) begin
+        map_4_has[4] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd5)) begin
+        map_4_has[5] <= 1'b0;
+      end else if (map_used_4 && (map_start[5:3] == 3'd5)) begin
+        map_4_has[5] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd6)) begin
+        map_4_has[6] <= 1'b0;
+      end else if (map_used_4 && (map_start[5:3] == 3'd6)) begin
+        map_4_has[6] <= 1'b1;
+      end
+      if (reads && (first[2:0] == 3'd7)) begin
+        map_4_has[7] <= 1'b0;
+      end else if (map_used_4 && (map_start[5:3] == 3'd7)) begin
+        map_4_has[7] <= 1'b1;
+      end
       if (packets_ready) begin
         packets_valid_q <= 1'b0;
       end
@@ -658,9 +656,9 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
       map_placed <= words_payload_0[127:64];
     end
     if (reads) begin
-      packets_payload_q[63:0] <= {(items_written_0 ? items_0_read_data[63:32] : 32'd0) |
-          (map_written_4 ? map_4_read_data : 32'd0), (items_written_0 ? items_0_read_data[31:0] :
-          32'd0) | (map_written_0 ? map_0_read_data : 32'd0)};
+      packets_payload_q[63:0] <= {(items_0_written ? items_0_read_data[63:32] : 32'd0) |
+          (map_4_written ? map_4_read_data : 32'd0), (items_0_written ? items_0_read_data[31:0] :
+          32'd0) | (map_0_written ? map_0_read_data : 32'd0)};
       packets_payload_q[68] <= is_last;
       if (is_last) begin
         packets_payload_q[67:64] <= ends_read_data[3:0];
@@ -677,7 +675,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign error_sig = error_sig_q;
 
   assign words_payload = {words_payload_128, words_payload_0};
-  assign map_at = {add_13, base[2:0]};
+  assign map_at = {map_start_next_3, base[2:0]};
   assign ready = words_ready_q;
   assign items_index_0 = 3'd0;
   assign items_slot_0 = items_start[5:3];
@@ -699,7 +697,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign map_4_read_addr = first[2:0];
   assign ends_read_addr = first[2:0];
   assign payload = packets_payload_q;
-  assign error_now = error_sig_q;
   assign ends_write_data = {failed, last_bytes};
 endmodule
 
@@ -767,8 +764,8 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core (
     .message_angular_x_ready   (message_angular_x_ready),
     .message_angular_y_ready   (message_angular_y_ready),
     .message_angular_z_ready   (message_angular_z_ready),
-    .port_543_0                (words_payload_0),
-    .port_547_0                (words_payload_128),
+    .port_545_0                (words_payload_0),
+    .port_549_0                (words_payload_128),
     .status_valid              (status_valid),
     .status_payload            (status_payload),
     .words_valid               (words_valid),

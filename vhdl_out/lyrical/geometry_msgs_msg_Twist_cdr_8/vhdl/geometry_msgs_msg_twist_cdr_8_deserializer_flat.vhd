@@ -14,50 +14,50 @@ use work.firm_hdl_pkg.all;
 
 entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer is
   port (
-    rst             : in  std_logic;
-    aclk            : in  std_logic;
-    packets_valid   : in  std_logic;
-    next_sig        : in  std_logic;
-    freed           : in  unsigned(3 downto 0);
-    packets_payload : in  unsigned(68 downto 0);
-    beat            : out unsigned(73 downto 0);
-    packets_ready   : out std_logic;
-    limit_sig       : out unsigned(6 downto 0);
-    following       : out unsigned(3 downto 0);
-    ended           : out std_logic
+    rst               : in  std_logic;
+    aclk              : in  std_logic;
+    packets_valid     : in  std_logic;
+    arrival_next      : in  std_logic;
+    freed             : in  unsigned(3 downto 0);
+    packets_payload   : in  unsigned(68 downto 0);
+    arrival_beat      : out unsigned(73 downto 0);
+    packets_ready     : out std_logic;
+    arrival_limit     : out unsigned(6 downto 0);
+    arrival_following : out unsigned(3 downto 0);
+    arrival_ended     : out std_logic
   );
 end entity;
 
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer is
 
   -- Registers.
-  signal packets_ready_q : std_logic := '1';
-  signal limit_sig_q     : unsigned(6 downto 0) := (others => '0');
-  signal following_q     : unsigned(3 downto 0) := (others => '0');
-  signal ended_q         : std_logic := '0';
-  signal full            : std_logic := '0';
-  signal payload         : unsigned(68 downto 0) := (others => '0');
-  signal arrived         : unsigned(3 downto 0) := (others => '0');
-  signal at              : unsigned(3 downto 0) := (others => '0');
-  signal second          : unsigned(10 downto 0) := (others => '0');
-  signal has_second      : std_logic := '0';
-  signal pushed          : unsigned(3 downto 0) := (others => '0');
-  signal popped          : unsigned(3 downto 0) := (others => '0');
+  signal packets_ready_q     : std_logic := '1';
+  signal arrival_limit_q     : unsigned(6 downto 0) := (others => '0');
+  signal arrival_following_q : unsigned(3 downto 0) := (others => '0');
+  signal arrival_ended_q     : std_logic := '0';
+  signal full                : std_logic := '0';
+  signal payload             : unsigned(68 downto 0) := (others => '0');
+  signal arrived             : unsigned(3 downto 0) := (others => '0');
+  signal at                  : unsigned(3 downto 0) := (others => '0');
+  signal second              : unsigned(10 downto 0) := (others => '0');
+  signal has_second          : std_logic := '0';
+  signal pushed              : unsigned(3 downto 0) := (others => '0');
+  signal popped              : unsigned(3 downto 0) := (others => '0');
 
   -- Combinational signals.
-  signal arrives        : std_logic;
-  signal used           : unsigned(3 downto 0);
-  signal next_beat      : unsigned(3 downto 0);
-  signal ends_now       : std_logic;
-  signal add_3          : unsigned(6 downto 0);
-  signal newest_0       : unsigned(6 downto 0);
-  signal stored         : std_logic;
-  signal more           : std_logic;
-  signal follows        : std_logic;
-  signal or_14          : std_logic;
-  signal mux_15         : unsigned(10 downto 0);
-  signal mux_22         : std_logic;
-  signal ends_read_data : unsigned(10 downto 0);
+  signal arrives            : std_logic;
+  signal used               : unsigned(3 downto 0);
+  signal next_beat          : unsigned(3 downto 0);
+  signal ends_now           : std_logic;
+  signal add_3              : unsigned(6 downto 0);
+  signal newest_0           : unsigned(6 downto 0);
+  signal stored             : std_logic;
+  signal more               : std_logic;
+  signal follows            : std_logic;
+  signal or_14              : std_logic;
+  signal arrival_limit_next : unsigned(10 downto 0);
+  signal has_second_next    : std_logic;
+  signal ends_read_data     : unsigned(10 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal room            : std_logic;
@@ -80,10 +80,11 @@ begin
   newest_0 <= add_3 when ends_now = '1' else mux(full, next_beat, at) & "000";
   stored <= '1' when pushed /= popped else '0';
   more <= stored or ends_now;
-  follows <= ended_q and ends_now;
-  or_14 <= next_sig or not ended_q;
-  mux_15 <= second when has_second = '1' else next_beat & newest_0;
-  mux_22 <= not next_sig or more when has_second = '1' else not next_sig and follows;
+  follows <= arrival_ended_q and ends_now;
+  or_14 <= arrival_next or not arrival_ended_q;
+  arrival_limit_next <= second when has_second = '1' else next_beat & newest_0;
+  has_second_next <= not arrival_next or more when has_second = '1' else not arrival_next and
+      follows;
 
   process (aclk)
   begin
@@ -102,9 +103,9 @@ begin
         arrived <= (others => '0');
         at <= (others => '0');
         packets_ready_q <= '1';
-        limit_sig_q <= (others => '0');
-        following_q <= (others => '0');
-        ended_q <= '0';
+        arrival_limit_q <= (others => '0');
+        arrival_following_q <= (others => '0');
+        arrival_ended_q <= '0';
         second <= (others => '0');
         has_second <= '0';
         pushed <= (others => '0');
@@ -115,22 +116,22 @@ begin
         at <= at + full;
         packets_ready_q <= not used(3) and not (to_std_logic(used = 7) and arrives);
         if or_14 = '1' then
-          limit_sig_q <= mux_15(6 downto 0);
-          following_q <= mux_15(10 downto 7);
-          ended_q <= has_second or ends_now;
+          arrival_limit_q <= arrival_limit_next(6 downto 0);
+          arrival_following_q <= arrival_limit_next(10 downto 7);
+          arrival_ended_q <= has_second or ends_now;
         end if;
-        if next_sig = '1' or has_second = '0' then
+        if arrival_next = '1' or has_second = '0' then
           if stored = '1' then
             second <= ends_read_data;
           else
             second <= next_beat & add_3;
           end if;
         end if;
-        has_second <= mux_22;
+        has_second <= has_second_next;
         if has_second = '1' and ends_now = '1' then
           pushed <= pushed + 1;
         end if;
-        if next_sig = '1' and has_second = '1' and more = '1' then
+        if arrival_next = '1' and has_second = '1' and more = '1' then
           popped <= popped + 1;
         end if;
       end if;
@@ -144,12 +145,12 @@ begin
     end if;
   end process;
 
-  beat <= full & at & payload;
+  arrival_beat <= full & at & payload;
 
   packets_ready <= packets_ready_q;
-  limit_sig <= limit_sig_q;
-  following <= following_q;
-  ended <= ended_q;
+  arrival_limit <= arrival_limit_q;
+  arrival_following <= arrival_following_q;
+  arrival_ended <= arrival_ended_q;
 
   room <= packets_ready_q;
   ends_write_addr <= pushed(2 downto 0);
@@ -161,7 +162,7 @@ begin
 
 end architecture;
 
--- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.sequencer.marks of the Amaranth design.
+-- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.sequencer.byte_flags of the Amaranth design.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -169,7 +170,7 @@ use ieee.numeric_std.all;
 
 use work.firm_hdl_pkg.all;
 
-entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_marks is
+entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_byte_flags is
   port (
     rst       : in  std_logic;
     aclk      : in  std_logic;
@@ -179,7 +180,7 @@ entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_marks is
   );
 end entity;
 
-architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_marks is
+architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_byte_flags is
 
   -- Combinational signals.
   signal headers_write_data : std_logic;
@@ -227,17 +228,17 @@ use work.firm_hdl_pkg.all;
 
 entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer is
   port (
-    rst            : in  std_logic;
-    aclk           : in  std_logic;
-    orders_valid   : out std_logic;
-    next_sig       : out std_logic;
-    orders_ready   : in  std_logic;
-    beat           : in  unsigned(73 downto 0);
-    limit_sig      : in  unsigned(6 downto 0);
-    following      : in  unsigned(3 downto 0);
-    ended          : in  std_logic;
-    orders_payload : out unsigned(41 downto 0);
-    header_at      : out unsigned(3 downto 0)
+    rst               : in  std_logic;
+    aclk              : in  std_logic;
+    orders_valid      : out std_logic;
+    arrival_next      : out std_logic;
+    orders_ready      : in  std_logic;
+    beat              : in  unsigned(73 downto 0);
+    arrival_limit     : in  unsigned(6 downto 0);
+    arrival_following : in  unsigned(3 downto 0);
+    arrival_ended     : in  std_logic;
+    orders_payload    : out unsigned(41 downto 0);
+    header_at         : out unsigned(3 downto 0)
   );
 end entity;
 
@@ -245,51 +246,50 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
 
   -- Registers.
   signal bad          : std_logic := '0';
-  signal new_error    : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal code         : unsigned(2 downto 0) := (others => '0');
+  signal new_error    : std_logic := '0';
   signal items_room   : unsigned(3 downto 0) := (others => '0');
   signal map_room     : unsigned(3 downto 0) := (others => '0');
-  signal words_last   : std_logic := '1';
-  signal words_less   : std_logic := '0';
-  signal step         : unsigned(6 downto 0) := "0000001";
-  signal map_offset   : unsigned(4 downto 0) := "11001";
-  signal two_word_map : std_logic := '0';
-  signal at_end       : std_logic := '0';
-  signal exit_add     : unsigned(5 downto 0) := "001000";
   signal rest         : std_logic := '0';
   signal has_nul      : std_logic := '0';
   signal first_at     : unsigned(6 downto 0) := (others => '0');
   signal last_at      : unsigned(6 downto 0) := "0000111";
+  signal words_last   : std_logic := '1';
+  signal words_less   : std_logic := '0';
+  signal step         : unsigned(6 downto 0) := "0000001";
+  signal at_end       : std_logic := '0';
+  signal map_offset   : unsigned(4 downto 0) := "11001";
+  signal two_word_map : std_logic := '0';
+  signal exit_add     : unsigned(5 downto 0) := "001000";
 
   -- Combinational signals.
-  signal mismatch_36  : std_logic;
-  signal step_end     : unsigned(6 downto 0);
-  signal left         : unsigned(6 downto 0);
-  signal present      : std_logic;
-  signal ends_message : std_logic;
-  signal ends_packet  : std_logic;
-  signal map_at       : unsigned(6 downto 0);
-  signal sub_12       : unsigned(3 downto 0);
-  signal trailing_34  : std_logic;
-  signal mismatch     : std_logic;
-  signal good         : std_logic;
-  signal cut          : std_logic;
-  signal sub_39       : unsigned(5 downto 0);
-  signal or_83        : unsigned(5 downto 0);
-  signal map_left     : unsigned(6 downto 0);
-  signal drains       : std_logic;
-  signal allowed      : std_logic;
-  signal issue        : std_logic;
-  signal step_to_exit : std_logic;
-  signal exit_sum     : unsigned(6 downto 0);
-  signal early_last   : unsigned(6 downto 0);
-  signal mux_194      : unsigned(2 downto 0);
-  signal and_195      : std_logic;
-  signal mux_210      : unsigned(3 downto 0);
-  signal mux_215      : unsigned(3 downto 0);
-  signal mux_222      : unsigned(3 downto 0);
-  signal mux_278      : unsigned(6 downto 0);
+  signal mismatch_31     : std_logic;
+  signal step_end        : unsigned(6 downto 0);
+  signal left            : unsigned(6 downto 0);
+  signal present         : std_logic;
+  signal ends_message    : std_logic;
+  signal ends_packet     : std_logic;
+  signal mismatch        : std_logic;
+  signal cut             : std_logic;
+  signal trailing        : std_logic;
+  signal stops           : std_logic;
+  signal drains          : std_logic;
+  signal allowed         : std_logic;
+  signal issue           : std_logic;
+  signal map_at          : unsigned(6 downto 0);
+  signal sub_77          : unsigned(3 downto 0);
+  signal sub_88          : unsigned(5 downto 0);
+  signal or_132          : unsigned(5 downto 0);
+  signal map_left        : unsigned(6 downto 0);
+  signal exit_sum        : unsigned(6 downto 0);
+  signal early_last      : unsigned(6 downto 0);
+  signal step_to_exit    : std_logic;
+  signal and_187         : std_logic;
+  signal and_201         : std_logic;
+  signal and_203         : std_logic;
+  signal items_room_next : unsigned(3 downto 0);
+  signal first_at_next   : unsigned(6 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal default_0     : std_logic;
@@ -298,161 +298,182 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal default_3     : std_logic;
   signal default_4     : std_logic;
   signal default_5     : std_logic;
-  signal trailing      : unsigned(1 downto 0);
-  signal items_at      : unsigned(6 downto 0);
+  signal arrival_beat  : unsigned(73 downto 0);
   signal nul_at        : unsigned(6 downto 0);
-  signal nul_at_28     : unsigned(6 downto 0);
+  signal nul_at_23     : unsigned(6 downto 0);
   signal nonzero       : std_logic;
   signal nul_within    : unsigned(6 downto 0);
   signal oldest        : unsigned(3 downto 0);
-  signal words_loads   : std_logic;
+  signal items_at      : unsigned(6 downto 0);
   signal next_packet   : unsigned(6 downto 0);
-  signal tail          : unsigned(5 downto 0);
+  signal over_rest     : unsigned(5 downto 0);
   signal to_exit_low   : unsigned(6 downto 0);
   signal body_sum      : unsigned(6 downto 0);
-  signal to_body_mask  : unsigned(2 downto 0);
   signal to_body_low   : unsigned(6 downto 0);
+  signal words_loads   : std_logic;
   signal exits_always  : std_logic;
   signal done          : std_logic;
   signal wrong_nul     : std_logic;
-  signal begins        : std_logic;
   signal items_wanted  : unsigned(3 downto 0);
+  signal exit_amount   : unsigned(5 downto 0);
+  signal to_exit_mask  : unsigned(2 downto 0);
+  signal body_amount   : unsigned(5 downto 0);
+  signal to_body_mask  : unsigned(2 downto 0);
+  signal next_last     : unsigned(6 downto 0);
   signal step_to_body  : std_logic;
   signal words_down    : std_logic;
   signal words_keeps   : std_logic;
-  signal to_exit_rest  : std_logic;
-  signal exit_amount   : unsigned(5 downto 0);
-  signal to_exit_mask  : unsigned(2 downto 0);
-  signal to_body_rest  : std_logic;
-  signal body_amount   : unsigned(5 downto 0);
-  signal next_last     : unsigned(6 downto 0);
   signal words_pending : std_logic;
   signal words_value   : unsigned(2 downto 0);
 begin
 
-  marks : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_marks
+  byte_flags : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_byte_flags
     port map (
       aclk      => aclk,
       rst       => rst,
-      mismatch  => mismatch_36,
+      mismatch  => mismatch_31,
       beat      => beat,
       header_at => first_at(6 downto 3)
     );
 
   step_end <= last_at + 1;
-  left <= limit_sig + not last_at;
+  left <= arrival_limit + not last_at;
   present <= not left(6);
   ends_message <= at_end or step(5);
-  ends_packet <= ends_message and ended;
+  ends_packet <= ends_message and arrival_ended;
+  mismatch <= '1' when step(0) = '1' and mismatch_31 = '1' and arrival_limit /= first_at else '0';
+  cut <= arrival_ended and not present;
+  trailing <= present and (or left(5 downto 2));
+  stops <= mismatch or cut or (ends_message and not arrival_ended and trailing);
+  drains <= bad and not new_error and (not at_end or arrival_ended);
+  allowed <= not bad and (not ends_message or arrival_ended);
+  orders_valid <= drains or (allowed and present and not (step(0) and mismatch_31));
+  issue <= (drains and orders_ready) or (allowed and orders_ready and present and not (step(0) and
+      mismatch_31));
+  arrival_next <= (drains and orders_ready and ends_packet) or (allowed and orders_ready and
+      ends_packet and present and not (step(0) and mismatch_31));
   map_at <= last_at + sign_extend(map_offset, 7);
-  sub_12 <= map_at(6 downto 3) - two_word_map;
-  trailing_34 <= present and (or left(5 downto 2));
-  mismatch <= '1' when step(0) = '1' and mismatch_36 = '1' and limit_sig /= first_at else '0';
-  good <= present and not (step(0) and mismatch_36);
-  cut <= ended and not present;
-  sub_39 <= unsigned'("000001") - sign_extend(map_offset, 6);
-  or_83 <= (limit_sig(5 downto 0) and not last_at(5 downto 0)) or (limit_sig(5 downto 0) and
-      unsigned'("000001") - sign_extend(map_offset, 6)) or (not last_at(5 downto 0) and
-      unsigned'("000001") - sign_extend(map_offset, 6));
-  map_left <= (limit_sig xor not last_at xor unsigned'(sub_39(5) &
-      (unsigned'("000001") - sign_extend(map_offset, 6)))) + unsigned'(or_83 & '0');
-  drains <= bad and not new_error and (not at_end or ended);
-  allowed <= not bad and (not ends_message or ended);
-  orders_valid <= drains or (allowed and good);
-  issue <= (drains and orders_ready) or (allowed and orders_ready and good);
-  next_sig <= (drains and orders_ready and ends_packet) or (allowed and orders_ready and
-      ends_packet and good);
-  step_to_exit <= issue and not ends_packet;
+  sub_77 <= map_at(6 downto 3) - two_word_map;
+  sub_88 <= unsigned'("000001") - sign_extend(map_offset, 6);
+  or_132 <= (arrival_limit(5 downto 0) and not last_at(5 downto 0)) or
+      (arrival_limit(5 downto 0) and unsigned'("000001") - sign_extend(map_offset, 6)) or
+      (not last_at(5 downto 0) and unsigned'("000001") - sign_extend(map_offset, 6));
+  map_left <= (arrival_limit xor not last_at xor unsigned'(sub_88(5) &
+      (unsigned'("000001") - sign_extend(map_offset, 6)))) + unsigned'(or_132 & '0');
   exit_sum <= last_at + exit_add;
-  early_last <= unsigned'(following & "000") + 7 when ends_packet = '1' else exit_sum;
-  mux_194 <= "100" when mismatch = '1' else mux(cut, "001", mux(ends_message, "010", "011"));
-  and_195 <= drains and orders_ready;
-  mux_210 <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0), "000"), 4),
-      "1000") when two_word_map = '1' else mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8),
-      "1000", map_left(3 downto 0)));
-  mux_215 <= mux_210 when code = 1 else mux(to_std_logic(code = 2) or to_std_logic(code = 5),
-      "1000", "0000");
-  mux_222 <= mux(map_left(6), "0000", mux(to_std_logic(map_left >= 8), "1000",
-      map_left(3 downto 0))) when code = 1 else mux(to_std_logic(code = 2), "1000", "0000");
-  mux_278 <= following & "000" when ends_packet = '1' else mux(bad, mux(at_end, limit_sig,
-      first_at), step_end);
+  early_last <= unsigned'(arrival_following & "000") + 7 when ends_packet = '1' else exit_sum;
+  step_to_exit <= issue and not ends_packet;
+  and_187 <= issue and ends_packet;
+  and_201 <= bad and new_error;
+  and_203 <= bad and drains and orders_ready;
+  items_room_next <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0),
+      "000"), 4), "1000") when two_word_map = '1' else mux(map_left(6), "0000",
+      mux(to_std_logic(map_left >= 8), "1000", map_left(3 downto 0)));
+  first_at_next <= arrival_following & "000" when ends_packet = '1' else mux(bad, mux(at_end,
+      arrival_limit, first_at), step_end);
 
   p_aclk : process (aclk)
   begin
     if rising_edge(aclk) then
       if rst = '1' then
         bad <= '0';
-        new_error <= '0';
         code <= (others => '0');
+        new_error <= '0';
         items_room <= (others => '0');
         map_room <= (others => '0');
-        words_last <= '1';
-        words_less <= '0';
-        step <= "0000001";
-        map_offset <= "11001";
-        two_word_map <= '0';
-        at_end <= '0';
-        exit_add <= "001000";
         rest <= '0';
         has_nul <= '0';
         first_at <= (others => '0');
         last_at <= "0000111";
+        words_last <= '1';
+        words_less <= '0';
+        step <= "0000001";
+        at_end <= '0';
+        map_offset <= "11001";
+        two_word_map <= '0';
+        exit_add <= "001000";
       else
-        if issue = '1' and ends_packet = '1' then
+        if and_187 = '1' then
           bad <= '0';
         elsif bad = '0' then
-          bad <= mismatch or cut or (ends_message and not ended and trailing_34);
+          bad <= stops;
+          if ends_message = '1' then
+            code <= "010";
+          else
+            code <= "011";
+          end if;
+          if mismatch = '1' then
+            code <= "100";
+          elsif cut = '1' then
+            code <= "001";
+          end if;
         end if;
-        if bad = '0' then
-          new_error <= mismatch or cut or (ends_message and not ended and trailing_34);
-          code <= mux_194;
-        end if;
-        if bad = '1' then
-          new_error <= '0';
-          if new_error = '1' then
-            items_room <= mux_215;
-            map_room <= mux_222;
-          elsif and_195 = '1' then
+        new_error <= stops and not bad;
+        if and_201 = '1' then
+          if code = 2 or code = 5 then
+            items_room <= "1000";
+          else
             items_room <= (others => '0');
+          end if;
+          if code = 1 then
+            items_room <= items_room_next;
+          end if;
+          if code = 2 then
+            map_room <= "1000";
+          else
             map_room <= (others => '0');
           end if;
-        end if;
-        words_last <= words_last;
-        words_less <= words_less;
-        if issue = '1' then
-          if ends_packet = '1' then
-            step <= "0000001";
-            map_offset <= "11001";
-            two_word_map <= '0';
-            at_end <= '0';
-            exit_add <= "001000";
-          else
-            step <= step(5 downto 0) & '0';
-            map_offset <= (or step(4 downto 0)) & (or step(4 downto 0)) & step(4) & '0' &
-                (or step(5 downto 0));
-            two_word_map <= step(4);
-            at_end <= step(5);
-            exit_add <= resize(unsigned'((or step(3 downto 0)) & step(3) & "00"), 6);
+          if code = 1 then
+            if map_left(6) = '1' then
+              map_room <= (others => '0');
+            else
+              if map_left >= 8 then
+                map_room <= "1000";
+              else
+                map_room <= map_left(3 downto 0);
+              end if;
+            end if;
           end if;
+        elsif and_203 = '1' then
+          items_room <= (others => '0');
+          map_room <= (others => '0');
+        end if;
+        if issue = '1' then
           if ends_packet = '1' then
             rest <= '0';
             has_nul <= '0';
           end if;
           last_at <= early_last;
+          if ends_packet = '1' then
+            step <= "0000001";
+            at_end <= '0';
+            map_offset <= "11001";
+            two_word_map <= '0';
+            exit_add <= "001000";
+          else
+            step <= step(5 downto 0) & '0';
+            at_end <= step(5);
+            map_offset <= (or step(4 downto 0)) & (or step(4 downto 0)) & step(4) & '0' &
+                (or step(5 downto 0));
+            two_word_map <= step(4);
+            exit_add <= resize(unsigned'((or step(3 downto 0)) & step(3) & "00"), 6);
+          end if;
         end if;
         if issue = '1' or (bad = '1' and at_end = '1') then
-          first_at <= mux_278;
+          first_at <= first_at_next;
         end if;
+        words_last <= words_last;
+        words_less <= words_less;
       end if;
     end if;
   end process;
 
   header_at <= first_at(6 downto 3);
-  orders_payload <= mux(bad, code, mux(trailing_34, "010", "000")) & ends_packet &
+  orders_payload <= mux(bad, code, mux(trailing, "010", "000")) & ends_packet &
       first_at(6 downto 3) & '0' & not bad & words_last & '0' & mux(bad, map_room, "1000") &
       mux(bad and not to_std_logic(items_room >= 8), items_room, "1000") &
-      (map_at(5 downto 3) + 1) & (sub_12(2 downto 0) + 1) & map_at(5 downto 0) &
-      sub_12(2 downto 0) & map_at(2 downto 0) & at_end & (or step(5 downto 4)) &
+      (map_at(5 downto 3) + 1) & (sub_77(2 downto 0) + 1) & map_at(5 downto 0) &
+      sub_77(2 downto 0) & map_at(2 downto 0) & at_end & (or step(5 downto 4)) &
       (or step(3 downto 2)) & (or unsigned'(step(5) & step(3) & step(1)));
 
   default_0 <= step(0);
@@ -461,34 +482,31 @@ begin
   default_3 <= step(3);
   default_4 <= step(4);
   default_5 <= step(5);
-  trailing <= left(1 downto 0);
-  items_at <= sub_12 & map_at(2 downto 0);
+  arrival_beat <= beat;
   nul_at <= (others => '0');
-  nul_at_28 <= (others => '0');
+  nul_at_23 <= (others => '0');
   nonzero <= '0';
-  nul_within <= limit_sig;
+  nul_within <= arrival_limit;
   oldest <= first_at(6 downto 3);
-  words_loads <= '0';
-  next_packet <= following & "000";
-  tail <= (others => '0');
+  items_at <= sub_77 & map_at(2 downto 0);
+  next_packet <= arrival_following & "000";
+  over_rest <= (others => '0');
   to_exit_low <= (others => '0');
   body_sum <= last_at;
-  to_body_mask <= (others => '0');
   to_body_low <= (others => '0');
+  words_loads <= '0';
   exits_always <= '1';
   done <= '1';
   wrong_nul <= '0';
-  begins <= '0';
   items_wanted <= "1000";
+  exit_amount <= exit_add;
+  to_exit_mask <= (others => '0');
+  body_amount <= (others => '0');
+  to_body_mask <= (others => '0');
+  next_last <= early_last;
   step_to_body <= '0';
   words_down <= '0';
   words_keeps <= '1';
-  to_exit_rest <= '0';
-  exit_amount <= exit_add;
-  to_exit_mask <= (others => '0');
-  to_body_rest <= '0';
-  body_amount <= (others => '0');
-  next_last <= early_last;
   words_pending <= '0';
   words_value <= (others => '0');
 
@@ -632,51 +650,52 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal message_angular_x_payload_q : unsigned(63 downto 0) := (others => '0');
   signal message_angular_y_payload_q : unsigned(63 downto 0) := (others => '0');
   signal message_angular_z_payload_q : unsigned(63 downto 0) := (others => '0');
+  signal length_good                 : std_logic := '0';
+  signal last                        : std_logic := '0';
+  signal final_sig                   : std_logic := '0';
   signal items_word                  : unsigned(63 downto 0) := (others => '0');
   signal items_good                  : unsigned(7 downto 0) := (others => '0');
   signal map_word                    : unsigned(63 downto 0) := (others => '0');
   signal map_good                    : unsigned(7 downto 0) := (others => '0');
-  signal length_good_now             : std_logic := '0';
-  signal last_now                    : std_logic := '0';
-  signal final_now                   : std_logic := '0';
-  signal active_0                    : std_logic := '0';
-  signal active_1                    : std_logic := '0';
-  signal active_2                    : std_logic := '0';
-  signal active_3                    : std_logic := '0';
-  signal active_4                    : std_logic := '0';
-  signal active_5                    : std_logic := '0';
-  signal slow                        : std_logic := '0';
-  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal status_now                  : unsigned(2 downto 0) := (others => '0');
-  signal ends_now                    : std_logic := '0';
   signal cut_0                       : std_logic := '0';
   signal carried                     : unsigned(31 downto 0) := (others => '0');
   signal cut_1                       : std_logic := '0';
   signal cut_2                       : std_logic := '0';
   signal cut_3                       : std_logic := '0';
   signal cut_4                       : std_logic := '0';
+  signal active_0                    : std_logic := '0';
+  signal active_1                    : std_logic := '0';
+  signal active_2                    : std_logic := '0';
+  signal active_3                    : std_logic := '0';
+  signal active_4                    : std_logic := '0';
+  signal active_5                    : std_logic := '0';
+  signal ends_now                    : std_logic := '0';
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal status_now                  : unsigned(2 downto 0) := (others => '0');
+  signal slow                        : std_logic := '0';
 
   -- Combinational signals.
-  signal go_0              : std_logic;
   signal blocked_0         : std_logic;
-  signal go_1              : std_logic;
+  signal go_0              : std_logic;
   signal blocked_1         : std_logic;
-  signal go_2              : std_logic;
+  signal go_1              : std_logic;
   signal blocked_2         : std_logic;
-  signal go_3              : std_logic;
+  signal go_2              : std_logic;
   signal blocked_3         : std_logic;
-  signal go_4              : std_logic;
+  signal go_3              : std_logic;
   signal blocked_4         : std_logic;
-  signal go_5              : std_logic;
+  signal go_4              : std_logic;
   signal blocked_5         : std_logic;
-  signal mux_44            : std_logic;
-  signal mux_51            : std_logic;
-  signal mux_58            : std_logic;
-  signal mux_65            : std_logic;
-  signal mux_72            : std_logic;
-  signal mux_79            : std_logic;
-  signal or_126            : std_logic;
-  signal or_142            : std_logic;
+  signal go_5              : std_logic;
+  signal ends              : std_logic;
+  signal active_0_next     : std_logic;
+  signal active_1_next     : std_logic;
+  signal active_2_next     : std_logic;
+  signal active_3_next     : std_logic;
+  signal active_4_next     : std_logic;
+  signal active_5_next     : std_logic;
+  signal or_165            : std_logic;
+  signal or_181            : std_logic;
   signal lane_0_items_data : unsigned(7 downto 0);
   signal lane_0_map_data   : unsigned(7 downto 0);
   signal lane_1_items_data : unsigned(7 downto 0);
@@ -696,12 +715,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
 
   -- Signals that no logic reads, for simulation.
   signal take              : std_logic;
-  signal payload_0         : unsigned(63 downto 0);
-  signal payload_1         : unsigned(63 downto 0);
-  signal payload_2         : unsigned(63 downto 0);
-  signal payload_3         : unsigned(63 downto 0);
-  signal payload_4         : unsigned(63 downto 0);
-  signal payload_5         : unsigned(63 downto 0);
   signal lane_0_write_addr : unsigned(2 downto 0);
   signal lane_0_write_data : unsigned(7 downto 0);
   signal lane_0_write_en   : std_logic;
@@ -742,6 +755,12 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal lane_7_write_en   : std_logic;
   signal lane_7_items_addr : unsigned(2 downto 0);
   signal lane_7_map_addr   : unsigned(2 downto 0);
+  signal payload_0         : unsigned(63 downto 0);
+  signal payload_1         : unsigned(63 downto 0);
+  signal payload_2         : unsigned(63 downto 0);
+  signal payload_3         : unsigned(63 downto 0);
+  signal payload_4         : unsigned(63 downto 0);
+  signal payload_5         : unsigned(63 downto 0);
 
   type lane_0_array is array (0 to 7) of unsigned(7 downto 0);
   signal lane_0 : lane_0_array := (others => (others => '0'));
@@ -768,46 +787,52 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal lane_7 : lane_7_array := (others => (others => '0'));
 begin
 
-  go_0 <= active_0 and not blocked_0;
   blocked_0 <= active_0 and message_linear_x_valid_q;
-  go_1 <= active_1 and not blocked_1;
+  go_0 <= active_0 and not blocked_0;
   blocked_1 <= active_1 and message_linear_y_valid_q;
-  go_2 <= active_2 and not blocked_2;
+  go_1 <= active_1 and not blocked_1;
   blocked_2 <= active_2 and message_linear_z_valid_q;
-  go_3 <= active_3 and not blocked_3;
+  go_2 <= active_2 and not blocked_2;
   blocked_3 <= active_3 and message_angular_x_valid_q;
-  go_4 <= active_4 and not blocked_4;
+  go_3 <= active_3 and not blocked_3;
   blocked_4 <= active_4 and message_angular_y_valid_q;
-  go_5 <= active_5 and not blocked_5 and not blocked_4;
+  go_4 <= active_4 and not blocked_4;
   blocked_5 <= active_5 and message_angular_z_valid_q;
+  go_5 <= active_5 and not blocked_5 and not blocked_4;
+  ends <= orders_valid and orders_payload(38);
   orders_ready <= not slow;
-  mux_44 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      1) when orders_ready = '1' else active_0 and not go_0;
-  mux_51 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      2) when orders_ready = '1' else active_1 and not go_1;
-  mux_58 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      3) when orders_ready = '1' else active_2 and not go_2;
-  mux_65 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      4) when orders_ready = '1' else active_3 and not go_3;
-  mux_72 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      5) when orders_ready = '1' else active_4 and not go_4;
-  mux_79 <= orders_valid and not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) =
-      5) when orders_ready = '1' else active_5 and not go_5;
-  or_126 <= or unsigned'((orders_valid and orders_payload(38) and status_valid_q and
-      not status_ready) & (orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 5) and message_angular_z_valid_q and
-      not message_angular_z_ready) & (orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 5) and message_angular_y_valid_q and
-      not message_angular_y_ready) & (orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 4) and message_angular_x_valid_q and
-      not message_angular_x_ready) & (orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 3) and message_linear_z_valid_q and
-      not message_linear_z_ready) & (orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 2) and message_linear_y_valid_q and
-      not message_linear_y_ready) & (orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 1) and message_linear_x_valid_q and
-      not message_linear_x_ready));
-  or_142 <= or unsigned'((ends_now and status_valid_q and not status_ready) & (blocked_5 and
+  active_0_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 1) when orders_ready = '1' else active_0 and
+      not go_0;
+  active_1_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 2) when orders_ready = '1' else active_1 and
+      not go_1;
+  active_2_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 3) when orders_ready = '1' else active_2 and
+      not go_2;
+  active_3_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 4) when orders_ready = '1' else active_3 and
+      not go_3;
+  active_4_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 5) when orders_ready = '1' else active_4 and
+      not go_4;
+  active_5_next <= orders_valid and not orders_payload(3) and
+      to_std_logic(orders_payload(2 downto 0) = 5) when orders_ready = '1' else active_5 and
+      not go_5;
+  or_165 <= or unsigned'((ends and status_valid_q and not status_ready) & (orders_valid and
+      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 5) and
+      message_angular_z_valid_q and not message_angular_z_ready) & (orders_valid and
+      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 5) and
+      message_angular_y_valid_q and not message_angular_y_ready) & (orders_valid and
+      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 4) and
+      message_angular_x_valid_q and not message_angular_x_ready) & (orders_valid and
+      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 3) and
+      message_linear_z_valid_q and not message_linear_z_ready) & (orders_valid and
+      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 2) and
+      message_linear_y_valid_q and not message_linear_y_ready) & (orders_valid and
+      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 1) and
+      message_linear_x_valid_q and not message_linear_x_ready));
+  or_181 <= or unsigned'((ends_now and status_valid_q and not status_ready) & (blocked_5 and
       not message_angular_z_ready) & (blocked_4 and not message_angular_y_ready) & (blocked_3 and
       not message_angular_x_ready) & (blocked_2 and not message_linear_z_ready) & (blocked_1 and
       not message_linear_y_ready) & (blocked_0 and not message_linear_x_ready));
@@ -927,24 +952,24 @@ begin
         message_angular_y_valid_q <= '0';
         message_angular_z_valid_q <= '0';
         status_valid_q <= '0';
-        length_good_now <= '0';
-        last_now <= '0';
-        final_now <= '0';
+        length_good <= '0';
+        last <= '0';
+        final_sig <= '0';
+        cut_0 <= '0';
+        cut_1 <= '0';
+        cut_2 <= '0';
+        cut_3 <= '0';
+        cut_4 <= '0';
         active_0 <= '0';
         active_1 <= '0';
         active_2 <= '0';
         active_3 <= '0';
         active_4 <= '0';
         active_5 <= '0';
-        slow <= '0';
-        status_now <= (others => '0');
         ends_now <= '0';
+        status_now <= (others => '0');
         status_payload_q <= (others => '0');
-        cut_0 <= '0';
-        cut_1 <= '0';
-        cut_2 <= '0';
-        cut_3 <= '0';
-        cut_4 <= '0';
+        slow <= '0';
       else
         if message_linear_x_ready = '1' then
           message_linear_x_valid_q <= '0';
@@ -990,11 +1015,9 @@ begin
             status_valid_q <= '1';
             status_payload_q <= status_now;
           end if;
-          length_good_now <= orders_payload(32);
-          last_now <= orders_payload(31);
-          final_now <= orders_payload(33);
-          status_now <= orders_payload(41 downto 39);
-          ends_now <= orders_valid and orders_payload(38);
+          length_good <= orders_payload(32);
+          last <= orders_payload(31);
+          final_sig <= orders_payload(33);
           cut_0 <= orders_valid and not orders_payload(3) and
               to_std_logic(orders_payload(2 downto 0) = 0);
           cut_1 <= orders_valid and not orders_payload(3) and
@@ -1005,17 +1028,19 @@ begin
               to_std_logic(orders_payload(2 downto 0) = 3);
           cut_4 <= orders_valid and not orders_payload(3) and
               to_std_logic(orders_payload(2 downto 0) = 4);
+          ends_now <= ends;
+          status_now <= orders_payload(41 downto 39);
         end if;
-        active_0 <= mux_44;
-        active_1 <= mux_51;
-        active_2 <= mux_58;
-        active_3 <= mux_65;
-        active_4 <= mux_72;
-        active_5 <= mux_79;
+        active_0 <= active_0_next;
+        active_1 <= active_1_next;
+        active_2 <= active_2_next;
+        active_3 <= active_3_next;
+        active_4 <= active_4_next;
+        active_5 <= active_5_next;
         if orders_ready = '1' then
-          slow <= or_126;
+          slow <= or_165;
         else
-          slow <= or_142;
+          slow <= or_181;
         end if;
       end if;
     end if;
@@ -1168,12 +1193,6 @@ begin
   message_angular_z_payload <= message_angular_z_payload_q;
 
   take <= orders_ready;
-  payload_0 <= message_linear_x_payload_q;
-  payload_1 <= message_linear_y_payload_q;
-  payload_2 <= message_linear_z_payload_q;
-  payload_3 <= message_angular_x_payload_q;
-  payload_4 <= message_angular_y_payload_q;
-  payload_5 <= message_angular_z_payload_q;
   lane_0_write_addr <= beat(71 downto 69);
   lane_0_write_data <= beat(7 downto 0);
   lane_0_write_en <= beat(73);
@@ -1214,6 +1233,12 @@ begin
   lane_7_write_en <= beat(73);
   lane_7_items_addr <= orders_payload(9 downto 7);
   lane_7_map_addr <= orders_payload(15 downto 13);
+  payload_0 <= message_linear_x_payload_q;
+  payload_1 <= message_linear_y_payload_q;
+  payload_2 <= message_linear_z_payload_q;
+  payload_3 <= message_angular_x_payload_q;
+  payload_4 <= message_angular_y_payload_q;
+  payload_5 <= message_angular_z_payload_q;
 
 end architecture;
 
@@ -1260,57 +1285,62 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core is
 
   -- Combinational signals.
-  signal beat              : unsigned(73 downto 0);
-  signal limit_sig         : unsigned(6 downto 0);
-  signal following         : unsigned(3 downto 0);
-  signal ended             : std_logic;
+  signal arrival_beat      : unsigned(73 downto 0);
+  signal arrival_limit     : unsigned(6 downto 0);
+  signal arrival_following : unsigned(3 downto 0);
+  signal arrival_ended     : std_logic;
   signal i_valid           : std_logic;
-  signal next_sig          : std_logic;
+  signal arrival_next      : std_logic;
   signal i_payload         : unsigned(41 downto 0);
   signal oldest            : unsigned(3 downto 0);
   signal orders_ready      : std_logic;
   signal freed             : unsigned(3 downto 0);
-  signal orders_valid_24   : std_logic;
+  signal orders_valid_26   : std_logic;
   signal orders_payload_22 : unsigned(41 downto 0);
   signal o_ready           : std_logic;
 
   -- Signals that no logic reads, for simulation.
   signal orders_payload  : unsigned(41 downto 0);
-  signal orders_valid    : std_logic;
   signal i_ready         : std_logic;
+  signal orders_valid    : std_logic;
   signal o_payload       : unsigned(41 downto 0);
+  signal orders_ready_25 : std_logic;
   signal o_valid         : std_logic;
-  signal orders_ready_27 : std_logic;
+  signal beat            : unsigned(73 downto 0);
+  signal stall_newest    : std_logic;
+  signal stall_newest_38 : std_logic;
+  signal zero_length     : std_logic;
+  signal zero_length_40  : std_logic;
 begin
 
   buffer_sig : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer
     port map (
-      aclk            => aclk,
-      packets_valid   => packets_valid,
-      rst             => rst,
-      next_sig        => next_sig,
-      freed           => freed,
-      packets_payload => packets_payload,
-      beat            => beat,
-      packets_ready   => packets_ready,
-      limit_sig       => limit_sig,
-      following       => following,
-      ended           => ended
+      aclk              => aclk,
+      packets_valid     => packets_valid,
+      rst               => rst,
+      arrival_next      => arrival_next,
+      freed             => freed,
+      packets_payload   => packets_payload,
+      arrival_beat      => arrival_beat,
+      packets_ready     => packets_ready,
+      arrival_limit     => arrival_limit,
+      arrival_following => arrival_following,
+      arrival_ended     => arrival_ended
     );
 
   sequencer : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer
     port map (
-      aclk           => aclk,
-      rst            => rst,
-      orders_valid   => i_valid,
-      next_sig       => next_sig,
-      orders_ready   => orders_ready,
-      beat           => beat,
-      limit_sig      => limit_sig,
-      following      => following,
-      ended          => ended,
-      orders_payload => i_payload,
-      header_at      => oldest
+      aclk              => aclk,
+      rst               => rst,
+      orders_valid      => i_valid,
+      arrival_next      => arrival_next,
+      orders_ready      => orders_ready,
+      beat              => arrival_beat,
+      arrival_limit     => arrival_limit,
+      arrival_following => arrival_following,
+      arrival_ended     => arrival_ended,
+      orders_payload    => i_payload,
+      header_at         => oldest
     );
 
   queue : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_queue
@@ -1323,7 +1353,7 @@ begin
       o_ready   => o_ready,
       i_payload => i_payload,
       oldest    => oldest,
-      o_valid   => orders_valid_24,
+      o_valid   => orders_valid_26,
       o_payload => orders_payload_22
     );
 
@@ -1339,8 +1369,8 @@ begin
       status_ready              => status_ready,
       rst                       => rst,
       orders_ready              => o_ready,
-      beat                      => beat,
-      orders_valid              => orders_valid_24,
+      beat                      => arrival_beat,
+      orders_valid              => orders_valid_26,
       orders_payload            => orders_payload_22,
       message_linear_x_valid    => message_linear_x_valid,
       message_linear_y_valid    => message_linear_y_valid,
@@ -1359,11 +1389,16 @@ begin
     );
 
   orders_payload <= i_payload;
-  orders_valid <= i_valid;
   i_ready <= orders_ready;
+  orders_valid <= i_valid;
   o_payload <= orders_payload_22;
-  o_valid <= orders_valid_24;
-  orders_ready_27 <= o_ready;
+  orders_ready_25 <= o_ready;
+  o_valid <= orders_valid_26;
+  beat <= arrival_beat;
+  stall_newest <= '0';
+  stall_newest_38 <= '0';
+  zero_length <= '0';
+  zero_length_40 <= '0';
 
 end architecture;
 

@@ -35,8 +35,8 @@ entity geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector is
     message_angular_x_ready   : out std_logic;
     message_angular_y_ready   : out std_logic;
     message_angular_z_ready   : out std_logic;
-    port_543_0                : out unsigned(127 downto 0);
-    port_547_0                : out unsigned(32 downto 0);
+    port_545_0                : out unsigned(127 downto 0);
+    port_549_0                : out unsigned(32 downto 0);
     status_valid              : out std_logic;
     -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
     status_payload            : out unsigned(2 downto 0);
@@ -48,7 +48,7 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector is
 
   -- Registers.
-  signal port_547_0_q     : unsigned(32 downto 0) := (others => '0');
+  signal port_549_0_q     : unsigned(32 downto 0) := (others => '0');
   signal status_valid_q   : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal status_payload_q : unsigned(2 downto 0) := (others => '0');
@@ -57,10 +57,10 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
   signal served_1         : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal error_sig        : unsigned(2 downto 0) := (others => '0');
-  signal map_0            : unsigned(31 downto 0) := (others => '0');
-  signal map_4            : unsigned(31 downto 0) := (others => '0');
   signal items_0          : unsigned(31 downto 0) := (others => '0');
   signal items_4          : unsigned(31 downto 0) := (others => '0');
+  signal map_0            : unsigned(31 downto 0) := (others => '0');
+  signal map_4            : unsigned(31 downto 0) := (others => '0');
   signal begun            : std_logic := '0';
   signal words_last       : std_logic := '1';
   signal words_less       : std_logic := '0';
@@ -72,34 +72,34 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
   signal has_nul          : std_logic := '0';
 
   -- Combinational signals.
-  signal left_1_0     : std_logic;
-  signal lacks_1_0    : std_logic;
-  signal left_2_0     : std_logic;
-  signal lacks_2_0    : std_logic;
-  signal left_3_0     : std_logic;
-  signal lacks_3_0    : std_logic;
-  signal left_4_0     : std_logic;
-  signal lacks_4_0    : std_logic;
-  signal left_5_0     : std_logic;
-  signal lacks_5_0    : std_logic;
-  signal left_5_1     : std_logic;
-  signal lacks_5_1    : std_logic;
-  signal go_5_1       : std_logic;
-  signal free         : std_logic;
-  signal or_60        : std_logic;
-  signal complete     : std_logic;
-  signal map_size     : unsigned(4 downto 0);
-  signal begins       : std_logic;
-  signal to_map_0     : unsigned(3 downto 0);
-  signal step_to_exit : std_logic;
-  signal and_94       : std_logic;
-  signal and_99       : std_logic;
-  signal or_118       : unsigned(31 downto 0);
-  signal or_124       : unsigned(31 downto 0);
-  signal or_137       : unsigned(31 downto 0);
-  signal add_154      : unsigned(5 downto 0);
-  signal to_end       : unsigned(5 downto 0);
-  signal end_mask     : unsigned(2 downto 0);
+  signal left_1_0      : std_logic;
+  signal lacks_1_0     : std_logic;
+  signal left_2_0      : std_logic;
+  signal lacks_2_0     : std_logic;
+  signal left_3_0      : std_logic;
+  signal lacks_3_0     : std_logic;
+  signal left_4_0      : std_logic;
+  signal lacks_4_0     : std_logic;
+  signal left_5_0      : std_logic;
+  signal lacks_5_0     : std_logic;
+  signal left_5_1      : std_logic;
+  signal lacks_5_1     : std_logic;
+  signal go_5_1        : std_logic;
+  signal free          : std_logic;
+  signal or_60         : std_logic;
+  signal complete      : std_logic;
+  signal map_size      : unsigned(4 downto 0);
+  signal begins        : std_logic;
+  signal to_map_0      : unsigned(3 downto 0);
+  signal step_to_exit  : std_logic;
+  signal served_0_next : std_logic;
+  signal and_101       : std_logic;
+  signal or_129        : unsigned(31 downto 0);
+  signal map_0_next    : unsigned(31 downto 0);
+  signal or_148        : unsigned(31 downto 0);
+  signal add_155       : unsigned(5 downto 0);
+  signal to_end        : unsigned(5 downto 0);
+  signal end_mask      : unsigned(2 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal default_0     : std_logic;
@@ -119,7 +119,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
   signal go_4_0        : std_logic;
   signal go_5_0        : std_logic;
   signal items_size    : unsigned(3 downto 0);
-  signal nul_now       : std_logic;
   signal step_to_body  : std_logic;
   signal words_down    : std_logic;
   signal words_keeps   : std_logic;
@@ -148,29 +147,29 @@ begin
   lacks_5_1 <= left_5_1 and not message_angular_z_valid;
   go_5_1 <= left_5_1 and message_angular_z_valid and free and not lacks_5_0;
   free <= not words_valid_q or words_ready;
-  or_60 <= or unsigned'(lacks_5_1 & lacks_5_0 & (step(4) and not message_angular_y_valid) &
-      lacks_4_0 & (step(3) and not message_angular_x_valid) & lacks_3_0 & (step(2) and
-      not message_linear_z_valid) & lacks_2_0 & (step(1) and not message_linear_y_valid) &
-      lacks_1_0 & (step(0) and not message_linear_x_valid));
+  or_60 <= or unsigned'((step(4) and not message_angular_y_valid) & (step(3) and
+      not message_angular_x_valid) & (step(2) and not message_linear_z_valid) & (step(1) and
+      not message_linear_y_valid) & (step(0) and not message_linear_x_valid) & lacks_5_1 &
+      lacks_5_0 & lacks_4_0 & lacks_3_0 & lacks_2_0 & lacks_1_0);
   complete <= free and not or_60 and (not step(5) or not status_valid_q or status_ready);
   map_size <= resize(map_bytes, 5) + mux(two_word_map, "1000", "0000");
   begins <= begun or (or items_bytes) or (or map_bytes);
   to_map_0 <= (others => '0') when two_word_map = '1' else items_bytes;
   step_to_exit <= complete and not step(5);
-  and_94 <= (served_0 or (or unsigned'(message_angular_y_ready & message_angular_x_ready &
+  served_0_next <= (served_0 or (or unsigned'(message_angular_y_ready & message_angular_x_ready &
       message_linear_z_ready & message_linear_y_ready & message_linear_x_ready))) and not complete;
-  and_99 <= complete and step(5);
-  or_118 <= mux(step(0), x"00000100", x"00000000") or mux(step(1),
+  and_101 <= complete and step(5);
+  or_129 <= mux(step(0), x"00000100", x"00000000") or mux(step(1),
       message_linear_x_payload(63 downto 32), x"00000000") or mux(step(2),
       message_linear_y_payload(63 downto 32), x"00000000") or mux(step(3),
       message_linear_z_payload(63 downto 32), x"00000000");
-  or_124 <= or_118 or mux(step(4), message_angular_x_payload(63 downto 32), x"00000000") or
+  map_0_next <= or_129 or mux(step(4), message_angular_x_payload(63 downto 32), x"00000000") or
       mux(step(5), message_angular_z_payload(63 downto 32), x"00000000");
-  or_137 <= mux(step(0), message_linear_x_payload(31 downto 0), x"00000000") or mux(step(1),
+  or_148 <= mux(step(0), message_linear_x_payload(31 downto 0), x"00000000") or mux(step(1),
       message_linear_y_payload(31 downto 0), x"00000000") or mux(step(2),
       message_linear_z_payload(31 downto 0), x"00000000") or mux(step(3),
       message_angular_x_payload(31 downto 0), x"00000000");
-  add_154 <= resize(to_map_0, 5) + to_end + 7;
+  add_155 <= resize(to_map_0, 5) + to_end + 7;
 
   to_end <= mux(begins, resize(map_size, 6) + 7, "001000") when step(5) = '1' else
             resize(map_size, 6);
@@ -182,7 +181,7 @@ begin
   begin
     if rising_edge(aclk) then
       if rst = '1' then
-        port_547_0_q <= (others => '0');
+        port_549_0_q <= (others => '0');
         served_0 <= '0';
         served_1 <= '0';
         error_sig <= (others => '0');
@@ -200,26 +199,27 @@ begin
         has_nul <= '0';
       else
         if free = '1' then
-          port_547_0_q(32) <= to_std_logic(error_sig /= 0);
+          port_549_0_q(13 downto 0) <= resize(unsigned'(to_map_0 & two_word_map & map_bytes &
+              items_bytes), 14);
+          port_549_0_q(28 downto 26) <= add_155(5 downto 3);
+          port_549_0_q(25 downto 14) <= end_mask & to_end & "000";
+          port_549_0_q(30) <= not begins;
           words_valid_q <= complete;
         end if;
         if free = '1' then
-          port_547_0_q(13 downto 0) <= resize(unsigned'(to_map_0 & two_word_map & map_bytes &
-              items_bytes), 14);
-          port_547_0_q(28 downto 26) <= add_154(5 downto 3);
-          port_547_0_q(25 downto 14) <= end_mask & to_end & "000";
-          port_547_0_q(31 downto 29) <= resize(unsigned'(not begins & step(5)), 3);
+          port_549_0_q(29) <= step(5);
+          port_549_0_q(32 downto 31) <= to_std_logic(error_sig /= 0) & '0';
         end if;
-        served_0 <= and_94;
+        served_0 <= served_0_next;
         served_1 <= (served_1 or go_5_1) and not complete;
-        if and_99 = '1' then
+        if and_101 = '1' then
           error_sig <= (others => '0');
           status_payload_q <= error_sig;
         end if;
         if status_ready = '1' then
           status_valid_q <= '0';
         end if;
-        if and_99 = '1' then
+        if and_101 = '1' then
           status_valid_q <= '1';
         end if;
         if complete = '1' then
@@ -249,26 +249,26 @@ begin
   p_aclk_2 : process (aclk)
   begin
     if rising_edge(aclk) then
-      if free = '1' and unsigned'((step(5) and served_1) & ((or step(4 downto 1)) and served_0)) =
-          0 then
-        map_0 <= or_124;
-      end if;
-      if free = '1' then
-        map_4 <= or_137 or mux(step(4), message_angular_y_payload(31 downto 0), x"00000000");
-      end if;
       if free = '1' and (step(5) = '0' or served_0 = '0') then
         items_0 <= message_angular_y_payload(63 downto 32);
       end if;
       if free = '1' and (step(5) = '0' or served_1 = '0') then
         items_4 <= message_angular_z_payload(31 downto 0);
       end if;
+      if free = '1' and unsigned'((step(5) and served_1) & ((or step(4 downto 1)) and served_0)) =
+          0 then
+        map_0 <= map_0_next;
+      end if;
+      if free = '1' then
+        map_4 <= or_148 or mux(step(4), message_angular_y_payload(31 downto 0), x"00000000");
+      end if;
     end if;
   end process;
 
-  port_543_0 <= map_4 & map_0 & items_4 & items_0;
+  port_545_0 <= map_4 & map_0 & items_4 & items_0;
   message_angular_z_ready <= go_5_1;
 
-  port_547_0 <= port_547_0_q;
+  port_549_0 <= port_549_0_q;
   status_valid <= status_valid_q;
   status_payload <= status_payload_q;
   words_valid <= words_valid_q;
@@ -279,7 +279,7 @@ begin
   default_3 <= step(3);
   default_4 <= step(4);
   default_5 <= step(5);
-  words_payload <= port_547_0_q & map_4 & map_0 & items_4 & items_0;
+  words_payload <= port_549_0_q & map_4 & map_0 & items_4 & items_0;
   to_map <= resize(to_map_0, 5);
   words_loads <= '0';
   done <= '1';
@@ -290,7 +290,6 @@ begin
   go_4_0 <= message_angular_x_ready;
   go_5_0 <= message_angular_y_ready;
   items_size <= items_bytes;
-  nul_now <= '0';
   step_to_body <= '0';
   words_down <= '0';
   words_keeps <= '1';
@@ -346,11 +345,11 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal waits              : std_logic := '0';
   signal last_bytes         : unsigned(3 downto 0) := (others => '0');
   signal bound              : unsigned(3 downto 0) := "0101";
-  signal items_has_0        : unsigned(7 downto 0) := (others => '0');
-  signal map_has_0          : unsigned(7 downto 0) := (others => '0');
-  signal map_has_4          : unsigned(7 downto 0) := (others => '0');
   signal complete           : unsigned(3 downto 0) := (others => '0');
   signal last               : unsigned(7 downto 0) := (others => '0');
+  signal items_0_has        : unsigned(7 downto 0) := (others => '0');
+  signal map_0_has          : unsigned(7 downto 0) := (others => '0');
+  signal map_4_has          : unsigned(7 downto 0) := (others => '0');
   signal first              : unsigned(3 downto 0) := (others => '0');
 
   -- Combinational signals.
@@ -359,26 +358,26 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal total_6           : unsigned(6 downto 0);
   signal base              : unsigned(6 downto 0);
   signal end_sig           : unsigned(6 downto 0);
-  signal add_13            : unsigned(3 downto 0);
+  signal map_start_next_3  : unsigned(3 downto 0);
   signal map_end           : unsigned(6 downto 0);
   signal newest            : unsigned(3 downto 0);
   signal room              : unsigned(3 downto 0);
-  signal items_used_0      : std_logic;
-  signal items_written_0   : std_logic;
-  signal map_used_0        : std_logic;
-  signal map_written_0     : std_logic;
-  signal map_used_4        : std_logic;
-  signal map_written_4     : std_logic;
   signal ends_write_addr   : unsigned(2 downto 0);
   signal ends_write_en     : std_logic;
+  signal items_used_0      : std_logic;
+  signal items_0_written   : std_logic;
+  signal map_used_0        : std_logic;
+  signal map_0_written     : std_logic;
+  signal map_used_4        : std_logic;
+  signal map_4_written     : std_logic;
   signal reads             : std_logic;
   signal is_last           : std_logic;
-  signal and_139           : std_logic;
-  signal sub_140           : unsigned(2 downto 0);
+  signal and_43            : std_logic;
+  signal sub_44            : unsigned(2 downto 0);
+  signal ends_read_data    : unsigned(4 downto 0);
   signal items_0_read_data : unsigned(63 downto 0);
   signal map_0_read_data   : unsigned(31 downto 0);
   signal map_4_read_data   : unsigned(31 downto 0);
-  signal ends_read_data    : unsigned(4 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal words_payload      : unsigned(160 downto 0);
@@ -404,8 +403,10 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal map_4_read_addr    : unsigned(2 downto 0);
   signal ends_read_addr     : unsigned(2 downto 0);
   signal payload            : unsigned(68 downto 0);
-  signal error_now          : std_logic;
   signal ends_write_data    : unsigned(4 downto 0);
+
+  type ends_array is array (0 to 7) of unsigned(4 downto 0);
+  signal ends : ends_array := (others => (others => '0'));
 
   type items_0_array is array (0 to 7) of unsigned(63 downto 0);
   signal items_0 : items_0_array := (others => (others => '0'));
@@ -415,9 +416,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
 
   type map_4_array is array (0 to 7) of unsigned(31 downto 0);
   signal map_4 : map_4_array := (others => (others => '0'));
-
-  type ends_array is array (0 to 7) of unsigned(4 downto 0);
-  signal ends : ends_array := (others => (others => '0'));
 begin
 
   takes <= words_valid and words_ready_q;
@@ -427,22 +425,33 @@ begin
       resize(words_payload_128(16 downto 14) and "100", 7);
   end_sig <= (total_6 and not resize(words_payload_128(25 downto 23), 7)) or
       resize(words_payload_128(25 downto 23) and mux(words_payload_128(29), "000", "100"), 7);
-  add_13 <= base(6 downto 3) + words_payload_128(8);
-  map_end <= unsigned'(add_13 & base(2 downto 0)) + words_payload_128(7 downto 4);
+  map_start_next_3 <= base(6 downto 3) + words_payload_128(8);
+  map_end <= unsigned'(map_start_next_3 & base(2 downto 0)) + words_payload_128(7 downto 4);
   newest <= at(6 downto 3) + mux(takes, words_payload_128(28 downto 26), "000");
   room <= bound - newest;
-  items_used_0 <= '1' when writes = '1' and items_size > 0 else '0';
-  items_written_0 <= lsb(resize(shift_right(items_has_0, to_integer(first(2 downto 0))), 1));
-  map_used_0 <= '1' when writes = '1' and map_size > 0 else '0';
-  map_written_0 <= lsb(resize(shift_right(map_has_0, to_integer(first(2 downto 0))), 1));
-  map_used_4 <= '1' when writes = '1' and map_size > 4 else '0';
-  map_written_4 <= lsb(resize(shift_right(map_has_4, to_integer(first(2 downto 0))), 1));
   ends_write_addr <= complete_next(2 downto 0) - 1;
   ends_write_en <= writes and ends_packet;
+  items_used_0 <= '1' when writes = '1' and items_size > 0 else '0';
+  items_0_written <= lsb(resize(shift_right(items_0_has, to_integer(first(2 downto 0))), 1));
+  map_used_0 <= '1' when writes = '1' and map_size > 0 else '0';
+  map_0_written <= lsb(resize(shift_right(map_0_has, to_integer(first(2 downto 0))), 1));
+  map_used_4 <= '1' when writes = '1' and map_size > 4 else '0';
+  map_4_written <= lsb(resize(shift_right(map_4_has, to_integer(first(2 downto 0))), 1));
   reads <= '1' when complete /= first and (packets_valid_q = '0' or packets_ready = '1') else '0';
   is_last <= lsb(resize(shift_right(last, to_integer(first(2 downto 0))), 1));
-  and_139 <= writes and not waits;
-  sub_140 <= complete_next(2 downto 0) - 1;
+  and_43 <= writes and not waits;
+  sub_44 <= complete_next(2 downto 0) - 1;
+
+  process (aclk)
+  begin
+    if rising_edge(aclk) then
+      if ends_write_en = '1' then
+        ends(to_integer(ends_write_addr)) <= failed & last_bytes;
+      end if;
+    end if;
+  end process;
+
+  ends_read_data <= ends(to_integer(first(2 downto 0)));
 
   process (aclk)
   begin
@@ -477,17 +486,6 @@ begin
 
   map_4_read_data <= map_4(to_integer(first(2 downto 0)));
 
-  process (aclk)
-  begin
-    if rising_edge(aclk) then
-      if ends_write_en = '1' then
-        ends(to_integer(ends_write_addr)) <= failed & last_bytes;
-      end if;
-    end if;
-  end process;
-
-  ends_read_data <= ends(to_integer(first(2 downto 0)));
-
   p_aclk : process (aclk)
   begin
     if rising_edge(aclk) then
@@ -505,11 +503,11 @@ begin
         last_bytes <= (others => '0');
         words_ready_q <= '1';
         bound <= "0101";
-        items_has_0 <= (others => '0');
-        map_has_0 <= (others => '0');
-        map_has_4 <= (others => '0');
         complete <= (others => '0');
         last <= (others => '0');
+        items_0_has <= (others => '0');
+        map_0_has <= (others => '0');
+        map_4_has <= (others => '0');
         packets_valid_q <= '0';
         first <= (others => '0');
       else
@@ -521,7 +519,7 @@ begin
             items_start <= at;
           end if;
           items_size <= words_payload_128(3 downto 0);
-          map_start <= add_13 & base(2 downto 0);
+          map_start <= map_start_next_3 & base(2 downto 0);
           map_size <= words_payload_128(7 downto 4);
           at <= end_sig;
           complete_next <= end_sig(6 downto 3);
@@ -539,130 +537,10 @@ begin
           bound <= bound + 1;
           first <= first + 1;
         end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          items_has_0(0) <= '0';
-        elsif items_used_0 = '1' and items_start(5 downto 3) = 0 then
-          items_has_0(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          items_has_0(1) <= '0';
-        elsif items_used_0 = '1' and items_start(5 downto 3) = 1 then
-          items_has_0(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          items_has_0(2) <= '0';
-        elsif items_used_0 = '1' and items_start(5 downto 3) = 2 then
-          items_has_0(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          items_has_0(3) <= '0';
-        elsif items_used_0 = '1' and items_start(5 downto 3) = 3 then
-          items_has_0(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          items_has_0(4) <= '0';
-        elsif items_used_0 = '1' and items_start(5 downto 3) = 4 then
-          items_has_0(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          items_has_0(5) <= '0';
-        elsif items_used_0 = '1' and items_start(5 downto 3) = 5 then
-          items_has_0(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          items_has_0(6) <= '0';
-        elsif items_used_0 = '1' and items_start(5 downto 3) = 6 then
-          items_has_0(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          items_has_0(7) <= '0';
-        elsif items_used_0 = '1' and items_start(5 downto 3) = 7 then
-          items_has_0(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          map_has_0(0) <= '0';
-        elsif map_used_0 = '1' and map_start(5 downto 3) = 0 then
-          map_has_0(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          map_has_0(1) <= '0';
-        elsif map_used_0 = '1' and map_start(5 downto 3) = 1 then
-          map_has_0(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          map_has_0(2) <= '0';
-        elsif map_used_0 = '1' and map_start(5 downto 3) = 2 then
-          map_has_0(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          map_has_0(3) <= '0';
-        elsif map_used_0 = '1' and map_start(5 downto 3) = 3 then
-          map_has_0(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          map_has_0(4) <= '0';
-        elsif map_used_0 = '1' and map_start(5 downto 3) = 4 then
-          map_has_0(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          map_has_0(5) <= '0';
-        elsif map_used_0 = '1' and map_start(5 downto 3) = 5 then
-          map_has_0(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          map_has_0(6) <= '0';
-        elsif map_used_0 = '1' and map_start(5 downto 3) = 6 then
-          map_has_0(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          map_has_0(7) <= '0';
-        elsif map_used_0 = '1' and map_start(5 downto 3) = 7 then
-          map_has_0(7) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 0 then
-          map_has_4(0) <= '0';
-        elsif map_used_4 = '1' and map_start(5 downto 3) = 0 then
-          map_has_4(0) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 1 then
-          map_has_4(1) <= '0';
-        elsif map_used_4 = '1' and map_start(5 downto 3) = 1 then
-          map_has_4(1) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 2 then
-          map_has_4(2) <= '0';
-        elsif map_used_4 = '1' and map_start(5 downto 3) = 2 then
-          map_has_4(2) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 3 then
-          map_has_4(3) <= '0';
-        elsif map_used_4 = '1' and map_start(5 downto 3) = 3 then
-          map_has_4(3) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 4 then
-          map_has_4(4) <= '0';
-        elsif map_used_4 = '1' and map_start(5 downto 3) = 4 then
-          map_has_4(4) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 5 then
-          map_has_4(5) <= '0';
-        elsif map_used_4 = '1' and map_start(5 downto 3) = 5 then
-          map_has_4(5) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 6 then
-          map_has_4(6) <= '0';
-        elsif map_used_4 = '1' and map_start(5 downto 3) = 6 then
-          map_has_4(6) <= '1';
-        end if;
-        if reads = '1' and first(2 downto 0) = 7 then
-          map_has_4(7) <= '0';
-        elsif map_used_4 = '1' and map_start(5 downto 3) = 7 then
-          map_has_4(7) <= '1';
-        end if;
-        if and_139 = '1' then
+        if and_43 = '1' then
           complete <= complete_next;
           if ends_packet = '1' then
-            case sub_140 is
+            case sub_44 is
               when "000" =>
                 last(0) <= '1';
               when "001" =>
@@ -706,6 +584,126 @@ begin
               null;
           end case;
         end if;
+        if reads = '1' and first(2 downto 0) = 0 then
+          items_0_has(0) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 0 then
+          items_0_has(0) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 1 then
+          items_0_has(1) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 1 then
+          items_0_has(1) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 2 then
+          items_0_has(2) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 2 then
+          items_0_has(2) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 3 then
+          items_0_has(3) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 3 then
+          items_0_has(3) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 4 then
+          items_0_has(4) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 4 then
+          items_0_has(4) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 5 then
+          items_0_has(5) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 5 then
+          items_0_has(5) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 6 then
+          items_0_has(6) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 6 then
+          items_0_has(6) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 7 then
+          items_0_has(7) <= '0';
+        elsif items_used_0 = '1' and items_start(5 downto 3) = 7 then
+          items_0_has(7) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 0 then
+          map_0_has(0) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 0 then
+          map_0_has(0) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 1 then
+          map_0_has(1) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 1 then
+          map_0_has(1) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 2 then
+          map_0_has(2) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 2 then
+          map_0_has(2) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 3 then
+          map_0_has(3) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 3 then
+          map_0_has(3) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 4 then
+          map_0_has(4) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 4 then
+          map_0_has(4) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 5 then
+          map_0_has(5) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 5 then
+          map_0_has(5) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 6 then
+          map_0_has(6) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 6 then
+          map_0_has(6) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 7 then
+          map_0_has(7) <= '0';
+        elsif map_used_0 = '1' and map_start(5 downto 3) = 7 then
+          map_0_has(7) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 0 then
+          map_4_has(0) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 0 then
+          map_4_has(0) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 1 then
+          map_4_has(1) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 1 then
+          map_4_has(1) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 2 then
+          map_4_has(2) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 2 then
+          map_4_has(2) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 3 then
+          map_4_has(3) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 3 then
+          map_4_has(3) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 4 then
+          map_4_has(4) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 4 then
+          map_4_has(4) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 5 then
+          map_4_has(5) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 5 then
+          map_4_has(5) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 6 then
+          map_4_has(6) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 6 then
+          map_4_has(6) <= '1';
+        end if;
+        if reads = '1' and first(2 downto 0) = 7 then
+          map_4_has(7) <= '0';
+        elsif map_used_4 = '1' and map_start(5 downto 3) = 7 then
+          map_4_has(7) <= '1';
+        end if;
         if packets_ready = '1' then
           packets_valid_q <= '0';
         end if;
@@ -724,9 +722,9 @@ begin
         map_placed <= words_payload_0(127 downto 64);
       end if;
       if reads = '1' then
-        packets_payload_q(63 downto 0) <= (mux(items_written_0, items_0_read_data(63 downto 32),
-            x"00000000") or mux(map_written_4, map_4_read_data, x"00000000")) &
-            (mux(items_written_0, items_0_read_data(31 downto 0), x"00000000") or mux(map_written_0,
+        packets_payload_q(63 downto 0) <= (mux(items_0_written, items_0_read_data(63 downto 32),
+            x"00000000") or mux(map_4_written, map_4_read_data, x"00000000")) &
+            (mux(items_0_written, items_0_read_data(31 downto 0), x"00000000") or mux(map_0_written,
             map_0_read_data, x"00000000"));
         packets_payload_q(68) <= is_last;
         if is_last = '1' then
@@ -745,7 +743,7 @@ begin
   error_sig <= error_sig_q;
 
   words_payload <= words_payload_128 & words_payload_0;
-  map_at <= add_13 & base(2 downto 0);
+  map_at <= map_start_next_3 & base(2 downto 0);
   ready <= words_ready_q;
   items_index_0 <= (others => '0');
   items_slot_0 <= items_start(5 downto 3);
@@ -767,7 +765,6 @@ begin
   map_4_read_addr <= first(2 downto 0);
   ends_read_addr <= first(2 downto 0);
   payload <= packets_payload_q;
-  error_now <= error_sig_q;
   ends_write_data <= failed & last_bytes;
 
 end architecture;
@@ -850,8 +847,8 @@ begin
       message_angular_x_ready   => message_angular_x_ready,
       message_angular_y_ready   => message_angular_y_ready,
       message_angular_z_ready   => message_angular_z_ready,
-      port_543_0                => words_payload_0,
-      port_547_0                => words_payload_128,
+      port_545_0                => words_payload_0,
+      port_549_0                => words_payload_128,
       status_valid              => status_valid,
       status_payload            => status_payload,
       words_valid               => words_valid,

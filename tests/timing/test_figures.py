@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.plan import build_plan
-from firm_hdl.plan.recovery import Recovery
-from firm_hdl.plan.timing import Cost, Timing, clock_mhz, timing
+from firm_hdl.timing import Cost, Timing, clock_mhz, timing
+from firm_hdl.timing.recovery import Recovery
 from firm_hdl.wire import lay_out
 from tests.steps import calls_at_most
 from tests.strategies import make

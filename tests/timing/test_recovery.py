@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl import load_message
 from firm_hdl.plan import build_plan, decode
-from firm_hdl.plan.recovery import Recovery, recovery
+from firm_hdl.timing.recovery import Recovery, recovery
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.plan.lengths import header_of, next_length, with_charges

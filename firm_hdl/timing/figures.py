@@ -1,8 +1,8 @@
 """The cycles that a converter takes for a packet, found by running its plan.
 
-Cycles are those of the slower converter; see :mod:`firm_hdl.plan.cycles`. The packet with the most
-cycles per byte is the result of a search, not of a proof. The search tries short strings and few
-elements: their lengths take a step each, and the packet has few bytes.
+Cycles are those of the slower converter; see :mod:`firm_hdl.timing.cycles`. The packet with the
+most cycles per byte is the result of a search, not of a proof. The search tries short strings and
+few elements: their lengths take a step each, and the packet has few bytes.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from itertools import product
 
 from firm_hdl.plan import Payload, Plan, encode
-from firm_hdl.plan.cycles import cycles_between, packet_of
-from firm_hdl.plan.recovery import Recovery, recovery
 from firm_hdl.plan.yaml import counted
+from firm_hdl.timing.cycles import cycles_between, packet_of
+from firm_hdl.timing.recovery import Recovery, recovery
 
 __all__ = ["LINE_RATES", "Cost", "Timing", "clock_mhz", "describe", "recovery_text", "timing"]
 
@@ -90,7 +90,7 @@ def timing(plan: Plan) -> Timing:
                 hardest = cost
     return Timing(
         bus_bytes=bus,
-        steps=sum(item.steps for item in plan.items),
+        steps=len(plan.steps),
         shortest=shortest,
         hardest=hardest,
         recovery=recovery(plan, shortest.cycles),

@@ -14,10 +14,15 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil, inf
 
-from firm_hdl.plan.geometry import first_step, may_end_empty, most_beats, only_ends, ring_beats
 from firm_hdl.plan.interpret import Visit, decode
-from firm_hdl.plan.ir import BeginRun, RunStep
-from firm_hdl.plan.tree import Plan
+from firm_hdl.plan.tree import Length, Plan, Run, Step
+from firm_hdl.timing.rings import (
+    ends_in_tail,
+    first_step,
+    may_end_empty,
+    most_beats,
+    ring_beats,
+)
 
 __all__ = [
     "Packet",
@@ -67,13 +72,13 @@ class Packet:
 
     def aligned_items(self, index: int) -> int:
         """Return the alignment of the items that a step counts; 1 if there are none."""
-        begin = self.plan.steps[self.visits[index].step].begin
-        if not isinstance(begin, BeginRun):
+        run = self.plan.begins.get(self.visits[index].step)
+        if not isinstance(run, Run):
             return 1
         following = self.visits[index + 1]
         after = self.plan.steps[following.step]
-        has_items = isinstance(after, RunStep) or following.bytes > after.bytes
-        return begin.align if has_items else 1
+        has_items = isinstance(after, Run) or following.bytes > after.bytes
+        return run.align if has_items else 1
 
     def next_start(self, index: int) -> int:
         """Return the packet offset of the next step, or of the first item of a run."""
@@ -136,7 +141,7 @@ def _reads(packet: Packet) -> list[tuple[int, int, int]]:
         for start, visit in zip(starts, visits, strict=True)
     ]
     last = packet.beats - 1
-    if packet.plan.steps[visits[-1].step].begin is None:
+    if visits[-1].step not in packet.plan.begins:
         # The last beat shows whether bytes follow the message.
         beats[-1] = (beats[-1][0], last, visits[-1].held)
     else:
@@ -216,11 +221,12 @@ def _writes(packet: Packet) -> Iterator[_Write]:
     plan, bus, visits = packet.plan, packet.plan.bus_bytes, packet.visits
     count = len(visits)
     # A last step that only takes a rest is skipped if a length says that there is no rest.
-    if count > 1 and not visits[-1].bytes and only_ends(plan.steps[visits[-1].step]):
-        count -= plan.steps[visits[-2].step].begin is not None
+    is_tail = visits[-1].step == len(plan.steps) - 1 and ends_in_tail(plan)
+    if count > 1 and not visits[-1].bytes and is_tail:
+        count -= visits[-2].step in plan.begins
     first, may_be_last = first_step(plan), may_end_empty(plan)
     for index in range(count):
-        begin = plan.steps[visits[index].step].begin
+        begin = plan.begins.get(visits[index].step)
         is_last = index == count - 1
         end = packet.beats * bus if is_last else packet.next_start(index)
         full = end
@@ -231,7 +237,7 @@ def _writes(packet: Packet) -> Iterator[_Write]:
             # A full beat may be the last one.
             full = max(0, end - 1)
         yield _Write(
-            length=None if begin is None else begin.length,
+            length=begin.count.leaf if begin and isinstance(begin.count, Length) else None,
             full=full // bus,
             next=end // bus,
             max_beats=_max_beats(packet, index, is_last),
@@ -243,7 +249,9 @@ def _max_beats(packet: Packet, index: int, is_last: bool) -> int:
     plan, bus = packet.plan, packet.plan.bus_bytes
     visit = packet.visits[index]
     step = plan.steps[visit.step]
-    addend = step.align - 1 - plan.header_bytes % step.align if bus >= 8 else 0
+    # The step before a run that a length counts has aligned its items.
+    aligns = bus >= 8 and (isinstance(step, Step) or not step.counted)
+    addend = step.align - 1 - plan.header_bytes % step.align if aligns else 0
     size = bus - 1 + visit.bytes + addend
     if is_last:
         size += bus - 1 if visit.end else bus

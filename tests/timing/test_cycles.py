@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.plan import build_plan
-from firm_hdl.plan.cycles import (
+from firm_hdl.timing.cycles import (
     cycles_between,
     deserializer_cycles,
     packet_of,
     serializer_cycles,
 )
-from firm_hdl.plan.geometry import may_end_empty
+from firm_hdl.timing.rings import may_end_empty
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 
