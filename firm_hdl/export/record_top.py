@@ -34,6 +34,8 @@ def why_no_record(message: Message, plan: Plan) -> str:
     """Return why a message cannot have a record view; empty if it can."""
     if not message.is_fixed_size:
         return f"{message.name} has no fixed size"
+    if not message.fields:
+        return f"Message {message.name} has no field of fixed size for a record; its fields: none"
     try:
         layout = record_layout(message, wire=plan.wire)
     except ValueError as error:

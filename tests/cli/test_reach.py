@@ -163,8 +163,12 @@ def test_a_node_is_run_with_all_options(monkeypatch):
     usual = {"graph": None, "domain": None, "interface": None, "seconds": None}
     other = {"graph": "rtps", "domain": 7, "interface": "lo", "seconds": 2.5}
     assert asked == [
-        (("n.yaml", []), "sim", {**usual, "engine": "auto", "quiet": False}),
-        (("n.yaml", ["a", "b"]), "udp://h", {**other, "engine": "amaranth", "quiet": True}),
+        (("n.yaml", []), "sim", {**usual, "engine": "auto", "quiet": False, "wave": None}),
+        (
+            ("n.yaml", ["a", "b"]),
+            "udp://h",
+            {**other, "engine": "amaranth", "quiet": True, "wave": None},
+        ),
     ]
 
 

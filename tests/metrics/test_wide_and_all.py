@@ -148,6 +148,6 @@ def test_figures_of_nothing_are_zero_and_not_missing(tmp_path, capsys):
 def test_the_wire_that_is_asked_for_is_the_one(tmp_path, capsys, wire, least, distro):
     make_files(tmp_path, FILES)
     options = ["--path", str(tmp_path), "--distro", distro, "--wire", wire, "--format", "json"]
-    assert main(["metrics", "p/A", *options]) == 0
+    assert main(["metrics", "p/msg/A", *options]) == 0
     (row,) = json.loads(capsys.readouterr().out)
     assert (row["wire"], row["min_bytes"]) == (wire, least)

@@ -15,7 +15,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import jinja2
@@ -245,7 +245,7 @@ class VerilatedSource:
 
     verilog: str
     main: str
-    modules: Mapping[str, str]
+    modules: Mapping[str, str] = field(default_factory=dict)
     traced: bool = False
 
 

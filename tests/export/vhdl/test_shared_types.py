@@ -15,6 +15,7 @@ import pytest
 from rosbags.typesys import Stores, get_typestore
 
 from firm_hdl.export.build import BuildError, build
+from firm_hdl.export.options import Options
 from firm_hdl.export.vhdl.layer import user_layer
 from firm_hdl.export.vhdl.wrapper import Core
 from firm_hdl.frontend import Library
@@ -29,7 +30,10 @@ WARM, PRESS = "sensor_msgs/msg/Temperature", "sensor_msgs/msg/FluidPressure"
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory) -> list[Path]:
     out = tmp_path_factory.mktemp("built")
-    return [each.folder / "vhdl" for each in build([WARM, PRESS], out)]
+    return [
+        each.folder / "vhdl"
+        for each in build([WARM, PRESS], out, options=Options(extras=frozenset({"tools"})))
+    ]
 
 
 def unique_files(folders: Iterable[Path], listed: str) -> list[Path]:

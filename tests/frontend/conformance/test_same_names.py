@@ -84,10 +84,10 @@ def test_a_service_and_an_action_of_one_name_have_their_own_parts(tmp_path):
     make_files(tmp_path, {"p/msg/Do.msg": "int8 message"})
     for distro, middle in (("noetic", "/"), ("lyrical", "/msg/")):
         lib = Library(distro, [tmp_path])
-        assert names_of(lib.interface("p/Do")) == ["message"]
+        assert names_of(lib.interface("p/msg/Do")) == ["message"]
         assert names_of(lib.interface("p/srv/Do").response) == ["response"]
         assert names_of(lib.interface("p/action/Do").result) == ["result"]
-        assert lib.interface("p/Do").name == f"p{middle}Do"
+        assert lib.interface("p/msg/Do").name == f"p{middle}Do"
 
 
 def test_includes_are_those_of_the_first_folder_that_has_the_package(tmp_path):

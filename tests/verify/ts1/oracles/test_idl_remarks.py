@@ -65,14 +65,14 @@ def test_rosidl_parser_tells_of_comments_and_units(court, oracle):
 @pytest.mark.parametrize(
     ("name", "wrong", "places"),
     [
-        ("comment_of", lambda right: right.replace("Whole", "All"), ["comment"]),
-        ("comment_of", lambda right: right.replace("Of x", "Of y"), ["fields/x/comment"]),
-        ("comment_of", lambda right: right.partition("\n")[0], ["fields/x/comment"]),
-        ("comment_of", lambda right: right.replace("Of N", ""), ["constants/N/comment"]),
-        ("unit_of", lambda right: right and "s", ["fields/x/unit"]),
-        ("unit_of", lambda right: None, ["fields/x/unit", "fields/z/unit"]),
+        ("_comment_of", lambda right: right.replace("Whole", "All"), ["comment"]),
+        ("_comment_of", lambda right: right.replace("Of x", "Of y"), ["fields/x/comment"]),
+        ("_comment_of", lambda right: right.partition("\n")[0], ["fields/x/comment"]),
+        ("_comment_of", lambda right: right.replace("Of N", ""), ["constants/N/comment"]),
+        ("_unit_of", lambda right: right and "s", ["fields/x/unit"]),
+        ("_unit_of", lambda right: None, ["fields/x/unit", "fields/z/unit"]),
         (
-            "unit_of",
+            "_unit_of",
             lambda right: right or "m",
             ["fields/y/unit", "constants/N/unit", "constants/M/unit"],
         ),
