@@ -19,8 +19,9 @@ from firm_hdl.export.top import (
     port_members,
     ports_of,
 )
-from firm_hdl.gateware import RecordReader, RecordWriter, record_layout
+from firm_hdl.gateware import RecordReader, RecordWriter
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.record_layout import Record
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
@@ -35,7 +36,7 @@ def why_no_record(message: Message, plan: Plan) -> str:
     if not message.is_fixed_size:
         return f"{message.name} has no fixed size"
     try:
-        layout = record_layout(message, wire=plan.wire)
+        layout = Record(message, plan, None).layout
     except ValueError as error:
         return str(error)
     # The vector and all other inputs of a serializer.
