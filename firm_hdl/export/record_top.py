@@ -19,8 +19,9 @@ from firm_hdl.export.top import (
     port_members,
     ports_of,
 )
-from firm_hdl.gateware import RecordReader, RecordWriter, record_layout
+from firm_hdl.gateware import RecordReader, RecordWriter
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.record_layout import Record
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 
@@ -37,7 +38,7 @@ def why_no_record(message: Message, plan: Plan) -> str:
     if not message.fields:
         return f"Message {message.name} has no field of fixed size for a record; its fields: none"
     try:
-        layout = record_layout(message, wire=plan.wire)
+        layout = Record(message, plan, None).layout
     except ValueError as error:
         return str(error)
     # The vector and all other inputs of a serializer.
