@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.cli import main
 from tests.depth import THOROUGH
 from tests.examples.test_examples import ROOT, load
 from tests.tools import need
@@ -78,11 +79,15 @@ def fails(example_copies: Path, name: str, expected: str = "FAIL after") -> None
 
 def build_for_all(example_copies: Path) -> None:
     """Give the converters of `vhdl_motor`, which are built, to the other two motors."""
-    for name in ("sv_motor", "cocotb_motor"):
+    twist = "firm-hdl build geometry_msgs/msg/Twist --bus-bytes 4"
+    out = example_copies / "vhdl_motor" / "work"
+    extras = {"sv_motor": " --with systemverilog,tools", "cocotb_motor": ""}
+    assert main([*(twist + extras["sv_motor"]).split()[1:], "--out", str(out)]) == 0
+    for name, more in extras.items():
         commands = re.findall(
             r"^\t(firm-hdl build .*)$", (example_copies / name / "Makefile").read_text(), re.M
         )
-        assert commands == ["firm-hdl build geometry_msgs/msg/Twist --bus-bytes 4 --out $(WORK)"]
+        assert commands == [f"{twist}{more} --out $(WORK)"]
         (example_copies / name / "work").mkdir()
         (example_copies / name / "work" / "lyrical").symlink_to(
             example_copies / "vhdl_motor" / "work" / "lyrical"
