@@ -146,7 +146,6 @@ def add_info(command: argparse.ArgumentParser) -> None:
 
 def _info(args: argparse.Namespace) -> None:
     from firm_hdl.estimates import estimate_text
-    from firm_hdl.export.manifest import figures_of
     from firm_hdl.frontend import load_all
     from firm_hdl.timing import describe, recovery_text, timing
 
@@ -155,6 +154,9 @@ def _info(args: argparse.Namespace) -> None:
         plan = _planned(message, args)
         figures = timing(plan)
         if args.as_json:
+            # Not before a type can be carried: it imports much.
+            from firm_hdl.export.manifest import figures_of
+
             messages.append(
                 {
                     "name": message.name,

@@ -9,17 +9,19 @@ import math
 import re
 import struct
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from amaranth.sim import Simulator
 from rosbags.typesys import Stores, get_typestore
 
 import firm_hdl
 from firm_hdl.cli import main
 from firm_hdl.node import read_description
+from firm_hdl.node.accelerator import load_accelerator
 from firm_hdl.node.boards.simulated import SimulatedBoard
+from firm_hdl.sim import MessagePort
 from tests.node.bridge.fakes import FakeGraph, bridge_of, run_until
 
 EXAMPLES = Path(firm_hdl.__file__).parents[1] / "examples" / "nodes"
@@ -80,64 +82,75 @@ def test_wheels(start):
     assert not made.counters.dropped
 
 
-# The circuit is large. Those of the next tests have topics, too, and tests/node has the rest.
-@pytest.mark.thorough
-def test_odometry(start):
-    made, topics = start("odometry/odometry.yaml")
-    graph = made.graph
-    graph.say(topics["/cmd_vel"], twist(1.0, 0.0))
+def test_odometry(modules):
+    """The accelerator alone, with a clock that ticks for it."""
+    description = read_description(EXAMPLES / "odometry" / "odometry.yaml")
+    dut = load_accelerator(description)
+    stores = {topic.port: dict(topic.stores) for topic in description.topics}
+    tick, ticks = 1 << 24, 12
+    seen, others = [], []
 
-    def odometry():
-        return read(graph.got, "/odom", "nav_msgs/msg/Odometry")
+    def port(interface, name, way):
+        return MessagePort(interface, stores[name][way].message)
 
-    assert run_until(made, lambda: len(odometry()) >= 5, 60)
-    graph.say(topics["/cmd_vel"], twist(0.5, -1.0))
-    before = len(odometry())
-    assert run_until(made, lambda: len(odometry()) >= before + 5, 60)
-    speeds = [
-        [each.data for each in read(graph.got, name, "std_msgs/msg/Float64")]
-        for name in ("/wheel/left", "/wheel/right")
-    ]
-    assert speeds == [[1.0, 0.75], [1.0, 0.25]]
-    check_odometry(odometry())
-    graph.on_message(topics["/wheels/reset"], b"\0\1\0\0\0", "me")
-    assert run_until(made, lambda: graph.answers, 60)
-    ((caller, answer),) = graph.answers
-    # Padding may be any.
-    assert caller == "me" and answer[:5] == b"\0\1\0\0\1"
-    assert answer[8:] == struct.pack("<I", 8) + b"at zero\0"
-    assert not made.counters.dropped
+    async def clock(ctx):
+        for n in range(ticks):
+            ctx.set(dut.time.sec, 100)
+            ctx.set(dut.time.nanosec, n * tick + 5)
+            await ctx.tick().repeat(250)
 
+    async def commands(ctx):
+        speeds = {
+            "linear": {"x": 1.0, "y": 9.0, "z": 9.0},
+            "angular": {"x": 9.0, "y": 9.0, "z": 2.0},
+        }
+        await port(dut.subscribe.cmd_vel, "cmd_vel", "in").send(ctx, speeds)
+        await ctx.tick().repeat(1500)
+        await port(dut.serve.wheels_reset.request, "wheels_reset", "in").send(ctx, {})
 
-def check_odometry(messages):
-    """Check each message by the one before it: the way that the robot made in this time."""
-    times = [each.header.stamp.sec + each.header.stamp.nanosec / 1e9 for each in messages]
-    assert times == sorted(times) and abs(times[-1] - time.time()) < 60
-    yaws = []
-    for each in messages:
-        assert (each.header.frame_id, each.child_frame_id) == ("odom", "base")
-        turn = each.pose.pose.orientation
-        yaws.append(2 * math.atan2(turn.z, turn.w))
-        assert abs(turn.z**2 + turn.w**2 - 1) < 1e-3 and turn.x == turn.y == 0
-        assert not np.any(each.pose.covariance) and not np.any(each.twist.covariance)
-    moved = 0
-    for n in range(1, len(messages)):
-        seconds = times[n] - times[n - 1]
-        old, new = messages[n - 1].pose.pose.position, messages[n].pose.pose.position
-        # The speed when the message was sent is that of the whole time, unless it changed in it.
-        speed, bend = messages[n].twist.twist.linear.x, messages[n].twist.twist.angular.z
-        if speed != messages[n - 1].twist.twist.linear.x or seconds >= 1:
+    def sink(interface, name, count, found):
+        async def bench(ctx):
+            sent = port(interface, name, "out")
+            for _ in range(count):
+                found.append(await sent.receive(ctx, deadline=5000))
+
+        return bench
+
+    simulator = Simulator(dut)
+    simulator.add_clock(1e-8)
+    simulator.add_testbench(clock)
+    simulator.add_testbench(commands)
+    simulator.add_testbench(sink(dut.publish.odom, "odom", ticks - 1, seen))
+    simulator.add_testbench(sink(dut.publish.wheel_left, "wheel_left", 1, others))
+    simulator.add_testbench(sink(dut.publish.wheel_right, "wheel_right", 1, others))
+    simulator.add_testbench(sink(dut.serve.wheels_reset.response, "wheels_reset", 1, others))
+    simulator.run()
+    assert {"data": 0.5} in others and {"data": 1.5} in others
+    assert {"success": True, "message": "at zero"} in others
+    bend = 2.0 * tick / 1e9
+    x = y = yaw = 0.0
+    resets = 0
+    for n, each in enumerate(seen):
+        assert each["header"] == {
+            "stamp": {"sec": 100, "nanosec": n * tick + 5},
+            "frame_id": "odom",
+        }
+        assert each["child_frame_id"] == "base" and not any(each["pose"]["covariance"])
+        pose, speed = each["pose"]["pose"], each["twist"]["twist"]
+        turn = pose["orientation"]
+        assert abs(turn["z"] ** 2 + turn["w"] ** 2 - 1) < 1e-3 and turn["x"] == turn["y"] == 0
+        if n == 0:
             continue
-        way = math.hypot(new.x - old.x, new.y - old.y)
-        turned = math.remainder(yaws[n] - yaws[n - 1], 2 * math.pi)
-        assert abs(way - speed * seconds) < 2e-3, n
+        assert (speed["linear"]["x"], speed["angular"]["z"]) == (1.0, 2.0)
+        if pose["position"]["x"] < x:
+            x = y = yaw = 0.0
+            resets += 1
+        yaw += bend
+        x, y = x + math.cos(yaw) * tick / 1e9, y + math.sin(yaw) * tick / 1e9
         # The table has 1,024 angles.
-        assert abs(turned - bend * seconds) < 0.03, n
-        if way > 0.01:
-            moved += 1
-            course = math.atan2(new.y - old.y, new.x - old.x)
-            assert abs(math.remainder(course - yaws[n], 2 * math.pi)) < 0.05, n
-    assert moved >= 3
+        assert abs(2 * math.atan2(turn["z"], turn["w"]) - yaw) < 0.02, n
+        assert abs(pose["position"]["x"] - x) < 1e-3 and abs(pose["position"]["y"] - y) < 1e-3, n
+    assert resets == 1
 
 
 def test_filter(start):

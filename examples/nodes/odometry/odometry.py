@@ -114,17 +114,22 @@ class Odometry(wiring.Component):
             "sin_half": heading[33 - TABLE_BITS :],
             "cos_half": heading[33 - TABLE_BITS :] + quarter,
         }
+        is_reset = Signal()
         with m.FSM():
-            with m.State("WAIT"), m.If(changed):
-                m.d.sync += [
-                    way.eq((forward * seconds) >> 30),
-                    bend.eq((turn * seconds) >> 30),
-                    twist.linear.x.eq(_float(m, forward)),
-                    twist.angular.z.eq(_float(m, turn)),
-                    sec.eq(self.time.sec),
-                    nanosec.eq(self.time.nanosec),
-                ]
-                m.next = "TURN"
+            with m.State("WAIT"):
+                # Not while a position is computed, or a message is offered.
+                with m.If(is_reset):
+                    m.d.sync += [x.eq(0), y.eq(0), heading.eq(0), is_reset.eq(0)]
+                with m.Elif(changed):
+                    m.d.sync += [
+                        way.eq((forward * seconds) >> 30),
+                        bend.eq((turn * seconds) >> 30),
+                        twist.linear.x.eq(_float(m, forward)),
+                        twist.angular.z.eq(_float(m, turn)),
+                        sec.eq(self.time.sec),
+                        nanosec.eq(self.time.nanosec),
+                    ]
+                    m.next = "TURN"
             with m.State("TURN"):
                 # Radians become steps: 2**32 / (2 pi) / 2**20.
                 steps = round((1 << 32 - NUMBER.fraction_bits) / (2 * math.pi) * 256)
@@ -147,12 +152,8 @@ class Odometry(wiring.Component):
                 m.d.comb += odom.valid.eq(1)
                 with m.If(odom.ready):
                     m.next = "WAIT"
-        # A message that is offered must not change.
-        is_reset = Signal()
         with m.If(reset):
             m.d.sync += is_reset.eq(1)
-        with m.Elif(is_reset & ~odom.valid):
-            m.d.sync += [x.eq(0), y.eq(0), heading.eq(0), is_reset.eq(0)]
 
     def _seconds(self, m: Module, sec: Signal, nanosec: Signal) -> Signal:
         """Return the time since a tick in 2**-30 s; 0 after a second, or if the clock was set."""

@@ -108,10 +108,10 @@ class Budget(wiring.Component):
         )
 
         # Cycle 3.
-        budget = Signal(width - 1, name="budget", reset_less=True)
+        remaining = Signal(width - 1, name="remaining", reset_less=True)
         left, exceeds = Signal(width, name="left"), Signal(name="exceeds")
         m.d.comb += [
-            left.eq(Mux(renewed, total, budget) + less - more),
+            left.eq(Mux(renewed, total, remaining) + less - more),
             exceeds.eq(subtracts & left[-1]),
         ]
         m.d.sync += [
@@ -119,9 +119,9 @@ class Budget(wiring.Component):
             self.fails.eq(exceeds),
         ]
         with m.If(subtracts):
-            m.d.sync += budget.eq(left)
+            m.d.sync += remaining.eq(left)
         with m.Elif(renewed):
-            m.d.sync += budget.eq(total)
+            m.d.sync += remaining.eq(total)
         return m
 
     def _sum(

@@ -8,8 +8,6 @@ import sys
 
 import pytest
 
-from firm_hdl.cli.building import PORT_NAMES
-from firm_hdl.export.backend import PORTS
 from firm_hdl.verify.references.clients import CLIENTS, WRITERS
 from firm_hdl.verify.run import SYSTEMS
 from firm_hdl.verify.simulators.programs import SIMULATORS
@@ -50,7 +48,6 @@ def test_each_name_is_that_of_something():
     assert tuple(SIMULATORS) == choices.SIMULATOR_NAMES
     assert tuple(CLIENTS) == choices.CLIENT_NAMES
     assert tuple(WRITERS) == choices.WRITER_NAMES
-    assert PORTS == PORT_NAMES
 
 
 def test_a_type_that_no_wire_can_carry_is_refused_before_much_is_imported(tmp_path):
