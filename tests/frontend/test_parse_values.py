@@ -38,6 +38,12 @@ def test_values_end_where_a_comment_starts(type_, text, value, after):
     assert (item.value, item.text) == (value, text)
 
 
+@pytest.mark.parametrize("text", ["010", "+1_0"])
+@pytest.mark.parametrize("dialect", ["ros1", "ros2"])
+def test_integers_are_decimal_even_with_a_leading_zero(dialect, text):
+    assert constant(f"int32 X={text}", dialect).value.value == 10
+
+
 @pytest.mark.parametrize(
     ("text", "value"), [("0x10", 16), ("-0xFf", -255), ("0b101", 5), ("0o17", 15), ("0X_1", 1)]
 )
