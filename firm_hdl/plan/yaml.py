@@ -33,7 +33,7 @@ LEGEND = """\
 # How to read it: the plan is a list of steps, runs and loops, in the order of the packet.
 #   step                one cycle's work on the next bytes of the packet, in this order:
 #     rest of: s.items    the last bus word of a run, which may be short, and the NUL after it;
-#                         nothing if the run is empty or was not reached
+#                         nothing if the run has no items and no NUL, or was not reached
 #     align: 4            padding up to a multiple of 4 bytes, counted from the end of the header
 #     4..7: stamp.sec     bytes 4 to 7 from here are this leaf (least significant byte first)
 #     at 8: x.trigger     a leaf without bytes, valid here
