@@ -9,7 +9,7 @@ import pytest
 
 from firm_hdl.export.primitives import PRIMITIVE_BITS, primitive_name
 from firm_hdl.export.systemverilog import types as systemverilog
-from firm_hdl.export.vhdl import types as vhdl
+from firm_hdl.export.vhdl import package as vhdl
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out

@@ -19,7 +19,7 @@ FILES = {
     "Middle": "int32 a\nuint8 b\nInner[] inners\nuint8[] c\n",
     "Inner": "string[] names\nuint8 a\n",
     # An array whose alignment depends on the packet.
-    "Calibration": "string model\nfloat64[2] k\n",
+    "Calibration": "string model\nfloat64[4] k\n",
 }
 STAND_INS = {"lyrical": ("Sequences", "Deep", "Calibration"), "noetic": ("Signed",)}
 """The types of each distribution that are simulated."""
