@@ -12,11 +12,20 @@ from firm_hdl.program.state import AnyState, Program, State, Transfer
 
 __all__ = ["program_text"]
 
+LEGEND = """\
+# One line a state: what it takes, and where it leads. "map" and "items" are the words of a state:
+# of its fixed part, and of the items of a run or of their rest. "unit 4": their bytes start and end
+# at multiples of 4. "to 2 (+8)": the last byte of state 2 is 8 bytes after that of this state; with
+# "align 4 | 3", then down to a multiple of 4, and 3 more. "while level 0": while the outermost loop
+# has elements left.
+# "a.length:0..3": bytes 0 to 3 of a leaf, from the first lane on.
+"""
+
 
 def program_text(plan: Plan) -> str:
     """Return the programs of the deserializer and the serializer of a plan."""
     packets, leaves = deserializer_program(plan), serializer_program(plan)
-    lines = [f"{plan.message} on {plan.wire}, bus of {plan.bus_bytes} bytes"]
+    lines = [f"{LEGEND}{plan.message} on {plan.wire}, bus of {plan.bus_bytes} bytes"]
     ends = f", lengths end in {_lanes(packets.length_lanes)}" if packets.lengths else ""
     lines += [f"deserializer: {_head(packets)}{ends}"]
     for state in packets.states:
@@ -58,7 +67,12 @@ def _transfer(plan: Plan, transfer: Transfer) -> str:
 
 
 def _length(length: Length) -> str:
-    texts = [f"counts {length.kind} up to {length.max_count}"]
+    if length.level is None:
+        nul = " and a NUL" if length.has_nul else ""
+        what = f"items of {length.item_bytes} byte{'s' * (length.item_bytes > 1)}{nul}"
+    else:
+        what = "elements without bytes" if length.counts_nothing else "elements"
+    texts = [f"counts {what} up to {length.max_count}"]
     if length.align > 1:
         texts.append(f"at multiple of {length.align}")
     if length.charge is not None:
@@ -79,9 +93,11 @@ def _deserializer(plan: Plan, state: DeserializerState) -> Iterator[str]:
         yield _length(state.length)
     if state.body is not None:
         yield f"body {state.body}{_position(state.body_start)}"
+    begins_run = state.length is not None and state.length.level is None
     for way in state.exits:
         position = state.exit if way.level is None else state.again[way.level]
-        yield f"to {way}{_position(position)}"
+        # Decoded from the length, if no word of the run comes before its rest.
+        yield f"to {way}{' (+all items)' if begins_run else _position(position)}"
 
 
 def _position(position: NextPosition | None) -> str:
@@ -96,23 +112,23 @@ def _serializer(plan: Plan, state: SerializerState) -> Iterator[str]:
     yield from _common(plan, state)
     for name, word in (("items", state.items), ("map", state.map)):
         if word:
-            yield f"{name} = {_word(word)}"
+            yield f"{name} = {_word(plan, word)}"
     if state.length is not None:
         yield _length(state.length)
     if state.precedes_leaves:
         yield "constants only"
     if state.is_final_tail:
-        yield "skipped without a rest"
+        yield "skipped if there is no rest"
     if state.may_wait_for_status:
-        yield "may wait for status"
+        yield "may wait until a status is taken"
     if state.body is not None:
         yield f"body {state.body}"
     for way in state.exits:
         yield f"to {way}"
 
 
-def _word(word: tuple[tuple[int, WireByte], ...]) -> str:
-    """Return the bytes of a word: constants, and stretches of transfers as `slot[bytes]@lane`."""
+def _word(plan: Plan, word: tuple[tuple[int, WireByte], ...]) -> str:
+    """Return the bytes of a word: constants, and stretches of leaves as ``leaf:first..last``."""
     texts: list[str] = []
     previous: tuple[int, WireByte] | None = None
     for lane, byte in word:
@@ -121,6 +137,6 @@ def _word(word: tuple[tuple[int, WireByte], ...]) -> str:
         elif previous == (lane - 1, WireByte(byte.leaf, byte.at - 1, byte.slot)):
             texts[-1] = f"{texts[-1].partition('..')[0]}..{byte.at}"
         else:
-            texts.append(f"leaf{byte.leaf}:{byte.at}")
+            texts.append(f"{plan.leaves[byte.leaf]}:{byte.at}")
         previous = lane, byte
     return " ".join(texts)
