@@ -24,7 +24,8 @@ def _kept(m: Module, port: Any, moves: Value) -> tuple[Signal, Signal]:
     the output stops.
     """
     came = Value.cast(port.payload)
-    kept, is_kept = Signal.like(came, name="kept"), Signal()
+    kept = Signal.like(came, name="kept")
+    is_kept = Signal()
     payload, valid = Signal.like(came, name="number"), Signal(name="is_offered")
     m.d.comb += [
         port.ready.eq(~is_kept),

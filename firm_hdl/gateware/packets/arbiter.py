@@ -104,9 +104,11 @@ class PacketArbiter(Component):
             }
         )
         m.submodules.slice = out = StreamSlice(layout)
-        valid, last = Signal(), Signal()
+        valid = Signal()
+        last = Signal()
         # The chosen beat. Inputs come from far away, so nothing follows their multiplexer.
-        beat, has_beat = Signal(layout, reset_less=True), Signal()
+        beat = Signal(layout, reset_less=True)
+        has_beat = Signal()
         beats = Array(Value.cast(port.payload) for port in self.packets_in)
         m.d.comb += [
             valid.eq((Cat(port.valid for port in self.packets_in) & turn.bits).any()),
@@ -137,7 +139,8 @@ class PacketArbiter(Component):
         """Go on to the next input after the end of a packet, or while none is offered."""
         chosen = _Turn.named("chosen", self.inputs)
         following = _Turn.named("following", self.inputs)
-        fires, opens = Signal(), Signal()
+        fires = Signal()
+        opens = Signal()
         # A packet has begun and not ended.
         inside = Signal()
         # `ready` of each input. These are registers of their own, because much follows `ready` in

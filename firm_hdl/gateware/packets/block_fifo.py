@@ -57,10 +57,15 @@ class BlockFifo(wiring.Component):
         memory = BlockMemory(m, self.shape, self.words)
         bits = ceil_log2(self.words)
         # Positions of the word that is written next, and of the word that is read next.
-        to, at, used = Signal(bits), Signal(bits), Signal(bits)
-        room, arrives = Signal(init=1), Signal()
+        to = Signal(bits)
+        at = Signal(bits)
+        used = Signal(bits)
+        room = Signal(init=1)
+        arrives = Signal()
         # The memory's register has a transfer.
-        fetched, more, leaves = Signal(), Signal(), Signal()
+        fetched = Signal()
+        more = Signal()
+        leaves = Signal()
         m.d.comb += [
             self.i.ready.eq(room),
             arrives.eq(self.i.valid & room),

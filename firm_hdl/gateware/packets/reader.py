@@ -62,8 +62,10 @@ class PacketReader(wiring.Component):
         m = Module()
         packets = self.packets
         # `word` has a beat of a packet; the next beat is the first one of its packet.
-        fetched, starts = Signal(), Signal(init=1)
-        more, leaves = Signal(), Signal()
+        fetched = Signal()
+        starts = Signal(init=1)
+        more = Signal()
+        leaves = Signal()
         m.d.comb += [
             more.eq(self.at != self.kept),
             leaves.eq(~packets.valid | packets.ready),

@@ -89,8 +89,11 @@ class PacketRouter(Component):
         m.submodules.slice = out = StreamSlice(layout)
         # A bit for each output: that of the topic, that of the packet that has begun, and which of
         # both counts.
-        named, begun, to = Signal(count), Signal(count), Signal(count)
-        inside, ends = Signal(), Signal()
+        named = Signal(count)
+        begun = Signal(count)
+        to = Signal(count)
+        inside = Signal()
+        ends = Signal()
         m.d.comb += [
             named.eq(Cat(self.topic == number for number in range(count))),
             to.eq(Mux(inside, begun, named)),

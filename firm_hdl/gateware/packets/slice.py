@@ -32,7 +32,8 @@ class StreamSlice(wiring.Component):
         m = Module()
         # `second` holds the transfer of the cycle in which `o` stops; it is empty if `i.ready`.
         incoming, out = Value.cast(self.i.payload), Value.cast(self.o.payload)
-        second, ready = Signal(len(incoming), reset_less=True), Signal(init=1)
+        second = Signal(len(incoming), reset_less=True)
+        ready = Signal(init=1)
         moves = Signal()
         m.d.comb += [self.i.ready.eq(ready), moves.eq(~self.o.valid | self.o.ready)]
         with m.If(moves):

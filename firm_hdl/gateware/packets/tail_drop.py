@@ -81,12 +81,15 @@ class TailDrop(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         out = self.packets_out
-        came, beat = Signal(), Signal(packet_layout(self.bus_bytes), reset_less=True)
+        came = Signal()
+        beat = Signal(packet_layout(self.bus_bytes), reset_less=True)
         # A packet was aborted, and its last beat has not been sent.
         abort_pending = Signal()
         # The rest of the arriving packet is dropped; a beat of the arriving packet was passed on.
-        drops_rest, begun = Signal(), Signal()
-        passes, refused = Signal(), Signal()
+        drops_rest = Signal()
+        begun = Signal()
+        passes = Signal()
+        refused = Signal()
         m.d.comb += [
             self.packets_in.ready.eq(1),
             out.valid.eq(abort_pending | (came & ~drops_rest)),

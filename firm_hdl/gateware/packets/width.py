@@ -59,7 +59,8 @@ class PacketWidth(Component):
         """Store narrow beats in registers; the last one of a wide beat bypasses them."""
         ratio = self.out_bytes // self.in_bytes
         packets, beat, wide = self.packets_in, self.packets_in.payload, out.i.payload
-        number, completes = Signal(range(ratio)), Signal()
+        number = Signal(range(ratio))
+        completes = Signal()
         m.d.comb += [
             completes.eq(beat.last | (number == ratio - 1)),
             packets.ready.eq(out.i.ready),
@@ -87,7 +88,9 @@ class PacketWidth(Component):
         ratio, low = self.in_bytes // self.out_bytes, (self.out_bytes - 1).bit_length()
         m.submodules.wide = wide = StreamSlice(packet_layout(self.in_bytes))
         beat = wide.o.payload
-        number, final, is_final = Signal(range(ratio)), Signal(range(ratio)), Signal()
+        number = Signal(range(ratio))
+        final = Signal(range(ratio))
+        is_final = Signal()
         wiring.connect(m, wiring.flipped(self.packets_in), wide.i)
         m.d.comb += [
             # An empty packet has one beat, too.

@@ -91,7 +91,8 @@ class PacketWriter(wiring.Component):
         )
         # The beat in the register, and whether there was room for it when it came.
         self.beat = Signal(packet_layout(shape.bus_bytes), reset_less=True)
-        self.has_beat, self.fits = Signal(), Signal()
+        self.has_beat = Signal()
+        self.fits = Signal()
         self.aborts = Signal(reset_less=True)
         # The rest of the packet is dropped, after the beat in the register.
         self.drops = Signal()
@@ -111,8 +112,13 @@ class PacketWriter(wiring.Component):
         shape, packets = self.shape, self.packets
         # The position of the next beat that is received, if no packet were dropped.
         arrived = Signal(shape.position_bits)
-        room, comes, last = Signal(init=1), Signal(), packets.payload.last
-        lost, fails, counts, ends = Signal(), Signal(), Signal(), Signal()
+        room = Signal(init=1)
+        comes = Signal()
+        last = packets.payload.last
+        lost = Signal()
+        fails = Signal()
+        counts = Signal()
+        ends = Signal()
         m.d.comb += [
             packets.ready.eq(room if self.waits else 1),
             comes.eq(packets.valid & packets.ready),
@@ -180,7 +186,8 @@ class PacketWriter(wiring.Component):
         # Words of the packet that are written, before the beat.
         words = Signal(shape.address_bits)
         # The packet lost a beat before the current one, because it is larger than the memory.
-        dropping, large = Signal(), Signal(reset_less=True)
+        dropping = Signal()
+        large = Signal(reset_less=True)
         ends = Signal()
         at = Signal(shape.position_bits)
         # Words of the packet before the beat that fills the memory.

@@ -67,8 +67,12 @@ class NodeClock(wiring.Component):
         step_back = Signal(signed(bits - fraction), init=(self.nominal >> fraction) - SECOND)
         # The time in this second, and the same less a second. If the latter is not negative, the
         # second is over; its sign is a register, so it only selects what the adders add to.
-        within, beyond, negative = Signal(bits), Signal(bits - 1), Signal(init=1)
-        now, over, seconds = Signal(bits), Signal(), Signal(32)
+        within = Signal(bits)
+        beyond = Signal(bits - 1)
+        negative = Signal(init=1)
+        now = Signal(bits)
+        over = Signal()
+        seconds = Signal(32)
         m.d.comb += [
             over.eq(~negative),
             now.eq(Mux(over, beyond, within)),

@@ -49,7 +49,9 @@ class CobsEncoder(wiring.Component):
         #
         # Bytes in the block, and those that were sent. The block ends with a 0, which it stands
         # for, or the packet ends with it.
-        size, sent, ends_packet = Signal(8), Signal(8), Signal()
+        size = Signal(8)
+        sent = Signal(8)
+        ends_packet = Signal()
         # One more block follows the last byte, if that is a 0 or fills its block.
         needs_block = (byte == 0) | (size == MOST_IN_BLOCK - 1)
         more = Signal()
@@ -118,9 +120,12 @@ class CobsDecoder(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         m.submodules.slice = out = StreamSlice(self.o.payload.shape())
-        byte, moves = self.i.payload, Signal()
+        byte = self.i.payload
+        moves = Signal()
         # Bytes of the block that are missing; the frame has begun; a 0 follows the block.
-        left, inside, zero = Signal(8), Signal(), Signal()
+        left = Signal(8)
+        inside = Signal()
+        zero = Signal()
         is_end, is_code = byte == 0, left == 0
         m.d.comb += [
             moves.eq(self.i.valid & self.i.ready),
@@ -221,10 +226,12 @@ class ByteFrameReader(wiring.Component):
         m.submodules.crc = crc = CRC32_ETHERNET(8).create()
         layout = data.StructLayout({"beat": packet_layout(1), "bad": 1})
         m.submodules.slice = out = StreamSlice(layout)
-        came, moves = cobs.o, Signal()
+        came = cobs.o
+        moves = Signal()
         # Only the end of a frame tells that the four bytes before it were the CRC, and that the one
         # before them was its last. So five bytes wait, and each further one lets the oldest pass.
-        waiting, count = Signal(8 * (CRC_BYTES + 1)), Signal(range(CRC_BYTES + 2))
+        waiting = Signal(8 * (CRC_BYTES + 1))
+        count = Signal(range(CRC_BYTES + 2))
         is_full, ends = count == CRC_BYTES + 1, came.payload.ends
         m.d.comb += [
             *passes(self.i, cobs.i),

@@ -95,7 +95,8 @@ class ControlUnit(wiring.Component):
         """
         beats = CONTROL_BYTES // self.bus_bytes
         packets, beat = self.packets_in, self.packets_in.payload
-        words, number = Signal(8 * CONTROL_BYTES), Signal(range(beats + 1))
+        words = Signal(8 * CONTROL_BYTES)
+        number = Signal(range(beats + 1))
         bits = 8 * self.bus_bytes
         whole = Signal(layout)
         kept = Signal(8 * CONTROL_BYTES)
@@ -125,8 +126,10 @@ class ControlUnit(wiring.Component):
 
     def _answer(self, m: Module, layout: data.StructLayout, waiting: SyncFIFO) -> None:
         """Do the oldest request, and send the response."""
-        asked, response = Signal(layout), Signal(_layout(RESPONSE))
-        cycles, is_known = Signal(range(self.read_cycles + 1)), Signal()
+        asked = Signal(layout)
+        response = Signal(_layout(RESPONSE))
+        cycles = Signal(range(self.read_cycles + 1))
+        is_known = Signal()
         # The response is sent. A register of its own, because the arbiter is far away.
         sends = Signal()
         m.d.comb += [
@@ -161,7 +164,8 @@ class ControlUnit(wiring.Component):
     def _check(self, m: Module, asked: data.View, response: data.View, is_known: Signal) -> None:
         """Compare the numbers of a request with their limits."""
         request, argument = asked.request, asked.request.argument
-        is_first, is_counter = argument < self.first, Signal()
+        is_first = argument < self.first
+        is_counter = Signal()
         reads = request.operation == Operation.READ
         sets = request.operation == Operation.SET_TIME
         m.d.comb += is_counter.eq((argument >= self.counters_from) & (argument < self.last))
@@ -184,7 +188,8 @@ class ControlUnit(wiring.Component):
         self, m: Module, asked: data.View, response: data.View, is_known: Signal, sends: Signal
     ) -> None:
         """Do a request; go on to the state that follows."""
-        request, does = asked.request, Signal()
+        request = asked.request
+        does = Signal()
         m.d.comb += does.eq(is_known & (response.result == Result.OK))
         m.d.sync += [
             self.sets.eq(does & (request.operation == Operation.SET_TIME)),
@@ -206,7 +211,8 @@ class ControlUnit(wiring.Component):
     def _send(self, m: Module, response: data.View, sends: Signal) -> None:
         """Send the response, its first bytes first."""
         beats = CONTROL_BYTES // self.bus_bytes
-        out, number = self.packets_out, Signal(range(max(2, beats)))
+        out = self.packets_out
+        number = Signal(range(max(2, beats)))
         bits = 8 * self.bus_bytes
         m.d.comb += [
             out.valid.eq(sends),
@@ -252,7 +258,9 @@ class ByteCounter(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         # An addition of 64 bits would be too long for a cycle: the carry waits in a register.
-        adds, size, carry = Signal(), Signal.like(self.size), Signal()
+        adds = Signal()
+        size = Signal.like(self.size)
+        carry = Signal()
         total = Signal(33)
         m.d.comb += total.eq(self.low + Mux(adds, size, 0))
         m.d.sync += [

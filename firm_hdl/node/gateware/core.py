@@ -224,7 +224,8 @@ class NodeCore(wiring.Component):
         m.submodules.router = router = PacketRouter(
             self.description.bus_bytes, len(inputs), topic_bits=bits, side_bits=TAG_BITS
         )
-        came, number = self.received, Signal(bits, init=len(inputs))
+        came = self.received
+        number = Signal(bits, init=len(inputs))
         # Ids of publications are no inputs, so inputs are numbered anew; others are unknown.
         with m.Switch(came.payload.topic):
             for place, topic in enumerate(inputs):

@@ -72,9 +72,12 @@ class Fragmenter(wiring.Component):
         m = Module()
         layout = data.StructLayout({"beat": packet_layout(self.bus_bytes), "size": SIZE_BITS})
         m.submodules.slice = out = StreamSlice(layout)
-        header, is_empty = Signal(header_layout()), Signal()
+        header = Signal(header_layout())
+        is_empty = Signal()
         # Bytes of the message that are not sent, those of the frame included.
-        rest, is_final, size = Signal(32), Signal(), Signal(SIZE_BITS)
+        rest = Signal(32)
+        is_final = Signal()
+        size = Signal(SIZE_BITS)
         number = Signal(range(max(self.beats, self.room // self.bus_bytes)))
         m.d.comb += [
             out.i.payload.size.eq(size),
@@ -156,7 +159,8 @@ class Fragmenter(wiring.Component):
         number: Signal,
     ) -> None:
         """Send the bytes of a frame; go on with the next one or with the next message."""
-        beat, ends = self.i.payload, Signal()
+        beat = self.i.payload
+        ends = Signal()
         m.d.comb += [
             ends.eq(beat.last | (~is_final & (number == self.room // self.bus_bytes - 1))),
             out.i.valid.eq(self.i.valid),
@@ -247,17 +251,25 @@ class Reassembler(wiring.Component):
         m = Module()
         layout = data.StructLayout({"beat": packet_layout(self.bus_bytes), "abort": 1})
         m.submodules.slice = self._out = out = StreamSlice(layout)
-        self._header, self._number = Signal(header_layout()), Signal(range(self.beats))
+        self._header = Signal(header_layout())
+        self._number = Signal(range(self.beats))
         # The frame ended with its header; and it was damaged.
-        self._is_empty, self._was_bad = Signal(), Signal()
+        self._is_empty = Signal()
+        self._was_bad = Signal()
         # The message under way: its number, its topic, its next fragment and its missing bytes.
-        self._open, self._left = Signal(), Signal(32)
+        self._open = Signal()
+        self._left = Signal(32)
         self._under_way = Signal(data.StructLayout({"sequence": 16, "topic": 16, "next": 16}))
         # The number that is expected, once a message was whole; how far ahead the frame's is.
-        self._expected, self._synced, self._ahead = Signal(16), Signal(), Signal(16)
+        self._expected = Signal(16)
+        self._synced = Signal()
+        self._ahead = Signal(16)
         # The number that would confirm the last one that was too far away to be believed.
-        self._confirms, self._doubts = Signal(16), Signal()
-        self._continues, self._late, self._far = Signal(), Signal(), Signal()
+        self._confirms = Signal(16)
+        self._doubts = Signal()
+        self._continues = Signal()
+        self._late = Signal()
+        self._far = Signal()
         self._events = {name: Signal(name=f"is_{name}") for name in REASSEMBLER_COUNTERS}
         m.d.comb += [
             self.o.payload.eq(out.o.payload.beat),
@@ -309,7 +321,9 @@ class Reassembler(wiring.Component):
         header, under_way = self._header, self._under_way
         # The difference is taken modulo 2 ** 16, so what is late is just below that. What starts a
         # sequence, or is the first of all, is what was expected.
-        ahead, confirmed, starts = Signal(16), Signal(), header.flags[1]
+        ahead = Signal(16)
+        confirmed = Signal()
+        starts = header.flags[1]
         late = ahead >= (1 << 16) - LATE_MESSAGES
         m.d.comb += [
             ahead.eq(Mux(self._synced & ~starts, header.sequence - self._expected, 0)),
@@ -430,7 +444,9 @@ class Reassembler(wiring.Component):
         Only the last beat of a message has `last`, so its fragments become one packet.
         """
         out, header = self._out.i, self._header
-        is_last_frame, fails, moves = header.flags[0], Signal(), Signal()
+        is_last_frame = header.flags[0]
+        fails = Signal()
+        moves = Signal()
         m.d.comb += [
             fails.eq(~whole | bad),
             moves.eq(out.valid & out.ready),
@@ -447,7 +463,8 @@ class Reassembler(wiring.Component):
 
     def _count_lost(self, m: Module) -> None:
         """Count the messages between the last one that was whole and this one."""
-        gap, total = Signal(16), Signal(33)
+        gap = Signal(16)
+        total = Signal(33)
         # Behind is a new sequence. Of that, only the message that was not believed is missing.
         missing = Mux(self._ahead[15], 1, self._ahead)
         m.d.sync += gap.eq(Mux(self.passes, missing, 0))

@@ -75,9 +75,13 @@ class HeaderInsert(wiring.Component):
         #
         #     i        b0  b0  b0  b1  b2        sent   0  1  2  2  2    (a header of 2 beats)
         #     slice    H   H   b0  b1  b2
-        header, sequence, starts = Signal(header_layout()), Signal(16), Signal(init=1)
+        header = Signal(header_layout())
+        sequence = Signal(16)
+        starts = Signal(init=1)
         # Beats of the header that were sent.
-        sent, in_header, is_empty = Signal(range(self.beats + 1)), Signal(), Signal()
+        sent = Signal(range(self.beats + 1))
+        in_header = Signal()
+        is_empty = Signal()
         ends_header = sent == self.beats - 1
         m.d.comb += [
             header.version.eq(VERSION),
@@ -156,9 +160,15 @@ class HeaderStrip(wiring.Component):
         #
         #     frames   H   H   b0  b1            took   0  1  2  2       (a header of 2 beats)
         #     slice            b0  b1            `good` is a register from the beat b0 on
-        words, header = Signal(header_layout()), Signal(header_layout())
-        took, in_header, ends_header = Signal(range(self.beats + 1)), Signal(), Signal()
-        is_good, good, is_empty, emits = Signal(), Signal(), Signal(), Signal()
+        words = Signal(header_layout())
+        header = Signal(header_layout())
+        took = Signal(range(self.beats + 1))
+        in_header = Signal()
+        ends_header = Signal()
+        is_good = Signal()
+        good = Signal()
+        is_empty = Signal()
+        emits = Signal()
         shifted = Cat(Value.cast(words)[bits:], Value.cast(beat.data))
         m.d.comb += [
             in_header.eq(took != self.beats),

@@ -76,7 +76,8 @@ class TaggedFifo(wiring.Component):
         # Besides the packets that are stored, one is sent, and one has just been kept.
         m.submodules.tags = tags = SyncFIFO(width=TAG_BITS, depth=store.packets + 2)
         # The FIFO says what it did with a packet two cycles after its last beat.
-        tag, tag_ended = Signal(TAG_BITS), Signal(TAG_BITS)
+        tag = Signal(TAG_BITS)
+        tag_ended = Signal(TAG_BITS)
         out = self.packets_out
         m.d.sync += [tag.eq(self.tag_in), tag_ended.eq(tag)]
         m.d.comb += [

@@ -35,7 +35,8 @@ class UartTransmitter(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         # Bits that are not sent, the next one lowest; a 1 above them marks the end.
-        bits, count = Signal(10, init=1), Signal(range(self.cycles))
+        bits = Signal(10, init=1)
+        count = Signal(range(self.cycles))
         is_idle = bits == 1
         m.d.comb += self.i.ready.eq(is_idle & (count == 0))
         with m.If(count != 0):
@@ -96,7 +97,9 @@ class UartReceiver(wiring.Component):
         m = Module()
         line = Signal(init=1)
         m.submodules.line = FFSynchronizer(self.rx, line, init=1)
-        bits, number, count = Signal(9), Signal(range(10)), Signal(range(2 * self.cycles))
+        bits = Signal(9)
+        number = Signal(range(10))
+        count = Signal(range(2 * self.cycles))
         with m.If(self.o.ready):
             m.d.sync += self.o.valid.eq(0)
         m.d.sync += [self.broken.eq(0), self.overrun.eq(0)]

@@ -95,8 +95,11 @@ class UdpLink(wiring.Component):
             address = Const(int(IPv4Address(self.link.host)), 32)
             return Const(1), address, Const(self.link.host_port, 16)
         came = self.datagrams_in.payload
-        known, address, port = Signal(), Signal(32), Signal(16)
-        new_address, new_port = Signal(32), Signal(16)
+        known = Signal()
+        address = Signal(32)
+        port = Signal(16)
+        new_address = Signal(32)
+        new_port = Signal(16)
         with m.If(receiver.begins):
             m.d.sync += [new_address.eq(came.ip_address), new_port.eq(came.src_port)]
         with m.If(receiver.passes):
@@ -112,9 +115,12 @@ class UdpLink(wiring.Component):
         m.submodules.fragmenter = fragments = Fragmenter(words, self.link.datagram_bytes)
         frames = fragments.frames
         # The host of a datagram does not change between its first and its last word.
-        inside, sends, drops = Signal(), Signal(), Signal()
+        inside = Signal()
+        sends = Signal()
+        drops = Signal()
         to = Signal.like(self.datagrams_out.payload.ip_address)
-        to_port, moves = Signal(16), Signal()
+        to_port = Signal(16)
+        moves = Signal()
         m.d.comb += [
             *passes(self.sent, insert.i),
             *passes(insert.frames, width.packets_in),
