@@ -99,7 +99,7 @@ def build_node(
     with conflicts_reported(description), search_put_off():
         circuit = rtlil.rtlil_of(NodeTop(node), name=name)
     script = link_script(description, stimuli, has_accelerator=has_accelerator)
-    own = accelerator_files(node.accelerator)
+    own = accelerator_files(description, node.accelerator)
     facts = facts_of(description)
     return write_design(
         folder,
@@ -109,7 +109,9 @@ def build_node(
                 "facts": facts,
                 # The accelerator's code is part of the circuit; packets of the benches are not.
                 "frames_sha256": None if script is None else digest(script.text),
-                "accelerator_files": {**own.texts, **own.headers},
+                "accelerator_files": {
+                    f: digest(t) for f, t in {**own.texts, **own.headers}.items()
+                },
             },
             circuit,
         ),

@@ -24,7 +24,7 @@ def path_of(description: Description, file: str) -> str:
     return os.path.normpath(os.path.join(description.folder, file))
 
 
-def read_sources(description: Description) -> dict[str, str]:
+def read_sources(description: Description) -> dict[str, bytes]:
     """Read the files of an accelerator, by their names in the description.
 
     Raises
@@ -33,22 +33,22 @@ def read_sources(description: Description) -> dict[str, str]:
         At the name of each file in the description that cannot be read.
     """
     assert description.hdl is not None
-    texts: dict[str, str] = {}
+    sources: dict[str, bytes] = {}
     problems = []
     for file in description.hdl.files:
         path = path_of(description, file)
         try:
-            texts[file] = text_of(read_file(path, MOST_BYTES))
+            sources[file] = read_file(path, MOST_BYTES)
         except OSError as error:
             message = f"cannot read '{path}': {error.strerror or error}"
             problems.append(Diagnostic(message=message, span=description.accelerator_span))
     if problems:
         raise DefinitionError(problems)
-    return texts
+    return sources
 
 
 def text_of(data: bytes) -> str:
-    """Decode a file of VHDL, whose standard has Latin-1, or of Verilog."""
+    """Decode a file of VHDL, whose standard has Latin-1, or of Verilog, to show it."""
     try:
         return data.decode()
     except UnicodeDecodeError:
@@ -61,7 +61,7 @@ def refused(description: Description, message: str) -> DefinitionError:
 
 
 def problems_of(
-    description: Description, said: str, sources: Mapping[str, str], tool: str
+    description: Description, said: str, sources: Mapping[str, bytes], tool: str
 ) -> DefinitionError:
     """Return the errors that a tool found in the user's files, each at its place.
 
@@ -69,8 +69,8 @@ def problems_of(
     ----------
     said : str
         Output of the tool, which got absolute paths.
-    sources : mapping of str to str
-        The texts of the files.
+    sources : mapping of str to bytes
+        The files by name.
     """
     by_path = {os.path.abspath(path_of(description, file)): file for file in sources}
     problems: list[Diagnostic] = []
@@ -81,7 +81,7 @@ def problems_of(
         file = by_path.get(os.path.abspath(found[1]))
         if file is None:
             continue
-        text = sources[file]
+        text = text_of(sources[file])
         starts = [0, *(match.end() for match in re.finditer("\n", text))]
         row = min(int(found[2]), len(starts))
         start = min(starts[row - 1] + max(0, int(found[3] or 1) - 1), len(text))

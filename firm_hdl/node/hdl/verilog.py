@@ -16,7 +16,7 @@ from firm_hdl.jobs import ToolError, run_tool
 from firm_hdl.jobs.programs import find_verilator
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.ports import AcceleratorPort
-from firm_hdl.node.hdl.sources import check_ports, path_of, problems_of, refused, text_of
+from firm_hdl.node.hdl.sources import check_ports, path_of, problems_of, refused
 
 __all__ = ["checked_verilog", "preprocessed"]
 
@@ -31,7 +31,7 @@ _NO_MODULE = re.compile(r"(?:containing module|module reference): '([^']+)'")
 
 def checked_verilog(
     description: Description,
-    sources: Mapping[str, str],
+    sources: Mapping[str, bytes],
     wanted: Sequence[AcceleratorPort],
 ) -> tuple[AcceleratorPort, ...]:
     """Check files of Verilog or SystemVerilog, and the ports of the module.
@@ -83,8 +83,8 @@ def _with(
     )
 
 
-def preprocessed(description: Description) -> tuple[str, dict[str, str]]:
-    """Return all files as one text, and the texts of the files that they include, by path.
+def preprocessed(description: Description) -> tuple[str, dict[str, bytes]]:
+    """Return all files as one text, and the files that they include, by absolute path.
 
     Raises
     ------
@@ -97,9 +97,9 @@ def preprocessed(description: Description) -> tuple[str, dict[str, str]]:
             text = run_tool(command, Path(folder), with_errors=False)
         except ToolError as error:
             raise problems_of(description, str(error), {}, "Verilator") from None
-    places = dict.fromkeys(re.findall(r'^`line \d+ "([^"<]+)"', text, re.MULTILINE))
-    more = [path for path in places if path not in paths and os.path.isfile(path)]
-    return text, {path: text_of(Path(path).read_bytes()) for path in more}
+    places = re.findall(r'^`line \d+ "([^"<]+)"', text, re.MULTILINE)
+    more = {os.path.normpath(path): path for path in places if os.path.isfile(path)}
+    return text, {name: Path(path).read_bytes() for name, path in more.items() if name not in paths}
 
 
 def _paths(description: Description) -> list[str]:
@@ -116,7 +116,7 @@ def _command(description: Description) -> list[str]:
 
 
 def _lint(
-    description: Description, sources: Mapping[str, str], ports: Sequence[AcceleratorPort]
+    description: Description, sources: Mapping[str, bytes], ports: Sequence[AcceleratorPort]
 ) -> tuple[str, bool]:
     """Let Verilator check the files with a module around them; return what it says."""
     assert description.hdl is not None

@@ -28,7 +28,7 @@ _WRAPPER = "firm_hdl_check"
 
 def checked_vhdl(
     description: Description,
-    sources: Mapping[str, str],
+    sources: Mapping[str, bytes],
     wanted: Sequence[AcceleratorPort],
 ) -> tuple[AcceleratorPort, ...]:
     """Analyse files of VHDL-2008, and check the ports of the entity.
@@ -69,7 +69,7 @@ def checked_vhdl(
 
 
 def verilog_of_vhdl(
-    description: Description, sources: Mapping[str, str], ports: Sequence[AcceleratorPort]
+    description: Description, sources: Mapping[str, bytes], ports: Sequence[AcceleratorPort]
 ) -> str:
     """Return the entity as a module of Verilog, for a simulator with two values.
 
@@ -98,7 +98,7 @@ def _entity(description: Description) -> str:
     return description.hdl.entity
 
 
-def _dump(description: Description, sources: Mapping[str, str], folder: Path) -> str:
+def _dump(description: Description, sources: Mapping[str, bytes], folder: Path) -> str:
     """Analyse the files, and return GHDL's netlist of the entity."""
     ghdl = find_ghdl()
     options = ["--std=08", f"--workdir={folder}"]

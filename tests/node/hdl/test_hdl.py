@@ -215,6 +215,50 @@ def test_a_node_of_systemverilog_is_built_and_runs(written, tmp_path, iverilog, 
     assert "PASS node Relay_node: " in said.stdout
 
 
+def test_files_that_are_included_keep_their_folders(written, tmp_path, iverilog, verilator):
+    include = [("module Relay", '`include "inc/one.svh"\n`include "../two.svh"\nmodule Relay')]
+    (tmp_path / "rtl" / "inc").mkdir(parents=True)
+    (tmp_path / "rtl" / "inc" / "one.svh").write_text("`define ONE 1'b1\n")
+    (tmp_path / "two.svh").write_text("`define TWO `ONE\n")
+    written("sv", *include, ("endmodule", "wire two = `TWO;\nendmodule"), description=SMALL)
+    (tmp_path / "Relay.sv").rename(tmp_path / "rtl" / "Relay.sv")
+    description = described(tmp_path, "{systemverilog: rtl/Relay.sv}", SMALL)
+    folder = build_node(description, tmp_path, stimuli=stimuli).folder
+    core = yaml.safe_load((folder / "Relay_node.core").read_text().partition("\n")[2])
+    assert core["filesets"]["accelerator"]["files"] == [
+        "accelerator/rtl/Relay.sv",
+        {
+            "accelerator/rtl/inc/one.svh": {
+                "is_include_file": True,
+                "include_path": "accelerator/rtl",
+            }
+        },
+        {"accelerator/two.svh": {"is_include_file": True, "include_path": "accelerator/rtl"}},
+    ]
+    run = ["sh", folder / "run_iverilog.sh"]
+    said = subprocess.run(run, capture_output=True, text=True, check=True)
+    assert "PASS node Relay_node: " in said.stdout
+
+
+def test_an_include_by_an_absolute_path_is_refused(written, tmp_path, verilator):
+    header = tmp_path / "one.svh"
+    header.write_text("\n")
+    include = ("module Relay", f'`include "{header}"\nmodule Relay')
+    description = written("sv", include, description=SMALL)
+    with pytest.raises(DefinitionError, match="by an absolute path"):
+        build_node(description, tmp_path)
+
+
+def test_a_copy_has_the_bytes_of_the_file(written, tmp_path, ghdl):
+    description = written("vhdl", description=SMALL)
+    source = tmp_path / "Relay.vhd"
+    data = source.read_bytes().replace(b"\n", b"\r\n") + "-- r\u00fchrt\r\n".encode("latin-1")
+    source.write_bytes(data)
+    folder = build_node(description, tmp_path).folder
+    assert (folder / "vhdl" / "accelerator" / "Relay.vhd").read_bytes() == data
+    assert build_node(description, tmp_path).was_current
+
+
 # What a netlist of GHDL can have: memories, long constants, signed arithmetic, both edges.
 DESIGN = """\
 library ieee; use ieee.std_logic_1164.all; use ieee.numeric_std.all;
