@@ -11,12 +11,21 @@ from firm_hdl.files import read_file
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.ports import AcceleratorPort
 
-__all__ = ["check_ports", "path_of", "problems_of", "read_sources", "refused", "text_of"]
+__all__ = [
+    "check_ports",
+    "path_of",
+    "problems_of",
+    "read_sources",
+    "refused",
+    "refused_twice",
+    "text_of",
+]
 
 MOST_BYTES = 1 << 24
 
 _PLACE = re.compile(r"(?:%Error(?:-\w+)?: )?([^\n:]+):(\d+):(?:(\d+):)? ?(?:error: ?)?(.*)")
 _MOST_NAMED = 8
+_LIBRARY = re.compile(r"^\S*/ieee\w*/(\w+?)(?:-body)?\.vhdl:\d+:\d+:", re.MULTILINE)
 
 
 def path_of(description: Description, file: str) -> str:
@@ -45,6 +54,14 @@ def read_sources(description: Description) -> dict[str, bytes]:
     if problems:
         raise DefinitionError(problems)
     return sources
+
+
+def refused_twice(description: Description, unit: str, first: str, second: str) -> DefinitionError:
+    """Return the error of a unit that two files declare, by the paths that a tool printed."""
+    assert description.hdl is not None
+    names = {os.path.abspath(path_of(description, file)): file for file in description.hdl.files}
+    files = " and ".join(repr(names.get(os.path.abspath(each), each)) for each in (first, second))
+    return refused(description, f"{unit} is declared in two files, {files}")
 
 
 def text_of(data: bytes) -> str:
@@ -93,6 +110,12 @@ def problems_of(
             problems.append(problem)
     if problems:
         return DefinitionError(problems)
+    if library := _LIBRARY.search(said):
+        # `float_pkg` is an instance of `float_generic_pkg`.
+        package = library[1].replace("_generic", "")
+        users = [f for f, data in sources.items() if package in text_of(data).lower()]
+        where = f", used in {_listed(users)}" if users else ""
+        return refused(description, f"{tool} cannot synthesize ieee's package '{package}'{where}")
     lines = [line for line in said.splitlines() if line.strip()]
     return refused(description, f"{tool} failed: {' '.join(lines[:3])[:400]}")
 
