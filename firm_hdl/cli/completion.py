@@ -10,6 +10,7 @@ from argcomplete import autocomplete
 from argcomplete.completers import FilesCompleter
 from argcomplete.shell_integration import shellcode
 
+from firm_hdl.export.options import EXTRAS
 from firm_hdl.frontend import Library, open_library
 from firm_hdl.frontend.spelling import SUFFIXES
 
@@ -39,6 +40,15 @@ def _add_completers(parser: argparse.ArgumentParser) -> None:
                 _add_completers(sub)
         elif action.dest in ("type", "types"):
             action.completer = _types  # type: ignore[attr-defined]
+        elif action.dest == "extras":
+            action.completer = _extras  # type: ignore[attr-defined]
+
+
+def _extras(prefix: str, **_: Any) -> list[str]:
+    """List the words of ``--with`` that can follow those, and their commas, so far."""
+    before, comma, _last = prefix.rpartition(",")
+    words = [each for each in (*EXTRAS, "all") if each not in before.split(",")]
+    return [f"{before}{comma}{each}" for each in words]
 
 
 def _types(prefix: str, parsed_args: argparse.Namespace, **_: Any) -> list[str]:

@@ -60,7 +60,8 @@ class Parser(argparse.ArgumentParser):
                 if instead := replacement_of(value):
                     raise argparse.ArgumentError(action, f"{text}; {instead}") from None
             near = [_MEANT[action.dest, value]] if (action.dest, value) in _MEANT else []
-            near = near or nearest(str(value), map(str, action.choices or ()))
+            words = [each for each in action.choices or () if isinstance(each, str)]
+            near = near or nearest(str(value), words)
             raise argparse.ArgumentError(action, _with_suggestions(text, near)) from None
 
 

@@ -102,9 +102,7 @@ def add_metrics(command: argparse.ArgumentParser) -> None:
     from firm_hdl.metrics import FORMATS
 
     add_types_or_all(command)
-    command.add_argument(
-        "--format", choices=list(FORMATS), default="table", help="default: %(default)s"
-    )
+    command.add_argument("--format", choices=list(FORMATS), help="default: table")
     add_wire(command)
     add_json(command)
     command.set_defaults(run=_metrics)
@@ -113,7 +111,9 @@ def add_metrics(command: argparse.ArgumentParser) -> None:
 def _metrics(args: argparse.Namespace) -> None:
     from firm_hdl.metrics.command import metrics_text
 
-    names, form = names_of(args), "json" if args.as_json else args.format
+    if args.as_json and args.format not in (None, "json"):
+        args.usage_error(f"--json and --format {args.format} exclude each other")
+    names, form = names_of(args), "json" if args.as_json else args.format or "table"
     text, wrong = metrics_text(library_of(args), names, form, args.wire)
     if args.as_json:
         args.document["messages"] = json.loads(text)

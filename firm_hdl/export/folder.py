@@ -161,7 +161,9 @@ def _write(
             temporary = f".firm-hdl-{secrets.token_hex(8)}.tmp"
             stack.callback(_discard, root, temporary)
             mode = 0o777 if name.endswith(".sh") else 0o666
-            write_new(temporary, text.encode(), mode, folder=root)
+            # Bytes of the user's files that are not UTF-8 stay as they are.
+            data = text.encode("utf-8", "surrogateescape")
+            write_new(temporary, data, mode, folder=root)
             return temporary
 
         before = {n: s if (s := found[n]) in known[n] else min(known[n]) for n in known}

@@ -102,8 +102,8 @@ def to_json(value: Any) -> str:
 
 
 def digest(text: str) -> str:
-    """Return the SHA-256 of a text, in hexadecimal."""
-    return hashlib.sha256(text.encode()).hexdigest()
+    """Return the SHA-256 of a text, in hexadecimal. Bytes that are not UTF-8 are surrogates."""
+    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def figures_of(plan: Plan, figures: Timing) -> dict[str, Any]:

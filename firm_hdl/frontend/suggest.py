@@ -76,7 +76,10 @@ def similar_types(
 
     The order is: the same name but for case and underscores; the same name in a package with a
     similar name, then in any other package; then a similar name in the package, if it exists.
+    Nothing is similar to a type of a known package that is not there.
     """
+    if package not in sources.types and package in _NOT_EMBEDDED:
+        return []
     found = [
         (other, kind, base)
         for other, types in sources.types.items()

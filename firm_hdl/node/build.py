@@ -99,7 +99,7 @@ def build_node(
     with conflicts_reported(description), search_put_off():
         circuit = rtlil.rtlil_of(NodeTop(node), name=name)
     script = link_script(description, stimuli, has_accelerator=has_accelerator)
-    own = accelerator_files(node.accelerator)
+    own = accelerator_files(description, node.accelerator)
     facts = facts_of(description)
     return write_design(
         folder,
@@ -109,7 +109,9 @@ def build_node(
                 "facts": facts,
                 # The accelerator's code is part of the circuit; packets of the benches are not.
                 "frames_sha256": None if script is None else digest(script.text),
-                "accelerator_files": {**own.texts, **own.headers},
+                "accelerator_files": {
+                    f: digest(t) for f, t in {**own.texts, **own.headers}.items()
+                },
             },
             circuit,
         ),
@@ -170,7 +172,7 @@ def _files(
         benches = {file: text for file, text in benches.items() if not file.endswith(other)}
     owners = {"the node": node.files, "its messages": records, "its structs": structs}
     if own.language:
-        owners["its accelerator"] = {f"{own.entity}.vhd": ""}
+        owners[_ACCELERATOR] = {f"{own.entity}.vhd": ""}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     return {
         **verilog_file(netlist, name=name, header=header),
@@ -241,6 +243,7 @@ def _bench(name: str, language: str) -> dict[str, str]:
 
 
 _SUFFIXES = (".vhd", ".sv")
+_ACCELERATOR = "its accelerator"
 
 
 def check_units(
@@ -264,7 +267,7 @@ def check_units(
     Raises
     ------
     DefinitionError
-        At the name of the node in the description.
+        At the name of the node in the description, or at the accelerator.
     """
     if top != name:
         raise _refused(description, f"the VHDL of every node uses the name '{name}' itself")
@@ -274,6 +277,10 @@ def check_units(
             first = owners.setdefault(unit.lower(), owner)
             if first != owner:
                 what = f"{first} and {owner} would both have a unit with the name '{unit}'"
+                if _ACCELERATOR in (first, owner):
+                    message = f"{what}; give the entity of the accelerator another name"
+                    span = description.accelerator_span
+                    raise DefinitionError([Diagnostic(message=message, span=span)])
                 raise _refused(description, what)
 
 

@@ -59,6 +59,13 @@ KEYS = (*_KEYS, *KINDS, "accelerator")
 
 LANGUAGES = ("vhdl", "verilog", "systemverilog")
 
+_LANGUAGE_OF = {
+    ".vhd": "vhdl",
+    ".vhdl": "vhdl",
+    ".v": "verilog",
+    ".sv": "systemverilog",
+}
+
 
 def read_description(
     path: str | os.PathLike[str],
@@ -200,8 +207,11 @@ class _Reader:
         (language,) = languages
         files = language.texts()
         for file in files:
+            other = _LANGUAGE_OF.get(os.path.splitext(file)[1].lower(), "")
             if problem := _path_problem(file):
                 language.error(problem)
+            elif other and (other == "vhdl") != (language.name == "vhdl"):
+                language.error(f"'{file}' ends as files of {other} do: write '{other}' as the key")
         if not files:
             language.error(f"'{language.name}' has no file")
             return "", None
@@ -374,6 +384,8 @@ def _class_problem(text: str) -> str:
 def _entity_problem(text: str) -> str:
     if text.lower() in KEYWORDS:
         return f"'{text}' is a keyword of VHDL or SystemVerilog"
+    if text.lower().startswith("firm_hdl_"):
+        return f"'{text}' is a name as of firm-hdl's own units; give the entity another"
     is_name = re.fullmatch("[A-Za-z][A-Za-z0-9_]*", text) and len(text) <= 255
     return "" if is_name else f"'{text}' is no name of an entity or a module"
 

@@ -121,6 +121,12 @@ def test_wrong_definition_keeps_earlier_output(workdir, capsys):
             "error: 'Imu' is not the name of a type, which is 'package/msg/Name'; "
             "did you mean 'sensor_msgs/msg/Imu'?\n",
         ),
+        (
+            ["info", "example_interfaces/msg/Bool"],
+            "error: package 'example_interfaces' is not found; this ROS package does not come with "
+            "firm-hdl: name a folder that has it with --path, or source the setup file of an "
+            "installation that does\n",
+        ),
         (["list", "--path", "nowhere"], "error: 'nowhere' is not a folder\n"),
         (
             ["build", "sensor_msgs/msg/Imu", "--max-message-bytes", "20"],
@@ -151,7 +157,8 @@ def test_impossible_requests_exit_1(workdir, capsys, arguments, message):
         (["list", "--distro", "rolling"], "the types of rolling change any day: take 'lyrical'"),
         (["list", "--distro", "galactic"], "do not come with firm-hdl: take 'humble', the next"),
         (["--distro", "humble", "list"], "--distro: options come after the command"),
-        (["build", "a/b", "--bus-bytes", "3"], "argument --bus-bytes: invalid choice: 3"),
+        (["build", "a/b", "--bus-bytes", "3"], "3 (choose from 1, 2, 4, 8, 16, 32, 64)\n"),
+        (["metrics", "a/b", "--json", "--format", "csv"], "--json and --format csv exclude each"),
         (["build", "a/b", "--distro", "melodic"], "argument --distro: invalid choice: 'melodic'"),
         (["plan", "a/b", "--wire", "json"], "argument --wire: invalid choice: 'json'"),
         (

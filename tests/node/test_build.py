@@ -291,6 +291,12 @@ def test_two_units_of_one_name_are_refused(owner, file, first):
         check_units(read(RELAY), "relay", top="relay", files=files)
 
 
+def test_the_entity_of_an_accelerator_is_the_one_to_rename():
+    files = {**FILES, "its accelerator": ["Relay_node_core.vhd"]}
+    with pytest.raises(DefinitionError, match="; give the entity of the accelerator another name"):
+        check_units(read(RELAY), "relay", top="relay", files=files)
+
+
 @pytest.mark.parametrize(
     ("name", "reason"),
     [

@@ -32,8 +32,8 @@ class HdlAccelerator(wiring.Component):
 
     Attributes
     ----------
-    sources : mapping of str to str
-        The texts of the files by name, in compile order.
+    sources : mapping of str to bytes
+        The files by name, in compile order.
 
     Members
     -------
@@ -52,7 +52,7 @@ class HdlAccelerator(wiring.Component):
         assert description.hdl is not None
         self.hdl: Hdl = description.hdl
         self._description = description
-        self.sources: Mapping[str, str] = read_sources(description)
+        self.sources: Mapping[str, bytes] = read_sources(description)
         wanted = accelerator_ports(description)
         check = checked_vhdl if self.hdl.language == "vhdl" else checked_verilog
         self.ports: tuple[AcceleratorPort, ...] = check(description, self.sources, wanted)
@@ -75,12 +75,12 @@ class HdlAccelerator(wiring.Component):
         return {f"accelerator.{suffix}": self._preprocessed[0]}
 
     @property
-    def headers(self) -> Mapping[str, str]:
-        """The texts of the files that those of Verilog include, by path."""
+    def headers(self) -> Mapping[str, bytes]:
+        """The files that those of Verilog include, by absolute path."""
         return {} if self.hdl.language == "vhdl" else self._preprocessed[1]
 
     @cached_property
-    def _preprocessed(self) -> tuple[str, dict[str, str]]:
+    def _preprocessed(self) -> tuple[str, dict[str, bytes]]:
         return preprocessed(self._description)
 
     def elaborate(self, platform: object) -> Module:

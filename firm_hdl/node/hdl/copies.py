@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import posixpath
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import PurePath
 from typing import Any
 
+from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.accelerator import HdlAccelerator
+from firm_hdl.node.hdl.sources import path_of, refused, text_of
 
 __all__ = ["AcceleratorFiles", "accelerator_files"]
+
+_INCLUDE = re.compile(r'`include\s+"([^"\n]+)"')
 
 _TYPES = {
     "vhdl": "vhdlSource-2008",
@@ -28,15 +33,18 @@ class AcceleratorFiles:
     language, entity : str
         Empty if the accelerator is in Amaranth, or if there is none.
     texts : mapping of str to str
-        Texts by path in the folder, in compile order.
+        Texts by path in the folder, in compile order. Bytes that are not UTF-8 are surrogates.
     headers : mapping of str to str
-        Files that those of Verilog include.
+        Texts of files that those of Verilog include.
+    folders : mapping of str to str
+        The folder that an included file is named from, by the path of the file.
     """
 
     language: str = ""
     entity: str = ""
     texts: Mapping[str, str] = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
+    folders: Mapping[str, str] = field(default_factory=dict)
 
     def facts(self) -> dict[str, Any] | None:
         """Describe the files for the manifest."""
@@ -53,7 +61,11 @@ class AcceleratorFiles:
         if not self.language:
             return found
         files: list[Any] = list(self.texts)
-        files += [{header: {"is_include_file": True}} for header in self.headers]
+        for header, folder in self.folders.items():
+            options: dict[str, Any] = {"is_include_file": True}
+            if folder != posixpath.dirname(header):
+                options["include_path"] = folder
+            files.append({header: options})
         found["filesets"]["accelerator"] = {"files": files, "file_type": _TYPES[self.language]}
         found["targets"].pop("sim_verilog" if self.language == "vhdl" else "sim", None)
         for name, target in found["targets"].items():
@@ -61,24 +73,57 @@ class AcceleratorFiles:
         return found
 
 
-def accelerator_files(accelerator: Any) -> AcceleratorFiles:
-    """Return the files of an accelerator; none of one in Amaranth."""
+def accelerator_files(description: Description, accelerator: Any) -> AcceleratorFiles:
+    """Return the files of an accelerator; none of one in Amaranth.
+
+    Files keep their places towards each other, because those of Verilog include others by them.
+
+    Raises
+    ------
+    DefinitionError
+        If a file of Verilog includes another by an absolute path.
+    """
     if not isinstance(accelerator, HdlAccelerator):
         return AcceleratorFiles()
     language = accelerator.hdl.language
-    folder = "vhdl/accelerator" if language == "vhdl" else "accelerator"
+    sources = {
+        os.path.abspath(path_of(description, file)): data
+        for file, data in accelerator.sources.items()
+    }
+    headers = accelerator.headers
+    base = os.path.commonpath([os.path.dirname(path) for path in (*sources, *headers)])
+    top = "vhdl/accelerator" if language == "vhdl" else "accelerator"
 
-    def named(texts: Mapping[str, str]) -> dict[str, str]:
-        found: dict[str, str] = {}
-        for number, (file, text) in enumerate(texts.items()):
-            name = PurePath(file).name
-            path = posixpath.join(folder, name)
-            found[path if path not in found else f"{folder}/{number}_{name}"] = text
-        return found
+    def place(path: str) -> str:
+        return posixpath.normpath(posixpath.join(top, os.path.relpath(path, base)))
 
+    def texts(files: Mapping[str, bytes]) -> dict[str, str]:
+        return {
+            place(path): data.decode("utf-8", "surrogateescape") for path, data in files.items()
+        }
+
+    included = {
+        name
+        for data in ({**sources, **headers}.values() if headers else ())
+        for name in _INCLUDE.findall(text_of(data))
+    }
+    folders = dict.fromkeys(os.path.dirname(path) for path in sources)
+    found: dict[str, str] = {}
+    for header in headers:
+        if any(os.path.isabs(name) and os.path.normpath(name) == header for name in included):
+            message = f"a file includes '{header}' by an absolute path, which a copy does not have"
+            raise refused(description, message)
+        own = [
+            folder
+            for folder in folders
+            if any(os.path.normpath(os.path.join(folder, name)) == header for name in included)
+        ]
+        # A name made by a macro is not among the names.
+        found[place(header)] = place(own[0] if own else os.path.dirname(header))
     return AcceleratorFiles(
         language=language,
         entity=accelerator.hdl.entity,
-        texts=named(accelerator.sources),
-        headers=named(accelerator.headers),
+        texts=texts(sources),
+        headers=texts(headers),
+        folders=found,
     )

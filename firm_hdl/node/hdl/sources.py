@@ -11,12 +11,21 @@ from firm_hdl.files import read_file
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.ports import AcceleratorPort
 
-__all__ = ["check_ports", "path_of", "problems_of", "read_sources", "refused", "text_of"]
+__all__ = [
+    "check_ports",
+    "path_of",
+    "problems_of",
+    "read_sources",
+    "refused",
+    "refused_twice",
+    "text_of",
+]
 
 MOST_BYTES = 1 << 24
 
 _PLACE = re.compile(r"(?:%Error(?:-\w+)?: )?([^\n:]+):(\d+):(?:(\d+):)? ?(?:error: ?)?(.*)")
 _MOST_NAMED = 8
+_LIBRARY = re.compile(r"^\S*/ieee\w*/(\w+?)(?:-body)?\.vhdl:\d+:\d+:", re.MULTILINE)
 
 
 def path_of(description: Description, file: str) -> str:
@@ -24,7 +33,7 @@ def path_of(description: Description, file: str) -> str:
     return os.path.normpath(os.path.join(description.folder, file))
 
 
-def read_sources(description: Description) -> dict[str, str]:
+def read_sources(description: Description) -> dict[str, bytes]:
     """Read the files of an accelerator, by their names in the description.
 
     Raises
@@ -33,22 +42,30 @@ def read_sources(description: Description) -> dict[str, str]:
         At the name of each file in the description that cannot be read.
     """
     assert description.hdl is not None
-    texts: dict[str, str] = {}
+    sources: dict[str, bytes] = {}
     problems = []
     for file in description.hdl.files:
         path = path_of(description, file)
         try:
-            texts[file] = text_of(read_file(path, MOST_BYTES))
+            sources[file] = read_file(path, MOST_BYTES)
         except OSError as error:
             message = f"cannot read '{path}': {error.strerror or error}"
             problems.append(Diagnostic(message=message, span=description.accelerator_span))
     if problems:
         raise DefinitionError(problems)
-    return texts
+    return sources
+
+
+def refused_twice(description: Description, unit: str, first: str, second: str) -> DefinitionError:
+    """Return the error of a unit that two files declare, by the paths that a tool printed."""
+    assert description.hdl is not None
+    names = {os.path.abspath(path_of(description, file)): file for file in description.hdl.files}
+    files = " and ".join(repr(names.get(os.path.abspath(each), each)) for each in (first, second))
+    return refused(description, f"{unit} is declared in two files, {files}")
 
 
 def text_of(data: bytes) -> str:
-    """Decode a file of VHDL, whose standard has Latin-1, or of Verilog."""
+    """Decode a file of VHDL, whose standard has Latin-1, or of Verilog, to show it."""
     try:
         return data.decode()
     except UnicodeDecodeError:
@@ -61,7 +78,7 @@ def refused(description: Description, message: str) -> DefinitionError:
 
 
 def problems_of(
-    description: Description, said: str, sources: Mapping[str, str], tool: str
+    description: Description, said: str, sources: Mapping[str, bytes], tool: str
 ) -> DefinitionError:
     """Return the errors that a tool found in the user's files, each at its place.
 
@@ -69,8 +86,8 @@ def problems_of(
     ----------
     said : str
         Output of the tool, which got absolute paths.
-    sources : mapping of str to str
-        The texts of the files.
+    sources : mapping of str to bytes
+        The files by name.
     """
     by_path = {os.path.abspath(path_of(description, file)): file for file in sources}
     problems: list[Diagnostic] = []
@@ -81,7 +98,7 @@ def problems_of(
         file = by_path.get(os.path.abspath(found[1]))
         if file is None:
             continue
-        text = sources[file]
+        text = text_of(sources[file])
         starts = [0, *(match.end() for match in re.finditer("\n", text))]
         row = min(int(found[2]), len(starts))
         start = min(starts[row - 1] + max(0, int(found[3] or 1) - 1), len(text))
@@ -93,6 +110,12 @@ def problems_of(
             problems.append(problem)
     if problems:
         return DefinitionError(problems)
+    if library := _LIBRARY.search(said):
+        # `float_pkg` is an instance of `float_generic_pkg`.
+        package = library[1].replace("_generic", "")
+        users = [f for f, data in sources.items() if package in text_of(data).lower()]
+        where = f", used in {_listed(users)}" if users else ""
+        return refused(description, f"{tool} cannot synthesize ieee's package '{package}'{where}")
     lines = [line for line in said.splitlines() if line.strip()]
     return refused(description, f"{tool} failed: {' '.join(lines[:3])[:400]}")
 

@@ -16,12 +16,18 @@ from firm_hdl.jobs import ToolError, run_tool
 from firm_hdl.jobs.programs import find_verilator
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.ports import AcceleratorPort
-from firm_hdl.node.hdl.sources import check_ports, path_of, problems_of, refused, text_of
+from firm_hdl.node.hdl.sources import check_ports, path_of, problems_of, refused, refused_twice
 
 __all__ = ["checked_verilog", "preprocessed"]
 
 _WRAPPER = "firm_hdl_check"
-_NOT_FOUND = re.compile(r"(?:PINNOTFOUND|Error):.*Pin not found: '([^']+)'")
+_NOT_FOUND = re.compile(
+    r"(?:Pin not found|Pin is not an in/out\S*): '([^']+)'|attempts to connect to '([^']+)', but"
+)
+_TWICE = re.compile(
+    r"MODDUP: (.+?):\d+:\d+: Duplicate[^']*'([^']+)'"
+    r"(?:.*\n)*?\s+(\S.*?):\d+:\d+: \.\.\. Location"
+)
 _MISSING = re.compile(r"PINMISSING:.*(?:missing pin|unconnected pin|Missing pin).*?'([^']+)'")
 _WIDTH = re.compile(r"(Input|Output) port connection '([^']+)' expects (\d+) bits")
 _ASSIGNED = re.compile(r"Assign.*to input.*'([^']+)'")
@@ -31,7 +37,7 @@ _NO_MODULE = re.compile(r"(?:containing module|module reference): '([^']+)'")
 
 def checked_verilog(
     description: Description,
-    sources: Mapping[str, str],
+    sources: Mapping[str, bytes],
     wanted: Sequence[AcceleratorPort],
 ) -> tuple[AcceleratorPort, ...]:
     """Check files of Verilog or SystemVerilog, and the ports of the module.
@@ -50,7 +56,7 @@ def checked_verilog(
     said, is_right = _lint(description, sources, wanted)
     if is_right and not (_MISSING.search(said) or _WIDTH.search(said) or _UNDRIVEN.search(said)):
         return tuple(wanted)
-    absent = {*_NOT_FOUND.findall(said)}
+    absent = {name for names in _NOT_FOUND.findall(said) for name in names if name}
     optional = {port.name for port in wanted if port.is_optional}
     if absent & optional:
         return checked_verilog(
@@ -83,8 +89,8 @@ def _with(
     )
 
 
-def preprocessed(description: Description) -> tuple[str, dict[str, str]]:
-    """Return all files as one text, and the texts of the files that they include, by path.
+def preprocessed(description: Description) -> tuple[str, dict[str, bytes]]:
+    """Return all files as one text, and the files that they include, by absolute path.
 
     Raises
     ------
@@ -97,9 +103,9 @@ def preprocessed(description: Description) -> tuple[str, dict[str, str]]:
             text = run_tool(command, Path(folder), with_errors=False)
         except ToolError as error:
             raise problems_of(description, str(error), {}, "Verilator") from None
-    places = dict.fromkeys(re.findall(r'^`line \d+ "([^"<]+)"', text, re.MULTILINE))
-    more = [path for path in places if path not in paths and os.path.isfile(path)]
-    return text, {path: text_of(Path(path).read_bytes()) for path in more}
+    places = re.findall(r'^`line \d+ "([^"<]+)"', text, re.MULTILINE)
+    more = {os.path.normpath(path): path for path in places if os.path.isfile(path)}
+    return text, {name: Path(path).read_bytes() for name, path in more.items() if name not in paths}
 
 
 def _paths(description: Description) -> list[str]:
@@ -116,7 +122,7 @@ def _command(description: Description) -> list[str]:
 
 
 def _lint(
-    description: Description, sources: Mapping[str, str], ports: Sequence[AcceleratorPort]
+    description: Description, sources: Mapping[str, bytes], ports: Sequence[AcceleratorPort]
 ) -> tuple[str, bool]:
     """Let Verilator check the files with a module around them; return what it says."""
     assert description.hdl is not None
@@ -134,6 +140,12 @@ def _lint(
             said, is_right = run_tool(command, Path(folder)), True
         except ToolError as error:
             said, is_right = str(error), False
+        for twice in _TWICE.finditer(said):
+            # A search for a module that is missing reads a file again.
+            if twice[1] == twice[3]:
+                continue
+            # Verilator would take the first one; other tools refuse both.
+            raise refused_twice(description, f"'{twice[2]}'", twice[3], twice[1])
         # Warnings of the user's own files are not ours; errors are.
         lines = [
             line

@@ -7,6 +7,7 @@ constants. So the netlist is read gate by gate, as proofs of :mod:`firm_hdl.equi
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -19,16 +20,24 @@ from firm_hdl.jobs.programs import find_ghdl
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.netlist import verilog_of
 from firm_hdl.node.hdl.ports import AcceleratorPort
-from firm_hdl.node.hdl.sources import check_ports, path_of, problems_of, refused
+from firm_hdl.node.hdl.sources import (
+    check_ports,
+    path_of,
+    problems_of,
+    refused,
+    refused_twice,
+)
 
 __all__ = ["checked_vhdl", "verilog_of_vhdl"]
 
 _WRAPPER = "firm_hdl_check"
+_TWICE = re.compile(r'(\S.*):\d+:\d+:warning: (\w+ "[^"]+") was also defined in file "([^"]+)"')
+_NO_ARCHITECTURE = re.compile(r'entity "[^"]+" has no architecture')
 
 
 def checked_vhdl(
     description: Description,
-    sources: Mapping[str, str],
+    sources: Mapping[str, bytes],
     wanted: Sequence[AcceleratorPort],
 ) -> tuple[AcceleratorPort, ...]:
     """Analyse files of VHDL-2008, and check the ports of the entity.
@@ -55,6 +64,13 @@ def checked_vhdl(
         own = next((m.own for name, m in modules.items() if name.lower() == entity.lower()), None)
         if own is None:
             raise refused(description, f"GHDL's netlist has no entity '{entity}'")
+        top = next(module for module in modules.values() if module.own is own)
+        both = {net for i in top.instances if i.kind == "$inout" for net in i.outputs.values()}
+        for name, net in own.inputs.items():
+            if net in both:
+                raise refused(
+                    description, f"port '{name}' of '{entity}' must be an output, not an inout"
+                )
         found = [
             AcceleratorPort(name=name, direction="in", width=net.width)
             for name, net in own.outputs.items()
@@ -69,7 +85,7 @@ def checked_vhdl(
 
 
 def verilog_of_vhdl(
-    description: Description, sources: Mapping[str, str], ports: Sequence[AcceleratorPort]
+    description: Description, sources: Mapping[str, bytes], ports: Sequence[AcceleratorPort]
 ) -> str:
     """Return the entity as a module of Verilog, for a simulator with two values.
 
@@ -98,16 +114,22 @@ def _entity(description: Description) -> str:
     return description.hdl.entity
 
 
-def _dump(description: Description, sources: Mapping[str, str], folder: Path) -> str:
+def _dump(description: Description, sources: Mapping[str, bytes], folder: Path) -> str:
     """Analyse the files, and return GHDL's netlist of the entity."""
     ghdl = find_ghdl()
     options = ["--std=08", f"--workdir={folder}"]
     paths = [os.path.abspath(path_of(description, file)) for file in sources]
     environment = {"LC_ALL": "C"}
     try:
-        run_tool([ghdl, "-a", *options, *paths], folder, environment=environment)
+        said = run_tool(
+            [ghdl, "-a", *options, "-Wlibrary", *paths], folder, environment=environment
+        )
     except ToolError as error:
         raise problems_of(description, str(error), sources, "GHDL") from None
+    if twice := _TWICE.search(said):
+        # GHDL would take the last one.
+        unit = twice[2].replace('"', "'")
+        raise refused_twice(description, unit, twice[3], twice[1])
     command = [ghdl, "--synth", *options, "-dm", "--out=dump", _entity(description)]
     try:
         return run_tool(command, folder, environment=environment, with_errors=False)
@@ -118,6 +140,9 @@ def _dump(description: Description, sources: Mapping[str, str], folder: Path) ->
             raise refused(
                 description, f"there is no entity '{_entity(description)}' in {names}"
             ) from None
+        if _NO_ARCHITECTURE.search(said):
+            message = f"entity '{_entity(description)}' has no architecture"
+            raise refused(description, message) from None
         raise problems_of(description, said, sources, "GHDL") from None
 
 

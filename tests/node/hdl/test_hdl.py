@@ -146,6 +146,66 @@ def test_mistakes_are_shown_where_they_are(written, language, change, text):
     assert re.search(text, str(caught.value)), str(caught.value)
 
 
+GOES = "publish_goes_data_data"
+CAME = "subscribe_came_data_data"
+FLOAT = f"to_float({CAME} & {CAME})"
+
+# Of an accelerator with two topics.
+MORE_MISTAKES = [
+    (
+        "vhdl",
+        [(f"{GOES}    : out", f"{GOES} : inout")],
+        f"port '{GOES}' of 'Relay' must be an output, not an inout",
+    ),
+    (
+        "vhdl",
+        [("\narchitecture", "/*"), ("end architecture;", "*/")],
+        "'Relay' has no architecture",
+    ),
+    (
+        "vhdl",
+        [
+            ("numeric_std.all;", "numeric_std.all; use ieee.float_pkg.all;"),
+            (
+                f"{GOES}    <= subscribe_came_data_data",
+                f"{GOES} <= std_logic_vector(to_unsigned(to_integer({FLOAT}), 16))",
+            ),
+        ],
+        "GHDL cannot synthesize ieee's package 'float_pkg', used in 'Relay.vhd'",
+    ),
+    # The port became a variable inside.
+    (
+        "sv",
+        [(f"output logic [15:0] {GOES},", ""), (");\n", f");\n  logic [15:0] {GOES};\n")],
+        f"'Relay' has no port '{GOES}'",
+    ),
+]
+
+
+@pytest.mark.parametrize(("language", "changes", "text"), MORE_MISTAKES)
+def test_mistakes_that_tools_describe_badly(written, language, changes, text):
+    with pytest.raises(DefinitionError) as caught:
+        load_accelerator(written(language, *changes, description=SMALL))
+    assert text in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("language", "text"),
+    [
+        ("vhdl", "entity 'relay' is declared in two files, 'Relay.vhd' and 'again.vhd'"),
+        ("systemverilog", "'Relay' is declared in two files, 'Relay.sv' and 'again.sv'"),
+    ],
+)
+def test_one_name_in_two_files_is_refused(written, tmp_path, language, text):
+    written("vhdl" if language == "vhdl" else "sv", description=SMALL)
+    suffix = {"vhdl": "vhd"}.get(language, "sv")
+    (tmp_path / f"again.{suffix}").write_bytes((tmp_path / f"Relay.{suffix}").read_bytes())
+    files = f"{{{language}: [Relay.{suffix}, again.{suffix}], entity: Relay}}"
+    with pytest.raises(DefinitionError, match=r"node\.yaml:\d+:14: error: ") as caught:
+        load_accelerator(described(tmp_path, files, SMALL))
+    assert text in str(caught.value)
+
+
 READ = [
     ("{vhdl: a.vhd}", ("vhdl", ("a.vhd",), "a")),
     ("{verilog: [b.v, x/a.v], entity: Top}", ("verilog", ("b.v", "x/a.v"), "Top")),
@@ -154,6 +214,9 @@ READ = [
     ("{vhdl: a.vhd, verilog: a.v}", "an accelerator has the files of one of"),
     ("{vhdl: 3.vhd}", "'3' is no name of an entity or a module: name the 'entity'"),
     ("{vhdl: design.vhd}", "'design' is a keyword of VHDL or SystemVerilog: name the 'entity'"),
+    ("{vhdl: a.vhd, entity: firm_hdl_pkg}", "'firm_hdl_pkg' is a name as of firm-hdl's own units"),
+    ("{verilog: a.vhd}", "'a.vhd' ends as files of vhdl do: write 'vhdl' as the key"),
+    ("{vhdl: [a.vhd, a.sv]}", "'a.sv' ends as files of systemverilog do"),
     ("{vhdl: a.vhd, entity: 'a b'}", "'a b' is no name of an entity"),
     ("a.vhd", "or as {vhdl: wheels.vhd, entity: wheels}"),
     ("{vhdl: []}", "'vhdl' has no file"),
@@ -213,6 +276,50 @@ def test_a_node_of_systemverilog_is_built_and_runs(written, tmp_path, iverilog, 
     run = ["sh", built.folder / "run_iverilog.sh"]
     said = subprocess.run(run, capture_output=True, text=True, check=True)
     assert "PASS node Relay_node: " in said.stdout
+
+
+def test_files_that_are_included_keep_their_folders(written, tmp_path, iverilog, verilator):
+    include = [("module Relay", '`include "inc/one.svh"\n`include "../two.svh"\nmodule Relay')]
+    (tmp_path / "rtl" / "inc").mkdir(parents=True)
+    (tmp_path / "rtl" / "inc" / "one.svh").write_text("`define ONE 1'b1\n")
+    (tmp_path / "two.svh").write_text("`define TWO `ONE\n")
+    written("sv", *include, ("endmodule", "wire two = `TWO;\nendmodule"), description=SMALL)
+    (tmp_path / "Relay.sv").rename(tmp_path / "rtl" / "Relay.sv")
+    description = described(tmp_path, "{systemverilog: rtl/Relay.sv}", SMALL)
+    folder = build_node(description, tmp_path, stimuli=stimuli).folder
+    core = yaml.safe_load((folder / "Relay_node.core").read_text().partition("\n")[2])
+    assert core["filesets"]["accelerator"]["files"] == [
+        "accelerator/rtl/Relay.sv",
+        {
+            "accelerator/rtl/inc/one.svh": {
+                "is_include_file": True,
+                "include_path": "accelerator/rtl",
+            }
+        },
+        {"accelerator/two.svh": {"is_include_file": True, "include_path": "accelerator/rtl"}},
+    ]
+    run = ["sh", folder / "run_iverilog.sh"]
+    said = subprocess.run(run, capture_output=True, text=True, check=True)
+    assert "PASS node Relay_node: " in said.stdout
+
+
+def test_an_include_by_an_absolute_path_is_refused(written, tmp_path, verilator):
+    header = tmp_path / "one.svh"
+    header.write_text("\n")
+    include = ("module Relay", f'`include "{header}"\nmodule Relay')
+    description = written("sv", include, description=SMALL)
+    with pytest.raises(DefinitionError, match="by an absolute path"):
+        build_node(description, tmp_path)
+
+
+def test_a_copy_has_the_bytes_of_the_file(written, tmp_path, ghdl):
+    description = written("vhdl", description=SMALL)
+    source = tmp_path / "Relay.vhd"
+    data = source.read_bytes().replace(b"\n", b"\r\n") + "-- r\u00fchrt\r\n".encode("latin-1")
+    source.write_bytes(data)
+    folder = build_node(description, tmp_path).folder
+    assert (folder / "vhdl" / "accelerator" / "Relay.vhd").read_bytes() == data
+    assert build_node(description, tmp_path).was_current
 
 
 # What a netlist of GHDL can have: memories, long constants, signed arithmetic, both edges.
