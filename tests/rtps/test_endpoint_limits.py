@@ -7,7 +7,15 @@ import pytest
 from firm_hdl.rtps import Durability, Guid, Qos
 from firm_hdl.rtps.budget import Budget
 from firm_hdl.rtps.reader import Reader
-from firm_hdl.rtps.wire.submessages import AckNack, Data, Gap, Heartbeat, NumberSet
+from firm_hdl.rtps.wire.submessages import (
+    AckNack,
+    Data,
+    Gap,
+    Heartbeat,
+    HeartbeatFrag,
+    NackFrag,
+    NumberSet,
+)
 from firm_hdl.rtps.writer import Writer
 from tests.rtps.test_endpoints import (
     BEST_EFFORT,
@@ -51,6 +59,36 @@ def test_early_samples_without_memory_are_dropped_and_asked_for(sent):
     assert answer.missing == NumberSet(1, (1, 4))
     reader.on_data(HERE, data(1), None, 1.0)
     assert (got, budget.used) == ([1, 2, 3], 0)
+
+
+def test_a_writer_that_began_anew_is_asked_for_fragments_again(sent):
+    reader, _, _ = listening(sent)
+
+    def ask(number, now):
+        reader.on_data_frag(HERE, part(number, 1), None, now)
+        frag = HeartbeatFrag(reader=0, writer=0x103, sequence_number=number, last=2, count=1)
+        reader.on_heartbeat_frag(HERE, frag, now)
+        return [each.sequence_number for each in sent.take(NackFrag)]
+
+    assert ask(9, 1.0) == [9]
+    reader.on_heartbeat(HERE, heartbeat(1, 9, count=2), 1.0)
+    # Long after, the writer has fewer samples, and counts from 1 again.
+    reader.on_heartbeat(HERE, heartbeat(1, 1), 60.0)
+    assert ask(1, 60.0) == [1]
+
+
+def test_memory_of_a_peer_is_not_taken_for_one_that_would_then_have_as_much():
+    class Peer:
+        def __init__(self, prefix):
+            self.prefix = prefix
+
+        def shrink(self):
+            pytest.fail("nobody has more")
+
+    budget, one, other = Budget(1000), Peer(b"a" * 12), Peer(b"b" * 12)
+    assert budget.take(one, 400)
+    assert not budget.take(other, 400)
+    assert (budget.of(one), budget.of(other)) == (600, 0)
 
 
 def test_fragments_of_a_sample_that_will_not_come_are_forgotten(sent):
