@@ -44,7 +44,7 @@ DEFAULTS = {
     "proto": ([], {**ORIGINS, "types": [], "all": False, "no_quotes": False}),
     "metrics": (
         [],
-        {**ORIGINS, "types": [], "all": False, "format": "table", "wire": None, "as_json": False},
+        {**ORIGINS, "types": [], "all": False, "format": None, "wire": None, "as_json": False},
     ),
     "verify": (
         [],
