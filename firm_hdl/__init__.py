@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from firm_hdl.errors import DefinitionError
     from firm_hdl.frontend import Library, load_message
     from firm_hdl.gateware import (
+        AxiStreamSignature,
+        AxiStreamToPackets,
         Deserializer,
         GateStatus,
         GateStatusSignature,
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
         PacketGate,
         PacketRouter,
         PacketSignature,
+        PacketsToAxiStream,
         PacketWidth,
         Parser,
         RecordReader,
@@ -36,6 +39,8 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "AxiStreamSignature",
+    "AxiStreamToPackets",
     "DefinitionError",
     "Deserializer",
     "GateStatus",
@@ -49,6 +54,7 @@ __all__ = [
     "PacketRouter",
     "PacketSignature",
     "PacketWidth",
+    "PacketsToAxiStream",
     "Parser",
     "RecordReader",
     "RecordWriter",
@@ -62,6 +68,8 @@ __all__ = [
 
 # Import lazily: Amaranth takes seconds to import, and much of firm-hdl does not need it.
 _HOME = {
+    "AxiStreamSignature": "gateware",
+    "AxiStreamToPackets": "gateware",
     "DefinitionError": "errors",
     "Deserializer": "gateware",
     "GateStatus": "gateware",
@@ -75,6 +83,7 @@ _HOME = {
     "PacketRouter": "gateware",
     "PacketSignature": "gateware",
     "PacketWidth": "gateware",
+    "PacketsToAxiStream": "gateware",
     "Parser": "gateware",
     "RecordReader": "gateware",
     "RecordWriter": "gateware",

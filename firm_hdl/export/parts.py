@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from amaranth.hdl import Cat, Module, Mux, Value
+from amaranth.hdl import Module, Value
 from amaranth.lib import wiring
 
 import firm_hdl
@@ -28,8 +28,9 @@ from firm_hdl.export.design import (
     vhdl_folder,
     write_design,
 )
-from firm_hdl.export.top import MAX_INPUT_BITS, Port, add_domain, port_members, trailing_ones
+from firm_hdl.export.top import MAX_INPUT_BITS, Port, add_domain, port_members
 from firm_hdl.garbage import search_put_off
+from firm_hdl.gateware.axi_stream import count_of_keep, keep_of_count
 from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.packets import (
     GateStatus,
@@ -362,10 +363,10 @@ class PartTop(Component):
             if pin.port.direction == "in":
                 if pin.is_count:
                     last = getattr(self, pin.port.name.replace("tkeep", "tlast"))
-                    port = Mux(last, trailing_ones(port), len(port))
+                    port = count_of_keep(port, last)
                 m.d.comb += pin.value.eq(port)
             elif pin.is_count:
-                m.d.comb += port.eq(Cat(pin.value > lane for lane in range(len(port))))
+                m.d.comb += port.eq(keep_of_count(pin.value, len(port)))
             else:
                 m.d.comb += port.eq(pin.value)
         return m

@@ -11,11 +11,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from amaranth.hdl import Cat, ClockDomain, Module, Mux, Shape, Signal, Value
+from amaranth.hdl import ClockDomain, Module, Shape, Signal, Value
 from amaranth.lib import data
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.gateware.axi_stream import count_of_keep, keep_of_count
 from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.limits import MAX_CELL_BITS
 from firm_hdl.gateware.members import MemberTree
@@ -36,7 +37,6 @@ __all__ = [
     "leaf_names",
     "port_members",
     "ports_of",
-    "trailing_ones",
 ]
 
 MAX_INPUT_BITS = MAX_CELL_BITS
@@ -247,10 +247,9 @@ class Top(Component):
 
     def _packets_in(self, m: Module) -> None:
         packets = self.core.packets
-        count = Mux(self.s_axis_tlast, trailing_ones(self.s_axis_tkeep), self.core.plan.bus_bytes)
         m.d.comb += [
             Value.cast(packets.payload.data).eq(self.s_axis_tdata),
-            packets.payload.count.eq(count),
+            packets.payload.count.eq(count_of_keep(self.s_axis_tkeep, self.s_axis_tlast)),
             packets.payload.last.eq(self.s_axis_tlast),
             packets.valid.eq(self.s_axis_tvalid),
             self.s_axis_tready.eq(packets.ready),
@@ -258,10 +257,10 @@ class Top(Component):
 
     def _packets_out(self, m: Module) -> None:
         packets = self.core.packets
-        lanes = range(self.core.plan.bus_bytes)
+        lanes = self.core.plan.bus_bytes
         m.d.comb += [
             self.m_axis_tdata.eq(Value.cast(packets.payload.data)),
-            self.m_axis_tkeep.eq(Cat(packets.payload.count > lane for lane in lanes)),
+            self.m_axis_tkeep.eq(keep_of_count(packets.payload.count, lanes)),
             self.m_axis_tlast.eq(packets.payload.last),
             self.m_axis_tuser.eq(self.core.packet_error),
             self.m_axis_tvalid.eq(packets.valid),
@@ -294,12 +293,3 @@ def add_domain(m: Module, name: str, clock: Signal, resetn: Value) -> None:
     domain.clk = clock
     m.domains += domain
     m.d.comb += domain.rst.eq(~resetn)
-
-
-def trailing_ones(keep: Value) -> Value:
-    """Return the number of ones from bit 0 up to the first zero."""
-    lanes = len(keep)
-    # One-hot; bits above the first zero have no effect.
-    found = {n: keep[:n].all() & ~keep[n] for n in range(1, lanes)} | {lanes: keep.all()}
-    bits = range(lanes.bit_length())
-    return Cat(Cat(here for n, here in found.items() if n >> bit & 1).any() for bit in bits)

@@ -1,5 +1,10 @@
 """Converters as Amaranth components."""
 
+from firm_hdl.gateware.axi_stream import (
+    AxiStreamSignature,
+    AxiStreamToPackets,
+    PacketsToAxiStream,
+)
 from firm_hdl.gateware.deserializer import Deserializer
 from firm_hdl.gateware.packets import (
     GateStatus,
@@ -18,6 +23,8 @@ from firm_hdl.gateware.serializer import Serializer
 from firm_hdl.gateware.signatures import MessageSignature, PacketSignature, Status, StatusSignature
 
 __all__ = [
+    "AxiStreamSignature",
+    "AxiStreamToPackets",
     "Deserializer",
     "GateStatus",
     "GateStatusSignature",
@@ -29,6 +36,7 @@ __all__ = [
     "PacketRouter",
     "PacketSignature",
     "PacketWidth",
+    "PacketsToAxiStream",
     "Parser",
     "RecordReader",
     "RecordWriter",

@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from amaranth.hdl import Cat, Module, Mux, Shape, Value
+from amaranth.hdl import Module, Shape, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.export.top import MAX_INPUT_BITS, add_domain
+from firm_hdl.gateware.axi_stream import count_of_keep, keep_of_count
 from firm_hdl.names.identifiers import flat_names
 from firm_hdl.node.node import Node
 
@@ -88,14 +89,10 @@ class NodeTop(wiring.Component):
             if not part.is_count:
                 m.d.comb += part.value.eq(port) if part.flow == In else port.eq(part.value)
             elif part.flow == Out:
-                m.d.comb += port.eq(Cat(part.value > lane for lane in range(bus)))
+                m.d.comb += port.eq(keep_of_count(part.value, bus))
             else:
-                # Ones from bit 0 up to the first zero; only the last beat counts.
-                ones: Value = Value.cast(0)
-                for lane in reversed(range(bus)):
-                    ones = Mux(port[lane], ones + 1, 0)
                 last = getattr(self, name.replace("tkeep", "tlast"))
-                m.d.comb += part.value.eq(Mux(last, ones, bus))
+                m.d.comb += part.value.eq(count_of_keep(port, last))
         return m
 
 

@@ -11,7 +11,7 @@ from amaranth.hdl import Elaboratable, Module, Signal
 from amaranth.sim import Simulator
 
 from firm_hdl import Deserializer, Serializer, Status, load_message
-from firm_hdl.export.top import MAX_INPUT_BITS, Top, leaf_names, ports_of, trailing_ones
+from firm_hdl.export.top import MAX_INPUT_BITS, Top, leaf_names, ports_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, encode
 from firm_hdl.sim import to_transfers
@@ -178,30 +178,6 @@ def test_tuser_marks_the_last_beat_of_a_packet_that_is_to_be_dropped(bus_bytes):
     assert [last for last, _ in seen] == [*[0] * (beats - 1), 1] * 3
     assert [user for _, user in seen] == [*[0] * beats, *[0] * (beats - 1), 1, *[0] * beats]
     assert statuses == [Status.OK.value, Status.ITEMS.value, Status.OK.value]
-
-
-def test_tkeep_counts_up_to_the_first_zero():
-    class Count(Elaboratable):
-        def __init__(self) -> None:
-            self.keep, self.count = Signal(5), Signal(8)
-
-        def elaborate(self, platform: object) -> Module:
-            m = Module()
-            m.d.comb += self.count.eq(trailing_ones(self.keep))
-            return m
-
-    dut = Count()
-
-    async def run(ctx: Any) -> None:
-        for keep in range(32):
-            ctx.set(dut.keep, keep)
-            await ctx.delay(1e-9)
-            want = next(n for n in range(6) if n == 5 or not keep >> n & 1)
-            assert ctx.get(dut.count) == want
-
-    simulator = Simulator(dut)
-    simulator.add_testbench(run)
-    simulator.run()
 
 
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])

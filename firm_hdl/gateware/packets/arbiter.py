@@ -10,7 +10,7 @@ from amaranth.lib import data
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
-from firm_hdl.gateware.limits import check_integer
+from firm_hdl.gateware.limits import check_bits, check_integer
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.positions import any_of
 from firm_hdl.gateware.signatures import PacketSignature, packet_layout
@@ -77,9 +77,7 @@ class PacketArbiter(Component):
 
     def __init__(self, bus_bytes: int, inputs: int, *, side_bits: int = 0):
         check_integer("Number of inputs", inputs)
-        check_integer("Number of side bits", side_bits)
-        if side_bits < 0:
-            raise ValueError(f"Number of side bits must be at least 0, not {side_bits}")
+        check_bits("Number of side bits", side_bits)
         if inputs < 1:
             raise ValueError(f"Number of inputs must be at least 1, not {inputs}")
         self.bus_bytes, self.inputs, self.side_bits = bus_bytes, inputs, side_bits

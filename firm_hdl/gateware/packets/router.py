@@ -7,7 +7,7 @@ from amaranth.lib import data
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
-from firm_hdl.gateware.limits import check_integer
+from firm_hdl.gateware.limits import check_bits, check_integer
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.signatures import PacketSignature, packet_layout
@@ -56,10 +56,8 @@ class PacketRouter(Component):
 
     def __init__(self, bus_bytes: int, topics: int, *, topic_bits: int = 16, side_bits: int = 0):
         check_integer("Number of topics", topics)
-        check_integer("Number of topic bits", topic_bits)
-        check_integer("Number of side bits", side_bits)
-        if topic_bits < 0 or side_bits < 0:
-            raise ValueError(f"Bits must be at least 0, not {min(topic_bits, side_bits)}")
+        check_bits("Number of topic bits", topic_bits)
+        check_bits("Number of side bits", side_bits)
         if topics < 1:
             raise ValueError(f"Number of topics must be at least 1, not {topics}")
         if topics > 1 << topic_bits:

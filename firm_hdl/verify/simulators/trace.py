@@ -20,6 +20,7 @@ from amaranth.lib import data
 
 from firm_hdl.export.top import Direction, Port, leaf_names, ports_of
 from firm_hdl.gateware import Deserializer, Serializer
+from firm_hdl.gateware.axi_stream import keep_of_count
 from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan
@@ -173,7 +174,7 @@ def _port_values(core: Deserializer | Serializer) -> dict[str, Value]:
     side = "s_axis" if isinstance(core, Deserializer) else "m_axis"
     values: dict[str, Value] = {
         f"{side}_tdata": Value.cast(packets.payload.data),
-        f"{side}_tkeep": Cat(packets.payload.count > lane for lane in range(plan.bus_bytes)),
+        f"{side}_tkeep": keep_of_count(packets.payload.count, plan.bus_bytes),
         f"{side}_tlast": packets.payload.last,
         f"{side}_tvalid": packets.valid,
         f"{side}_tready": packets.ready,

@@ -125,7 +125,7 @@ def test_parameters_are_checked():
         PacketRouter(8, 5, topic_bits=2)
     with pytest.raises(TypeError, match=r"^Number of topic bits must be an integer, not '4'$"):
         PacketRouter(8, 1, topic_bits="4")
-    with pytest.raises(ValueError, match=r"^Bits must be at least 0, not -1$"):
+    with pytest.raises(ValueError, match=r"^Number of side bits must be at least 0, not -1$"):
         PacketRouter(8, 1, side_bits=-1)
     assert PacketRouter(8, 4, topic_bits=2).topics == 4
 
