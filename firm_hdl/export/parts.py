@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from amaranth.hdl import Module, Value
+from amaranth.hdl import Cat, Module, Value
 from amaranth.lib import wiring
 
 import firm_hdl
@@ -95,9 +95,15 @@ def _packets(base: str, stream: Any, is_input: bool = True) -> Iterator[_Pin]:
     yield backward(f"{base}_tready", stream.ready, "beat: ready.")
 
 
+_BESIDE = "What travels beside the beat."
+
+
 def _through(block: Any) -> Iterator[_Pin]:
     yield from _packets("s_axis", block.packets_in)
     yield from _packets("m_axis", block.packets_out, False)
+    if "side_in" in block.signature.members:
+        yield _in("s_axis_tuser", block.side_in, _BESIDE)
+        yield _out("m_axis_tuser", block.side_out, _BESIDE)
 
 
 def _counters(block: Any) -> Iterator[_Pin]:
@@ -122,16 +128,20 @@ def _gate(block: Any) -> Iterator[_Pin]:
 
 
 def _fifo(block: Any) -> Iterator[_Pin]:
-    yield from _through(block)
-    yield _in("s_axis_tuser", block.abort, "With tlast: drop the packet.")
+    yield from _packets("s_axis", block.packets_in)
+    yield from _packets("m_axis", block.packets_out, False)
+    drop = "With tlast: drop the packet."
+    sides = [block.side_in] if "side_in" in block.signature.members else []
+    if sides:
+        drop = "Bit 0 with tlast: drop the packet. The others travel beside the beat."
+    yield _in("s_axis_tuser", Cat(block.abort, *sides), drop)
+    if sides:
+        yield _out("m_axis_tuser", block.side_out, _BESIDE)
     yield _out("packet_bytes", block.size, _SIZE)
     yield _out("ended", block.ended, "A packet was kept or dropped, in one cycle.")
     codes = "0 kept, 1 aborted, 2 full, 3 large"
     yield _out("outcome", Value.cast(block.outcome), f"With ended: {codes}.")
     yield from _counters(block)
-
-
-_BESIDE = "What travels beside the beat."
 
 
 def _arbiter(block: Any) -> Iterator[_Pin]:
@@ -196,7 +206,7 @@ KINDS: Mapping[str, Kind] = {
     "gate": Kind(
         text="forward only the good packets of a message type",
         component=PacketGate,
-        parameters=("wire", "bus_bytes", "max_message_bytes", *_STORE),
+        parameters=("wire", "bus_bytes", "max_message_bytes", *_STORE, "side_bits"),
         in_name=("bus_bytes",),
         pins=_gate,
         codes=GateStatus,
@@ -204,7 +214,7 @@ KINDS: Mapping[str, Kind] = {
     "fifo": Kind(
         text="store packets, and forward them whole or drop them",
         component=PacketFifo,
-        parameters=("bus_bytes", *_STORE),
+        parameters=("bus_bytes", *_STORE, "side_bits"),
         in_name=("bus_bytes",),
         pins=_fifo,
         codes=Outcome,
@@ -212,14 +222,14 @@ KINDS: Mapping[str, Kind] = {
     "width": Kind(
         text="carry packets to a bus of another width",
         component=PacketWidth,
-        parameters=("in_bytes", "out_bytes"),
+        parameters=("in_bytes", "out_bytes", "side_bits"),
         in_name=("in_bytes", "out_bytes"),
         pins=_through,
     ),
     "crossing": Kind(
         text="carry packets to another clock",
         component=PacketCrossing,
-        parameters=("bus_bytes", "beats"),
+        parameters=("bus_bytes", "beats", "side_bits"),
         in_name=("bus_bytes",),
         pins=_through,
         clocks={

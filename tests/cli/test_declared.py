@@ -30,7 +30,8 @@ DEFAULTS = {
     "part": (
         ["gate", "a/B"],
         {**ORIGINS, **PLAN, "kind": "gate", "type": "a/B", "name": None, "force": False}
-        | {"memory_bytes": 65536, "packets": 64, "when_full": "wait", "out": "parts_out"},
+        | {"memory_bytes": 65536, "packets": 64, "when_full": "wait", "side_bits": 0}
+        | {"out": "parts_out"},
     ),
     "node": (
         ["run", "n.yaml"],
@@ -136,9 +137,10 @@ PARTS = {
     "fifo": ({"bus_bytes": 8, "memory_bytes": 65536, "packets": 64, "when_full": "wait"}, []),
     "width": ({"in_bytes": 2, "out_bytes": 4}, ["--in-bytes", "2", "--out-bytes", "4"]),
     "crossing": ({"bus_bytes": 8, "beats": 16}, []),
-    "arbiter": ({"bus_bytes": 8, "inputs": 2, "side_bits": 0}, []),
-    "router": ({"bus_bytes": 8, "topics": 2, "topic_bits": 16, "side_bits": 0}, []),
+    "arbiter": ({"bus_bytes": 8, "inputs": 2}, []),
+    "router": ({"bus_bytes": 8, "topics": 2, "topic_bits": 16}, []),
 }
+PARTS = {kind: (numbers | {"side_bits": 0}, needed) for kind, (numbers, needed) in PARTS.items()}
 OTHERS = {"when_full": "drop", "bus_bytes": 4, "in_bytes": 8, "out_bytes": 1}
 
 

@@ -100,6 +100,16 @@ def test_tuser_of_a_fifo_drops_a_packet_as_a_serializer_asks_for():
     assert seen == [(8, 3, 0, 3, 1, 1), (9, 1, 1, 3, 1, 1)]
 
 
+def test_what_travels_beside_a_beat_is_in_tuser():
+    sent = [beat(7, 3, 0, tuser=5), beat(8, 1, 1, tuser=6)]
+    given = {"bus_bytes": 2, "side_bits": 3, "extra": ("m_axis_tuser",)}
+    assert through("crossing", sent, beats=4, **given) == [(7, 3, 0, 5), (8, 1, 1, 6)]
+    # Bit 0 of a FIFO still drops the packet.
+    sent = [beat(9, 3, 1, tuser=15), *({**each, "tuser": 2 * each["tuser"]} for each in sent)]
+    seen = through("fifo", sent, memory_bytes=16, packets=2, **given)
+    assert seen == [(7, 3, 0, 5), (8, 1, 1, 6)]
+
+
 def test_a_fifo_says_what_became_of_each_packet():
     # Four beats of room, and a packet of five.
     sent = [beat(1, 3, 1, tuser=1), beat(2, 3, 1), *(beat(3, 3, n == 4) for n in range(5))]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module, Value
+from amaranth.hdl import Module
 from amaranth.lib.fifo import AsyncFIFO
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.limits import check_integer
-from firm_hdl.gateware.signatures import PacketSignature, packet_layout
+from firm_hdl.gateware.packets.sides import beat_in, beat_layout, beat_out, side_members
+from firm_hdl.gateware.signatures import PacketSignature
 
 __all__ = ["PacketCrossing"]
 
@@ -36,11 +37,17 @@ class PacketCrossing(Component):
         Beats in the FIFO: a power of two, at least 4.
     write_domain, read_domain : str
         Clock domains of `packets_in` and `packets_out`.
+    side_bits : int
+        Bits that travel beside each beat, such as a tag. 0: there are none.
 
     Members
     -------
     packets_in : In(PacketSignature(bus_bytes))
+    side_in : In(side_bits)
+        Only with `side_bits`. As stable as the payload.
     packets_out : Out(PacketSignature(bus_bytes))
+    side_out : Out(side_bits)
+        Only with `side_bits`. What came beside the beat; valid with it.
     """
 
     def __init__(
@@ -50,6 +57,7 @@ class PacketCrossing(Component):
         *,
         write_domain: str = "write",
         read_domain: str = "read",
+        side_bits: int = 0,
     ):
         check_integer("Number of beats", beats)
         if beats < 4 or beats & (beats - 1):
@@ -61,26 +69,28 @@ class PacketCrossing(Component):
                 raise ValueError(f"{name}= must be the name of a clock domain, not {domain!r}")
         self.bus_bytes, self.beats = bus_bytes, beats
         self.write_domain, self.read_domain = write_domain, read_domain
+        self.side_bits = side_bits
         super().__init__(
             {
                 "packets_in": In(PacketSignature(bus_bytes)),
                 "packets_out": Out(PacketSignature(bus_bytes)),
+                **side_members(side_bits),
             }
         )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
         m.submodules.fifo = fifo = AsyncFIFO(
-            width=packet_layout(self.bus_bytes).size,
+            width=beat_layout(self.bus_bytes, self.side_bits).size,
             depth=self.beats,
             w_domain=self.write_domain,
             r_domain=self.read_domain,
         )
         m.d.comb += [
-            fifo.w_data.eq(Value.cast(self.packets_in.payload)),
+            fifo.w_data.eq(beat_in(self)),
             fifo.w_en.eq(self.packets_in.valid),
             self.packets_in.ready.eq(fifo.w_rdy),
-            Value.cast(self.packets_out.payload).eq(fifo.r_data),
+            beat_out(self).eq(fifo.r_data),
             self.packets_out.valid.eq(fifo.r_rdy),
             fifo.r_en.eq(self.packets_out.ready),
         ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from amaranth.hdl import Module, Signal, Value
-from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
@@ -12,8 +11,9 @@ from firm_hdl.gateware.memories import BlockMemory, LutMemory
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
 from firm_hdl.gateware.packets.reader import PacketReader
+from firm_hdl.gateware.packets.sides import put_in, put_out, side_members
 from firm_hdl.gateware.packets.writer import PacketWriter
-from firm_hdl.gateware.signatures import PacketSignature, packet_layout
+from firm_hdl.gateware.signatures import PacketSignature
 
 __all__ = ["PacketFifo"]
 
@@ -54,13 +54,19 @@ class PacketFifo(Component):
     packets : int
         Most packets that are stored, besides the one that is sent. At least 1.
     when_full : "wait" or "drop"
+    side_bits : int
+        Bits that travel beside each beat, such as a tag. 0: there are none.
 
     Members
     -------
     packets_in : In(PacketSignature(bus_bytes))
+    side_in : In(side_bits)
+        Only with `side_bits`. As stable as the payload.
     abort : In(1)
         Drop the packet. Only counts in the transfer of a last beat.
     packets_out : Out(PacketSignature(bus_bytes))
+    side_out : Out(side_bits)
+        Only with `side_bits`. What came beside the beat; valid with it.
     size : Out(range(memory_bytes + 1))
         Bytes of the packet on `packets_out`, from its first beat to its last one.
     ended : Out(1)
@@ -73,9 +79,16 @@ class PacketFifo(Component):
     """
 
     def __init__(
-        self, bus_bytes: int, memory_bytes: int, packets: int, *, when_full: WhenFull = "wait"
+        self,
+        bus_bytes: int,
+        memory_bytes: int,
+        packets: int,
+        *,
+        when_full: WhenFull = "wait",
+        side_bits: int = 0,
     ):
-        self.shape = MemoryShape(bus_bytes, memory_bytes, packets)
+        sides = side_members(side_bits)
+        self.shape = MemoryShape(bus_bytes, memory_bytes, packets, side_bits)
         check_policy(when_full)
         self.when_full = when_full
         super().__init__(
@@ -87,17 +100,18 @@ class PacketFifo(Component):
                 "ended": Out(1),
                 "outcome": Out(Outcome),
                 "counters": Out(counters_layout("passed", "aborted", "full", "large")),
+                **sides,
             }
         )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
         shape = self.shape
-        memory = BlockMemory(m, packet_layout(shape.bus_bytes), shape.beats)
+        memory = BlockMemory(m, shape.beat, shape.beats)
         m.submodules.writer = writer = PacketWriter(shape, self.when_full)
         m.submodules.reader = reader = PacketReader(shape)
-        wiring.connect(m, wiring.flipped(self.packets_in), writer.packets)
-        wiring.connect(m, reader.packets, wiring.flipped(self.packets_out))
+        put_in(m, self, writer.packets)
+        put_out(m, reader.packets, self)
         m.d.comb += [
             writer.abort.eq(self.abort),
             memory.write_at.eq(writer.at),

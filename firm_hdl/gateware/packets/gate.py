@@ -12,10 +12,11 @@ from firm_hdl.gateware.packets.block_fifo import BlockFifo
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.fifo import PacketFifo
 from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
+from firm_hdl.gateware.packets.sides import beat_in, put_in, side_members
 from firm_hdl.gateware.packets.status import GateStatus, GateStatusSignature
 from firm_hdl.gateware.packets.tail_drop import MOST_DROPPED, TailDrop, tail_drop_layout
 from firm_hdl.gateware.parser import Parser, parser_plan
-from firm_hdl.gateware.signatures import PacketSignature, Status, packet_layout
+from firm_hdl.gateware.signatures import PacketSignature, Status
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 from firm_hdl.timing.rings import ring_beats
@@ -74,13 +75,17 @@ class PacketGate(Component):
     ----------
     message, wire, bus_bytes, max_message_bytes
         As for :class:`Deserializer`.
-    memory_bytes, packets, when_full
+    memory_bytes, packets, when_full, side_bits
         As for :class:`PacketFifo`.
 
     Members
     -------
     packets_in : In(PacketSignature(bus_bytes))
+    side_in : In(side_bits)
+        Only with `side_bits`. As stable as the payload.
     packets_out : Out(PacketSignature(bus_bytes))
+    side_out : Out(side_bits)
+        Only with `side_bits`. What came beside the beat; valid with it.
     size : Out(range(memory_bytes + 1))
         Bytes of the packet on `packets_out`, from its first beat to its last one.
     status : Out(GateStatusSignature)
@@ -111,11 +116,13 @@ class PacketGate(Component):
         packets: int = 64,
         when_full: WhenFull = "wait",
         max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+        side_bits: int = 0,
     ):
         check_policy(when_full)
+        sides = side_members(side_bits)
         self.message, self.bus_bytes, self.when_full = message, bus_bytes, when_full
         self.plan = parser_plan(message, wire, bus_bytes, max_message_bytes)
-        self.shape = MemoryShape(bus_bytes, memory_bytes, packets)
+        self.shape = MemoryShape(bus_bytes, memory_bytes, packets, side_bits)
         least = lay_out(message, wire).min_bytes
         if memory_bytes < least:
             raise ValueError(
@@ -129,6 +136,7 @@ class PacketGate(Component):
                 "size": Out(range(memory_bytes + 1)),
                 "status": Out(GateStatusSignature),
                 "counters": Out(counters_layout(*COUNTED, "overrun")),
+                **sides,
             }
         )
 
@@ -140,6 +148,7 @@ class PacketGate(Component):
             self.shape.memory_bytes,
             self.shape.packets,
             when_full=self.when_full,
+            side_bits=self.shape.side_bits,
         )
         # Beats that the parser has, and the memory has not. Only the last beat of a packet waits
         # for a verdict, and beats after it. While a packet is not judged, the beats after it are in
@@ -152,24 +161,23 @@ class PacketGate(Component):
         m.d.comb += [
             waiting.w_data.eq(Value.cast(beats.payload)),
             waiting.w_en.eq(beats.valid & parser.packets.ready),
-            parser.packets.payload.eq(beats.payload.beat),
+            # The parser has no use for what is beside a beat, in the highest bits.
+            Value.cast(parser.packets.payload).eq(Value.cast(beats.payload.beat)),
             parser.packets.valid.eq(beats.valid & waiting.w_rdy),
             beats.ready.eq(parser.packets.ready & waiting.w_rdy),
             self.size.eq(fifo.size),
         ]
         wiring.connect(m, fifo.packets_out, wiring.flipped(self.packets_out))
+        if self.shape.side_bits:
+            m.d.comb += self.side_out.eq(fifo.side_out)
         verdicts = _Verdicts(m, self, parser, fifo, waiting)
         verdicts.give_statuses()
         if self.when_full == "wait":
-            m.d.comb += [
-                beats.valid.eq(self.packets_in.valid),
-                beats.payload.beat.eq(self.packets_in.payload),
-                self.packets_in.ready.eq(beats.ready),
-            ]
+            put_in(m, self, beats)
         else:
-            m.submodules.tail_drop = tail_drop = TailDrop(self.bus_bytes)
+            m.submodules.tail_drop = tail_drop = TailDrop(self.bus_bytes, self.shape.side_bits)
             m.submodules.backlog = backlog = BlockFifo(layout, BACKLOG_BEATS)
-            wiring.connect(m, wiring.flipped(self.packets_in), tail_drop.packets_in)
+            put_in(m, self, tail_drop.packets_in)
             wiring.connect(m, tail_drop.packets_out, backlog.i)
             wiring.connect(m, backlog.o, wiring.flipped(beats))
             verdicts.report_dropped(tail_drop, backlog.is_empty)
@@ -178,10 +186,8 @@ class PacketGate(Component):
 
 def _layout(gate: PacketGate) -> data.StructLayout:
     """Return the shape of beats that wait for the memory."""
-    layout = tail_drop_layout(gate.bus_bytes)
-    if gate.when_full == "drop":
-        return layout
-    return data.StructLayout({"beat": layout["beat"].shape})
+    beat = gate.shape.beat
+    return tail_drop_layout(beat) if gate.when_full == "drop" else data.StructLayout({"beat": beat})
 
 
 class _Verdicts:
@@ -223,7 +229,7 @@ class _Verdicts:
         self.starts = Signal(name="starts", init=1)
         self.ends = Signal(name="ends")
         # The beat that the memory takes next, in a register: whether it has room depends on it.
-        self.judged = Signal(packet_layout(gate.bus_bytes), name="judged_beat", reset_less=True)
+        self.judged = Signal(gate.shape.beat, name="judged_beat", reset_less=True)
         self.has_judged = Signal(name="has_judged")
         # A packet of which beats were dropped ends now.
         self.overrun = Signal(name="overrun")
@@ -240,7 +246,7 @@ class _Verdicts:
             offers.eq(
                 self.has_head & ~self.report_due & (~head.beat.last | (status.valid & self.room))
             ),
-            store.payload.eq(self.judged),
+            beat_in(fifo).eq(Value.cast(self.judged)),
             store.valid.eq(self.has_judged),
             fifo.abort.eq(aborts),
             self.takes.eq(offers & (~self.has_judged | store.ready)),

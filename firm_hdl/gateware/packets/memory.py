@@ -8,6 +8,7 @@ from amaranth.lib import enum
 from amaranth.utils import ceil_log2
 
 from firm_hdl.gateware.limits import check_integer
+from firm_hdl.gateware.packets.sides import beat_layout
 from firm_hdl.plan import check_bus_bytes
 
 __all__ = ["MemoryShape", "Outcome", "WhenFull", "check_policy"]
@@ -51,13 +52,15 @@ class MemoryShape:
 
     Parameters
     ----------
-    bus_bytes, memory_bytes, packets
+    bus_bytes, memory_bytes, packets, side_bits
         As for :class:`PacketFifo`.
 
     Attributes
     ----------
     beats : int
         Beats in the memory.
+    beat : StructLayout
+        A word of the memory: a beat, with `side` if there are such bits.
     address_bits, position_bits, lane_bits : int
         Bits of an address, of a position, and of the number of a byte in its beat.
 
@@ -66,7 +69,7 @@ class MemoryShape:
     TypeError, ValueError
     """
 
-    def __init__(self, bus_bytes: int, memory_bytes: int, packets: int):
+    def __init__(self, bus_bytes: int, memory_bytes: int, packets: int, side_bits: int = 0):
         check_bus_bytes(bus_bytes)
         check_integer("Memory size", memory_bytes)
         check_integer("Number of packets", packets)
@@ -79,6 +82,7 @@ class MemoryShape:
             raise ValueError(f"Number of packets must be at least 1, not {packets}")
         self.bus_bytes, self.memory_bytes, self.packets = bus_bytes, memory_bytes, packets
         self.beats = memory_bytes // bus_bytes
+        self.side_bits, self.beat = side_bits, beat_layout(bus_bytes, side_bits)
         self.lane_bits = ceil_log2(bus_bytes)
         self.address_bits = ceil_log2(self.beats)
         self.position_bits = self.address_bits + 1

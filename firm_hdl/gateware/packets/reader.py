@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from amaranth.hdl import Module, Signal
-from amaranth.lib import wiring
+from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.packets.memory import MemoryShape
-from firm_hdl.gateware.signatures import PacketSignature, packet_layout
 
 __all__ = ["PacketReader"]
 
@@ -31,13 +30,13 @@ class PacketReader(wiring.Component):
         The word that is read next; all words before this position are free. A register.
     reads : Out(1)
         Enable of the read port. Reads that are not needed are harmless.
-    word : In(packet_layout(bus_bytes))
+    word : In(shape.beat)
         The word of the last read.
     next_size : In(range(memory_bytes + 1))
         Size of the first packet whose first beat was not sent.
     begins : Out(1)
         The first beat of a packet is sent to `packets`, and `next_size` is taken.
-    packets : Out(PacketSignature(bus_bytes))
+    packets : Out(stream.Signature(shape.beat))
         `valid` and `payload` are registers.
     size : Out(range(memory_bytes + 1))
         Bytes of the packet on `packets`; valid with `packets`.
@@ -50,10 +49,10 @@ class PacketReader(wiring.Component):
                 "kept": In(shape.position_bits),
                 "at": Out(shape.position_bits),
                 "reads": Out(1),
-                "word": In(packet_layout(shape.bus_bytes)),
+                "word": In(shape.beat),
                 "next_size": In(size),
                 "begins": Out(1),
-                "packets": Out(PacketSignature(shape.bus_bytes)),
+                "packets": Out(stream.Signature(shape.beat)),
                 "size": Out(size),
             }
         )

@@ -9,6 +9,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.limits import check_bits, check_integer
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
+from firm_hdl.gateware.packets.sides import side_members
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.signatures import PacketSignature, packet_layout
 
@@ -57,20 +58,19 @@ class PacketRouter(Component):
     def __init__(self, bus_bytes: int, topics: int, *, topic_bits: int = 16, side_bits: int = 0):
         check_integer("Number of topics", topics)
         check_bits("Number of topic bits", topic_bits)
-        check_bits("Number of side bits", side_bits)
+        sides = side_members(side_bits)
         if topics < 1:
             raise ValueError(f"Number of topics must be at least 1, not {topics}")
         if topics > 1 << topic_bits:
             raise ValueError(f"{topics} topics do not fit into {topic_bits} bits")
         self.bus_bytes, self.topics, self.side_bits = bus_bytes, topics, side_bits
-        sides = {"side_in": In(side_bits), "side_out": Out(side_bits)}
         super().__init__(
             {
                 "packets_in": In(PacketSignature(bus_bytes)),
                 "topic": In(topic_bits),
                 "packets_out": Out(PacketSignature(bus_bytes)).array(topics),
                 "counters": Out(counters_layout("routed", "unknown")),
-                **(sides if side_bits else {}),
+                **sides,
             }
         )
 

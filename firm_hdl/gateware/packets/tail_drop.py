@@ -6,7 +6,7 @@ from amaranth.hdl import Module, Mux, Signal
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.signatures import PacketSignature, packet_layout
+from firm_hdl.gateware.packets.sides import beat_layout
 
 __all__ = ["MOST_DROPPED", "TailDrop", "tail_drop_layout"]
 
@@ -15,12 +15,12 @@ MOST_DROPPED = (1 << DROPPED_BITS) - 1
 """Packets in a row that are dropped and still get a status each."""
 
 
-def tail_drop_layout(bus_bytes: int) -> data.StructLayout:
+def tail_drop_layout(beat: data.StructLayout) -> data.StructLayout:
     """Return a beat after a tail drop.
 
     Members
     -------
-    beat : packet_layout(bus_bytes)
+    beat : beat
     aborted : unsigned(1)
         In a last beat: the rest of the packet was dropped, and the beat has no meaning.
     dropped : unsigned(8)
@@ -31,7 +31,7 @@ def tail_drop_layout(bus_bytes: int) -> data.StructLayout:
     """
     return data.StructLayout(
         {
-            "beat": packet_layout(bus_bytes),
+            "beat": beat,
             "aborted": 1,
             "dropped": DROPPED_BITS,
             "any_dropped": 1,
@@ -50,13 +50,13 @@ class TailDrop(wiring.Component):
 
     Parameters
     ----------
-    bus_bytes : int
+    bus_bytes, side_bits : int
 
     Members
     -------
-    packets_in : In(PacketSignature(bus_bytes))
+    packets_in : In(stream.Signature(beat_layout(bus_bytes, side_bits)))
         `ready` is constantly 1.
-    packets_out : Out(stream.Signature(tail_drop_layout(bus_bytes)))
+    packets_out : Out(stream.Signature(tail_drop_layout(beat_layout(bus_bytes, side_bits))))
         `valid` and `payload` depend on registers only. The payload may change before the transfer.
     dropped : Out(8)
         Packets that were dropped whole since the last one that was passed on. A register.
@@ -66,12 +66,12 @@ class TailDrop(wiring.Component):
         A packet of which beats were dropped ended in the cycle before.
     """
 
-    def __init__(self, bus_bytes: int):
-        self.bus_bytes = bus_bytes
+    def __init__(self, bus_bytes: int, side_bits: int = 0):
+        self.bus_bytes, self.beat = bus_bytes, beat_layout(bus_bytes, side_bits)
         super().__init__(
             {
-                "packets_in": In(PacketSignature(bus_bytes)),
-                "packets_out": Out(stream.Signature(tail_drop_layout(bus_bytes))),
+                "packets_in": In(stream.Signature(self.beat)),
+                "packets_out": Out(stream.Signature(tail_drop_layout(self.beat))),
                 "dropped": Out(DROPPED_BITS),
                 "report": In(1),
                 "drops": Out(1),
@@ -82,7 +82,7 @@ class TailDrop(wiring.Component):
         m = Module()
         out = self.packets_out
         came = Signal()
-        beat = Signal(packet_layout(self.bus_bytes), reset_less=True)
+        beat = Signal(self.beat, reset_less=True)
         # A packet was aborted, and its last beat has not been sent.
         abort_pending = Signal()
         # The rest of the arriving packet is dropped; a beat of the arriving packet was passed on.

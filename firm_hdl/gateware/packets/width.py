@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
-from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.packets.sides import beat_layout, put_in, put_out, side_members
 from firm_hdl.gateware.packets.slice import StreamSlice
-from firm_hdl.gateware.signatures import PacketSignature, packet_layout
+from firm_hdl.gateware.signatures import PacketSignature
 
 __all__ = ["PacketWidth"]
 
@@ -29,26 +29,34 @@ class PacketWidth(Component):
     ----------
     in_bytes, out_bytes : int
         Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
+    side_bits : int
+        Bits that travel beside each beat, such as a tag. 0: there are none.
 
     Members
     -------
     packets_in : In(PacketSignature(in_bytes))
+    side_in : In(side_bits)
+        Only with `side_bits`. As stable as the payload.
     packets_out : Out(PacketSignature(out_bytes))
+    side_out : Out(side_bits)
+        Only with `side_bits`; valid with the beat. What came beside the wide beat, or beside the
+        narrow one that completed the wide beat.
     """
 
-    def __init__(self, in_bytes: int, out_bytes: int):
-        self.in_bytes, self.out_bytes = in_bytes, out_bytes
+    def __init__(self, in_bytes: int, out_bytes: int, *, side_bits: int = 0):
+        self.in_bytes, self.out_bytes, self.side_bits = in_bytes, out_bytes, side_bits
         super().__init__(
             {
                 "packets_in": In(PacketSignature(in_bytes)),
                 "packets_out": Out(PacketSignature(out_bytes)),
+                **side_members(side_bits),
             }
         )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        m.submodules.slice = out = StreamSlice(packet_layout(self.out_bytes))
-        wiring.connect(m, out.o, wiring.flipped(self.packets_out))
+        m.submodules.slice = out = StreamSlice(beat_layout(self.out_bytes, self.side_bits))
+        put_out(m, out.o, self)
         if self.in_bytes > self.out_bytes:
             self._split(m, out)
         else:
@@ -72,6 +80,8 @@ class PacketWidth(Component):
             ),
             wide.last.eq(beat.last),
         ]
+        if self.side_bits:
+            m.d.comb += wide.side.eq(self.side_in)
         bits = 8 * self.in_bytes
         incoming, parts = Value.cast(beat.data), Value.cast(wide.data)
         for place in range(ratio):
@@ -86,12 +96,12 @@ class PacketWidth(Component):
     def _split(self, m: Module, out: StreamSlice) -> None:
         """Register a wide beat, and send it in parts."""
         ratio, low = self.in_bytes // self.out_bytes, (self.out_bytes - 1).bit_length()
-        m.submodules.wide = wide = StreamSlice(packet_layout(self.in_bytes))
+        m.submodules.wide = wide = StreamSlice(beat_layout(self.in_bytes, self.side_bits))
         beat = wide.o.payload
         number = Signal(range(ratio))
         final = Signal(range(ratio))
         is_final = Signal()
-        wiring.connect(m, wiring.flipped(self.packets_in), wide.i)
+        put_in(m, self, wide.i)
         m.d.comb += [
             # An empty packet has one beat, too.
             final.eq(Mux(beat.last, Mux(beat.count == 0, 0, (beat.count - 1)[low:]), ratio - 1)),
@@ -110,5 +120,7 @@ class PacketWidth(Component):
                 )
             ),
         ]
+        if self.side_bits:
+            m.d.comb += out.i.payload.side.eq(beat.side)
         with m.If(out.i.valid & out.i.ready):
             m.d.sync += number.eq(Mux(is_final, 0, number + 1))

@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
-from amaranth.lib import wiring
+from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull
-from firm_hdl.gateware.signatures import PacketSignature, packet_layout
 
 __all__ = ["PacketWriter"]
 
@@ -42,10 +41,10 @@ class PacketWriter(wiring.Component):
 
     Members
     -------
-    packets : In(PacketSignature(bus_bytes))
+    packets : In(stream.Signature(shape.beat))
     abort : In(1)
         Drop the packet; only counts with its last beat.
-    word : Out(packet_layout(bus_bytes))
+    word : Out(shape.beat)
         `count` is `bus_bytes` in all beats but the last one of a packet.
     at : Out(address)
         Where the word is written.
@@ -74,9 +73,9 @@ class PacketWriter(wiring.Component):
         self.shape, self.waits = shape, when_full == "wait"
         super().__init__(
             {
-                "packets": In(PacketSignature(shape.bus_bytes)),
+                "packets": In(stream.Signature(shape.beat)),
                 "abort": In(1),
-                "word": Out(packet_layout(shape.bus_bytes)),
+                "word": Out(shape.beat),
                 "at": Out(shape.address_bits),
                 "writes": Out(1),
                 "kept": Out(shape.position_bits),
@@ -90,7 +89,7 @@ class PacketWriter(wiring.Component):
             }
         )
         # The beat in the register, and whether there was room for it when it came.
-        self.beat = Signal(packet_layout(shape.bus_bytes), reset_less=True)
+        self.beat = Signal(shape.beat, reset_less=True)
         self.has_beat = Signal()
         self.fits = Signal()
         self.aborts = Signal(reset_less=True)
