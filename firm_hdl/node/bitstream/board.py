@@ -152,6 +152,8 @@ def _entries(path: Path, name: str) -> tuple[Marked, dict[str, Entry], dict[str,
     if "pins" in own:
         groups |= marked.mapping(own.pop("pins").value, "'pins'", "{led: {pins: B2 C2}}")
     keys |= own
+    # What is no mapping, or has a wrong key, would lack all the others, too.
+    marked.check()
     for key in _REQUIRED:
         if key not in keys:
             marked.error_at_start(f"a board needs '{key}', or 'like' with the name of another")
@@ -171,10 +173,8 @@ def _board(
         usual = {"standard": "LVCMOS33", **usual}
 
     def pin(what: str, *options: str) -> tuple[Pin, dict[str, Entry]] | None:
-        entries = marked.mapping(keys[what].value, f"'{what}'", "{pin: G2}")
-        entries = marked.known(entries, ("pin", *options), f"'{what}'")
-        if "pin" not in entries:
-            keys[what].error_at_key(f"'{what}' needs a 'pin'")
+        entries = _options(keys[what], ("pin", *options), "{pin: G2}")
+        if entries is None:
             return None
         site = _word(entries["pin"], _SITE, _A_SITE)
         found = Pin(
@@ -188,7 +188,7 @@ def _board(
         if "mhz" in entries:
             clock_hz = 1e6 * entries["mhz"].number(0.0, 1.0, 1000.0)
         else:
-            keys["clock"].error_at_key("'clock' needs 'mhz', its frequency")
+            keys["clock"].error_at_key("'clock' has no 'mhz', its frequency")
         is_pll_pad = "pll" in entries and entries["pll"].choice(("pad", "core"), "core") == "pad"
     reset = pin("reset", *_OF_PINS) if "reset" in keys else None
     return Board(
@@ -211,20 +211,18 @@ def _board(
         pins={
             pin.name: pin
             for group, entry in groups.items()
-            for pin in _group(marked, group, entry, usual)
+            for pin in _group(group, entry, usual)
         },
         load=" ".join(keys["load"].text().split()) if "load" in keys else "openFPGALoader",
     )
 
 
-def _group(marked: Marked, group: str, entry: Entry, usual: Mapping[str, str]) -> Iterator[Pin]:
+def _group(group: str, entry: Entry, usual: Mapping[str, str]) -> Iterator[Pin]:
     """Read the pins of a group, such as ``led``."""
     if not re.fullmatch(_NAME, group):
         entry.error_at_key(f"the name of pins has {_A_NAME}")
-    entries = entry.marked.mapping(entry.value, f"'{group}'", "{pins: B2 C2}")
-    entries = marked.known(entries, ("pins", "names", "from", *_OF_PINS), f"'{group}'")
-    if "pins" not in entries:
-        entry.error_at_key(f"'{group}' has no 'pins'")
+    entries = _options(entry, ("pins", "names", "from", *_OF_PINS), "{pins: B2 C2}")
+    if entries is None:
         return
     sites = _words(entries["pins"], f"{_SITE}|-", f"{_A_SITE}, or - for none")
     first = entries["from"].integer(0, 0, 1000) if "from" in entries else 0
@@ -243,6 +241,18 @@ def _group(marked: Marked, group: str, entry: Entry, usual: Mapping[str, str]) -
         seen.add(site)
     if len(set(names)) < len(names):
         entries["names"].error(f"'{group}' has a name twice")
+
+
+def _options(entry: Entry, keys: tuple[str, ...], example: str) -> dict[str, Entry] | None:
+    """Read a mapping with some keys, the first of which is needed; `None` without that."""
+    before = entry.marked.noted
+    given = entry.marked.mapping(entry.value, f"'{entry.name}'", example)
+    known = entry.marked.known(given, keys, f"'{entry.name}'")
+    if keys[0] in known:
+        return known
+    if entry.marked.noted == before:
+        entry.error_at_key(f"'{entry.name}' has no '{keys[0]}'")
+    return None
 
 
 def _words(entry: Entry, pattern: str, what: str) -> list[str]:

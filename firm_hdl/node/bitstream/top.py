@@ -207,7 +207,8 @@ def _io(
             for pin in chosen:
                 owner = taken.setdefault(pin.site, name)
                 if owner != name or pin.site in [each.site for each in pins]:
-                    problem(span, f"the pin '{word}', {pin.site}, is already that of '{owner}'")
+                    site = f", {pin.site}," if word != pin.site else ""
+                    problem(span, f"the pin '{word}'{site} is already that of '{owner}'")
             pins += chosen
         if len(pins) != bits and len(pins) >= len(given[name].pins):
             problem(given[name].span, f"'{name}' has {bits} bits, and is given {len(pins)} pins")
