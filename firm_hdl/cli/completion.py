@@ -13,6 +13,7 @@ from argcomplete.shell_integration import shellcode
 from firm_hdl.export.options import EXTRAS
 from firm_hdl.frontend import Library, open_library
 from firm_hdl.frontend.spelling import SUFFIXES
+from firm_hdl.node.bitstream.board import board_names
 
 __all__ = ["called_in", "complete", "shell_code"]
 
@@ -42,6 +43,14 @@ def _add_completers(parser: argparse.ArgumentParser) -> None:
             action.completer = _types  # type: ignore[attr-defined]
         elif action.dest == "extras":
             action.completer = _extras  # type: ignore[attr-defined]
+        elif action.dest == "target":
+            action.completer = _boards  # type: ignore[attr-defined]
+
+
+def _boards(prefix: str, **_: Any) -> list[str]:
+    """List the boards that a bitstream can be made for; a file can be one, too."""
+    names = [name for name in ("list", *board_names()) if name.startswith(prefix)]
+    return [*names, *FilesCompleter(["yaml"])(prefix)]
 
 
 def _extras(prefix: str, **_: Any) -> list[str]:

@@ -25,6 +25,7 @@ from firm_hdl.jobs import ToolError, run_tool
 
 if TYPE_CHECKING:
     from firm_hdl.jobs.programs import Program
+    from firm_hdl.node.bitstream.families import Family
     from firm_hdl.verify.simulators.programs import TextSimulator
 
 __all__ = ["add_doctor"]
@@ -118,6 +119,7 @@ def _programs() -> Iterator[_Item]:
     from firm_hdl.bench.devices import DEVICES
     from firm_hdl.bench.tools import find_nextpnr
     from firm_hdl.jobs.programs import find_compiler, find_verilator, find_yosys
+    from firm_hdl.node.bitstream.families import FAMILIES
     from firm_hdl.verify.simulators.programs import SIMULATORS
 
     group = "Programs"
@@ -141,6 +143,12 @@ def _programs() -> Iterator[_Item]:
             find = partial(find_nextpnr, placer.package, placer.program, is_run=False)
             enables = f"clock rates in bench --device {device.name}"
             yield _found(group, placer.program, enables, partial(_tool_version, find))
+    for family in FAMILIES:
+        title = f"{family.placer} and {family.packer}"
+        enables = f"with Yosys: node build --board for boards with {family.name}"
+        yield _found(group, title, enables, partial(_board_tools, family))
+    loads = "loads what node build --board makes"
+    yield _found(group, "openFPGALoader", loads, _loader)
     yield _found(group, "Dask", "verify --executor dask://HOST:PORT", _dask)
 
 
@@ -150,6 +158,19 @@ def _version_of(make: Callable[[], TextSimulator]) -> str:
 
 def _tool_version(find: Callable[[], Program]) -> str:
     return find().version
+
+
+def _board_tools(family: Family) -> str:
+    from firm_hdl.node.bitstream.build import find_tools
+
+    return find_tools(family, is_run=False).placer.version
+
+
+def _loader() -> str:
+    from firm_hdl.jobs.programs import find_program
+
+    path = find_program("openFPGALoader", "OPENFPGALOADER", ["openFPGALoader"], "openfpgaloader")
+    return _said([path]).removeprefix("openFPGALoader")
 
 
 def _said(command: Sequence[str]) -> str:

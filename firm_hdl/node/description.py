@@ -23,6 +23,7 @@ __all__ = [
     "Description",
     "Direction",
     "Hdl",
+    "IoPins",
     "Kind",
     "Link",
     "Qos",
@@ -199,6 +200,26 @@ class Hdl:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class IoPins:
+    """The pins of a board for a member of an accelerator that comes out of the node as `io`.
+
+    Attributes
+    ----------
+    name : str
+        The path of the member, such as ``pwm``, or ``encoder.a``.
+    pins : tuple of str
+        One pin for each bit, the lowest first, as ``led.0`` or as ``B2``.
+    span, spans : Span and tuple of Span
+        The name and the pins in the description.
+    """
+
+    name: str
+    pins: tuple[str, ...]
+    span: Span = field(compare=False, repr=False)
+    spans: tuple[Span, ...] = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Description:
     """A node: its name, its topics, its link and its accelerator.
 
@@ -222,10 +243,12 @@ class Description:
         node.
     hdl : Hdl or None
         The files of an accelerator that is not in Amaranth.
+    pins : tuple of IoPins
+        Pins of a board, for its bitstream. The node itself does not depend on them.
     folder : str
         The folder of the file, in which the module of the accelerator is searched, too.
-    accelerator_span, node_span : Span or None
-        The names of the accelerator and of the node in the file.
+    accelerator_span, clock_span, link_span, node_span : Span or None
+        The accelerator, the clock, the link and the name of the node in the file.
     """
 
     node: str
@@ -238,8 +261,11 @@ class Description:
     topics: tuple[Topic, ...]
     accelerator: str = ""
     hdl: Hdl | None = None
+    pins: tuple[IoPins, ...] = ()
     folder: str = field(default="", compare=False)
     accelerator_span: Span | None = field(default=None, compare=False, repr=False)
+    clock_span: Span | None = field(default=None, compare=False, repr=False)
+    link_span: Span | None = field(default=None, compare=False, repr=False)
     node_span: Span | None = field(default=None, compare=False, repr=False)
 
     def of_kind(self, kind: Kind) -> tuple[Topic, ...]:

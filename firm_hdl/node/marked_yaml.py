@@ -177,6 +177,30 @@ class Entry:
         items = [Entry(marked=self.marked, key=self.key, value=each) for each in self.value.value]
         return [text for item in items if (text := item.text())]
 
+    def words(self) -> list[tuple[str, Span]]:
+        """Read words, in a list or with blanks between them; a number is a word as it is written.
+
+        Returns
+        -------
+        list of pairs
+            Each word with its place.
+        """
+        is_list = isinstance(self.value, yaml.SequenceNode)
+        found: list[tuple[str, Span]] = []
+        for node in self.value.value if is_list else [self.value]:
+            if not isinstance(node, yaml.ScalarNode) or not node.value.strip():
+                self.error(f"'{self.name}' must be words, not {kind(node)}")
+                continue
+            whole = self.marked.span(node)
+            at = whole.start
+            for word in node.value.split():
+                # In quotes, a word may be written with escapes.
+                start = whole.source.text.find(word, at, whole.end)
+                at = max(at, start + len(word))
+                span = Span(source=whole.source, start=start, end=at) if start >= 0 else whole
+                found.append((word, span))
+        return found
+
     def choice(self, choices: Collection[str], default: T) -> str | T:
         """Read one of some words."""
         before = self.marked.noted

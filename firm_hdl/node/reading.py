@@ -27,6 +27,7 @@ from firm_hdl.node.description import (
     Description,
     Direction,
     Hdl,
+    IoPins,
     Kind,
     Link,
     Qos,
@@ -55,7 +56,7 @@ MOST_COMPARED = 1000
 KINDS: tuple[Kind, ...] = ("subscribe", "publish", "serve")
 
 _KEYS = ("node", "namespace", "distro", "paths", "bags", "bus_bytes", "clock_mhz", "link", "remap")
-KEYS = (*_KEYS, *KINDS, "accelerator")
+KEYS = (*_KEYS, *KINDS, "accelerator", "pins")
 
 LANGUAGES = ("vhdl", "verilog", "systemverilog")
 
@@ -174,7 +175,14 @@ class _Reader:
         accelerator, hdl = "", None
         if "accelerator" in known:
             accelerator, hdl = self._accelerator(known["accelerator"])
+        pins = self._pins(known["pins"]) if "pins" in known else ()
+        if pins and "accelerator" not in known:
+            known["pins"].error_at_key("'pins' are those of an accelerator, which is not there")
         self.marked.check()
+
+        def span(key: str) -> Span | None:
+            return self.marked.span(known[key].value) if key in known else None
+
         return Description(
             **given,
             distro=library.distro,
@@ -185,11 +193,12 @@ class _Reader:
             topics=tuple(topics),
             accelerator=accelerator,
             hdl=hdl,
+            pins=pins,
             folder=self.folder,
-            accelerator_span=(
-                self.marked.span(known["accelerator"].value) if accelerator else None
-            ),
-            node_span=self.marked.span(known["node"].value),
+            accelerator_span=span("accelerator") if accelerator else None,
+            clock_span=span("clock_mhz"),
+            link_span=span("link"),
+            node_span=span("node"),
         )
 
     def _accelerator(self, entry: Entry) -> tuple[str, Hdl | None]:
@@ -222,6 +231,22 @@ class _Reader:
             language.error(f"{problem}: name the 'entity'")
         hdl = Hdl(language=language.name, files=tuple(files), entity=entity)  # type: ignore[arg-type]
         return f"{entity} ({', '.join(files)})", hdl
+
+    def _pins(self, entry: Entry) -> tuple[IoPins, ...]:
+        """Read the pins of the members of an accelerator; which there are is up to the board."""
+        found: list[IoPins] = []
+        owners: dict[str, str] = {}
+        for name, each in self.marked.mapping(entry.value, "'pins'", "{pwm: [A4, B5]}").items():
+            words = each.words()
+            for pin, span in words:
+                if pin in owners:
+                    message = f"the pin '{pin}' is already that of '{owners[pin]}'"
+                    self.marked.note(Diagnostic(message=message, span=span))
+                owners[pin] = name
+            pins, spans = tuple(word for word, _ in words), tuple(span for _, span in words)
+            place = self.marked.span(each.key)
+            found.append(IoPins(name=name, pins=pins, span=place, spans=spans))
+        return tuple(found)
 
     def _library(self, known: dict[str, Entry]) -> Library:
         """Open the definitions; without them, no type can be checked, so errors are final."""

@@ -1,0 +1,318 @@
+"""The module between a node and the pins of a board: clock, PLL, reset, and the pins themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from math import ceil, log2
+from typing import Any, TypeAlias
+
+from firm_hdl.errors import DefinitionError, Diagnostic, Span
+from firm_hdl.node.bitstream.board import Board
+from firm_hdl.node.bitstream.families import MOST_DEVIATION, Pin, Pll
+from firm_hdl.node.description import Description
+
+__all__ = ["BoardTop", "board_top"]
+
+Problem: TypeAlias = Callable[[Span | None, str], None]
+"""Notes a mistake at a place."""
+
+RESET_SECONDS = 20e-6
+"""How long the node is reset after the start. Block RAMs of iCE40 have their contents only 10 us
+after it."""
+
+LINKS = {"uart": "uart"}
+"""The group of pins that a board has for each kind of link."""
+
+_ENDS = {"i": "in", "o": "out", "oe": "out"}
+"""Members of one pin, as `amaranth.lib.io` names them, with their directions."""
+
+_DIRECTIONS = {
+    ("i",): "input",
+    ("o",): "output",
+    ("o", "oe"): "inout",
+    ("i", "o", "oe"): "inout",
+}
+"""The direction of a pin by its members."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoardTop:
+    """A top level.
+
+    Attributes
+    ----------
+    verilog : str
+        The module ``top``.
+    constraints : str
+        The file of constraints for nextpnr.
+    clock_hz : float
+        Frequency of the node's clock.
+    """
+
+    verilog: str
+    constraints: str
+    clock_hz: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Port:
+    """A port of the top level with its pins, and the ports of the node behind it.
+
+    `inner` has them by `i`, `o` and `oe`.
+    """
+
+    name: str
+    direction: str
+    pins: Sequence[Pin]
+    inner: Mapping[str, str]
+
+
+def board_top(
+    description: Description, ports: Sequence[Mapping[str, Any]], module: str, board: Board
+) -> BoardTop:
+    """Write the top level of a node for a board.
+
+    Parameters
+    ----------
+    ports : sequence of mappings
+        The ports of the node, as its manifest has them.
+    module : str
+        Name of the node's module in Verilog.
+
+    Raises
+    ------
+    DefinitionError
+        With all that does not fit together, at its place in the description.
+    """
+    problems: list[Diagnostic] = []
+
+    def problem(span: Span | None, message: str) -> None:
+        problems.append(Diagnostic(message=message, span=span))
+
+    pll = _pll(description, board, problem)
+    fixed = [board.clock, *([board.reset] if board.reset else ())]
+    fixed += [pin for pin, _ in board.constants]
+    taken = {pin.site: pin.name for pin in fixed}
+    found = _link(description, ports, board, problem)
+    for pin in (pin for port in found for pin in port.pins):
+        if taken.setdefault(pin.site, pin.name) != pin.name:
+            problem(
+                description.link_span, f"'{pin.name}' and '{taken[pin.site]}' are both {pin.site}"
+            )
+    if description.accelerator:
+        found += _io(description, ports, board, taken, problem)
+    else:
+        problem(
+            description.node_span,
+            "a node whose messages come out of it has too many pins: it needs an 'accelerator', "
+            "such as 'firm_hdl.node.loop:Loop', which sends all messages back",
+        )
+    if problems:
+        raise DefinitionError(sorted(problems, key=lambda p: p.span.start if p.span else -1))
+    header = f"{description.node} on {board.title}: clock, reset and pins, made by firm-hdl"
+    clock_hz = board.clock_hz if pll is None else pll.hz
+    return BoardTop(
+        verilog=_verilog(header, module, board, pll, clock_hz, found),
+        constraints=board.family.constrain(list(_sites(board, found)), board.clock_hz / 1e6),
+        clock_hz=clock_hz,
+    )
+
+
+def _pll(description: Description, board: Board, problem: Problem) -> Pll | None:
+    """Return the PLL that makes the clock of the node; `None` if the board has this clock."""
+    wanted = description.clock_hz
+    if abs(board.clock_hz / wanted - 1) <= MOST_DEVIATION:
+        return None
+    pll = board.family.pll(board.clock_hz, wanted, board.is_pll_pad)
+    if pll is None or abs(pll.hz / wanted - 1) > MOST_DEVIATION:
+        near = board.clock_hz if pll is None else pll.hz
+        problem(
+            description.clock_span or description.node_span,
+            f"the clock of {board.name}, {board.clock_hz / 1e6:g} MHz, gives no {wanted / 1e6:g} "
+            f"MHz; near is 'clock_mhz: {near / 1e6:.9g}'",
+        )
+    return pll
+
+
+def _link(
+    description: Description, ports: Sequence[Mapping[str, Any]], board: Board, problem: Problem
+) -> list[_Port]:
+    """Give the ports of the link the pins of the same names."""
+    kind = description.link.kind
+    where = description.link_span or description.node_span
+    if kind not in LINKS:
+        problem(
+            where,
+            f"a board needs a link with pins, which is {' or '.join(LINKS)}; with '{kind}', you "
+            "write the top level",
+        )
+        return []
+    group = LINKS[kind]
+    found = []
+    for port in (port for port in ports if port["member"].startswith("link.")):
+        width = port["width"]
+        names = [f"{port['name']}{bit if width > 1 else ''}" for bit in range(width)]
+        names = [name.replace("_", ".", 1) for name in names]
+        if missing := [name for name in names if name not in board.pins]:
+            problem(where, f"{board.name} has no pin '{missing[0]}' for the link '{group}'")
+            continue
+        pins = [board.pins[name] for name in names]
+        inner = {port["direction"][0]: port["name"]}
+        direction = f"{port['direction']}put"
+        found.append(_Port(name=port["name"], direction=direction, pins=pins, inner=inner))
+    return found
+
+
+def _io(
+    description: Description,
+    ports: Sequence[Mapping[str, Any]],
+    board: Board,
+    taken: dict[str, str],
+    problem: Problem,
+) -> list[_Port]:
+    """Give the members of the accelerator the pins that the description names."""
+    members: dict[str, dict[str, Mapping[str, Any]]] = {}
+    for port in (port for port in ports if port["member"].startswith("io.")):
+        member = port["member"].removeprefix("io.")
+        stem, _, end = member.rpartition(".")
+        if not stem or _ENDS.get(end) != port["direction"]:
+            stem, end = member, port["direction"][0]
+        members.setdefault(stem, {})[end] = port
+    given = {each.name: each for each in description.pins}
+    for name in given.keys() - members.keys():
+        close = get_close_matches(name, members, n=1)
+        hint = f"; did you mean '{close[0]}'?" if close else ""
+        problem(given[name].span, f"the accelerator has no member '{name}'{hint}")
+    found = []
+    for name, inner in members.items():
+        direction = _DIRECTIONS.get(tuple(sorted(inner)))
+        bits = max(port["width"] for end, port in inner.items() if end != "oe")
+        if name not in given:
+            problem(
+                description.accelerator_span,
+                f"'{name}' of the accelerator has no pin: write 'pins: {{{name}: [{_some(bits)}]}}'"
+                f" into the description; {board.name} has {', '.join(board.groups())}",
+            )
+            continue
+        if direction is None or inner.get("oe", {"width": 1})["width"] != 1:
+            problem(given[name].span, f"'{name}' is no pin: it has {', '.join(sorted(inner))}")
+            continue
+        pins: list[Pin] = []
+        for word, span in zip(given[name].pins, given[name].spans, strict=True):
+            chosen = _chosen(board, word)
+            if not chosen:
+                problem(span, _unknown(board, word))
+            for pin in chosen:
+                owner = taken.setdefault(pin.site, name)
+                if owner != name or pin.site in [each.site for each in pins]:
+                    site = f", {pin.site}," if word != pin.site else ""
+                    problem(span, f"the pin '{word}'{site} is already that of '{owner}'")
+            pins += chosen
+        if len(pins) != bits and len(pins) >= len(given[name].pins):
+            problem(given[name].span, f"'{name}' has {bits} bits, and is given {len(pins)} pins")
+        names = {end: port["name"] for end, port in inner.items()}
+        end, port = next(iter(inner.items()))
+        outer = port["name"]
+        if port["member"] != f"io.{name}":
+            outer = outer.removesuffix(f"_{end}")
+        found.append(_Port(name=outer, direction=direction, pins=pins, inner=names))
+    return found
+
+
+def _some(bits: int) -> str:
+    return ", ".join(["..."] * min(bits, 4))
+
+
+def _chosen(board: Board, word: str) -> list[Pin]:
+    """Return the pins that a word means: one by its name or its site, or all of a group."""
+    if word in board.pins:
+        return [board.pins[word]]
+    for pin in board.pins.values():
+        if pin.site == word:
+            # As it is on the board: what is active low is so for its name alone.
+            return [Pin(name=word, site=word, electrical=pin.electrical)]
+    return board.groups().get(word, [])
+
+
+def _unknown(board: Board, word: str) -> str:
+    names = [*board.pins, *(pin.site for pin in board.pins.values()), *board.groups()]
+    close = get_close_matches(word, names, n=1)
+    group = word.partition(".")[0]
+    if group in board.groups():
+        rest = [pin.name.partition(".")[2] for pin in board.groups()[group]]
+        return f"{board.name} has no pin '{word}'; '{group}' has {', '.join(rest)}"
+    hint = f"; did you mean '{close[0]}'?" if close else "."
+    return f"{board.name} has no pin '{word}'{hint} It has {', '.join(board.groups())}"
+
+
+def _sites(board: Board, ports: Sequence[_Port]) -> Iterator[tuple[str, Pin]]:
+    """Yield each bit of a port of the top level, with its pin."""
+    yield "clk", board.clock
+    if board.reset:
+        yield "reset", board.reset
+    for pin, _ in board.constants:
+        yield f"constant_{pin.site}", pin
+    for port in ports:
+        for bit, pin in enumerate(port.pins):
+            yield (port.name if len(port.pins) == 1 else f"{port.name}[{bit}]"), pin
+
+
+def _verilog(
+    header: str, module: str, board: Board, pll: Pll | None, clock_hz: float, ports: Sequence[_Port]
+) -> str:
+    declared = ["input wire clk"]
+    if board.reset:
+        declared.append("input wire reset")
+    declared += [f"output wire constant_{pin.site}" for pin, _ in board.constants]
+    inside, connected = [], [".aclk(aclk)", ".aresetn(aresetn)"]
+    for pin, level in board.constants:
+        inside.append(f"  assign constant_{pin.site} = 1'b{int(level)};\n")
+    for port in ports:
+        width = len(port.pins)
+        vector = f"[{width - 1}:0] " if width > 1 else ""
+        declared.append(f"{port.direction} wire {vector}{port.name}")
+        low = "".join(str(int(pin.is_low)) for pin in reversed(port.pins))
+        inverted = f" ^ {width}'b{low}" if "1" in low else ""
+        for end, name in port.inner.items():
+            if end == "i":
+                connected.append(f".{name}({port.name}{inverted})")
+                continue
+            inside.append(f"  wire {vector if end == 'o' else ''}node_{name};\n")
+            connected.append(f".{name}(node_{name})")
+        if "o" in port.inner:
+            value = f"node_{port.inner['o']}{inverted}"
+            if "oe" in port.inner:
+                value = f"node_{port.inner['oe']} ? {value} : {{{width}{{1'bz}}}}"
+            inside.append(f"  assign {port.name} = {value};\n")
+    bits = max(1, ceil(log2(RESET_SECONDS * clock_hz)))
+    start = "locked"
+    if board.reset:
+        start += " & reset" if board.reset.is_low else " & ~reset"
+    clock = pll.verilog if pll else "  assign aclk = clk;\n  assign locked = 1'b1;\n"
+    listed, joined = ",\n  ".join(declared), ",\n    ".join(connected)
+    return f"""\
+// {header}
+
+module top (
+  {listed}
+);
+  wire aclk, locked;
+{clock}
+  // The node is reset for {2**bits} cycles after the clock is there.
+  reg [1:0] started = 0;
+  reg [{bits}:0] cycles = 0;
+  wire aresetn = cycles[{bits}];
+  always @(posedge aclk) begin
+    started <= {{started[0], {start}}};
+    if (!started[1]) cycles <= 0;
+    else if (!aresetn) cycles <= cycles + 1;
+  end
+
+{"".join(inside)}
+  {module} node (
+    {joined}
+  );
+endmodule
+"""

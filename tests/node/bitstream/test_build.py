@@ -1,0 +1,138 @@
+"""The folder of a bitstream, with tools that only pretend."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from dataclasses import replace
+
+import pytest
+
+from firm_hdl.errors import UserError
+from firm_hdl.export.folder import read_manifest
+from firm_hdl.jobs import ProgramMissingError
+from firm_hdl.jobs.programs import Program
+from firm_hdl.node.bitstream import build
+from firm_hdl.node.bitstream.board import read_board
+from firm_hdl.node.bitstream.build import Tools, build_bitstream
+from tests.export.strikes import left_when_outdated
+from tests.node.bitstream.samples import description
+
+# Bytes that are no text.
+BITSTREAM = bytes(range(256))
+
+YOSYS = """
+import sys
+assert "synth_ecp5" in sys.argv[-1] and "top.v" in sys.argv[-1]
+open("top.json", "w").write("{}")
+"""
+NEXTPNR = """
+import json, sys
+seed = int(sys.argv[sys.argv.index("--seed") + 1])
+reached = MHZ[seed - 1]
+if not reached:
+    open("nextpnr.log", "w").write(
+        "Info: TRELLIS_IO: 9/ 197 4%\\nInfo: TRELLIS_FF: 30000/ 24288 123%\\nERROR: no room\\n"
+    )
+    sys.exit(1)
+open(sys.argv[sys.argv.index("--textcfg") + 1], "w").write(str(seed))
+step = {"delay": 1.25, "type": "routing", "to": {"cell": "slow"}}
+json.dump({
+    "fmax": {"aclk": {"achieved": reached, "constraint": 5}},
+    "utilization": {"TRELLIS_FF": {"used": 10, "available": 24288}},
+    "critical_paths": [{"from": "aclk", "to": "aclk", "path": [step]}],
+}, open("report.json", "w"))
+"""
+PACKER = """
+import sys
+assert open(sys.argv[1]).read() == "SEED"
+open(sys.argv[2], "wb").write(bytes(range(256)))
+"""
+
+
+@pytest.fixture
+def made(node, tmp_path, monkeypatch):
+    """Return a function that makes a bitstream with tools that reach some MHz, by seed."""
+    shutil.copytree(node.folder, tmp_path / node.folder.name)
+    copied = replace(node, folder=tmp_path / node.folder.name)
+
+    def make(*mhz, seed=1, said=None, **options):
+        def program(title, code):
+            return Program(title=title, command=(sys.executable, "-c", code), version="9")
+
+        tools = Tools(
+            yosys=program("Yosys", YOSYS),
+            placer=program("nextpnr-ecp5", NEXTPNR.replace("MHZ", repr(mhz))),
+            packer=program("ecppack", PACKER.replace("SEED", str(seed))),
+        )
+        monkeypatch.setattr(build, "find_tools", lambda family: tools)
+        report = (said if said is not None else []).append
+        board = read_board("ulx3s-12f")
+        return build_bitstream(description(), copied, board, report=report, **options)
+
+    return make
+
+
+def files(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_bitstream_is_made_once_and_kept_with_its_report(made, tmp_path):
+    said = []
+    first = made(7.5, said=said)
+    assert first.file.read_bytes() == BITSTREAM and not first.was_current
+    folder = first.file.parent
+    assert files(folder) == ["bitstream.bit", "manifest.json", "pins.lpf", "report.txt", "top.v"]
+    assert said == [
+        "synthesis",
+        "place and route, seed 1 (some minutes)",
+        "seed 1 reaches 150 % of the clock",
+        "packs bitstream.bit",
+    ]
+    report = (folder / "report.txt").read_text()
+    assert "clock aclk: 5 MHz needed, 7.5 MHz reached: met\n" in report
+    assert "TRELLIS_FF            10 of 24288\n" in report and "the bitstream was never" in report
+    assert "   1.250  routing    slow\n" in report
+    # Nothing is run if all is current.
+    assert replace(first, was_current=True) == made(said=said) and len(said) == 4
+    assert not made(6, force=True).was_current
+    assert left_when_outdated(folder, tmp_path / "copy") == set()
+
+
+def test_other_seeds_are_tried_if_one_nearly_reaches_the_clock(made):
+    assert made(4.9, 5.0, seed=2).facts["seed"] == 2
+
+
+def test_a_clock_that_is_missed_is_an_error_and_leaves_no_bitstream(made, tmp_path):
+    folder = made(6).file.parent
+    with pytest.raises(
+        UserError, match=r"^'pins' on ulx3s-12f reaches 4\.25 MHz, and its clock has"
+    ):
+        made(4.25, 4.2, 4.1, force=True)
+    assert files(folder) == ["manifest.json", "pins.lpf", "report.txt", "top.v"]
+    assert "5 MHz needed, 4.25 MHz reached: MISSED" in (folder / "report.txt").read_text()
+    assert read_manifest(folder)["bitstream"] is None
+    # It is not taken for done.
+    with pytest.raises(UserError, match="no bitstream was made"):
+        made(2)
+
+
+def test_a_node_that_is_too_large_is_an_error_with_figures(made, tmp_path):
+    with pytest.raises(UserError, match=r"too large for the FPGA: TRELLIS_FF 30,000 of 24,288$"):
+        made(0)
+    assert not (tmp_path / "pins" / "boards" / "ulx3s-12f" / "bitstream.bit").exists()
+
+
+def test_without_tools_the_top_level_is_there_and_the_error_says_how_to_get_them(
+    node, tmp_path, monkeypatch
+):
+    copied = replace(node, folder=tmp_path / "pins")
+    shutil.copytree(node.folder, copied.folder)
+
+    def missing(*words, **options):
+        return None
+
+    monkeypatch.setattr(build, "find_packaged", missing)
+    with pytest.raises(ProgramMissingError, match=r"pip install 'firm-hdl\[boards\]'"):
+        build_bitstream(description(), copied, read_board("ulx3s-85f"))
+    assert files(copied.folder / "boards" / "ulx3s-85f") == ["manifest.json", "pins.lpf", "top.v"]
