@@ -49,6 +49,7 @@ def run(*arguments, memory=None, shell="", cwd=None):
 SHELLS = [">&-", "2>&-", ">&- 2>&-", "| head -c 1", ">/dev/full", "2>/dev/full", "<&-"]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("arguments", "shell"),
     [

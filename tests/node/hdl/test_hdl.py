@@ -71,6 +71,7 @@ def written(tmp_path):
     return write
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("language", ["amaranth", "vhdl", "verilog", "sv"])
 def test_what_node_new_writes_is_an_accelerator(language, tmp_path, monkeypatch, capsys):
     described(tmp_path)
@@ -139,6 +140,7 @@ MISTAKES = [
 ]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("language", "change", "text"), MISTAKES)
 def test_mistakes_are_shown_where_they_are(written, language, change, text):
     with pytest.raises(DefinitionError) as caught:
@@ -260,6 +262,7 @@ def test_a_node_of_vhdl_is_built_and_runs(written, tmp_path, ghdl):
     assert not build_node(description, tmp_path, stimuli=stimuli).was_current
 
 
+@pytest.mark.thorough
 def test_a_node_of_systemverilog_is_built_and_runs(written, tmp_path, iverilog, verilator):
     (tmp_path / "ready.svh").write_text("`define TAKEN 1'b1\n")
     include = [

@@ -32,7 +32,7 @@ ROS2 = {
 }
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("distro", "oracle", "count"),
     [
