@@ -163,7 +163,7 @@ def test_random_designs_are_proved_equal(
         ("std_msgs/Empty", "noetic"),
     ],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.thorough
 def test_converters_are_proved_equal(
     name: str, distro: str, direction: Direction, tools: Tools
 ) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 from pathlib import Path
@@ -252,6 +253,9 @@ def test_a_node_of_vhdl_is_built_and_runs(written, tmp_path, ghdl):
     assert core["targets"]["sim"]["filesets"][:2] == ["accelerator", "vhdl"]
     assert "sim_verilog" not in core["targets"]
     assert not (built.folder / "run_iverilog.sh").exists()
+    records = json.loads((built.folder / "manifest.json").read_text())["records"]
+    assert records == {"built": False, "reason": "The accelerator takes all messages"}
+    assert not (built.folder / "systemverilog").exists()
     said = subprocess.run(
         ["sh", built.folder / "vhdl" / "run_ghdl.sh"], capture_output=True, text=True, check=True
     )
