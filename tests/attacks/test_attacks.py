@@ -86,7 +86,7 @@ def check_end(
         for each in ATTACKS
     ],
 )
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 def test_attack(attack, tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     for name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):

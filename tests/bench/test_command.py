@@ -54,15 +54,8 @@ def test_a_circuit_is_measured_and_compared(
     assert 20 < first.measured.area.lut < 300 and (first.mhz or 0) > 50
     assert len(list(cache.iterdir())) == 1
     text = file.read_text()
-    # From the cache the second time, with the same figures.
     capsys.readouterr()
-    assert bench(*words, "--compare", str(file)) == 0
-    assert file.read_text() == text
-    assert capsys.readouterr().out.splitlines()[-1] == (
-        "1 converters compared, 0 are new, 0 are not measured now; 0 figures changed by more than "
-        "2 %"
-    )
-    # An earlier result with a smaller circuit.
+    # An earlier result with a smaller circuit. The second time, figures are those of the cache.
     found = json.loads(text)
     found["results"][0]["circuit"]["lut"] //= 2
     file.write_text(json.dumps(found))
@@ -70,6 +63,7 @@ def test_a_circuit_is_measured_and_compared(
     assert "worse  std_msgs/msg/Bool (lyrical, cdr, 8 bytes) deserializer: LUT" in (
         capsys.readouterr().out
     )
+    assert file.read_text() == text
 
 
 def test_without_tools_nothing_is_measured(

@@ -84,6 +84,7 @@ def test_a_circuit_of_cells_that_do_not_count_has_no_figures() -> None:
         measure(rtlil.convert(Wide(), name="top", emit_src=False), other, [])
 
 
+@pytest.mark.thorough
 def test_without_seeds_there_is_no_clock_rate(ecp5: Device) -> None:
     found = measure(rtlil.convert(Wide(), name="top", emit_src=False), ecp5, [])
     assert (found.mhz, found.path, found.port_registers) == (None, None, 0)

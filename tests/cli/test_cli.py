@@ -308,7 +308,7 @@ def test_reader_that_goes_away_is_no_traceback():
     "calls",
     [
         pytest.param(0, marks=pytest.mark.thorough),
-        1,
+        pytest.param(1, marks=pytest.mark.thorough),
         pytest.param(2, marks=pytest.mark.thorough),
         3,
     ],

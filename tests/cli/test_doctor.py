@@ -9,6 +9,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from tests.cli.test_cli import ENVIRONMENT
 
 # A machine without ROS and with few programs.
@@ -53,6 +55,7 @@ def test_the_doctor_says_what_is_here_and_how_to_get_the_rest(tmp_path):
         assert each["enables"] and (each["is_here"] or each["how"])
 
 
+@pytest.mark.thorough
 def test_the_doctor_finds_rospy_outside_of_the_environment(tmp_path):
     (tmp_path / "rospy.py").write_text("")
     python = tmp_path / "python3"

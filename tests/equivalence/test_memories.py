@@ -29,7 +29,7 @@ def _full_design(deep: bool = False) -> tuple[str, Vhdl]:
 
 
 @pytest.mark.parametrize("name", DESIGNS)
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 def test_memories_are_proved_equal(name: str, tools: Tools) -> None:
     proof = prove(rtlil_of(DESIGNS[name]), convert(rtlil_of(DESIGNS[name])), tools=tools)
     assert proof.result == "equal", proof
@@ -180,7 +180,7 @@ RTLIL_TWINS = {
 
 
 @pytest.mark.parametrize("what", RTLIL_TWINS)
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 def test_a_change_of_the_rtlil_is_found(what: str, tools: Tools) -> None:
     text, vhdl = _full_design()
     number, old, new = RTLIL_TWINS[what]
@@ -268,6 +268,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("what", REFUSED)
 def test_memories_that_amaranth_never_prints_are_refused(what: str, tools: Tools) -> None:
     text, vhdl = _full_design()

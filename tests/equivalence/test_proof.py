@@ -49,7 +49,7 @@ def test_a_design_is_proved_equal(tools: Tools) -> None:
     assert (proof.registers, proof.unmatched, proof.counterexample) == (16, (), {})
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize(("what", "rtlil", "vhdl"), _twins()[::EVERY])
 def test_one_changed_thing_is_found(what: str, rtlil: str, vhdl: Vhdl, tools: Tools) -> None:
     try:
@@ -163,7 +163,7 @@ def test_random_designs_are_proved_equal(
         ("std_msgs/Empty", "noetic"),
     ],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.thorough
 def test_converters_are_proved_equal(
     name: str, distro: str, direction: Direction, tools: Tools
 ) -> None:

@@ -82,6 +82,7 @@ def test_wheels(start):
     assert not made.counters.dropped
 
 
+@pytest.mark.thorough
 def test_odometry(modules):
     """The accelerator alone, with a clock that ticks for it."""
     description = read_description(EXAMPLES / "odometry" / "odometry.yaml")
@@ -153,6 +154,7 @@ def test_odometry(modules):
     assert resets == 1
 
 
+@pytest.mark.thorough
 def test_filter(start):
     made, topics = start("filter/near.yaml")
     graph, new = made.graph, STORE.types

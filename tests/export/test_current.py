@@ -52,6 +52,7 @@ def test_other_options_and_definitions_are_built_anew(tmp_path, monkeypatch):
     assert not build_one(tmp_path, max_message_bytes=1000).was_current
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "packets", [[b"\1", b"\2\4"], [b"\1\2", b"\3"], [b"\2\3", b"\1"], [b"\1\2\3"], [b"\1"], []]
 )

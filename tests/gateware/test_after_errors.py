@@ -45,6 +45,7 @@ def compare(message, packets, bus_bytes=BUS_BYTES):
     return statuses
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", WHOLE)
 def test_a_packet_may_end_anywhere_and_the_next_one_is_read(name):
     message, text = WHOLE[name]
@@ -69,6 +70,7 @@ def test_a_string_without_nul_keeps_its_other_characters():
 
 # On a narrow bus, an array of wide items is a loop inside the loop of elements. The last transfer
 # of five items has lanes without items, after a transfer with values in all lanes.
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("kind", "size", "bus_bytes"), [("float64[3]", 24, 4), ("uint16[5]", 10, 8)]
 )

@@ -159,6 +159,7 @@ def test_status_waits_until_it_is_taken_and_holds_the_next_packet():
     simulate(dut, feed, take)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("dialect", "bus_bytes"),
     by_depth([("ros1", 8), ("ros2", 1)], [(d, b) for d in ("ros1", "ros2") for b in (1, 2, 4, 8)]),

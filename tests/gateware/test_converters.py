@@ -80,7 +80,7 @@ QUICK_ENDS = tuple(zip(ENDS, (16, 8, 1, 1), strict=True))
         for bus in (1, 8, 16)
     ],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_a_packet_may_end_with_a_length_or_a_step_without_bytes(end, bus_bytes):
     rx, tx = (kind(ENDS[end], bus_bytes=bus_bytes) for kind in (Deserializer, Serializer))
     # Strings of 0 and 3 characters, after a whole number of beats and not.

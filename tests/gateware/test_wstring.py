@@ -57,7 +57,7 @@ def packet(text: str) -> bytes:
     ),
     ids=str,
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_circuits_write_and_read_the_bytes_of_ros_2(message, bus_bytes):
     # All cases of a message in one run: building the circuits takes most of the time.
     cases = [case[1:] for case in CASES.values() if case[0] is message]

@@ -60,6 +60,7 @@ def test_tool_that_takes_too_long_is_ended_with_all_that_it_started(tmp_path):
     wait_for_exit(int((tmp_path / "child").read_text()))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("with_errors", [True, False])
 @pytest.mark.parametrize(
     "script",

@@ -17,6 +17,7 @@ from firm_hdl.frontend import DISTROS, Library
 from firm_hdl.metrics import Analyses, metrics_of
 from firm_hdl.model import PRIMITIVES, Array, Field, Message, Sequence, String
 from firm_hdl.wire import LengthField, LoopNode, RunNode, Scalar, Trigger, lay_out, walk
+from tests.depth import by_depth
 from tests.steps import calls_at_most
 
 from ..frontend.workspace import library
@@ -124,7 +125,7 @@ def test_limits_of_size_are_sizes_of_real_messages(distro):
 KINDS = ["bool", "uint8", "int16", "float32", "float64", "string<=3", "string<=4"]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=by_depth(20, 100), deadline=None)
 @given(data=st.data())
 def test_limits_hold_wherever_parts_stand(tmp_path_factory, data):
     texts = {}

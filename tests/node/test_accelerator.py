@@ -86,6 +86,7 @@ def folder(tmp_path, monkeypatch):
 
 
 # Only the text of a design shows two drivers.
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("action", "mistake"),
     [

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import shutil
@@ -29,9 +28,14 @@ WIDE_UDP = "{kind: udp, data_bytes: 4, host: 10.0.0.7, datagram_bytes: 32}"
 NODES = {
     "stream": {},
     **by_depth(
-        {}, {"udp": {"link": UDP}, "wide": {"link": WIDE_UDP}, "narrow": {"bus_bytes": "1"}}
+        {},
+        {
+            "udp": {"link": UDP},
+            "wide": {"link": WIDE_UDP},
+            "narrow": {"bus_bytes": "1"},
+            "loop": {"accelerator": "firm_hdl.node.loop:Loop", "link": UDP},
+        },
     ),
-    "loop": {"accelerator": "firm_hdl.node.loop:Loop", "link": UDP},
 }
 
 
@@ -79,13 +83,6 @@ def test_the_benches_pass(kind, folders, ghdl, iverilog, tmp_path):
             work = tmp_path / f"{tool.__name__}{seed}"
             status, output = tool(folder, command, work, seed=seed, stalls=stalls)
             assert status == 0 and re.fullmatch(line, output), output
-
-
-def test_a_node_with_an_accelerator_has_no_records(folders):
-    folder = folders("loop")
-    records = json.loads((folder / "manifest.json").read_text())["records"]
-    assert records == {"built": False, "reason": "The accelerator takes all messages"}
-    assert not (folder / "systemverilog").exists()
 
 
 def changed_byte(lines):

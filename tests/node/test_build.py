@@ -297,6 +297,7 @@ def test_the_entity_of_an_accelerator_is_the_one_to_rename():
         check_units(read(RELAY), "relay", top="relay", files=files)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("name", "reason"),
     [

@@ -18,7 +18,7 @@ from tests.plan.reference import Reference
 from tests.strategies import BUS_WIDTHS, Definition, definitions, make, to_rosbags, values
 
 slow = settings(
-    max_examples=by_depth(25, 100),
+    max_examples=by_depth(15, 100),
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )

@@ -78,6 +78,7 @@ def test_definitions_that_are_too_long_are_left_out(tmp_path: Path) -> None:
     assert [schema.data for schema in Recording(path).schemas] == [None, b"string data\n"]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("more", [0, 1])
 def test_the_number_of_topics_has_a_limit(tmp_path: Path, more: int) -> None:
     channels = (Channel(topic=f"/{number}") for number in range(MAX_TOPICS + more))

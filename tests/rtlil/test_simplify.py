@@ -142,6 +142,7 @@ class Maker:
         return process(self.assign(0, 4), *self.body(3), *self.body(3))
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("start", range(0, by_depth(200, 400), 100))
 def test_a_simplified_module_does_the_same(start: int) -> None:
     for seed in range(start, start + 100):

@@ -159,6 +159,7 @@ def test_strangers_do_not_close_a_participant_to_new_peers(memory):
     assert not {each.prefix for each in attackers} & {each.prefix for each in one.core.peers}
 
 
+@pytest.mark.thorough
 def test_strangers_with_endpoints_give_way_to_those_that_are_matched(memory):
     network, one, two, writer = pair()
     for number in range(280):
@@ -242,7 +243,7 @@ def test_a_topic_is_matched_with_64_endpoints_of_a_peer():
 
 @pytest.mark.parametrize("count", [1, 3])
 @pytest.mark.parametrize("kind", ["early", "fragments", "tiny fragments"])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 def test_one_writer_does_not_take_the_memory_of_all_others(memory, kind, count):
     network, one, two, writer = pair(memory_bytes=2 * MEGABYTE)
     for number in range(count):
@@ -328,6 +329,7 @@ def test_what_waits_for_long_is_forgotten():
     assert two.core._budget.used == 0 and len(two.core.peers) == 2
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("size", [0, 1000])
 def test_events_that_a_user_does_not_take_are_limited(memory, size, monkeypatch):
     monkeypatch.setattr("firm_hdl.rtps.core._MAX_EVENT_BYTES", MEGABYTE)

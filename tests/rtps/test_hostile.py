@@ -62,7 +62,7 @@ def damaged(datagram, random):
 
 
 @given(seed=st.integers(0, 2**64))
-@settings(max_examples=by_depth(60, 10_000), deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=by_depth(30, 10_000), deadline=None, suppress_health_check=SLOW)
 def test_damaged_datagrams_raise_nothing(seed):
     generator = random.Random(seed)
     for _ in range(40):
@@ -77,7 +77,7 @@ def test_damaged_datagrams_raise_nothing(seed):
 
 
 @given(st.binary(max_size=200))
-@settings(max_examples=by_depth(200, 20_000), deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=by_depth(100, 20_000), deadline=None, suppress_health_check=SLOW)
 def test_random_bytes_raise_nothing(data):
     for datagram in (data, b"RTPS\x02\x03\x01\x0f" + bytes(12) + data):
         TARGET.core.receive(datagram, TARGET.network.now)

@@ -118,7 +118,7 @@ def normal(submessage):
 
 
 @pytest.mark.parametrize("little", [True, False], ids=["little", "big"])
-@settings(max_examples=by_depth(60, 2000), deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=by_depth(30, 2000), deadline=None, suppress_health_check=SLOW)
 @given(data=st.data(), stamp=st.none() | st.integers(0, 2**32 * 10**9 - 1))
 def test_what_is_written_is_read_again(little, data, stamp):
     sent = data.draw(st.lists(submessages(little), max_size=5))

@@ -117,7 +117,7 @@ def gated():
         {"message": Stalls.bits("001"), "message.data": Stalls.none},
     ],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 def test_stalls_change_nothing_but_the_time(stalls):
     free, packets = without_stalls(), [PACKET] * 3
     if isinstance(stalls, Stalls) or THOROUGH:
@@ -167,6 +167,7 @@ def test_encode_takes_transfers_that_are_wrong():
     assert not result.not_taken
 
 
+@pytest.mark.thorough
 def test_nested_sequences_are_split_into_messages():
     message, value = by_depth((PATH, WAY), (JOINTS, TRAJECTORY))
     plan = plan_of(message)
@@ -222,6 +223,7 @@ def test_waveform_is_written(tmp_path):
     assert "$enddefinitions" in path.read_text()
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("fault", "error"),
     [

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pytest
@@ -36,12 +37,18 @@ SOME = Stalls(0.5)
 RX, TX = Deserializer(BOOL), Serializer(BOOL)
 
 
-def refused(call: Callable[[], object], error: str) -> None:
+@contextmanager
+def expected(error: str) -> Iterator[None]:
     """Check the type of an error and its text, given as ``Type: text``."""
     kind, _, text = error.partition(": ")
     with pytest.raises((TypeError, ValueError), match=text) as raised:
-        call()
+        yield
     assert type(raised.value).__name__ == kind
+
+
+def refused(call: Callable[[], object], error: str) -> None:
+    with expected(error):
+        call()
 
 
 @pytest.mark.parametrize("run", [loopback, decode])
@@ -110,49 +117,48 @@ def test_options_and_stalls() -> None:
     refused(lambda: Stalls.bits(101), "TypeError: ^Pattern must be a text")  # type: ignore[arg-type]
 
 
-def in_a_testbench(call: Callable[[Any], Any], design: Any) -> None:
+CALLS: list[tuple[Callable[[Any, Any], Any], str]] = [
+    (lambda c, d: send_packets(c, d, [PACKET]), "TypeError: must be a stream, such as rx"),
+    (lambda c, d: send_packets(c, d.packets, PACKET), "TypeError: ^Packets must be a list"),
+    (lambda c, d: send_packets(c, d.message.data, [PACKET]), "TypeError: stream of packets"),
+    (
+        lambda c, d: send_packets(d, d.packets, [PACKET]),
+        "TypeError: the context of a testbench",
+    ),
+    (lambda c, d: send_packets(c, d.packets, [], stalls=0.5), "TypeError: ^stalls= must be"),
+    (
+        lambda c, d: send_packets(c, d.packets, [], domain=1),
+        "TypeError: ^domain= must be the n",
+    ),
+    (lambda c, d: send(c, d.packets, [1 << 80]), "ValueError: 'stream' has 69 bits, too few"),
+    (lambda c, d: send(c, d.packets, [None]), "TypeError: needs a payload, not None"),
+    (lambda c, d: send(c, d.status, [0]), "ValueError: itself sends on .*; receive from it$"),
+    (lambda c, d: receive(c, d.packets, 1), "ValueError: itself receives .*; send on it$"),
+    (lambda c, d: receive(c, d.status, [1]), r"TypeError: number to receive .* not \[1\]$"),
+    (lambda c, d: receive_packets(c, d.status, 1), "TypeError: a stream of packets, such as"),
+    (lambda c, d: receive_packets(c, d.packets, -1), "ValueError: at least 0, not -1"),
+    (lambda c, d: receive_statuses(c, d.message.data, 1), "TypeError: a stream of statuses"),
+    (lambda c, d: MessagePort(d.message, BOOL).send(c, VALUE), "ValueError: itself sends on"),
+    (
+        lambda c, d: MessagePort(d.message, BOOL).receive(c, stalls={"data": SOME}),
+        "ValueError: no stream 'data' to stall; there are 'message.data'$",
+    ),
+]
+
+
+def test_helpers_of_testbenches() -> None:
+    """All in one simulation, because compiling the circuit takes long."""
+    design = Deserializer(BOOL)
+
     async def testbench(ctx: Any) -> None:
-        await call(ctx)
+        for call, error in CALLS:
+            with expected(error):
+                await call(ctx, design)
 
     simulator = Simulator(design)
     simulator.add_clock(1e-6)
     simulator.add_testbench(testbench)
     simulator.run()
-
-
-@pytest.mark.parametrize(
-    ("call", "error"),
-    [
-        (lambda c, d: send_packets(c, d, [PACKET]), "TypeError: must be a stream, such as rx"),
-        (lambda c, d: send_packets(c, d.packets, PACKET), "TypeError: ^Packets must be a list"),
-        (lambda c, d: send_packets(c, d.message.data, [PACKET]), "TypeError: stream of packets"),
-        (
-            lambda c, d: send_packets(d, d.packets, [PACKET]),
-            "TypeError: the context of a testbench",
-        ),
-        (lambda c, d: send_packets(c, d.packets, [], stalls=0.5), "TypeError: ^stalls= must be"),
-        (
-            lambda c, d: send_packets(c, d.packets, [], domain=1),
-            "TypeError: ^domain= must be the n",
-        ),
-        (lambda c, d: send(c, d.packets, [1 << 80]), "ValueError: 'stream' has 69 bits, too few"),
-        (lambda c, d: send(c, d.packets, [None]), "TypeError: needs a payload, not None"),
-        (lambda c, d: send(c, d.status, [0]), "ValueError: itself sends on .*; receive from it$"),
-        (lambda c, d: receive(c, d.packets, 1), "ValueError: itself receives .*; send on it$"),
-        (lambda c, d: receive(c, d.status, [1]), r"TypeError: number to receive .* not \[1\]$"),
-        (lambda c, d: receive_packets(c, d.status, 1), "TypeError: a stream of packets, such as"),
-        (lambda c, d: receive_packets(c, d.packets, -1), "ValueError: at least 0, not -1"),
-        (lambda c, d: receive_statuses(c, d.message.data, 1), "TypeError: a stream of statuses"),
-        (lambda c, d: MessagePort(d.message, BOOL).send(c, VALUE), "ValueError: itself sends on"),
-        (
-            lambda c, d: MessagePort(d.message, BOOL).receive(c, stalls={"data": SOME}),
-            "ValueError: no stream 'data' to stall; there are 'message.data'$",
-        ),
-    ],
-)
-def test_helpers_of_testbenches(call: Any, error: str) -> None:
-    design = Deserializer(BOOL)
-    refused(lambda: in_a_testbench(lambda ctx: call(ctx, design), design), error)
 
 
 @pytest.mark.parametrize(

@@ -107,7 +107,7 @@ def change(monkeypatch, file: str, before: str, after: str) -> None:
         (RUN_SCRIPT, 'exec "$ghdl"', 'echo nothing; exit 0\nexec "$ghdl"', "nothing"),
     ],
 )
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(6)
 def test_faults_are_found(ghdl, monkeypatch, file, before, after, output):
     change(monkeypatch, file, before, after)
     result = run_bench(ghdl, HEADER)

@@ -45,8 +45,8 @@ def test_unknown_types_and_folders_are_errors(capsys, tmp_path):
 
 def test_all_with_a_folder_is_all_in_the_folder(capsys, tmp_path, monkeypatch):
     own_package(tmp_path)
-    for name in by_depth(("Deep", "Middle", "Inner", "Runs"), ()):
-        (tmp_path / "own_msgs" / "msg" / f"{name}.msg").unlink()
+    for name in by_depth(("msg/Deep.msg", "msg/Middle.msg", "msg/Inner.msg", "srv/Ask.srv"), ()):
+        (tmp_path / "own_msgs" / name).unlink()
     (tmp_path / "own_msgs" / "msg" / "Wide.msg").write_text("wstring text\n")
     arguments = ["verify", "--all", "--path", str(tmp_path), "--cases", "1", "--jobs", "1"]
     assert main([*arguments, "--no-stalls", "--no-broken", "--reference", "none"]) == 0
@@ -54,7 +54,7 @@ def test_all_with_a_folder_is_all_in_the_folder(capsys, tmp_path, monkeypatch):
     wide = "rosbags has no wstring, which own_msgs/msg/Wide.text is"
     assert f"not judged: own_msgs/msg/Wide (lyrical), ts3, 8-byte bus: {wide}\n" in output.out
     # Messages; request, response and event of a service; and one unjudged message.
-    count = by_depth(0, 4) + 3
+    count = by_depth(1, 4 + 3)
     assert f"lyrical     {count} of    {count} types pass (8-byte bus)\n" in output.out
     assert f"\n1 of {count + 1} types not judged\n" in output.out
 
@@ -83,15 +83,16 @@ def test_the_active_workspace_is_searched(capsys, tmp_path, monkeypatch):
     oracle = by_depth(["--oracle", "rosbags"], [])
     prefixes = os.pathsep.join([str(tmp_path / "a"), str(tmp_path / "b")])
     monkeypatch.setenv("AMENT_PREFIX_PATH", prefixes)
-    assert main(["verify", "--systems", "ts1,ts2,ts3", *few, *oracle, "a_msgs/msg/A"]) == 0
-    assert "lyrical     1 of    1 types pass (8-byte bus)\n" in capsys.readouterr().out
+    systems = by_depth("ts1,ts2", "ts1,ts2,ts3")
+    assert main(["verify", "--systems", systems, *few, *oracle, "a_msgs/msg/A"]) == 0
+    assert "lyrical     1 of    1 plans are sound" in capsys.readouterr().out
     # The option `--path` has priority over the environment variable.
     assert main(["verify", *few, "--all", "--path", str(tmp_path / "a" / "share")]) == 0
     assert "lyrical     1 of    1 types pass (8-byte bus)\n" in capsys.readouterr().out
     # The types of the distributions are their own.
     (tmp_path / "a" / "share" / "std_msgs" / "msg").mkdir(parents=True)
     (tmp_path / "a" / "share" / "std_msgs" / "msg" / "Bool.msg").write_text("uint64 data\n")
-    assert main(["verify", *few, "std_msgs/msg/Bool"]) == 0
+    assert main(["verify", "--systems", "ts2", *few, "std_msgs/msg/Bool"]) == 0
     monkeypatch.delenv("AMENT_PREFIX_PATH")
     assert main(["verify", *few, "a_msgs/msg/A"]) == 1
     assert capsys.readouterr().err.endswith("error: No distribution has a_msgs/msg/A\n")

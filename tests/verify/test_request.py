@@ -171,29 +171,33 @@ FREE = {"types", "jobs", "executor", "results", "report", "vcd", "silent_seconds
 FREE |= {"bus_bytes", "simulated", "libraries"}
 
 
-@pytest.mark.parametrize("name", [each.name for each in fields(Request) if each.name not in FREE])
-def test_results_are_bound_to_each_option(tmp_path, fixed, name):
-    fixed(ts3=Passed(1))
-    usual = Request(results=str(tmp_path / "r.jsonl"))
+def other_value(usual, name, tmp_path):
+    """Return another value of an option."""
     value = getattr(usual, name)
     if name in ("paths", "depends", "bags", "golden", "node"):
         other = str(make_files(tmp_path / "other", {"p/msg/A.msg": ""}))
-        other = (other,) if isinstance(value, tuple) else other
-    elif isinstance(value, bool):
-        other = not value
-    elif isinstance(value, int):
-        other = value + 1
-    else:
-        other = {"widths": (2,), "systems": ("ts3", "ts3"), "share_circuits": False}.get(
-            name, ("x",) if isinstance(value, tuple) or name == "references" else "x"
-        )
-    if name == "most_cases":
-        other = 7
+        return (other,) if isinstance(value, tuple) else other
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, int):
+        return value + 1
+    others = {"widths": (2,), "systems": ("ts3", "ts3"), "share_circuits": False, "most_cases": 7}
+    return others.get(name, ("x",) if isinstance(value, tuple) or name == "references" else "x")
+
+
+def test_results_are_bound_to_each_option(tmp_path, fixed):
+    fixed(ts3=Passed(1))
+    usual = Request(results=str(tmp_path / "r.jsonl"))
     work = Workload(request=usual, tasks=(), problems={})
     assert run.run_workload(work) == run.run_workload(work) == 0
-    changed = replace(work, request=replace(usual, **{name: other}))
-    with pytest.raises(UserError, match="is of another run: "):
-        run.run_workload(changed)
+    for name in {each.name for each in fields(Request)} - {*FREE}:
+        request = replace(usual, **{name: other_value(usual, name, tmp_path)})
+        try:
+            run.run_workload(replace(work, request=request))
+        except UserError as error:
+            assert "is of another run: " in str(error), name
+        else:
+            pytest.fail(f"results do not depend on {name}")
 
 
 def test_a_board_without_a_node_sends_the_named_types_back():

@@ -167,6 +167,7 @@ def test_library_that_does_not_answer_everything_fails(library_here, is_referenc
     assert failure.startswith("few gave ") and " questions" in failure
 
 
+@pytest.mark.thorough
 def test_cross_check_does_not_pass_with_a_silent_compiler(fake):
     try:
         Verilator()

@@ -114,6 +114,7 @@ def test_golden_plans_have_records_of_their_own(tmp_path, capsys):
     assert verdicts == ["passed", "failed"]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("system", ["ts1", "ts2"])
 @pytest.mark.parametrize("changed", ["src/p/msg/A.msg", "src/q/msg/B.msg"])
 def test_other_definitions_are_another_run(tmp_path, capsys, system, changed):
@@ -140,6 +141,7 @@ def run_until_killed(command, calls):
     sys.exit(verify(*command))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("system", ["ts1", "ts2"])
 def test_system_that_was_killed_goes_on_and_ends_the_same(tmp_path, system):
     whole, killed = tmp_path / "whole", tmp_path / "killed"

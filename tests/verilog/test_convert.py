@@ -119,7 +119,7 @@ endmodule
 
 @pytest.mark.usefixtures("iverilog")
 @pytest.mark.parametrize("seed", [5, 8, 14, 15, 40, 59])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 def test_any_design_behaves_as_in_amaranth(seed: int, tmp_path: Path) -> None:
     written, simulated = RandomDesign(seed), RandomDesign(seed)
     inputs = {signal.name: signal for signal in simulated.inputs}

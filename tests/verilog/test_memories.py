@@ -45,7 +45,7 @@ def _replay(name: str, text: str, standard: str, folder: Path) -> str | None:
 @pytest.mark.usefixtures("iverilog")
 @pytest.mark.parametrize("standard", STANDARDS)
 @pytest.mark.parametrize("name", DESIGNS)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_memories_behave_as_in_amaranth(name: str, standard: str, tmp_path: Path) -> None:
     assert _replay(name, _verilog(name), standard, tmp_path) is None
 

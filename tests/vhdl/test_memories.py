@@ -24,7 +24,7 @@ def _vhdl(name: str) -> Vhdl:
 
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("name", DESIGNS)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 def test_memories_behave_as_in_amaranth(name: str, tmp_path: Path) -> None:
     inputs, outputs, steps, wanted = simulated(DESIGNS[name], steps=STEPS, seed=len(name))
     assert difference(wanted, simulate(_vhdl(name), steps, inputs, outputs, tmp_path)) is None

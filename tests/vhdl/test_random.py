@@ -45,7 +45,7 @@ def _run(design: RandomDesign, vhdl: Vhdl, steps: Steps, folder: Path) -> Steps:
 
 @pytest.mark.usefixtures("ghdl")
 @pytest.mark.parametrize("seed", _seeds())
-@pytest.mark.sampled(10)
+@pytest.mark.sampled(30)
 def test_vhdl_behaves_as_in_amaranth(seed: int, tmp_path: Path) -> None:
     design, vhdl, steps, want = _design_and_vhdl(seed)
     assert difference(want, _run(design, vhdl, steps, tmp_path)) is None

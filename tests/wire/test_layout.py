@@ -36,7 +36,7 @@ from tests.plan.reference import Reference
 from tests.strategies import definitions, make, values
 
 slow = settings(
-    max_examples=by_depth(40, 100),
+    max_examples=by_depth(20, 100),
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )

@@ -33,11 +33,12 @@ class AmaranthEngine(Channel):
 
     engine = "amaranth"
 
-    def __init__(self, top: Top):
+    def __init__(self, top: Top, design: Design | None = None):
         self._top = top
         own, other = socket.socketpair()
         try:
-            server = _Server(top, other)
+            self._design = design or top.prepare(name="top", divides=True)
+            server = _Server(top, self._design, other)
         except BaseException:
             own.close()
             other.close()
@@ -47,7 +48,7 @@ class AmaranthEngine(Channel):
         self._thread.start()
 
     def again(self) -> AmaranthEngine:
-        return AmaranthEngine(self._top)
+        return AmaranthEngine(self._top, self._design)
 
     def close(self) -> None:
         super().close()
@@ -107,9 +108,8 @@ class _Prepared(Fragment):
 class _Server:
     """The other side of the protocol. Bits of words: those of the streams, by number."""
 
-    def __init__(self, top: Top, other: socket.socket):
+    def __init__(self, top: Top, design: Design, other: socket.socket):
         self.top, self.socket = top, other
-        design = top.prepare(name="top", divides=True)
         domains = list(top.clocks.values())
         self.clocks = [_Clock(domain.clk_edge == "pos") for domain in domains]
         self.base, self.periods = 0, (1,) * len(domains)

@@ -107,6 +107,7 @@ PADDED = Message(
 )
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("cpp")
 def test_fast_cdr_without_the_same_bytes_has_no_figure() -> None:
     # This byte is padding, which is written as zero.

@@ -23,11 +23,13 @@ LONGER = (
 )
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("key", [*FAST, *by_depth((), LONGER)])
 def test_claim_holds(key):
     assert prove(key).result == "proved"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("key", FAST)
 def test_twin_is_found(key):
     answer = refute(key)

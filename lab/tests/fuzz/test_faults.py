@@ -29,6 +29,7 @@ def test_a_fault_in_the_circuit_is_found(fault):
     assert failure.packet is not None and failure.cycle is not None
 
 
+@pytest.mark.thorough
 def test_each_fault_changes_the_verilog_of_today():
     """The longer test of each fault is thorough, so renamed signals would be noticed late."""
     message = message_of(STRING)

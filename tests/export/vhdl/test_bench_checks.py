@@ -119,6 +119,7 @@ def beat(data: bytes, *, keep: str = "", last: int = 1, user: int = 0) -> str:
 WHOLE = beat(b"abcd", last=0)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("beats", "output"),
     [
@@ -196,7 +197,7 @@ VALID = r"(status_valid +=> )m_axis_status_tvalid"
         ),
     ],
 )
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 def test_bench(ghdl, tmp_path, side, changes, output):
     write_folder(tmp_path, "std_msgs/msg/UInt8", "lyrical", 8)
     (file,) = tmp_path.glob(f"*_8_{side}_flat.vhd")

@@ -184,7 +184,13 @@ def compared(
 
 
 @pytest.mark.usefixtures("iverilog")
-@pytest.mark.parametrize("message", MESSAGES.values(), ids=MESSAGES)
+@pytest.mark.parametrize(
+    "message",
+    [
+        pytest.param(each, id=name, marks=[] if name == "nested" else [pytest.mark.thorough])
+        for name, each in MESSAGES.items()
+    ],
+)
 def test_netlist_of_vhdl_is_the_verilog_in_every_cycle(ghdl, tmp_path, message):
     printed, count = compared(tmp_path, ghdl, message, by_depth(12, 100))
     found = re.fullmatch(r"(\d+) statuses, (\d+) packets\n", printed)

@@ -252,6 +252,7 @@ def test_the_names_in_a_recording_have_a_limit(tmp_path, monkeypatch):
         open_library(bags=[path])
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("sign", ['\\"', "/*", "module a{", "struct S{long a;};", "}"])
 def test_sections_of_any_signs_end(tmp_path, sign):
     """Each is processed in a time that grows with its length, not with the square of it."""

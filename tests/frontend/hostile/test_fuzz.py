@@ -22,7 +22,7 @@ IDL = (
 )
 
 
-@settings(max_examples=by_depth(100, 200), deadline=None)
+@settings(max_examples=by_depth(40, 200), deadline=None)
 @given(st.integers(0, 2**32))
 def test_damaged_idl_gives_messages_and_diagnostics(number):
     rng = random.Random(number)
@@ -34,7 +34,7 @@ def test_damaged_idl_gives_messages_and_diagnostics(number):
         assert all(isinstance(d, Diagnostic) and str(d) for d in wrong)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=by_depth(80, 200), deadline=None)
 @given(st.lists(st.sampled_from([*WORDS, *TOKEN.findall(IDL)]), max_size=40))
 def test_any_words_give_messages_and_diagnostics(words):
     source = Source(name="test.idl", text="module p { struct T { " + " ".join(words))

@@ -56,7 +56,7 @@ def meaningful_steps(steps):
 
 
 @pytest.mark.parametrize("part", usual(one_clock, "gate_drop", "arbiter_of_one", "same"))
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 def test_vhdl_in_ghdl_equals_the_part_in_python(part, tmp_path):
     need("ghdl", GHDL)
     vhdl, component = convert(PARTS[part](), name="dut"), PARTS[part]()

@@ -78,7 +78,7 @@ def test_only_good_packets_pass_whole_and_in_order_under_any_stall(name, distro,
 
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
 @pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(14)
 def test_bad_packets_of_each_kind_between_good_ones(bus_bytes, when_full):
     good = bytes.fromhex(GOOD)
     packets, want = [good], [OK]
@@ -96,6 +96,7 @@ def test_bad_packets_of_each_kind_between_good_ones(bus_bytes, when_full):
         assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("bus_bytes", "more"),
     by_depth([(1, 0), (8, 0), (64, 1)], [(1, 0), (2, 0), (4, 0), (8, 0), (64, 1)]),
@@ -113,7 +114,7 @@ def test_latency_is_exact(bus_bytes, more):
 
 
 @pytest.mark.parametrize("bus_bytes", by_depth((1, 8, 64), BUS_WIDTHS))
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 def test_a_beat_per_cycle_through_long_packets(bus_bytes):
     fields = (Field(name="data", type=Sequence(element=PRIMITIVES["ros1"]["uint8"])),)
     message = Message(name="p/Long", dialect="ros1", fields=fields)
@@ -192,6 +193,7 @@ def test_the_link_is_held_exactly_when_nothing_has_room():
     assert run.taken[inside - 1] < waits - 30 < run.taken[inside] <= waits + 6
 
 
+@pytest.mark.thorough
 def test_behind_a_gate_the_status_of_a_deserializer_is_ok():
     message = load_message("sensor_msgs/msg/PointCloud2")
     _, packets = random_packets(message, 8, 8)
@@ -203,6 +205,7 @@ def test_behind_a_gate_the_status_of_a_deserializer_is_ok():
     assert len(seen.statuses) == len(passed) < len(packets)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
 def test_reset_in_the_middle_discards_all(when_full, monkeypatch):
     # A reset of one cycle leaves no time for what a register without a reset could hide.
@@ -226,7 +229,7 @@ def test_reset_in_the_middle_discards_all(when_full, monkeypatch):
 @pytest.mark.parametrize(
     "seed", [*(pytest.param(seed, marks=pytest.mark.thorough) for seed in (0, 1)), 2, 3, 4]
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 def test_random_gates_with_random_stalls_and_resets(seed):
     rng = random.Random(seed)
     name, distro = rng.choice([("std_msgs/msg/Bool", "lyrical"), *TYPES])

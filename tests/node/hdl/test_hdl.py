@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 from pathlib import Path
@@ -71,6 +72,7 @@ def written(tmp_path):
     return write
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("language", ["amaranth", "vhdl", "verilog", "sv"])
 def test_what_node_new_writes_is_an_accelerator(language, tmp_path, monkeypatch, capsys):
     described(tmp_path)
@@ -139,6 +141,7 @@ MISTAKES = [
 ]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("language", "change", "text"), MISTAKES)
 def test_mistakes_are_shown_where_they_are(written, language, change, text):
     with pytest.raises(DefinitionError) as caught:
@@ -250,6 +253,9 @@ def test_a_node_of_vhdl_is_built_and_runs(written, tmp_path, ghdl):
     assert core["targets"]["sim"]["filesets"][:2] == ["accelerator", "vhdl"]
     assert "sim_verilog" not in core["targets"]
     assert not (built.folder / "run_iverilog.sh").exists()
+    records = json.loads((built.folder / "manifest.json").read_text())["records"]
+    assert records == {"built": False, "reason": "The accelerator takes all messages"}
+    assert not (built.folder / "systemverilog").exists()
     said = subprocess.run(
         ["sh", built.folder / "vhdl" / "run_ghdl.sh"], capture_output=True, text=True, check=True
     )
@@ -260,6 +266,7 @@ def test_a_node_of_vhdl_is_built_and_runs(written, tmp_path, ghdl):
     assert not build_node(description, tmp_path, stimuli=stimuli).was_current
 
 
+@pytest.mark.thorough
 def test_a_node_of_systemverilog_is_built_and_runs(written, tmp_path, iverilog, verilator):
     (tmp_path / "ready.svh").write_text("`define TAKEN 1'b1\n")
     include = [

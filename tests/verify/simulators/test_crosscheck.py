@@ -121,7 +121,7 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
         ),
     ],
 )
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 def test_a_changed_line_is_found(ghdl, monkeypatch, file, pattern, text, output):
     change_line(monkeypatch, file, pattern, text)
     result = accepted("lyrical", HEADER)

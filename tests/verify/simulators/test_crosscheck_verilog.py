@@ -35,6 +35,7 @@ def accepted(
 WIDE = ("lyrical", "service_msgs/msg/ServiceEventInfo", 16)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("of_verilog", "sample"),
     [

@@ -32,12 +32,12 @@ ROS2 = {
 }
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("distro", "oracle", "count"),
     [
-        ("noetic", "genmsg", by_depth(60, 250)),
-        ("lyrical", "rosidl_adapter", by_depth(60, 250)),
+        ("noetic", "genmsg", by_depth(40, 250)),
+        ("lyrical", "rosidl_adapter", by_depth(40, 250)),
         ("lyrical", "rosidl_parser", by_depth(60, 100)),
     ],
 )

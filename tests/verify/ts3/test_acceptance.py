@@ -109,6 +109,7 @@ class Hangs(Mirror):
         m.d.comb += self.packets.ready.eq(self.inner.packets.ready & go)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("which", "fault", "output"),
     [

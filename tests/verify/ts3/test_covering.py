@@ -85,7 +85,7 @@ def options_of(distro: str, name: str) -> Options:
 @pytest.mark.parametrize(
     ("distro", "name"), [(distro, name) for distro in DISTROS for name in KEPT[distro]]
 )
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 def test_a_covering_type_passes(distro, name):
     result = accept(distro, name, options_of(distro, name))
     known = KNOWN.get((distro, name), ())

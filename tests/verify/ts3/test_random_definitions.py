@@ -27,6 +27,7 @@ MOST_WIDE_WORK = by_depth(400, 64 * MOST_WORK)
 MOST_CASES = by_depth(4, 8)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 # Shrinking would simulate for many minutes; the failure message has the command to repeat it.
 @settings(

@@ -78,6 +78,7 @@ def test_waveforms_are_written(tmp_path, request, more):
 TWINS = ["geometry_msgs/msg/Point", "geometry_msgs/msg/Vector3"]
 
 
+@pytest.mark.thorough
 def test_same_circuits_are_simulated_once(tmp_path, capsys):
     path = tmp_path / "r.jsonl"
     assert verify("--results", str(path), "--share-circuits", *TWINS) == 0

@@ -101,7 +101,7 @@ def test_types_that_a_recording_lacks_come_from_a_distribution_and_a_folder(caps
 
 
 @pytest.mark.parametrize("form", FORMATS)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_recordings_pass(capsys, tmp_path, form):
     messages = robot(form, 4)
     # rosbags reads compressed recordings; one circuit is enough to check that they are read.
@@ -130,6 +130,7 @@ class InvertedBit(BadLeaf):
         m.d.comb += port.payload.data[0].eq(inner.payload.data[0] ^ 1)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("which", "fault", "output"),
     [
