@@ -2,6 +2,7 @@
 
 Amaranth does not evaluate operators on constants. Generated circuits have many such operators: for
 example, a comparison with a constant 0, or a condition that no input of the module can meet.
+Neither does Amaranth notice that two operators compute the same: here, one of them remains.
 Registers with a constant value are replaced, too, and so is all that waits for an edge of a
 constant clock. Other parts of memories, and instances, stay. A constant signal keeps its name.
 """
@@ -32,6 +33,9 @@ from firm_hdl.rtlil.read import parse
 
 __all__ = ["netlist_of", "simplified"]
 
+_FREE = ("$anyconst", "$anyseq")
+"""Operators whose result is not determined by their operands."""
+
 _CLOCKED = ("$memrd_v2", "$memwr_v2", "$check", "$print")
 _OUTPUTS = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA", "$tribuf": "Y"}
 
@@ -59,6 +63,8 @@ class _Simplifier:
     def __init__(self, module: Module) -> None:
         self._module = module
         self._known: dict[str, Spec] = {}
+        # The result of each operator, by what computes it.
+        self._computed: dict[tuple[object, ...], Spec] = {}
         self._changed = True
 
     def run(self) -> Module:
@@ -97,7 +103,7 @@ class _Simplifier:
                 for port, spec in cell.ports.items()
             }
             cell = replace(cell, ports=ports) if ports != cell.ports else cell
-            value = evaluate(cell)
+            value = evaluate(cell) or self._equal(cell)
             if value is None or not ports["Y"]:
                 return cell
             self._learn(ports["Y"], value)
@@ -116,6 +122,17 @@ class _Simplifier:
                 self._learn(ports["DATA"], (Bits("0" * spec_width(ports["DATA"])),))
             return None
         return replace(cell, ports=ports) if ports != cell.ports else cell
+
+    def _equal(self, cell: Cell) -> Spec | None:
+        """Return the result of another operator that computes the same, else `None`."""
+        if cell.kind in _FREE:
+            return None
+        operands = (item for item in cell.ports.items() if item[0] != "Y")
+        parameters = tuple(cell.parameters.items())
+        result = cell.ports["Y"]
+        key = (cell.kind, parameters, *operands)
+        first = self._computed.setdefault(key, result)
+        return None if first == result else first
 
     def _constant_register(self, cell: Cell, ports: Mapping[str, Spec]) -> Spec:
         """Return the value of a register that always keeps its initial value."""

@@ -238,6 +238,8 @@ class Values(expr.Values):
             bit = self.logic(a)
             return bit if (value == 1) == (operator == "==") else unary("~", bit)
         sides = [self.value(spec, width, signed=signed) for spec in (a, b)]
+        if value is not None and (name := self.choice(a, f"{value:0{width}b}")):
+            sides[1] = Expression(name)
         return infix(operator, *(map(_signed, sides) if signed else sides))
 
     def _division(self, cell: Cell, width: int, signed: bool) -> Expression:

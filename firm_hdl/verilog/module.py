@@ -45,6 +45,7 @@ class _Statements(Statements):
 
     values: Values
     true = "1'b1"
+    literal = staticmethod(literal)
     operator = "<="
 
     def all_of(self, *tests: Any) -> Expression:
@@ -55,7 +56,7 @@ class _Statements(Statements):
 
     def equal(self, spec: Spec, bits: str) -> Expression:
         if len(bits) > 1:
-            return infix("==", self.values.value(spec), Expression(literal(bits)))
+            return infix("==", self.values.value(spec), Expression(self.choice(spec, bits)))
         return self.values.boolean(spec, inverted=bits == "0")
 
     def assign(self, statement: Assign) -> Iterator[str]:
@@ -69,7 +70,8 @@ class _Statements(Statements):
                 yield from self.choose(chunk, cell)
                 continue
             name = part(self.targets[chunk.wire], chunk.low, chunk.width)
-            yield f"{name} {self.operator} {self.values.value(spec).text};"
+            value = self.chosen(chunk, spec) or self.values.value(spec)
+            yield f"{name} {self.operator} {value.text};"
 
     def choose(self, chunk: Slice, cell: Cell) -> Iterator[str]:
         b, a = (
@@ -78,17 +80,15 @@ class _Statements(Statements):
         yield from self.if_([Arm(self.values.boolean(cell.ports["S"]), (b,)), Arm(None, (a,))])
 
     def case(self, switch: Switch, plain: list[tuple[list[str], Case]]) -> Iterator[str]:
-        (chunk,) = switch.selector
         yield f"case ({self.values.value(switch.selector).text})"
         for patterns, case in plain:
-            names = [name for p in sorted(patterns) if (name := self.comment((chunk,), p))]
-            remark = f"  // {' or '.join(names)}" if names else ""
-            choices = ", ".join(map(literal, sorted(patterns))) or "default"
+            named = (self.choice(switch.selector, p) for p in sorted(patterns))
+            choices = ", ".join(named) or "default"
             lines = list(self.body(case.body))
             if len(lines) < 2:
-                yield f"  {choices}: {lines[0] if lines else ';'}{remark}"
+                yield f"  {choices}: {lines[0] if lines else ';'}"
                 continue
-            yield f"  {choices}: begin{remark}"
+            yield f"  {choices}: begin"
             yield from (f"    {line}" for line in lines)
             yield "  end"
         yield "endcase"
@@ -106,7 +106,10 @@ class _Statements(Statements):
             yield "end"
 
     def accepted(self, statement: Assign) -> str:
-        return self.values.value(statement.value).operand()
+        (chunk,) = statement.target
+        assert isinstance(chunk, Slice)
+        named = self.chosen(chunk, statement.value)
+        return named.text if named else self.values.value(statement.value).operand()
 
 
 class _Registers(Registers):
@@ -230,10 +233,11 @@ class ModuleWriter(Writer):
 
     def text(self) -> str:
         """Write the module; a line is longer than 100 columns only if unbreakable."""
+        # The body shows which constants are used.
+        blocks = [list(block) for block in self.blocks()]
         lines = [*self._head(), *self._declarations()]
-        for block in self.blocks():
-            if inner := list(block):
-                lines += ["", *(f"  {line}" for line in inner)]
+        for inner in filter(None, blocks):
+            lines += ["", *(f"  {line}" for line in inner)]
         lines.append("endmodule")
         return "\n".join(piece for line in lines for piece in wrap(line, "//")) + "\n"
 
@@ -250,6 +254,8 @@ class ModuleWriter(Writer):
             yield ");"
 
     def _declarations(self) -> Iterator[str]:
+        for name, bits in self.constants():
+            yield f"  localparam {_range(len(bits))}{name} = {literal(bits)};"
         for role, title in TITLES.items():
             signals = [each for each in self.names.signals if each.role == role]
             if signals:
@@ -297,7 +303,7 @@ class ModuleWriter(Writer):
                 head = "   "
             return
         function = Declared(name=self.names.scope.give(f"f_{target.name}"), width=target.width)
-        writer = _Statements(self.values, {**self.targets, wire: function}, self._choice)
+        writer = _Statements(self.values, {**self.targets, wire: function})
         writer.operator = "="
         self.values.reads = {}
         lines = list(writer.body(statements))

@@ -55,6 +55,7 @@ class Operands(Protocol):
     def extended(self, spec: Spec, width: int, *, signed: bool) -> Expression: ...
     def number(self, spec: Spec) -> Expression: ...
     def constant(self, spec: Spec, *, signed: bool = False) -> int | None: ...
+    def choice(self, spec: Spec, bits: str, /) -> str: ...
 
 
 class Cells:
@@ -308,6 +309,8 @@ class Cells:
         value = values.constant(b, signed=signed)
         if value is None:
             return infix(operator, left, values.signed(b) if signed else values.unsigned(b))
+        if operator in ("=", "/=") and (name := values.choice(a, f"{value:0{spec_width(a)}b}")):
+            return infix(operator, left, atom(name))
         if -(1 << NATURAL_BITS) < value < 1 << NATURAL_BITS:
             return infix(operator, left, atom(str(value)))
         width = self._extensible(b, spec_width(a))

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from firm_hdl.names.attributes import REMARK
 from firm_hdl.rtlil.ir import Assign, Bits, Cell, Module, Slice, Statement, Value, Wire
 from firm_hdl.vhdl.expr import Declared
 from firm_hdl.vhdl.graph import Graph
@@ -25,7 +26,7 @@ __all__ = [
     "remark_of",
 ]
 
-_INTERNAL = ("init", "src", "generator", "top", "enum_base_type")
+_INTERNAL = ("init", "src", "generator", "top", "enum_base_type", REMARK)
 """Attributes that are for readers of RTLIL."""
 
 Role: TypeAlias = Literal["register", "logic", "alias"]
@@ -141,10 +142,13 @@ def declare(
         requests.append(_Request(wire=chunk.wire, name=chunk.wire, role="alias"))
     signals += _signals(graph, requests, scope)
     instances = [cell.name for cell in graph.cells if graph.is_instance(cell)]
+    declared |= {signal.wire: signal.declared for signal in signals}
+    # A field may be read by its own name, and be all that is read of a generated wire.
+    declared |= {owner: declared[wire] for wire, owner in graph.name_of.items()}
     return Names(
         ports=tuple(ports),
         signals=tuple(signals),
-        declared=declared | {signal.wire: signal.declared for signal in signals},
+        declared=declared,
         memories=scope.give_all({name: name for name in graph.module.memories}),
         labels=scope.give_all({name: name for name in instances}),
         scope=scope,
@@ -336,8 +340,9 @@ def initial_value(wire: Wire | None, width: int) -> str:
 
 
 def remark_of(wire: Wire) -> str:
-    """Describe the sign and the enumeration of a wire; empty if it has neither."""
-    remarks = ["signed"] if wire.signed and wire.width > 1 else []
+    """Return the design's remark on a wire, its sign and its enumeration; empty without them."""
+    remarks = [_one_line(wire.attributes[REMARK])] if REMARK in wire.attributes else []
+    remarks += ["signed"] if wire.signed and wire.width > 1 else []
     values = [
         f"{int(key[11:], 2)} {enumeration(wire, key[11:])}"
         for key in wire.attributes

@@ -6,7 +6,7 @@ A value can be written as one of four types: `std_logic` (one bit), `unsigned` (
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from firm_hdl.rtlil.evaluate import constant
@@ -59,6 +59,8 @@ class Declared:
 class Values:
     """Writes the values of one module.
 
+    `choice` names a value of a signal with an enumeration, and is empty for any other value.
+
     Parameters
     ----------
     declared : mapping of str to Declared
@@ -75,6 +77,7 @@ class Values:
         self._declared = declared
         self._folded = folded
         self._width = width
+        self.choice: Callable[[Spec, str], str] = lambda spec, bits: ""
         self.cells = Cells(self)
 
     def width(self, wire: str) -> int:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from firm_hdl.rtlil.ir import Assign, Cell, Module, Process, Slice, Spec, spec_width
+from firm_hdl.vhdl.fields import base_of_field, with_fields
 from firm_hdl.vhdl.uses import INLINE, Use, output, statement_uses, uses_of
 
 __all__ = ["Connection", "Graph", "graph_of", "only", "target_of"]
@@ -41,6 +42,8 @@ class Graph:
         Connections that drive a wire.
     aliases : tuple of Connection
         Connections that only give a value another name.
+    fields : tuple of Connection
+        Aliases that are fields of a signal, which nothing needs if the signal has a name.
     name_of : mapping of str to str
         Generated wires that take over the name of a signal or port with the same value.
     register_of : mapping of str to Cell
@@ -58,6 +61,7 @@ class Graph:
     width: Mapping[str, int]
     drives: tuple[Connection, ...] = ()
     aliases: tuple[Connection, ...] = ()
+    fields: tuple[Connection, ...] = ()
     name_of: Mapping[str, str] = field(default_factory=dict)
     register_of: Mapping[str, Cell] = field(default_factory=dict)
     next_state: Mapping[str, Process] = field(default_factory=dict)
@@ -137,6 +141,7 @@ def graph_of(
         Whether the language can write the operator in an expression, given the bits of its result
         that are read.
     """
+    module = with_fields(module)
     graph = Graph(
         module=module,
         modules=modules,
@@ -198,6 +203,7 @@ def _sort_connections(graph: Graph) -> Graph:
     read |= {c.wire for _, value in module.connections for c in value if isinstance(c, Slice)}
     drives: list[Connection] = []
     aliases: list[Connection] = []
+    fields: list[Connection] = []
     for target, value in module.connections:
         if not target:
             continue
@@ -206,16 +212,15 @@ def _sort_connections(graph: Graph) -> Graph:
         wire = module.wires[chunk.wire]
         if wire.direction is not None or wire.name in read:
             drives.append((target, value))
-        elif not _is_redundant_name(graph, wire.name, value):
+        elif base_of_field(wire.name) in module.wires:
+            fields.append((target, value))
+        elif not _is_second_copy(graph, wire.name, value):
             aliases.append((target, value))
-    return replace(graph, drives=tuple(drives), aliases=tuple(aliases))
+    return replace(graph, drives=tuple(drives), aliases=tuple(aliases), fields=tuple(fields))
 
 
-def _is_redundant_name(graph: Graph, name: str, value: Spec) -> bool:
-    """Return whether a name is a field of a signal, or a second copy of a name."""
-    cut = min((i for i in (name.find("."), name.find("[")) if i > 0), default=0)
-    if cut and name[:cut] in graph.module.wires:
-        return True
+def _is_second_copy(graph: Graph, name: str, value: Spec) -> bool:
+    """Return whether a name is a second copy of the name of a value."""
     base, _, number = name.rpartition("$")
     source = only(value)
     return (
@@ -267,18 +272,23 @@ def _narrow(graph: Graph) -> Graph:
 
 
 def _adopt_names(graph: Graph) -> Graph:
-    """Give generated wires the names of the signals to which they are connected as a whole."""
+    """Give wires the names of the signals to which they are connected as a whole.
+
+    A wire needs a name if its own is generated, or is that of a submodule's port.
+    """
     name_of: dict[str, str] = {}
     drives = list(graph.drives)
     aliases = list(graph.aliases)
-    for connections in (drives, aliases):
+    ports = set(_named_after_ports(graph))
+    for connections in (drives, aliases, list(graph.fields)):
         kept: list[Connection] = []
         for target, value in connections:
             to, source = target[0], only(value)
             if (
                 isinstance(to, Slice)
                 and source is not None
-                and source.wire.startswith("$")
+                and (source.wire.startswith("$") or source.wire in ports)
+                and to.wire not in ports
                 and source.wire not in name_of
                 and to.bare
                 and source.low == 0
@@ -291,6 +301,18 @@ def _adopt_names(graph: Graph) -> Graph:
                 kept.append((target, value))
         connections[:] = kept
     return replace(graph, drives=tuple(drives), aliases=tuple(aliases), name_of=name_of)
+
+
+def _named_after_ports(graph: Graph) -> Iterator[str]:
+    """Yield the inner wires with the name of the submodule's port to which they are connected."""
+    for cell in graph.cells:
+        if graph.is_submodule(cell):
+            for port, spec in cell.ports.items():
+                chunk = only(spec)
+                if chunk is not None and graph.module.wires[chunk.wire].direction is None:
+                    base, mark, number = chunk.wire.rpartition("$")
+                    if port in (chunk.wire, base if mark and number.isdecimal() else None):
+                        yield chunk.wire
 
 
 def _is_driven(wire: str, drives: list[Connection]) -> bool:
@@ -372,7 +394,7 @@ def _fold(graph: Graph, is_foldable: Callable[[Cell, int], bool]) -> Graph:
 
 
 def _may_repeat(cell: Cell, uses: int, folded: dict[str, Cell]) -> bool:
-    """Return whether an expression may have copies: an inverted bit, or a simple comparison."""
+    """Return whether an expression may have copies: of one or two bits, or a simple comparison."""
     specs = [spec for port, spec in cell.ports.items() if port != "Y"]
     if any(len(spec) > 1 for spec in specs):
         return False
@@ -380,7 +402,8 @@ def _may_repeat(cell: Cell, uses: int, folded: dict[str, Cell]) -> bool:
         return False
     if cell.kind == "$not":
         return spec_width(cell.ports["A"]) == 1
-    return cell.kind in _COMPARISONS and uses <= _MAX_REPEATS
+    is_pair = cell.kind in ("$and", "$or") and spec_width(cell.ports["Y"]) == 1
+    return (is_pair or cell.kind in _COMPARISONS) and uses <= _MAX_REPEATS
 
 
 def _in_order(candidates: dict[str, Cell]) -> Iterator[str]:

@@ -11,7 +11,7 @@ from firm_hdl.vhdl.expr import Declared
 from firm_hdl.vhdl.instance import component, exact, foreign_instance, instance
 from firm_hdl.vhdl.messages import message
 from firm_hdl.vhdl.package import PACKAGE_NAME
-from firm_hdl.vhdl.text import wrap
+from firm_hdl.vhdl.text import literal, wrap
 from firm_hdl.vhdl.uses import trim
 from firm_hdl.vhdl.writer import TITLES, Writer
 
@@ -80,19 +80,24 @@ class ModuleWriter(Writer):
         yield "end entity;"
 
     def _architecture(self) -> Iterator[str]:
+        # The body shows which constants are used.
+        blocks = [list(block) for block in self.blocks()]
         yield f"architecture rtl of {self.entity} is"
         yield from (f"  {line}" if line else "" for line in self._declarations())
         yield "begin"
-        for block in self.blocks():
-            lines = list(block)
-            if lines:
-                yield ""
-                yield from (f"  {line}" if line else "" for line in lines)
+        for lines in filter(None, blocks):
+            yield ""
+            yield from (f"  {line}" if line else "" for line in lines)
         yield ""
         yield "end architecture;"
 
     def _declarations(self) -> Iterator[str]:
         graph = self.graph
+        constants = [
+            f"constant {name} : unsigned({len(bits) - 1} downto 0) := {literal(bits)};"
+            for name, bits in self.constants()
+        ]
+        yield from _titled("Values of enumerations.", constants)
         for role, title in TITLES.items():
             yield from _titled(title, self._signals(role))
         for memory in self.memories:

@@ -7,7 +7,7 @@ a chain of conditions; many of these switches were an `If` in Amaranth.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from firm_hdl.rtlil.ir import (
@@ -18,6 +18,7 @@ from firm_hdl.rtlil.ir import (
     Spec,
     Statement,
     Switch,
+    bits_of,
     cut,
     spec_width,
 )
@@ -29,8 +30,6 @@ __all__ = ["Arm", "Statements", "flatten", "merged"]
 # Most choices of a conditional assignment, for readability; fewest of a `case` instead of an `if`.
 _MAX_CHOICES = 6
 _MIN_CHOICES = 3
-
-Comment = Callable[[Spec, str], str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,16 +128,14 @@ class Statements:
         Writer of the values that are read.
     targets : mapping of str to Declared
         Signals by the wire that is assigned; for a next state, the register.
-    comment : callable
-        Gives the comment for a choice of a `case`.
     """
 
     true = "true"
+    literal = staticmethod(literal)
 
-    def __init__(self, values: Values, targets: Mapping[str, Declared], comment: Comment) -> None:
+    def __init__(self, values: Values, targets: Mapping[str, Declared]) -> None:
         self.values = values
         self.targets = targets
-        self.comment = comment
 
     def body(self, statements: tuple[Statement, ...]) -> Iterator[str]:
         """Yield the lines of statements."""
@@ -162,7 +159,7 @@ class Statements:
                 yield from self.choose(chunk, cell)
                 position += chunk.width
                 continue
-            value = self.value(part, whole=chunk.width == target.width)
+            value = self.chosen(chunk, part) or self.value(part, whole=chunk.width == target.width)
             yield f"{target.part(chunk.low, chunk.width)} <= {target.accept(value, chunk.width)};"
             position += chunk.width
 
@@ -174,6 +171,16 @@ class Statements:
             lines = self.assign(Assign(target=(chunk,), value=value))
             yield from (f"  {line}" for line in lines)
             yield end
+
+    def chosen(self, target: Slice, spec: Spec) -> Expression | None:
+        """Return the constant of an enumeration that is assigned to a signal, else `None`."""
+        bits = bits_of(spec)
+        name = self.values.choice((target,), bits) if bits is not None else ""
+        return Expression(name, "literal") if name else None
+
+    def choice(self, spec: Spec, bits: str) -> str:
+        """Write a constant to which a value is compared."""
+        return self.values.choice(spec, bits) or self.literal(bits)
 
     def value(self, spec: Spec, *, whole: bool = True) -> Expression:
         """Write the value of an assignment. `whole`: the target is a whole signal."""
@@ -254,7 +261,7 @@ class Statements:
         if constant is not None:
             return atom("true" if constant == int(bits, 2) else "false")
         if len(bits) > 1:
-            return infix("=", self.values.unsigned(spec), atom(literal(bits)))
+            return infix("=", self.values.unsigned(spec), atom(self.choice(spec, bits)))
         cell = self.values.folded(spec)
         if cell is not None:
             return self.values.cells.boolean(cell, inverted=bits == "0")
@@ -291,15 +298,11 @@ class Statements:
 
     def case(self, switch: Switch, plain: list[tuple[list[str], Case]]) -> Iterator[str]:
         """Yield a choice by the value of a signal."""
-        (chunk,) = switch.selector
         selector = self.values.unsigned(switch.selector).text
         yield f"case {selector} is"
         for patterns, case in plain:
-            choices = " | ".join(literal(p) for p in sorted(patterns)) if patterns else "others"
-            remark = " or ".join(
-                filter(None, (self.comment((chunk,), p) for p in sorted(patterns)))
-            )
-            yield f"  when {choices} =>{f'  -- {remark}' if remark else ''}"
+            choices = " | ".join(self.choice(switch.selector, p) for p in sorted(patterns))
+            yield f"  when {choices or 'others'} =>"
             yield from (f"    {line}" for line in self.body(case.body))
             if not case.body:
                 yield "    null;"
@@ -353,7 +356,8 @@ class Statements:
         """Write the value of an assignment to a whole signal."""
         (chunk,) = statement.target
         assert isinstance(chunk, Slice)
-        return self.targets[chunk.wire].accept(self.value(statement.value), chunk.width)
+        value = self.chosen(chunk, statement.value) or self.value(statement.value)
+        return self.targets[chunk.wire].accept(value, chunk.width)
 
     def _is_whole(self, statement: Statement) -> bool:
         if not isinstance(statement, Assign) or len(statement.target) != 1:

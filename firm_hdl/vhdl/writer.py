@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Spec, Statement, Value, cut
 from firm_hdl.vhdl.declare import Role, Signal, attributes_of, declare, enumeration, remark_of
 from firm_hdl.vhdl.expr import Declared, Values
-from firm_hdl.vhdl.graph import graph_of
+from firm_hdl.vhdl.graph import graph_of, only
 from firm_hdl.vhdl.memory import MemoryText, memory_id
 from firm_hdl.vhdl.process import Statements, flatten
 from firm_hdl.vhdl.registers import Registers
@@ -72,10 +72,15 @@ class Writer(ABC):
         )
         declared = self.names.declared
         self.values = self.value_writer(declared, graph.folded, graph.width)
+        self.values.choice = self._choice
+        # By type, bits and name of a value of an enumeration that the text uses: its identifier.
+        self._constants: dict[tuple[str, str, str], str] = {}
+        # By the wire of a next value: its register.
+        self._registers = {graph.target(each): wire for wire, each in graph.next_state.items()}
         self.targets = dict(declared)
-        for register, process in graph.next_state.items():
-            self.targets[graph.target(process)] = self.targets[register]
-        self.statements = self.statement_writer(self.values, self.targets, self._choice)
+        for target, register in self._registers.items():
+            self.targets[target] = self.targets[register]
+        self.statements = self.statement_writer(self.values, self.targets)
         self.registers = self.register_writer(graph, self.values, self.statements, self.names)
         self.memories = [
             self.memory_writer(
@@ -176,8 +181,24 @@ class Writer(ABC):
                 yield from self._assigned(target, (Bits("0" * target[0].width),))
 
     def _choice(self, spec: Spec, bits: str) -> str:
-        (chunk,) = spec
-        return enumeration(self.owner(chunk.wire), bits) if isinstance(chunk, Slice) else ""
+        """Return the identifier of a constant for a value of a signal with an enumeration."""
+        chunk = only(spec)
+        if chunk is None or chunk.width != len(bits) or len(bits) == 1:
+            return ""
+        wire = self.owner(self._registers.get(chunk.wire, chunk.wire))
+        name = enumeration(wire, bits) if chunk.low == 0 else ""
+        if not name:
+            return ""
+        kind = str(wire.attributes.get("enum_base_type", ""))
+        key = kind, bits, name
+        if key not in self._constants:
+            self._constants[key] = self.names.scope.give(f"{kind}_{name}".upper())
+        return self._constants[key]
+
+    def constants(self) -> Iterator[tuple[str, str]]:
+        """Yield identifiers and bits of the values of enumerations that the body uses."""
+        for (_, bits, _), name in sorted(self._constants.items()):
+            yield name, bits
 
     def owner(self, wire: str) -> Any:
         """Return the wire whose name another one has taken over, or that wire itself."""

@@ -64,6 +64,11 @@ end entity;
 
 architecture rtl of counter is
 
+  -- Values of enumerations.
+  constant STATE_IDLE : unsigned(1 downto 0) := "00";
+  constant STATE_BUSY : unsigned(1 downto 0) := "01";
+  constant STATE_DONE : unsigned(1 downto 0) := "10";
+
   -- Registers.
   signal count_q : unsigned(3 downto 0) := (others => '0');
   signal state_q : unsigned(1 downto 0) := (others => '0');  -- 0 IDLE, 1 BUSY, 2 DONE
@@ -80,14 +85,14 @@ begin
           count_q <= count_q + 1;
           if count_q = unsigned(limit) then
             count_q <= (others => '0');
-            state_q <= "10";
+            state_q <= STATE_DONE;
           end if;
         end if;
         case state_q is
-          when "00" | "01" =>  -- IDLE or BUSY
-            state_q <= "01";
-          when "10" =>  -- DONE
-            state_q <= (others => '0');
+          when STATE_IDLE | STATE_BUSY =>
+            state_q <= STATE_BUSY;
+          when STATE_DONE =>
+            state_q <= STATE_IDLE;
           when others =>
             null;
         end case;

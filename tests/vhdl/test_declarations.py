@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from amaranth.hdl import Const, Instance, Module, Signal, unsigned
-from amaranth.lib import enum
+from amaranth.hdl import Const, Instance, Module, Signal, Value, unsigned
+from amaranth.lib import data, enum
 from amaranth.lib.memory import Memory
 
+from firm_hdl.names.attributes import REMARK
+from firm_hdl.verilog import convert as convert_to_verilog
 from firm_hdl.vhdl.convert import convert
 from tests.vhdl.ghdl import analyse
 
@@ -183,3 +185,42 @@ def test_an_output_is_converted_if_an_instance_has_another_type(unsigned_ports: 
     assert ("f <= unsigned(f_i);" in text) == unsigned_ports == ("f_i : std" in files["top.vhd"])
     assert ("b <= std_logic_vector(b_i);" in text) == (not unsigned_ports)
     assert text.count("<=") == 1 and "q => f" in text and "p => c" in text
+
+
+def test_fields_and_values_of_enumerations_are_read_by_name() -> None:
+    m = Module()
+    order = Signal(data.StructLayout({"kind": Kind, "at": 4}), name="order")
+    total, is_done = Signal(4, name="total"), Signal(name="is_done")
+    m.d.sync += order.kind.eq(Kind.BUSY)
+    m.d.comb += [total.eq(order.at + 1), is_done.eq(order.kind == Kind.DONE)]
+    ports = [Value.cast(order), total, is_done]
+    vhdl = convert(m, name="t", ports=ports).files["t.vhd"]
+    assert "order_at + 1" in vhdl and "when order_kind = KIND_DONE" in vhdl
+    assert 'constant KIND_DONE : unsigned(1 downto 0) := "10";' in vhdl
+    assert "KIND_IDLE" not in vhdl
+    verilog = convert_to_verilog(m, name="t", ports=ports)
+    assert "order_kind == KIND_DONE" in verilog and "localparam [1:0] KIND_DONE" in verilog
+
+
+def test_a_signal_is_not_named_after_the_port_of_a_submodule() -> None:
+    m, inner = Module(), Module()
+    place, key, o = Signal(4, name="place"), Signal(4, name="key"), Signal(4, name="o")
+    inner.d.comb += o.eq(key + 3)
+    m.submodules.inner = inner
+    m.d.comb += key.eq(place)
+    m.d.sync += place.eq(place + 1)
+    assert "key => place" in text_of(m, o)
+
+
+def test_equal_expressions_are_written_once() -> None:
+    m = Module()
+    a, b, o, p = (Signal(4, name=name) for name in "abop")
+    m.d.comb += [o.eq((a * b) ^ a), p.eq((a * b) ^ b)]
+    assert text_of(m, a, b, o, p).count("*") == 1
+
+
+def test_a_remark_stands_beside_its_signal() -> None:
+    m = Module()
+    o = Signal(name="o", attrs={REMARK: "takes x"})
+    m.d.sync += o.eq(~o)
+    assert ":= '0';  -- takes x" in text_of(m, o)
