@@ -1,27 +1,25 @@
-"""Figures as standalone files, with a style sheet for light and for dark mode."""
+"""Figures as standalone files, and pages of HTML with figures, for light and for dark mode."""
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
 from firm_hdl.drawing.svg import Figure
 
-__all__ = ["document"]
+__all__ = ["document", "pages", "style"]
 
-STYLE = """
-svg { --paper: #ffffff; --ink: #1a1d21; --soft: #5b6470; --rule: #dde1e6;
-  --c1: #0072b2; --c2: #d55e00; --c3: #009e73; --c4: #b0538d;
-  font-family: system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
-@media (prefers-color-scheme: dark) {
-  svg { --paper: #14171b; --ink: #e6e9ed; --soft: #9aa4b1; --rule: #323943;
-    --c1: #56b4e9; --c2: #f0883e; --c3: #35c19a; --c4: #d98bbd; } }
-.paper { fill: var(--paper); }
-text { fill: var(--soft); font-size: 12px; } text.label { fill: var(--ink); }
-text.row { fill: var(--ink); font-size: 13px; }
-.grid { stroke: var(--rule); } .axis { stroke: var(--soft); }
-.c1 { --c: var(--c1); } .c2 { --c: var(--c2); } .c3 { --c: var(--c3); } .c4 { --c: var(--c4); }
-.bar { fill: var(--c); } .curve { fill: none; stroke: var(--c); stroke-width: 2; }
-.whisker { stroke: var(--ink); stroke-width: 1.5; }
-.goal { stroke: var(--c2); stroke-width: 1.5; stroke-dasharray: 6 4; }
-"""
+_FOLDER = Path(__file__).parent
+_UNPRINTABLE = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+"""Control characters, those that reverse the text after them, and bytes that are not UTF-8."""
+
+
+def style(*names: str) -> str:
+    """Return style sheets of this package: ``figure``, and ``page`` for what is around figures."""
+    return "".join((_FOLDER / f"{name}.css").read_text(encoding="utf-8") for name in names)
 
 
 def document(figure: Figure) -> str:
@@ -29,5 +27,36 @@ def document(figure: Figure) -> str:
     head, mark, rest = str(figure).partition(">")
     size = f'width="{figure.width}" height="{figure.height}"'
     head = head.replace("<svg", f'<svg xmlns="http://www.w3.org/2000/svg" {size}', 1)
+    style_sheet = f"<style>{style('figure')}</style>"
     parts = rest.replace("><", ">\n<")
-    return f'{head}{mark}\n<style>{STYLE}</style>\n<rect {size} class="paper"/>\n{parts}\n'
+    return f'{head}{mark}\n{style_sheet}\n<rect {size} class="paper"/>\n{parts}\n'
+
+
+def pages(*folders: Path) -> Environment:
+    """Return a Jinja environment for pages of HTML.
+
+    All text is escaped, so that nothing in it is a tag, and has no characters that are not shown.
+
+    Parameters
+    ----------
+    *folders : Path
+        Folders with templates; those of this package can be used, too.
+    """
+    found = Environment(
+        loader=FileSystemLoader([*folders, _FOLDER]),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=_shown,
+    )
+    found.globals["style"] = style
+    return found
+
+
+def _shown(value: object) -> object:
+    if isinstance(value, Figure):
+        return Markup(str(value))
+    if isinstance(value, str) and not isinstance(value, Markup):
+        return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", value)
+    return value

@@ -12,13 +12,13 @@ import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, replace
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FunctionLoader, StrictUndefined
+from jinja2 import Environment
 from markupsafe import Markup
 
+from firm_hdl.drawing.document import pages, style
 from firm_hdl.export.build import BuildError
 from firm_hdl.files import write_file
 from firm_hdl.verify.report import charts, tables
@@ -43,6 +43,8 @@ __all__ = [
     "write_report",
 ]
 
+_FOLDER = Path(__file__).parent
+
 _MOST_CHARTS = 6
 _MOST_OPEN_ROWS = 40
 _MOST_ARTICLES = 20
@@ -62,7 +64,8 @@ def to_html(summary: Summary) -> str:
     found = _environment(is_html=True, cell=_html_cell)
     found.globals.update(summary=summary, most=most)
     page = found.get_template("page.html.j2")
-    return page.render(style=_text_of("page.css"), script=_text_of("page.js")).lstrip() + "\n"
+    own, script = (_FOLDER.joinpath(f"page.{end}").read_text("utf-8") for end in ("css", "js"))
+    return page.render(style=style("figure", "page") + own, script=script).lstrip() + "\n"
 
 
 def _html_cell(cell: TableCell) -> Markup:
@@ -163,11 +166,6 @@ FORMATS: Mapping[str, Callable[[Summary], str]] = {
 """Functions that write reports, by the suffixes of file names."""
 
 
-def _text_of(name: str) -> str:
-    """Return the text of a file that is beside this one."""
-    return files(__package__ or "").joinpath(name).read_text(encoding="utf-8")
-
-
 def _environment(*, is_html: bool, **filters: Any) -> Environment:
     """Return a Jinja environment with the functions that templates may use.
 
@@ -178,13 +176,8 @@ def _environment(*, is_html: bool, **filters: Any) -> Environment:
     **filters
         Filters by the names that templates have for them.
     """
-    found = Environment(
-        loader=FunctionLoader(_text_of),
-        autoescape=is_html,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    found = pages(_FOLDER)
+    found.autoescape = is_html
     found.globals.update(
         charts=charts,
         prose=prose,
