@@ -1,6 +1,7 @@
 """Converters as Amaranth components."""
 
 from firm_hdl.gateware.deserializer import Deserializer
+from firm_hdl.gateware.message_buffer import MessageBuffer
 from firm_hdl.gateware.packets import (
     GateStatus,
     GateStatusSignature,
@@ -21,6 +22,7 @@ __all__ = [
     "Deserializer",
     "GateStatus",
     "GateStatusSignature",
+    "MessageBuffer",
     "MessageSignature",
     "PacketArbiter",
     "PacketCrossing",
