@@ -6,6 +6,7 @@ from firm_hdl.gateware.axi_stream import (
     PacketsToAxiStream,
 )
 from firm_hdl.gateware.deserializer import Deserializer
+from firm_hdl.gateware.message_buffer import MessageBuffer
 from firm_hdl.gateware.packets import (
     GateStatus,
     GateStatusSignature,
@@ -28,6 +29,7 @@ __all__ = [
     "Deserializer",
     "GateStatus",
     "GateStatusSignature",
+    "MessageBuffer",
     "MessageSignature",
     "PacketArbiter",
     "PacketCrossing",
