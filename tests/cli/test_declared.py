@@ -219,7 +219,7 @@ def test_folders_exclude_recordings(capsys):
     ("option", "good", "bad"),
     [
         ("wire", ["ros1", "cdr"], ["ROS1", ""]),
-        ("distro", "noetic foxy humble iron jazzy kilted lyrical".split(), ["melodic", "rolling"]),
+        ("distro", "noetic foxy humble iron jazzy kilted lyrical".split(), ["rolling"]),
         ("bus_bytes", ["1", "2", "4", "8", "16", "32", "64"], ["0", "3", "128", "-8"]),
         ("max_message_bytes", ["1", str((1 << 32) - 1)], ["0", str(1 << 32), "-1", "", "1.5"]),
         ("jobs", ["1", "1000"], ["0", "-1", "x"]),

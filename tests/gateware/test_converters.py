@@ -21,7 +21,7 @@ few = settings(
     deadline=None,
     max_examples=by_depth(2, 12),
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+    suppress_health_check=list(HealthCheck),
 )
 WIRES = ("ros1", "cdr")
 stall_plans = st.none() | st.builds(

@@ -15,7 +15,7 @@ from tests.depth import by_depth
 
 __all__ = ["has_path", "is_quick", "parser_bench", "random_packets"]
 
-MOST_LANES = by_depth(128, 1 << 20)
+MOST_LANES = by_depth(64, 1 << 20)
 """Limit on steps times bytes of the bus; larger circuits take seconds to generate, up to 15."""
 
 

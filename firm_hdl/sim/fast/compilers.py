@@ -301,4 +301,14 @@ def translate(
         raise ToolError("Verilator did not say where its runtime is, or which parts a model needs")
     headers = Path(root, "include")
     runtime = [headers / f"{part}.cpp" for part in parts[1].replace("\\", " ").split()]
-    return [*sorted(folder.glob("*.cpp")), *runtime], headers
+    files = sorted(folder.glob("*.cpp"))
+    if "VM_PARALLEL_BUILDS = 0" in makefile:
+        # A small design, whose files Verilator did not split: most of the time goes into headers.
+        texts = {"all.cpp": "", "all__Slow.cpp": ""}
+        for path in files:
+            name = "all__Slow.cpp" if "Slow" in path.name else "all.cpp"
+            texts[name] += f'#line 1 "{path.name}"\n{path.read_text(encoding="utf-8")}\n'
+        files = [folder / name for name in texts]
+        for path in files:
+            path.write_text(texts[path.name], encoding="utf-8")
+    return [*files, *runtime], headers

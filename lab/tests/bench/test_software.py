@@ -132,6 +132,7 @@ def test_rosbags_is_timed_and_checked() -> None:
         time_rosbags(damaged(sample_of(PADDED), 6, 7))
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("ros1")
 def test_genpy_is_timed_and_checked() -> None:
     message = load_message("std_msgs/Bool", distro="noetic")

@@ -199,6 +199,7 @@ def test_netlist_of_vhdl_is_the_verilog_in_every_cycle(ghdl, tmp_path, message):
     assert int(found[1]) >= count - 1 and int(found[2]) >= count // 2
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("iverilog")
 def test_netlist_of_another_circuit_is_found(ghdl, tmp_path):
     """Its limit of a length is smaller."""

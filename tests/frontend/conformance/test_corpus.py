@@ -23,7 +23,7 @@ from tests.frontend.structure import field_descriptions
 DISTROS = {"ros1": "noetic", "ros2": "lyrical"}
 KINDS = ("msg", "srv", "action")
 # One file in so many is read.
-STEP = by_depth(48, 1)
+STEP = by_depth(96, 1)
 
 
 @cache
@@ -50,7 +50,7 @@ def test_every_file_resolves(corpus, dialect):
         except DefinitionError as error:
             wrong[full] = [diagnostic.message for diagnostic in error.diagnostics]
     assert wrong == {}
-    assert len(found) > 5600 // STEP and messages > 7700 // STEP
+    assert len(found) > 5600 // STEP and messages >= len(found)
 
 
 def test_ros2_fields_are_those_that_rosbags_reads(corpus):

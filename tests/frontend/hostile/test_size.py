@@ -65,10 +65,10 @@ def test_a_lattice_is_evaluated_once_for_each_message(tmp_path, dialect):
 
 @pytest.mark.parametrize("dialect", DISTROS)
 def test_many_fields_take_little_time(tmp_path, dialect):
-    count = by_depth(3000, 12_000)
+    count = by_depth(1500, 12_000)
     text = "".join(f"float64 field{i}  # number {i}\n" for i in range(count))
     make_files(tmp_path, {"p/msg/T.msg": text})
-    with calls_at_most(by_depth(1_600_000, 10_000_000)):
+    with calls_at_most(by_depth(800_000, 10_000_000)):
         library = Library(DISTROS[dialect], [tmp_path])
         message = library.message("p/T")
         assert len(message.fields) == count

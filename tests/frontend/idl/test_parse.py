@@ -102,9 +102,9 @@ def test_operators_bind_as_in_c():
 
 
 def test_long_texts_are_read_in_time():
-    count = by_depth(1500, 5000)
+    count = by_depth(600, 5000)
     members = "".join(f'@unit(value="m") sequence<double, {i + 1}> a{i}; ' for i in range(count))
-    with calls_at_most(by_depth(4_700_000, 30_000_000)):
+    with calls_at_most(by_depth(1_900_000, 30_000_000)):
         (struct,) = parse(f"struct T {{ {members} }};")
         assert len(struct.members) == count
 

@@ -56,5 +56,5 @@ def test_a_parser_forgets_a_length_that_is_checked_during_the_reset():
     bench = parts.Bench(parser, given, [(parser.status, parser.sizes)], Const(0, 1))
     at_first = bench.run(0, 0)
     assert [status for *_, status, _ in at_first[0]] == [Status.OK, Status.LENGTH]
-    for at in range(7, 15):
+    for at in range(8, 13):
         assert bench.run(at, at + 1) == at_first, at

@@ -94,6 +94,7 @@ def test_named_type_that_is_not_judged_is_no_success(
     assert "not judged" not in capsys.readouterr().out
 
 
+@pytest.mark.thorough
 def test_of_all_types_those_that_are_not_judged_are_listed(
     source, without_judge_of_wide, tmp_path, capsys
 ):

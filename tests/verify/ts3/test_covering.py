@@ -100,7 +100,7 @@ def stand_ins(tmp_path_factory):
 @pytest.mark.parametrize(
     ("distro", "name"), [(distro, name) for distro in DISTROS for name in STAND_INS[distro]]
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_a_small_type_with_features_of_large_ones_passes(stand_ins, distro, name):
     options = Options(bus_bytes=8, most_cases=by_depth(MOST_CASES, None), paths=(stand_ins,))
     result = accept(distro, f"stand_ins/msg/{name}", options)
