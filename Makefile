@@ -69,9 +69,9 @@ examples: $(VENV)/.installed-dev ghdl verilog ## designs that act on good packet
 	for name in $(HDL_EXAMPLES); do \
 	  PATH="$(CURDIR)/$(BIN):$$PATH" $(MAKE) --no-print-directory -C examples/$$name || exit; \
 	done
-	$(BIN)/python examples/range_filter.py
-	$(BIN)/python examples/half_speed.py
-	$(BIN)/python examples/fast_simulation.py
+	for name in half_speed image_filter cloud_filter soc_part fast_simulation; do \
+	  $(BIN)/python examples/$$name.py || exit; \
+	done
 	for file in wheels/wheels odometry/odometry filter/near echo_ros1/echo; do \
 	  $(BIN)/firm-hdl node run examples/nodes/$$file.yaml --graph none </dev/null || exit; \
 	done

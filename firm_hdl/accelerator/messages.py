@@ -15,6 +15,7 @@ from amaranth.lib.wiring import FlippedInterface, connect, flipped
 
 from firm_hdl.gateware import MessageSignature, RecordReader, RecordWriter
 from firm_hdl.gateware.members import member_tree
+from firm_hdl.gateware.signatures import PartSignature
 from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String, is_fixed_size
 from firm_hdl.plan import Leaf, build_plan
 from firm_hdl.sim.payloads import encoder_of
@@ -61,17 +62,27 @@ def take_message(m: Module, message: Any, *, fields: Iterable[str] | None = None
     return reader.record
 
 
-def tie_off(m: Module, message: Any) -> None:
-    """Take messages that come, and ignore them.
+def tie_off(m: Module, *messages: Any) -> None:
+    """Take messages that come, or parts of them, and ignore them.
 
     A message that an accelerator never sends needs nothing: its `valid` is 0 by itself.
+
+    Parameters
+    ----------
+    messages : interfaces
+        Of a MessageSignature, or of a part of one: ``rx.message.header``, ``rx.message.height``.
 
     Raises
     ------
     TypeError
-        If `message` is no message.
+        If one of them is no part of a message.
     """
-    _take_all(m, _plain(message)[0])
+    for each in messages:
+        plain = flipped(each) if isinstance(each, FlippedInterface) else each
+        kinds = MessageSignature, PartSignature, stream.Signature
+        if not isinstance(getattr(plain, "signature", None), kinds):
+            raise TypeError(f"A message interface is needed, not {each!r}")
+        _take_all(m, plain)
 
 
 def offer_message(

@@ -26,6 +26,7 @@ __all__ = [
     "LATENCY_CYCLES",
     "MessageSignature",
     "PacketSignature",
+    "PartSignature",
     "Status",
     "StatusSignature",
     "leaf_shape",
@@ -235,7 +236,7 @@ class _Interface(wiring.PureInterface):
         )
 
 
-class _PartSignature(wiring.Signature):
+class PartSignature(wiring.Signature):
     """A part of a message: a field that is a message, an array, or a text."""
 
     def create(self, *, path: Any = None, src_loc_at: int = 0) -> Any:
@@ -243,7 +244,7 @@ class _PartSignature(wiring.Signature):
 
     def __eq__(self, other: Any) -> bool:
         # As for any signature without a name of its own, the members decide.
-        is_plain = type(other) in (_PartSignature, wiring.Signature)
+        is_plain = type(other) in (PartSignature, wiring.Signature)
         return is_plain and bool(self.members == other.members)
 
     def __hash__(self) -> int:
@@ -252,13 +253,13 @@ class _PartSignature(wiring.Signature):
 
 def signature_of(leaves: Sequence[Leaf], tree: MemberTree) -> wiring.Signature:
     """Return the signature that has exactly the leaves of a tree."""
-    return _PartSignature(_members(leaves, tree))
+    return PartSignature(_members(leaves, tree))
 
 
 def _members(leaves: Sequence[Leaf], node: MemberTree) -> dict[str, wiring.Member]:
     return {
         child.member: Out(
-            _PartSignature(_members(leaves, child))
+            PartSignature(_members(leaves, child))
             if child.leaf is None
             else stream.Signature(leaf_shape(leaves[child.leaf]))
         )

@@ -166,6 +166,22 @@ def test_messages_of_converters_inside_are_taken_too():
         take_message(m, rx.message)
 
 
+def test_parts_of_a_message_are_taken_and_ignored():
+    def logic(m, self):
+        tie_off(m, self.command.angular, self.command.linear.y, self.command.linear.z)
+        x = self.command.linear.x
+        m.d.comb += [self.out.data.payload.eq(x.payload), self.out.data.valid.eq(x.valid)]
+        m.d.comb += x.ready.eq(self.out.data.ready)
+
+    dut = Circuit(logic, {"command": TWIST}, {"out": FLOAT})
+    assert run(dut, {"command": [twist(*[k] * 6) for k in (3.0, 4.0)]}, 2)["out"] == [
+        {"data": 3.0},
+        {"data": 4.0},
+    ]
+    with pytest.raises(TypeError, match=r"^A message interface is needed, not \(sig"):
+        tie_off(Module(), Signal())
+
+
 def test_mistakes_are_named():
     dut = Circuit(None, {"command": TWIST}, {"out": MIXED})
     m = Module()

@@ -74,8 +74,15 @@ def workdir(tmp_path, monkeypatch):
     return tmp_path
 
 
+# Two deserializers and a gate with a wide bus take as long as the other filters together.
+LONG = {"cloud_filter"}
+
+
 @pytest.mark.snapshot
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.thorough] * (name in LONG)) for name in EXAMPLES],
+)
 def test_examples_run(workdir, capsys, name):
     example = load(ROOT / "examples" / f"{name}.py")
     if name == "bench":
