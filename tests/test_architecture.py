@@ -41,8 +41,9 @@ MAY_IMPORT = {
     "estimates": {"plan"},
     # Knows the circuits' pipeline.
     "timing": {"plan"},
-    "program": {"plan", "timing", "wire"},
-    "gateware": {"model", "wire", "plan", "timing", "program"},
+    "program": {"names", "plan", "timing", "wire"},
+    # `names`: the attribute of a signal's comment.
+    "gateware": {"names", "model", "wire", "plan", "timing", "program"},
     # `jobs`: compilers.
     "sim": {
         *("errors", "garbage", "jobs", "rtlil", "verilog", "model", "wire", "plan", "gateware"),

@@ -21,6 +21,8 @@ from firm_hdl.program import (
     SerializerState,
     Transfer,
     align_addend,
+    leaf_names,
+    unique,
 )
 
 __all__ = ["Collector"]
@@ -125,24 +127,27 @@ class Collector(wiring.Component):
         most = max(len(each.transfers) for each in program.states)
         served = [Signal(name=f"served_{k}") for k in range(most)]
         # A length was taken, but its state is not complete.
-        held = {each.leaf: Signal(name=f"held_{each.leaf}") for each in program.lengths.values()}
+        names = leaf_names(plan)
+        held = {
+            each.leaf: Signal(name=f"held_{names[each.leaf]}") for each in program.lengths.values()
+        }
         lengths = {
-            each.leaf: _offered(m, each, leaves[each.leaf], held[each.leaf])
+            each.leaf: _offered(m, names[each.leaf], each, leaves[each.leaf], held[each.leaf])
             for each in program.lengths.values()
         }
 
         def of_length(
-            field: Callable[[OfferedLength], Value],
-            width: int = 1,
-            test: Callable[[Length], bool] = lambda _: True,
+            name: str, width: int = 1, test: Callable[[Length], bool] = lambda _: True
         ) -> Value:
             """Return a field of the state's length; 0 if it has none, or the test fails."""
             cases = [
-                (flow.step[number], field(lengths[each.leaf]))
+                (flow.step[number], getattr(lengths[each.leaf], name))
                 for number, each in program.lengths.items()
                 if test(each)
             ]
-            return pick(cases, width)
+            value = Signal(width, name=f"length_{name}")
+            m.d.comb += value.eq(pick(cases, width))
+            return value
 
         # What follows the state: an exit (`done`), and the end of the message. A last state that
         # only takes a rest is skipped if there is no rest.
@@ -151,12 +156,10 @@ class Collector(wiring.Component):
         is_begin = begins_run | begins_loop
         tails = {each.number for each in program.states if each.is_final_tail}
         to_tail = any_of([each.taken for each in flow.exits if each.way.to in tails])
-        no_rest = is_begin & of_length(lambda length: length.zero) & ~begins_string & to_tail
+        no_rest = is_begin & of_length("zero") & ~begins_string & to_tail
         m.d.comb += [
             done.eq(
-                begins_nothing
-                | (is_begin & of_length(lambda length: length.skips))
-                | (is_words & flow.words.last)
+                begins_nothing | (is_begin & of_length("skips")) | (is_words & flow.words.last)
             ),
             ends.eq(done & (flow.exit_ends | no_rest)),
         ]
@@ -167,11 +170,19 @@ class Collector(wiring.Component):
         free = Signal()
         complete = Signal()
         readers: dict[int, list[_Reader]] = {}
+        transfer_names = iter(
+            unique(
+                names[each.leaf] + "_rest" * each.is_rest
+                for state in program.states
+                for each in state.transfers
+            )
+        )
         for state in program.states:
             readers[state.number] = []
             for slot, transfer in enumerate(state.transfers):
+                name = next(transfer_names)
                 left, lacks, go = (
-                    Signal(name=f"{name}_{state.number}_{slot}") for name in ("left", "lacks", "go")
+                    Signal(name=f"{what}_{name}") for what in ("left", "lacks", "go")
                 )
                 valid: Value = leaves[transfer.leaf].valid
                 if transfer.leaf in lengths:
@@ -232,7 +243,7 @@ class Collector(wiring.Component):
             ]
         )
         is_taken = any_of([leaves[leaf].ready for leaf in lengths])
-        over = is_taken & of_length(lambda length: length.over)
+        over = is_taken & of_length("over")
         m.d.comb += found.eq(error)
         with m.If((error == Status.OK) & wrong_items):
             m.d.comb += found.eq(Status.ITEMS)
@@ -258,14 +269,14 @@ class Collector(wiring.Component):
             ]
 
         # The next state.
-        next_rest = of_length(lambda each: each.rest, len(rest), lambda each: each.level is None)
+        next_rest = of_length("rest", len(rest), lambda each: each.level is None)
         count = [(flow.step[k], leaves[each.leaf].payload) for k, each in program.lengths.items()]
         flow.advance(
             moves=complete,
             ends=ends,
             done=done,
             count=pick(count, LENGTH_BITS),
-            single=of_length(lambda length: length.at_most_one_pass),
+            single=of_length("at_most_one_pass"),
             nul=False,
         )
         # The rest waits for the state that takes it; in between are only words of its own run.
@@ -332,13 +343,14 @@ class Collector(wiring.Component):
             ]
 
 
-def _offered(m: Module, length: Length, port: stream.Interface, held: Value) -> OfferedLength:
+def _offered(
+    m: Module, name: str, length: Length, port: stream.Interface, held: Value
+) -> OfferedLength:
     """Decode the length that is offered, unless it is `held`."""
-    leaf, value = length.leaf, port.payload
-    known = Signal(name=f"known_{leaf}")
-    names = ("zero", "over", "skips", "at_most_one_pass")
-    zero, over, skips, one = (Signal(name=f"{name}_{leaf}", reset_less=True) for name in names)
-    rest = Signal(length.lanes.bit_length(), name=f"rest_{leaf}", reset_less=True)
+    value, known = port.payload, Signal(name=f"known_{name}")
+    fields = ("zero", "over", "skips", "at_most_one_pass")
+    zero, over, skips, one = (Signal(name=f"{each}_{name}", reset_less=True) for each in fields)
+    rest = Signal(length.lanes.bit_length(), name=f"rest_{name}", reset_less=True)
     is_zero = ~value.any()
     m.d.sync += known.eq(port.valid & ~port.ready & ~held)
     with m.If(~held):

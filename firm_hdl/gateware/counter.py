@@ -118,8 +118,11 @@ class Counter:
 
     def _next_is_last(self, m: Module, loads: Value) -> Value:
         """Return whether one is left after the counter has counted down by one."""
-        high = self.value[3:].any()
-        two, three, four = (~high & (self.value[:3] == k) for k in (2, 3, 4))
+        is_small = Signal(name=f"{self.name}_is_small")
+        two, three, four = (Signal(name=f"{self.name}_is_{k}") for k in (2, 3, 4))
+        m.d.comb += is_small.eq(~self.value[3:].any())
+        for k, each in enumerate((two, three, four), 2):
+            m.d.comb += each.eq(is_small & (self.value[:3] == k))
         by_value = Mux(self.pending, Mux(self.less, four, three), Mux(self.less, three, two))
         delayed = [each for each in self._defaults if each.double is not None]
         if not delayed:

@@ -10,15 +10,10 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 
 from firm_hdl.gateware.counter import Counter
 from firm_hdl.gateware.positions import any_of, pick
-from firm_hdl.program import AnyState, Program, Transition
+from firm_hdl.names.attributes import REMARK
+from firm_hdl.program import AnyState, Program, Transition, state_remark
 
 __all__ = ["Flow", "exceeds", "last_word"]
-
-REGISTER_BITS = 32
-"""Most bits of a register with an initial value, and of a constant that a register is loaded with.
-
-GHDL 2.0 writes longer constants other than 0 as strings in the Verilog of ``ghdl --synth``.
-"""
 
 
 def last_word(items: Value, lanes: int) -> Value:
@@ -51,14 +46,14 @@ class Exit:
 
     Attributes
     ----------
-    taken : Signal(1)
+    taken : Value(1)
         The state, once done, takes this exit.
     state : int
         Number of the state.
     way : Transition
     """
 
-    taken: Signal
+    taken: Value
     state: int
     way: Transition
 
@@ -89,8 +84,7 @@ class Flow(Generic[AnyState]):
     Attributes
     ----------
     step : list of Value(1)
-        Whether the circuit is in a state, by number. The state is one-hot, so this is a bit of a
-        register.
+        Whether the circuit is in a state, by number. The state is one-hot, so each is a register.
     bits : Value(states)
         All of `step`.
     exits : list of Exit
@@ -113,14 +107,18 @@ class Flow(Generic[AnyState]):
         # One-hot, because a choice is then an AND-OR of bits without a decoder before it.
         self._registers: list[_Register] = []
         self._is_complete = False
-        count, most = len(program.states), REGISTER_BITS
-        for low in range(0, count, most):
-            name = "step" if count <= most else f"step_{low}"
-            one_hot = [1 << number >> low & ((1 << most) - 1) for number in range(count)]
-            self._add(name, min(most, count - low), one_hot)
-        self._steps = list(self._registers)
-        self.bits = Cat(each.signal for each in self._steps)
-        self.step: list[Value] = [bit for each in self._steps for bit in each.signal]
+        numbers = range(len(program.states))
+        self._steps = [
+            self._add(
+                f"step_{each.name}",
+                1,
+                [int(number == each.number) for number in numbers],
+                attrs={REMARK: state_remark(program.plan, each)},
+            )
+            for each in program.states
+        ]
+        self.bits = Cat(self._steps)
+        self.step: list[Value] = list(self._steps)
         init = {load.level: load.number for load in program.start.loads}
         self.words = Counter(program.most_loaded(None), "words", init.get(None))
         self.levels = [
@@ -130,11 +128,13 @@ class Flow(Generic[AnyState]):
         self.exits = list(self._exits())
         self.exit_ends = any_of([each.taken for each in self.exits if each.way.to is None])
 
-    def _add(self, name: str, bits: int, values: Sequence[int]) -> Signal:
+    def _add(
+        self, name: str, bits: int, values: Sequence[int], attrs: Mapping[str, str] | None = None
+    ) -> Signal:
         start, end = self.program.start.to, self.program.end
         assert start is not None
         assert not self._is_complete, "the register would keep its initial value"
-        signal = Signal(bits, init=values[start], name=name)
+        signal = Signal(bits, init=values[start], name=name, attrs=attrs)
         self._registers.append(_Register(signal, values, 0 if end is None else values[end]))
         return signal
 
@@ -142,20 +142,21 @@ class Flow(Generic[AnyState]):
         for state in self.program.states:
             no_repeat: Value = self.step[state.number]
             for way in state.exits:
-                if way.level is None:
-                    taken = Signal(name=f"default_{state.number}")
-                    self.m.d.comb += taken.eq(no_repeat)
-                else:
+                taken = no_repeat
+                if way.level is not None:
                     last = self.levels[way.level].last
-                    taken = Signal(name=f"again_{state.number}_{way.level}")
+                    taken = Signal(name=f"again_{state.name}_{way.level}")
                     self.m.d.comb += taken.eq(no_repeat & ~last)
                     no_repeat = no_repeat & last
+                elif len(state.exits) > 1:
+                    taken = Signal(name=f"leaves_loop_after_{state.name}")
+                    self.m.d.comb += taken.eq(no_repeat)
                 yield Exit(taken=taken, state=state.number, way=way)
 
     def register(
         self, name: str, bits: int, of: Callable[[AnyState], int], *, written: bool = False
     ) -> Signal | Const:
-        """Return a constant of the current state, at most 32 bits.
+        """Return a constant of the current state.
 
         It is a register that is written together with the state, and so is valid at the start of a
         cycle: no logic from the state's number comes before it. A constant that is the same in all
@@ -231,7 +232,7 @@ class Flow(Generic[AnyState]):
             Whether the count of a string includes the NUL.
         """
         m, program, self._is_complete = self.m, self.program, True
-        to_exit, to_body = Signal(name="step_to_exit"), Signal(name="step_to_body")
+        to_exit, to_body = Signal(name="to_exit"), Signal(name="to_body")
         m.d.comb += [to_exit.eq(moves & ~ends & done), to_body.eq(moves & ~ends & ~done)]
         # At most one exit is taken, and at most one state has a body: each way is one AND, and the
         # next value of a register is an OR of them (`pick`).
@@ -270,9 +271,8 @@ class Flow(Generic[AnyState]):
 
     def go_to(self, states: Mapping[int, Value]) -> None:
         """Change the state, but none of its constants: to the state whose value is high."""
-        bits = Cat(states.get(i, Const(0, 1)) for i in range(len(self.step)))
-        for k, each in enumerate(self._steps):
-            self.m.d.sync += each.signal.eq(bits[REGISTER_BITS * k :])
+        for number, step in enumerate(self._steps):
+            self.m.d.sync += step.eq(states.get(number, 0))
 
     def _load_lengths(self, count: Value, single: Value, double: Value | None, nul: bool) -> None:
         """Load the counter of the loop or run that the state may begin.

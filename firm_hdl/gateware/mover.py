@@ -13,7 +13,14 @@ from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import order_layout
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
 from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
-from firm_hdl.program import DeserializerProgram, DeserializerState, Part, Transfer
+from firm_hdl.program import (
+    DeserializerProgram,
+    DeserializerState,
+    Part,
+    Transfer,
+    leaf_names,
+    unique,
+)
 
 __all__ = ["Mover"]
 
@@ -26,7 +33,7 @@ class _Writer:
     ----------
     state : DeserializerState
     transfer : Transfer
-    chosen : Value(1)
+    chosen : Signal(1)
         The next order has the transfer.
     active : Signal(1)
         The order that is executed has the transfer, and it is not written yet.
@@ -38,7 +45,7 @@ class _Writer:
 
     state: DeserializerState
     transfer: Transfer
-    chosen: Value
+    chosen: Signal
     active: Signal
     blocked: Signal
     go: Signal
@@ -91,7 +98,13 @@ class Mover(wiring.Component):
             with m.If(port.ready):
                 m.d.sync += port.valid.eq(0)
         words = self._read(m, take)
-        writers = self._writers(m, take)
+        # Whether the register of a stream has a transfer that is not taken in this cycle.
+        names = leaf_names(self.plan)
+        full = {leaf: Signal(name=f"full_{names[leaf]}") for leaf in self.leaves}
+        status_full = Signal()
+        m.d.comb += [full[k].eq(port.valid & ~port.ready) for k, port in self.leaves.items()]
+        m.d.comb += status_full.eq(status.valid & ~status.ready)
+        writers = self._writers(m, take, full)
 
         # The status of a packet is sent with its last order.
         ends = Signal()
@@ -110,19 +123,19 @@ class Mover(wiring.Component):
         repeated = self.program.repeated_leaves
         waits = [
             self._wants(m, take, leaf, [each for each in writers if each.transfer.leaf == leaf])
-            & _is_full(self.leaves[leaf])
+            & full[leaf]
             for leaf in sorted(repeated)
         ]
         others = [each for each in writers if each.transfer.leaf not in repeated]
         # Reasons for `slow`, as an order is taken and later.
-        first = [each.chosen & _is_full(self.leaves[each.transfer.leaf]) for each in others]
+        first = [each.chosen & full[each.transfer.leaf] for each in others]
         later = [each.blocked & ~self.leaves[each.transfer.leaf].ready for each in others]
         if self.program.ends_at_once:
             # A packet may end in every cycle.
-            waits.append(ends_now & _is_full(status))
+            waits.append(ends_now & status_full)
         else:
-            first.append(ends & _is_full(status))
-            later.append(ends_now & _is_full(status))
+            first.append(ends & status_full)
+            later.append(ends_now & status_full)
         slow = Signal()
         if first:
             m.d.sync += slow.eq(Mux(take, any_of(first), any_of(later)))
@@ -168,27 +181,37 @@ class Mover(wiring.Component):
         words.carry(m, take)
         return words
 
-    def _writers(self, m: Module, take: Value) -> list[_Writer]:
+    def _writers(self, m: Module, take: Value, full: Mapping[int, Value]) -> list[_Writer]:
         """Serve the transfers of each state in wire order, each as soon as its register is free.
 
         A consumer may take a leaf only after an earlier leaf, or after a leaf of the next message.
         So a state must not wait until all its leaves are free; it remembers which are written.
         """
         order, found = self.orders.payload, list[_Writer]()
+        leaves = leaf_names(self.plan)
+        names = unique(
+            leaves[each.leaf] + "_rest" * each.is_rest
+            for state in self.program.states
+            for each in state.transfers
+        )
+        has_step = Signal()
+        m.d.comb += has_step.eq(self.orders.valid & ~order.blank)
         for state in self.program.states:
             earlier: list[Value] = []
             for transfer in state.transfers:
-                active, blocked, go = (
-                    Signal(name=f"{what}_{len(found)}") for what in ("active", "blocked", "go")
+                name = names[len(found)]
+                chosen, active, blocked, go = (
+                    Signal(name=f"{what}_{name}") for what in ("chosen", "active", "blocked", "go")
                 )
-                chosen = self.orders.valid & ~order.blank & (order.step == state.number)
+                takes = has_step & (order.step == state.number)
                 if transfer.run is not None and transfer.run.counted:
-                    chosen = chosen & order.items
+                    takes = takes & order.items
+                m.d.comb += chosen.eq(takes)
                 port = self.leaves[transfer.leaf]
                 is_repeated = transfer.leaf in self.program.repeated_leaves
                 m.d.sync += active.eq(Mux(take, chosen, active & ~go))
                 m.d.comb += [
-                    blocked.eq(active & (_is_full(port) if is_repeated else port.valid)),
+                    blocked.eq(active & (full[transfer.leaf] if is_repeated else port.valid)),
                     go.eq(active & ~blocked & ~any_of(earlier)),
                 ]
                 earlier.append(blocked)
@@ -206,7 +229,7 @@ class Mover(wiring.Component):
 
     def _wants(self, m: Module, take: Value, leaf: int, writers: list[_Writer]) -> Signal:
         """Return a register: the order that is executed still has to write the leaf."""
-        wants = Signal(name=f"want_{leaf}")
+        wants = Signal(name=f"wants_{leaf_names(self.plan)[leaf]}")
         chosen = any_of([each.chosen for each in writers])
         go = any_of([each.go for each in writers])
         m.d.sync += wants.eq(Mux(take, chosen, wants & ~go))
@@ -236,9 +259,10 @@ class _Words:
             ]
         self.carried = Signal(8 * self.program.carried_bytes, reset_less=True)
         # No reset value: so the flip-flops' synchronous reset is free to write the 0 of an error.
+        names = leaf_names(self.plan)
         self.payloads = {
             leaf: Signal(
-                leaf_shape(self.plan.leaves[leaf]), name=f"payload_{leaf}", reset_less=True
+                leaf_shape(self.plan.leaves[leaf]), name=f"payload_{names[leaf]}", reset_less=True
             )
             for leaf in mover.leaves
         }
@@ -270,7 +294,7 @@ class _Words:
             part = state.cut
             if part is None:
                 continue
-            here = Signal(name=f"cut_{state.number}")
+            here = Signal(name=f"begins_{state.name}")
             with m.If(take):
                 chosen = ~order.blank & (order.step == state.number)
                 m.d.sync += here.eq(self.orders.valid & chosen)
@@ -338,9 +362,3 @@ def _put(m: Module, target: Value, value: Value, good: Value, type_: str) -> Non
         m.d.sync += Value.cast(target).eq(value)
     with m.Else():
         m.d.sync += Value.cast(target).eq(0)
-
-
-def _is_full(port: stream.Interface) -> Value:
-    """Return whether the register of a stream has a transfer that is not taken in this cycle."""
-    full: Value = port.valid & ~port.ready
-    return full

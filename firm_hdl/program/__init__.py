@@ -16,6 +16,7 @@ from firm_hdl.program.deserializer import (
 )
 from firm_hdl.program.lanes import StartLanes, WordLanes, start_lanes
 from firm_hdl.program.lengths import Length, NextMap
+from firm_hdl.program.names import leaf_names, state_names, unique
 from firm_hdl.program.serializer import (
     LENGTH_BITS,
     SerializerProgram,
@@ -24,6 +25,7 @@ from firm_hdl.program.serializer import (
     serializer_program,
 )
 from firm_hdl.program.state import AnyState, Part, Program, State, Transfer
+from firm_hdl.program.table import program_lines, state_remark
 
 __all__ = [
     "LENGTH_BITS",
@@ -47,6 +49,11 @@ __all__ = [
     "align_addend",
     "deserializer_program",
     "distance_to",
+    "leaf_names",
+    "program_lines",
     "serializer_program",
     "start_lanes",
+    "state_names",
+    "state_remark",
+    "unique",
 ]

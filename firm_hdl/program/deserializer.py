@@ -10,6 +10,7 @@ from firm_hdl.plan.tree import Fixed, Plan, Run, Step
 from firm_hdl.program.control import Control, control_of, start_of
 from firm_hdl.program.lanes import StartLanes, start_lanes, word_lanes
 from firm_hdl.program.lengths import Length, NextMap, length_of
+from firm_hdl.program.names import state_names, unique
 from firm_hdl.program.state import Program, State, common_fields, repeated_leaves
 
 __all__ = [
@@ -138,11 +139,12 @@ def deserializer_program(plan: Plan, *, has_leaves: bool = True) -> Deserializer
     starts = start_lanes(plan)
     items, map_ = word_lanes(plan, starts)
     number = len(plan.steps)
-    end = DeserializerState(number=number, at_end=True, last_offset=-1, map_offset=1)
+    *names, end_name = unique([*state_names(plan), "packet_end"])
+    end = DeserializerState(number=number, name=end_name, at_end=True, last_offset=-1, map_offset=1)
     leading = len(list(takewhile(lambda s: isinstance(s, Step) and not s.bytes, plan.steps)))
     states = tuple(
-        _state(plan, index, control, is_leading=index < leading, has_leaves=has_leaves)
-        for index in range(number)
+        _state(plan, index, name, control, is_leading=index < leading, has_leaves=has_leaves)
+        for index, name in enumerate(names)
     )
     parts = [part for step in plan.steps if isinstance(step, Step) for part in step.parts]
     return DeserializerProgram(
@@ -161,7 +163,13 @@ def deserializer_program(plan: Plan, *, has_leaves: bool = True) -> Deserializer
 
 
 def _state(
-    plan: Plan, number: int, control: Sequence[Control], *, is_leading: bool, has_leaves: bool
+    plan: Plan,
+    number: int,
+    name: str,
+    control: Sequence[Control],
+    *,
+    is_leading: bool,
+    has_leaves: bool,
 ) -> DeserializerState:
     mine, bus = control[number], plan.bus_bytes
     step, exits = mine.item, mine.exits
@@ -179,7 +187,7 @@ def _state(
     elif mine.body is not None:
         body_start = _next(plan, NextMap(1, bus - 1))
     own = _next_map(plan, number)
-    fields = common_fields(plan, number, mine)
+    fields = common_fields(plan, number, name, mine)
     if mine.begin is not None:
         fields["length"] = _length(plan, control, number, has_leaves=has_leaves)
     places = step.places if isinstance(step, Step) else ()

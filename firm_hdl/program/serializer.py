@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from firm_hdl.plan.tree import Fixed, Part, Plan, Run, Step
 from firm_hdl.program.control import Control, control_of, start_of
 from firm_hdl.program.lanes import start_lanes, word_lanes
+from firm_hdl.program.names import state_names
 from firm_hdl.program.state import Program, State, common_fields
 from firm_hdl.timing.rings import ends_in_tail, first_step, may_end_empty, most_beats
 
@@ -100,7 +101,10 @@ def serializer_program(plan: Plan) -> SerializerProgram:
     items, map_ = word_lanes(plan, start_lanes(plan))
     return SerializerProgram(
         plan=plan,
-        states=tuple(_state(plan, number, each) for number, each in enumerate(control)),
+        states=tuple(
+            _state(plan, number, name, each)
+            for number, (name, each) in enumerate(zip(state_names(plan), control, strict=True))
+        ),
         start=start,
         most_counted=(1 << LENGTH_BITS) - 1,
         items=items,
@@ -110,8 +114,8 @@ def serializer_program(plan: Plan) -> SerializerProgram:
     )
 
 
-def _state(plan: Plan, number: int, control: Control) -> SerializerState:
-    bus, fields = plan.bus_bytes, common_fields(plan, number, control)
+def _state(plan: Plan, number: int, name: str, control: Control) -> SerializerState:
+    bus, fields = plan.bus_bytes, common_fields(plan, number, name, control)
     align, two_words, counted = fields["align"], fields["two_word_map"], fields["is_counted"]
     tail = len(plan.steps) - 1 if ends_in_tail(plan) else None
     may_end = any(each.to in (None, tail) for each in control.exits)

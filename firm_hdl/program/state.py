@@ -73,6 +73,8 @@ class State:
     Attributes
     ----------
     number : int
+    name : str
+        Identifier, unique in the program, after the leaves that the state handles.
     body : Transition or None
         Into the body of the run or loop that `length` counts, or to the next word of the same run.
     exits : tuple of Transition
@@ -96,6 +98,7 @@ class State:
     """
 
     number: int
+    name: str
     body: Transition | None = None
     exits: tuple[Transition, ...] = ()
     is_words: bool = False
@@ -190,10 +193,15 @@ class Program(Generic[AnyState]):
         return max([1, *most])
 
 
-def common_fields(plan: Plan, number: int, control: Control) -> dict[str, Any]:
+def common_fields(plan: Plan, number: int, name: str, control: Control) -> dict[str, Any]:
     """Return the fields that states of both directions have."""
     step = control.item
-    fields: dict[str, Any] = {"number": number, "body": control.body, "exits": control.exits}
+    fields: dict[str, Any] = {
+        "number": number,
+        "name": name,
+        "body": control.body,
+        "exits": control.exits,
+    }
     if isinstance(step, Run):
         word = Transfer(leaf=step.leaf, run=step)
         # The state before has aligned the items that a length counts.

@@ -3,37 +3,64 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from textwrap import shorten
 
 from firm_hdl.plan import Plan
-from firm_hdl.program.deserializer import DeserializerState, NextPosition, deserializer_program
+from firm_hdl.program.deserializer import (
+    DeserializerProgram,
+    DeserializerState,
+    NextPosition,
+    deserializer_program,
+)
 from firm_hdl.program.lengths import Length
-from firm_hdl.program.serializer import SerializerState, WireByte, serializer_program
+from firm_hdl.program.serializer import (
+    SerializerProgram,
+    SerializerState,
+    WireByte,
+    serializer_program,
+)
 from firm_hdl.program.state import AnyState, Program, State, Transfer
 
-__all__ = ["program_text"]
+__all__ = ["program_lines", "program_text", "state_remark"]
 
 LEGEND = """\
-# One line a state: what it takes, and where it leads. "map" and "items" are the words of a state:
-# of its fixed part, and of the items of a run or of their rest. "unit 4": their bytes start and end
-# at multiples of 4. "to 2 (+8)": the last byte of state 2 is 8 bytes after that of this state; with
-# "align 4 | 3", then down to a multiple of 4, and 3 more. "while level 0": while the outermost loop
-# has elements left.
+# One line a state: its number and name, what it takes, and where it leads. "map" and "items" are
+# the words of a state: of its fixed part, and of the items of a run or of their rest. "unit 4":
+# their bytes start and end at multiples of 4. "to 2 (+8)": the last byte of state 2 is 8 bytes
+# after that of this state; with "align 4 | 3", then down to a multiple of 4, and 3 more. "while
+# level 0": while the outermost loop has elements left.
 # "a.length:0..3": bytes 0 to 3 of a leaf, from the first lane on.
 """
 
 
 def program_text(plan: Plan) -> str:
     """Return the programs of the deserializer and the serializer of a plan."""
-    packets, leaves = deserializer_program(plan), serializer_program(plan)
     lines = [f"{LEGEND}{plan.message} on {plan.wire}, bus of {plan.bus_bytes} bytes"]
-    ends = f", lengths end in {_lanes(packets.length_lanes)}" if packets.lengths else ""
-    lines += [f"deserializer: {_head(packets)}{ends}"]
-    for state in packets.states:
-        lines.append(f"  {state.number}: {'; '.join(_deserializer(plan, state))}")
-    lines += [f"serializer: {_head(leaves)}, at most {leaves.most_beats} beats a state"]
-    for each in leaves.states:
-        lines.append(f"  {each.number}: {'; '.join(_serializer(plan, each))}")
+    lines += program_lines(deserializer_program(plan))
+    lines += program_lines(serializer_program(plan))
     return "\n".join(lines) + "\n"
+
+
+def program_lines(program: DeserializerProgram | SerializerProgram) -> list[str]:
+    """Return a line for the program, and one for each of its states."""
+    plan = program.plan
+    if isinstance(program, DeserializerProgram):
+        ends = f", lengths end in {_lanes(program.length_lanes)}" if program.lengths else ""
+        lines = [f"deserializer: {_head(program)}{ends}"]
+        rows = ((each, _deserializer(plan, each)) for each in program.states)
+        return lines + [_line(*row) for row in rows]
+    lines = [f"serializer: {_head(program)}, at most {program.most_beats} beats a state"]
+    return lines + [_line(each, _serializer(plan, each)) for each in program.states]
+
+
+def _line(state: State, texts: Iterator[str]) -> str:
+    return f"  {state.number} {state.name}: {'; '.join(texts)}"
+
+
+def state_remark(plan: Plan, state: State) -> str:
+    """Return what a state takes: the comment beside its signal, in at most 200 characters."""
+    takes = "; ".join(_common(plan, state)) or "no bytes"
+    return shorten(f"step {state.number}: {takes}", 200, placeholder=" ...")
 
 
 def _head(program: Program[AnyState]) -> str:

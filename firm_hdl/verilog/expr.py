@@ -192,9 +192,10 @@ class Values(expr.Values):
             return self._division(cell, width, signed)
         if kind in _COMPARISONS:
             bit = self._compare(cell)
+        elif ports["A"] and all(chunk.width == 1 for chunk in ports["A"]):
+            bit = infix(_REDUCTIONS[kind], *(self.value((chunk,)) for chunk in ports["A"]))
         else:
-            operand = self.value(ports["A"])
-            bit = operand if spec_width(ports["A"]) == 1 else unary(_REDUCTIONS[kind], operand)
+            bit = unary(_REDUCTIONS[kind], self.value(ports["A"]))
         return bit if width == 1 else _joined([Expression(f"{width - 1}'d0"), bit])
 
     def _chosen_bit(self, ports: Mapping[str, Spec]) -> Expression | None:

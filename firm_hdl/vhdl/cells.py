@@ -12,7 +12,7 @@ from operator import eq, ge, gt, le, lt, ne
 from typing import Protocol
 
 from firm_hdl.rtlil.ir import Cell, Spec, spec_width
-from firm_hdl.vhdl.text import Expression, atom, call, infix, literal, prefix
+from firm_hdl.vhdl.text import Expression, atom, call, chain, infix, literal, prefix
 from firm_hdl.vhdl.uses import int_parameter, output, trim
 
 __all__ = ["Cells"]
@@ -90,8 +90,9 @@ class Cells:
             b = self._condition(trim(ports["B"], 1), inverted=inverted)
             return infix("and" if (kind == "$and") != inverted else "or", a, b)
         if kind in ("$reduce_or", "$reduce_bool") and ports["A"]:
-            if spec_width(ports["A"]) == 1:
-                return self._condition(ports["A"], inverted=inverted)
+            if all(chunk.width == 1 for chunk in ports["A"]):
+                bits = [self._condition((chunk,), inverted=inverted) for chunk in ports["A"]]
+                return chain("and" if inverted else "or", *bits)
             operand = self._values.unsigned(ports["A"])
             return infix("=" if inverted else "/=", operand, atom("0"))
         text = self.logic(cell)
@@ -115,8 +116,9 @@ class Cells:
         if kind in COMPARISONS:
             return self._compare_bits(cell) or call("to_std_logic", self._compare(cell))
         if kind in _REDUCTIONS:
-            if spec_width(ports["A"]) < 2:
-                return values.logic(ports["A"]) if ports["A"] else atom("'0'")
+            if all(chunk.width == 1 for chunk in ports["A"]):
+                bits = [values.logic((chunk,)) for chunk in ports["A"]]
+                return chain(_REDUCTIONS[kind], *bits) if bits else atom("'0'")
             return prefix(_REDUCTIONS[kind], values.unsigned(ports["A"]))
         if kind == "$mux":
             return self._chosen_bit(*(trim(ports[port], 1) for port in "SBA"))

@@ -394,11 +394,13 @@ def _fold(graph: Graph, is_foldable: Callable[[Cell, int], bool]) -> Graph:
 
 
 def _may_repeat(cell: Cell, uses: int, folded: dict[str, Cell]) -> bool:
-    """Return whether an expression may have copies: of one or two bits, or a simple comparison."""
+    """Return whether an expression may have copies: of a few bits, or a simple comparison."""
     specs = [spec for port, spec in cell.ports.items() if port != "Y"]
-    if any(len(spec) > 1 for spec in specs):
-        return False
     if any(isinstance(c, Slice) and c.wire in folded for spec in specs for c in spec):
+        return False
+    if cell.kind in ("$reduce_or", "$reduce_bool") and uses <= _MAX_REPEATS:
+        return spec_width(cell.ports["A"]) <= _MAX_REPEATS
+    if any(len(spec) > 1 for spec in specs):
         return False
     if cell.kind == "$not":
         return spec_width(cell.ports["A"]) == 1

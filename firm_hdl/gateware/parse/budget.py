@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from amaranth.hdl import Const, Module, Mux, Signal, Value
-from amaranth.lib import wiring
+from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.positions import any_of, pick
@@ -32,8 +32,8 @@ class Budget(wiring.Component):
 
     Members
     -------
-    step : In(states)
-        The state of the sequencer, one-hot.
+    step : In(StructLayout)
+        Whether the sequencer is in a state, by its name: one-hot.
     starts : In(1)
         The state is executed, and its length is charged.
     cancels : In(1)
@@ -55,7 +55,7 @@ class Budget(wiring.Component):
         }
         super().__init__(
             {
-                "step": In(len(program.states)),
+                "step": In(data.StructLayout({each.name: 1 for each in program.states})),
                 "starts": In(1),
                 "cancels": In(1),
                 "count": In(program.count_bits),
@@ -66,7 +66,7 @@ class Budget(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        claims, step = self.claims, self.step
+        claims, step = self.claims, Value.cast(self.step)
         total = max(claim.budget or 0 for claim in claims.values())
         # Items may shorten later padding by so many bytes: each length claims as many less.
         padding_credit = max(claim.padding_credit for claim in claims.values())

@@ -269,15 +269,15 @@ def length_of_step(
         return cases[0][1] if len(cases) == 1 and not exact else pick(cases, width)
 
     over = select(lambda each: each.over)
-    return StepLength(
-        entry=entry,
-        count=table.count,
-        zero=entry.zero,
-        over=over,
-        charged=select(lambda each: each.charged, exact=True) & ~over,
-        run_skips=select(lambda each: each.skips if each.level is None else None, exact=True),
-        loop_skips=select(lambda each: None if each.level is None else each.skips, exact=True),
-        at_most_one_pass=select(lambda each: each.at_most_one_pass),
-        two_passes=select(lambda each: each.two_passes),
-        rest=select(lambda each: each.rest if each.level is None else None, program.rest_bits),
-    )
+    values = {
+        "over": over,
+        "charged": select(lambda each: each.charged, exact=True) & ~over,
+        "run_skips": select(lambda each: each.skips if each.level is None else None, exact=True),
+        "loop_skips": select(lambda each: None if each.level is None else each.skips, exact=True),
+        "at_most_one_pass": select(lambda each: each.at_most_one_pass),
+        "two_passes": select(lambda each: each.two_passes),
+        "rest": select(lambda each: each.rest if each.level is None else None, program.rest_bits),
+    }
+    named = {name: Signal(len(value), name=f"length_{name}") for name, value in values.items()}
+    m.d.comb += [named[name].eq(value) for name, value in values.items()]
+    return StepLength(entry=entry, count=table.count, zero=entry.zero, **named)

@@ -135,9 +135,11 @@ def next_positions(
             mask.eq(chosen("mask", 3)),
             low.eq(chosen("low", len(low))),
         ]
+        result = ring.position(f"{kind}_last")
         if isinstance(phase, int):
-            return (total & ~Cat(mask, Const(0, len(total) - 3))) | low
-        pad, result = Signal(3, name=f"{kind}_pad"), ring.position(f"{kind}_last")
+            m.d.comb += result.eq((total & ~Cat(mask, Const(0, len(total) - 3))) | low)
+            return result
+        pad = Signal(3, name=f"{kind}_pad")
         m.d.comb += [pad.eq((phase - total) & mask), result.eq(total + pad + low)]
         return result
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from enum import Enum
+
 from amaranth.hdl import Module, Mux, Signal, Value
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
@@ -9,6 +11,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware.positions import Ring
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.plan import Plan
+from firm_hdl.program import state_names
 
 __all__ = ["OrderQueue", "order_layout"]
 
@@ -18,7 +21,7 @@ def order_layout(plan: Plan) -> data.StructLayout:
 
     Members
     -------
-    step : range(steps)
+    step : enumeration of the steps
     blank : unsigned(1)
         The order has no step, and writes no leaf.
     items_at, map_at : position, without the lap bit
@@ -45,9 +48,10 @@ def order_layout(plan: Plan) -> data.StructLayout:
         The result of the packet that ends.
     """
     ring, bus = Ring(plan), plan.bus_bytes
+    steps = {name: number for number, name in enumerate(state_names(plan))}
     return data.StructLayout(
         {
-            "step": range(max(2, len(plan.steps))),
+            "step": Enum("Step", steps),
             "blank": 1,
             "items_at": ring.bits - 1,
             "map_at": ring.bits - 1,

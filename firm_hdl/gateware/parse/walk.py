@@ -176,6 +176,7 @@ class Walk:
         )
         trailing, within = Signal(name="trailing"), ring.position("nul_within")
         too_many = exceeds(self.left[:-1], self.program.plan.max_trailing_bytes)
+        good = Signal(name="bytes_good")
         wrong_header = any_of(
             [self.flow.step[state] & flags.mismatch[k] for k, state in enumerate(flags.states)]
         )
@@ -191,6 +192,7 @@ class Walk:
             header.eq(wrong_header & (arrival.limit != self.first_at)),
             cut.eq(arrival.ended & ~self.present),
             trailing.eq(self.present & too_many),
+            good.eq(self.present & ~wrong_nul & ~wrong_header),
         ]
         return Findings(
             header=header,
@@ -199,7 +201,7 @@ class Walk:
             cut=cut,
             trailing=trailing,
             over=(self.begins_run | self.begins_loop) & self.length.over,
-            good=self.present & ~wrong_nul & ~wrong_header,
+            good=good,
         )
 
     def advance(
