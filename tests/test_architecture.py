@@ -28,6 +28,7 @@ MAY_IMPORT = {
     # The netlist, the names and the statements are those of the VHDL.
     "verilog": {"names", "rtlil", "vhdl"},
     "rtps": set[str](),
+    "ethernet": set[str](),
     # Know messages.
     "model": {"errors"},
     # `wire`: a type that no wire can carry is refused when it is loaded.
@@ -57,7 +58,7 @@ MAY_IMPORT["node"] = {
     # Verilog are read by GHDL and Verilator.
     *("firm_hdl", "errors", "files", "garbage", "names", "rtlil", "rtps", "terminal", "vhdl"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "timing", "estimates"),
-    *("gateware", "sim", "export", "equivalence", "jobs"),
+    *("ethernet", "gateware", "sim", "export", "equivalence", "jobs"),
 }
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {
