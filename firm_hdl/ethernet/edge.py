@@ -11,6 +11,7 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.ethernet.arp import ArpCache, ArpReceiver
 from firm_hdl.ethernet.datagrams import DatagramSignature
+from firm_hdl.ethernet.drops import DROPS
 from firm_hdl.ethernet.header import HeaderReceiver
 from firm_hdl.ethernet.icmp import EchoReceiver
 from firm_hdl.ethernet.igmp import IgmpHost
@@ -21,22 +22,7 @@ from firm_hdl.ethernet.slots import FrameSlots
 from firm_hdl.ethernet.streams import SymbolSignature
 from firm_hdl.ethernet.udp import DatagramReader, UdpReceiver, UdpTransmitter
 
-__all__ = ["DROPS", "EthernetEdge", "EthernetSettings", "drops_layout"]
-
-DROPS = {
-    "damaged": "frames with a wrong check sequence, without start, or with an error of the PHY",
-    "runt": "frames of fewer than 64 bytes",
-    "giant": "frames of more than 1518 bytes",
-    "other": "good frames for others, of other protocols, or empty",
-    "malformed": "datagrams with a wrong header of IPv4",
-    "checksum": "messages of UDP, ICMP and IGMP with a wrong checksum or length",
-    "port": "datagrams for ports that the node does not have",
-    "fragment": "fragments and unfinished datagrams that could not be put together",
-    "full": "datagrams and requests without room in memory",
-    "unresolved": "datagrams whose destination did not answer ARP",
-    "unfit": "datagrams to send that are too large, or have another length than stated",
-}
-"""Why the edge drops something; `unresolved` and `unfit` are of the way out."""
+__all__ = ["EthernetEdge", "EthernetSettings", "drops_layout"]
 
 
 def drops_layout() -> data.StructLayout:

@@ -205,7 +205,8 @@ class DatagramReader(wiring.Component):
         length = Signal(16)
         m.d.comb += [
             out.payload.data.eq(byte),
-            out.payload.last_be.eq(out.payload.last),
+            out.payload.last.eq(last[1]),
+            out.payload.last_be.eq(last[1]),
             out.payload.length.eq(length),
             out.payload.dst_port.eq(head[16:32]),
             out.payload.src_port.eq(head[32:48]),
@@ -231,7 +232,6 @@ class DatagramReader(wiring.Component):
             with m.State("BODY"):
                 m.d.comb += [
                     out.valid.eq(there[1]),
-                    out.payload.last.eq(last[1]),
                     moves.eq(~there[1] | out.ready),
                     takes.eq(moves & (left != 0)),
                 ]

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 
 from amaranth.sim import Simulator
 
-from firm_hdl.ethernet import DROPS, EthernetEdge, EthernetSettings
+from firm_hdl.ethernet.drops import DROPS
+from firm_hdl.ethernet.edge import EthernetEdge, EthernetSettings
 
 MAC, HOST_MAC, OTHER_MAC = "02:00:00:00:00:01", "02:11:22:33:44:55", "02:66:77:88:99:aa"
 NODE, HOST, OTHER, GROUP = "192.168.1.50", "192.168.1.9", "192.168.1.77", "239.255.0.1"
