@@ -28,7 +28,6 @@ MAY_IMPORT = {
     # The netlist, the names and the statements are those of the VHDL.
     "verilog": {"names", "rtlil", "vhdl"},
     "rtps": set[str](),
-    "ethernet": set[str](),
     # Know messages.
     "model": {"errors"},
     # `wire`: a type that no wire can carry is refused when it is loaded.
@@ -42,6 +41,8 @@ MAY_IMPORT = {
     "timing": {"plan"},
     "program": {"plan", "timing", "wire"},
     "gateware": {"model", "wire", "plan", "timing", "program"},
+    # Its block RAMs.
+    "ethernet": {"gateware"},
     # `jobs`: compilers.
     "sim": {
         *("errors", "garbage", "jobs", "rtlil", "verilog", "model", "wire", "plan", "gateware"),

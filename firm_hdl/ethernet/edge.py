@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from amaranth.hdl import Const, Module, Signal
+from amaranth.hdl import Module, Signal
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.ethernet.arp import ArpCache, ArpReceiver
 from firm_hdl.ethernet.datagrams import DatagramSignature
 from firm_hdl.ethernet.drops import DROPS
+from firm_hdl.ethernet.fragments import Reassembler
 from firm_hdl.ethernet.header import HeaderReceiver
 from firm_hdl.ethernet.icmp import EchoReceiver
 from firm_hdl.ethernet.igmp import IgmpHost
@@ -49,7 +50,10 @@ class EthernetSettings:
     groups : tuple of int
         Groups that the node joins.
     memory_bytes : int
-        For whole datagrams that wait to be read.
+        For whole datagrams that wait to be read: a power of two, at least 2,048.
+    fragment_bytes : int
+        For datagrams in fragments, as a :class:`firm_hdl.ethernet.fragments.Reassembler` has it. 0:
+        fragments are dropped.
     tick_bits : int
         A tick has ``1 << tick_bits`` cycles. It should be 50 to 100 ms: 23 bits at 125 MHz.
     """
@@ -61,6 +65,7 @@ class EthernetSettings:
     ports: tuple[int, ...]
     groups: tuple[int, ...] = ()
     memory_bytes: int = 4096
+    fragment_bytes: int = 0
     tick_bits: int = 23
 
 
@@ -124,7 +129,7 @@ class EthernetEdge(wiring.Component):
         m.submodules.check = check = PayloadCheck(own.ports)
         m.submodules.echo = echo = EchoReceiver()
         m.submodules.udp_receiver = udp = UdpReceiver(own.memory_bytes)
-        m.submodules.reader = reader = DatagramReader(1)
+        m.submodules.reader = reader = DatagramReader(2 if own.fragment_bytes else 1)
         m.submodules.udp_transmitter = transmitter = UdpTransmitter(own.address)
         m.submodules.replies = replies = FrameSlots(4, header_bytes=16)
         m.submodules.datagrams = datagrams = FrameSlots(2, header_bytes=32)
@@ -170,6 +175,25 @@ class EthernetEdge(wiring.Component):
         wiring.connect(m, udp.store, reader.stores[0])
         wiring.connect(m, reader.datagrams, wiring.flipped(self.received))
 
+        dropped = Signal()
+        if own.fragment_bytes:
+            m.submodules.reassembler = reassembler = Reassembler(own.fragment_bytes)
+            m.d.comb += [
+                *_watch_datagrams(ipv4.datagrams, reassembler.datagrams),
+                reassembler.check.eq(check.state),
+                reassembler.right.eq(check.right),
+                reassembler.tick.eq(tick),
+                check.load.eq(reassembler.load),
+                check.loaded.eq(reassembler.loaded),
+                dropped.eq(reassembler.dropped),
+            ]
+            wiring.connect(m, reassembler.store, reader.stores[1])
+        else:
+            came, about = ipv4.datagrams.bytes, ipv4.datagrams.header
+            ends = came.valid & came.payload.end & came.payload.good
+            is_fragment = (about.offset != 0) | about.more
+            m.d.comb += dropped.eq(ends & about.udp & is_fragment)
+
         # Requests of ARP and of an echo never come at the same time, nor do their replies.
         wiring.connect(m, replies.reader, sender.replies)
         wiring.connect(m, datagrams.reader, sender.datagrams)
@@ -205,7 +229,7 @@ class EthernetEdge(wiring.Component):
             "malformed": ipv4.malformed,
             "checksum": echo.wrong | udp.wrong,
             "port": udp.no_port,
-            "fragment": Const(0),
+            "fragment": dropped,
             "full": arp.full | echo.full | udp.full,
             "unresolved": sender.unresolved,
             "unfit": transmitter.unfit,

@@ -6,6 +6,8 @@ from amaranth.hdl import Array, Cat, Module, Signal
 from amaranth.lib import memory, wiring
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.gateware.memories import BlockMemory
+
 __all__ = [
     "ARP_REPLY",
     "DATAGRAM",
@@ -122,11 +124,8 @@ class FrameSlots(wiring.Component):
         m.submodules.headers = headers = memory.Memory(
             shape=8, depth=self.slots * self.header_bytes, init=[]
         )
-        m.submodules.payloads = payloads = memory.Memory(
-            shape=8, depth=self.slots * PAYLOAD_BYTES, init=[]
-        )
+        payloads = BlockMemory(m, 8, self.slots * PAYLOAD_BYTES)
         header_in, header_out = headers.write_port(), headers.read_port(domain="comb")
-        payload_in, payload_out = payloads.write_port(), payloads.read_port()
         # Of the slots, the one that is written, and the one that is read.
         written, read = Signal(range(self.slots)), Signal(range(self.slots))
         full = Signal(self.slots)
@@ -139,16 +138,16 @@ class FrameSlots(wiring.Component):
             header_in.addr.eq(Cat(came.header_at[:header_bits], written)),
             header_in.data.eq(came.header_byte),
             header_in.en.eq(came.header_write & free),
-            payload_in.addr.eq(Cat(came.payload_at, written)),
-            payload_in.data.eq(came.payload_byte),
-            payload_in.en.eq(came.payload_write & free),
+            payloads.write_at.eq(Cat(came.payload_at, written)),
+            payloads.write_word.eq(came.payload_byte),
+            payloads.writes.eq(came.payload_write & free),
             goes.full.eq(full.bit_select(read, 1)),
             goes.kind.eq(kinds[read]),
             header_out.addr.eq(Cat(goes.header_at[:header_bits], read)),
             goes.header_byte.eq(header_out.data),
-            payload_out.addr.eq(Cat(goes.payload_at, read)),
-            payload_out.en.eq(goes.payload_moves),
-            goes.payload_byte.eq(payload_out.data),
+            payloads.read_at.eq(Cat(goes.payload_at, read)),
+            payloads.reads.eq(goes.payload_moves),
+            goes.payload_byte.eq(payloads.word),
         ]
         with m.If(came.commit & free):
             m.d.sync += [

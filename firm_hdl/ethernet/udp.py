@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal
-from amaranth.lib import memory, wiring
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.ethernet.datagrams import DatagramSignature
 from firm_hdl.ethernet.ipv4 import UDP, Ipv4Signature, check_state_layout
 from firm_hdl.ethernet.slots import DATAGRAM, SlotWriterSignature
 from firm_hdl.ethernet.streams import add_word
+from firm_hdl.gateware.memories import BlockMemory
 
 __all__ = [
     "MOST_PAYLOAD",
@@ -101,8 +102,7 @@ class UdpReceiver(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         came, header, check = self.datagrams.bytes, self.datagrams.header, self.check
-        m.submodules.ring = ring = memory.Memory(shape=8, depth=self.memory_bytes, init=[])
-        write, read = ring.write_port(), ring.read_port()
+        ring = BlockMemory(m, 8, self.memory_bytes)
         # Bytes from `head` to `tail` are those of datagrams that count.
         at, tail, head = (Signal(range(self.memory_bytes), name=n) for n in ("at", "tail", "head"))
         level = Signal(range(self.memory_bytes))
@@ -113,12 +113,12 @@ class UdpReceiver(wiring.Component):
             ours.eq(header.udp & (header.offset == 0) & ~header.more),
             is_source.eq((header.place >= 12) & (header.place < 16)),
             in_payload.eq(header.place == 20),
-            write.addr.eq(at),
-            write.data.eq(came.payload.data),
-            write.en.eq(came.valid & ~came.payload.end & ours & room & (is_source | in_payload)),
+            ring.write_at.eq(at),
+            ring.write_word.eq(came.payload.data),
+            ring.writes.eq(came.valid & ~came.payload.end & ours & room & (is_source | in_payload)),
             self.store.full.eq(waiting != 0),
-            read.addr.eq(head),
-            read.en.eq(self.store.moves),
+            ring.read_at.eq(head),
+            ring.reads.eq(self.store.moves),
         ]
         m.d.sync += [
             level.eq(tail - head),
@@ -129,14 +129,14 @@ class UdpReceiver(wiring.Component):
             self.full.eq(0),
         ]
         with m.If(self.store.moves):
-            m.d.sync += [self.store.byte.eq(read.data), head.eq(head + self.store.takes)]
+            m.d.sync += [self.store.byte.eq(ring.word), head.eq(head + self.store.takes)]
         with m.If(came.valid & (header.place == 11)):
             # The largest frame has room, so the size need not be known.
             m.d.sync += [
                 at.eq(tail),
                 room.eq((level < self.memory_bytes - MOST_PAYLOAD - 64) & (waiting != self.most)),
             ]
-        with m.Elif(write.en):
+        with m.Elif(ring.writes):
             m.d.sync += at.eq(at + 1)
         with m.If(ends):
             right = self.right & (check.length == header.length)

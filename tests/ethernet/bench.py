@@ -171,6 +171,8 @@ def run(steps, own=None, *, holes=0.0, stalls=0.0, slow=0.0, gap=12, after=300, 
                     part = bytearray()
             for name in DROPS:
                 seen.drops[name] += drops[name]
+                if drops[name]:
+                    seen.times.append((name, now[0]))
             ready, goes = int(rnd.random() >= stalls), int(rnd.random() >= slow)
 
     simulator = Simulator(edge)

@@ -214,3 +214,34 @@ def test_addresses_are_asked_for_and_forgotten():
         (GROUP_MAC, GROUP, b"group"),
     ]
     assert seen.drops == {"unresolved": 2}
+
+
+def fragments(size, ident, cut=64, src=HOST):
+    """Return the frames of a datagram in fragments."""
+    whole = ip(id=ident, src=src)[IP] / UDP(sport=5000, dport=7411) / Raw(payload(size))
+    return [
+        wire(Ether(dst=MAC, src=HOST_MAC) / part) for part in scapy.fragment(whole, fragsize=cut)
+    ]
+
+
+def test_fragments_in_order_become_datagrams_and_others_are_dropped():
+    own = settings(fragment_bytes=4096, tick_bits=11)
+    a, b, c = fragments(200, 1), fragments(150, 1, src=OTHER), fragments(90, 2)
+    wrong = fragments(100, 3)
+    # The checksum of the first fragment's header is that of all.
+    wrong[1] = changed(Ether(wrong[1][8:-4]), 40)
+    small = [wire(udp(size)) for size in (5, 6)]
+    lost, late = fragments(200, 4), fragments(180, 5)
+    steps = [
+        *(a[0], b[0], small[0], a[1], b[1], a[2], small[1], a[3], b[2]),
+        *(Pause(400), *wrong),
+        *c,
+        *(lost[0], lost[2], lost[3]),
+        *(late[0], Pause(5 << 11), *late[1:]),
+    ]
+    seen = run(steps, own, after=800)
+    others = [(payload(150), number(OTHER), 5000, 7411)]
+    assert sorted(seen.datagrams) == sorted([*come(200, 5, 6, 90), *others])
+    # Of the wrong one, the last; of the lost one, two; of the late one, itself and its rest.
+    assert seen.drops == {"fragment": 1 + 2 + 1 + len(late) - 1}
+    assert seen.frames == []
