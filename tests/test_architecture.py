@@ -44,6 +44,8 @@ MAY_IMPORT = {
     "program": {"names", "plan", "timing", "wire"},
     # `names`: the attribute of a signal's comment.
     "gateware": {"names", "model", "wire", "plan", "timing", "program"},
+    # Its block RAMs.
+    "ethernet": {"gateware"},
     # `jobs`: compilers.
     "sim": {
         *("errors", "garbage", "jobs", "rtlil", "verilog", "model", "wire", "plan", "gateware"),
@@ -60,7 +62,7 @@ MAY_IMPORT["node"] = {
     # Verilog are read by GHDL and Verilator.
     *("firm_hdl", "errors", "files", "garbage", "names", "rtlil", "rtps", "terminal", "vhdl"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "timing", "estimates"),
-    *("gateware", "sim", "export", "equivalence", "jobs"),
+    *("ethernet", "gateware", "sim", "export", "equivalence", "jobs"),
 }
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {

@@ -11,11 +11,13 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any, Literal
 
-from firm_hdl.node.description import Description
+from firm_hdl.ethernet.drops import DROPS
+from firm_hdl.node.description import Description, Link
 
 __all__ = [
     "CONTROL_BYTES",
     "COUNTERS_FROM",
+    "ETHERNET_COUNTERS",
     "FIFO_COUNTERS",
     "GATE_COUNTERS",
     "IDENTITY",
@@ -28,6 +30,8 @@ __all__ = [
     "Operation",
     "Register",
     "Result",
+    "ethernet_counter",
+    "link_counters",
     "nominal_rate",
     "registers",
 ]
@@ -179,6 +183,10 @@ COUNTERS_FROM = 16
 LINK_COUNTERS = ("passed", "lost", "late", "cut", "stray", "malformed", "full", "large", "unsent")
 """Counters of every link; those that it has no use for stay 0."""
 
+ETHERNET_COUNTERS = tuple(f"ethernet_{name}" for name in DROPS)
+"""Counters of a link that has an Ethernet of its own. They say why frames were dropped there; a
+message that is lost with one is counted by the link, or by the host."""
+
 NODE_COUNTERS = ("unknown", "control", "control_full")
 """Messages of topics that the node does not have; control requests; those without room."""
 
@@ -195,6 +203,16 @@ _BYTES = ("bytes_low", "bytes_high")
 """Bytes of the packets that passed, as two registers."""
 
 
+def ethernet_counter(name: str) -> str:
+    """Return the counter of one of :data:`firm_hdl.ethernet.drops.DROPS`."""
+    return f"ethernet_{name}"
+
+
+def link_counters(link: Link) -> tuple[str, ...]:
+    """Return the counters of a link. A simulated one has those of the link that it stands for."""
+    return LINK_COUNTERS + (ETHERNET_COUNTERS if link.ethernet != "stream" else ())
+
+
 def registers(description: Description) -> tuple[Register, ...]:
     """List all registers of a node, in the order of their numbers."""
     found = [
@@ -206,7 +224,7 @@ def registers(description: Description) -> tuple[Register, ...]:
         number = COUNTERS_FROM + len(found) - len(IDENTITY)
         found.append(Register(number=number, owner=owner, part=part, name=name, topic=topic))
 
-    for name in LINK_COUNTERS:
+    for name in link_counters(description.link):
         add("link", "link", name, 0)
     for name in NODE_COUNTERS:
         add("node", "node", name, 0)

@@ -18,10 +18,13 @@ from firm_hdl.wire import lay_out
 
 __all__ = [
     "CONTROL_TOPIC",
+    "DATAGRAM_BYTES",
+    "ETHERNETS",
     "LINKS",
     "SERVICE_PARTS",
     "Description",
     "Direction",
+    "EthernetKind",
     "Hdl",
     "IoPins",
     "Kind",
@@ -38,6 +41,11 @@ Direction: TypeAlias = Literal["in", "out"]
 """The way of packets: `in` from the host to the node, `out` from the node to the host."""
 
 Language: TypeAlias = Literal["vhdl", "verilog", "systemverilog"]
+
+EthernetKind: TypeAlias = Literal["stream", "gmii", "rgmii", "mii"]
+
+ETHERNETS: tuple[EthernetKind, ...] = ("stream", "gmii", "rgmii", "mii")
+"""Where a link `udp` ends: at datagrams for a core below, or at the pins of a PHY."""
 
 LinkKind: TypeAlias = Literal["stream", "udp", "uart"]
 
@@ -166,6 +174,15 @@ class Link:
         IPv4 address of the host (`udp`). Empty: the one from which the last valid frame came.
     host_port : int
         Port of the host (`udp`); counts only with `host`.
+    ethernet : EthernetKind
+        Where the hardware ends (`udp`).
+    mac : str
+        The node's address in hardware, 6 bytes in hexadecimal with ``:`` between them; this and
+        what follows only with an `ethernet` that is not `stream`.
+    address : str
+        IPv4 address of the node, with the bits of the network: ``192.168.1.50/24``.
+    gateway : str
+        IPv4 address of the way to other networks; empty: there is none.
     baud : int
         Bits per second (`uart`).
     """
@@ -178,7 +195,16 @@ class Link:
     port: int = 7411
     host: str = ""
     host_port: int = 7411
+    ethernet: EthernetKind = "stream"
+    mac: str = ""
+    address: str = ""
+    gateway: str = ""
     baud: int = 1_000_000
+
+    @property
+    def has_ethernet(self) -> bool:
+        """Whether the node has all layers down to the pins of a PHY."""
+        return self.kind == "udp" and self.ethernet != "stream"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from difflib import get_close_matches
 from functools import cache
-from ipaddress import AddressValueError, IPv4Address
+from ipaddress import AddressValueError, IPv4Address, IPv4Interface
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,8 @@ from firm_hdl.metrics import metrics_of
 from firm_hdl.model import WIRE_OF, Action, Interface, Message, Service
 from firm_hdl.names.keywords import KEYWORDS
 from firm_hdl.node.description import (
+    DATAGRAM_BYTES,
+    ETHERNETS,
     LINKS,
     Description,
     Direction,
@@ -420,7 +422,10 @@ NODE_BUS_BYTES = tuple(width for width in BUS_BYTES if width <= 16)
 
 LINK_OPTIONS: dict[str, tuple[str, ...]] = {
     "stream": (),
-    "udp": ("memory_bytes", "packets", "datagram_bytes", "data_bytes", "port", "host", "host_port"),
+    "udp": (
+        *("memory_bytes", "packets", "datagram_bytes", "data_bytes", "port", "host", "host_port"),
+        *("ethernet", "mac", "address", "gateway"),
+    ),
     "uart": ("memory_bytes", "packets", "baud"),
 }
 """The options of each kind of link."""
@@ -467,9 +472,56 @@ def read_link(marked: Marked, entry: Entry, clock_hz: float) -> Link:
         given["host"] = known["host"].checked(_address_problem)
     elif "host_port" in known:
         known["host_port"].error_at_key("'host_port' counts only beside a 'host'")
+    if "ethernet" in known:
+        given["ethernet"] = known["ethernet"].choice(ETHERNETS, "stream")
+    if given.get("ethernet", "stream") != "stream":
+        given |= _read_ethernet(given["ethernet"], known, clock_hz)
+    elif "ethernet" not in known or given["ethernet"] == known["ethernet"].value.value:
+        for name in _OF_ETHERNET:
+            if name in known:
+                known[name].error_at_key(f"'{name}' counts only beside an 'ethernet' with pins")
     link = Link(**given)
     _check(link, known, entry, clock_hz)
     return link
+
+
+_OF_ETHERNET = ("mac", "address", "gateway")
+
+_LEAST_MII_HZ = 25e6
+_GIGABIT_HZ = 125e6
+
+
+def _read_ethernet(kind: str, known: dict[str, Entry], clock_hz: float) -> dict[str, str]:
+    """Read the addresses of a link with pins, and check what its hardware asks for."""
+    place = known["ethernet"]
+    if kind == "mii" and clock_hz < _LEAST_MII_HZ:
+        place.error("an MII needs a 'clock_mhz' of 25 at least")
+    elif kind != "mii" and clock_hz != _GIGABIT_HZ:
+        place.error(
+            f"a byte per cycle is 1 Gbit/s with a 'clock_mhz' of 125, not {clock_hz / 1e6:g}"
+        )
+    for name, most in (("data_bytes", 1), ("datagram_bytes", DATAGRAM_BYTES)):
+        if name in known and known[name].integer(most, 1) > most:
+            known[name].error(f"'{name}' is at most {most} with 'ethernet: {kind}'")
+    given = {}
+    for name, problem in (("mac", _mac_problem), ("address", _interface_problem)):
+        if name not in known:
+            example = '"02:00:00:00:00:01"' if name == "mac" else "192.168.1.50/24"
+            place.error_at_key(f"'ethernet: {kind}' needs '{name}', such as {example}")
+        elif text := known[name].checked(problem):
+            given[name] = text
+    if "gateway" in known and "address" in given:
+        own = IPv4Interface(given["address"])
+
+        def problem(text: str) -> str:
+            if wrong := _address_problem(text):
+                return wrong
+            if IPv4Address(text) not in own.network or text == str(own.ip):
+                return f"'{text}' is no other machine of {own.network}, the network of 'address'"
+            return ""
+
+        given["gateway"] = known["gateway"].checked(problem)
+    return given
 
 
 def _check(link: Link, known: dict[str, Entry], entry: Entry, clock_hz: float) -> None:
@@ -510,6 +562,34 @@ def with_memory(link: Link, topics: list[Topic], entry: Entry | None) -> Link:
 def _names_memory(entry: Entry) -> bool:
     pairs = entry.value.value
     return not isinstance(pairs, str) and any(key.value == "memory_bytes" for key, _ in pairs)
+
+
+def _mac_problem(text: str) -> str:
+    if not re.fullmatch("[0-9A-Fa-f]{2}(:[0-9A-Fa-f]{2}){5}", text):
+        return f"'{text}' is no address of Ethernet, such as 02:00:00:00:00:01"
+    if int(text[:2], 16) & 1:
+        return f"'{text}' is the address of a group: the lowest bit of its first byte is 1"
+    if not int(text.replace(":", ""), 16):
+        return f"'{text}' is no address that a machine can have"
+    return ""
+
+
+def _interface_problem(text: str) -> str:
+    example = "such as 192.168.1.50/24"
+    address, slash, prefix = text.partition("/")
+    if wrong := _address_problem(address):
+        return wrong
+    if not slash or not re.fullmatch("[0-9]{1,2}", prefix) or not 1 <= int(prefix) <= 31:
+        return (
+            f"'{text}' does not say how many bits are those of the network, from 1 to 31, {example}"
+        )
+    own = IPv4Interface(text)
+    edges = (own.network.network_address, own.network.broadcast_address)
+    if int(prefix) < 31 and own.ip in edges:
+        return f"'{address}' is the address of the whole network {own.network}"
+    if own.ip.is_multicast or own.ip.is_reserved or own.ip.is_loopback or int(own.ip) >> 24 == 0:
+        return f"'{address}' is no address that a machine on Ethernet can have"
+    return ""
 
 
 def _address_problem(text: str) -> str:

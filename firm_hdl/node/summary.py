@@ -13,7 +13,14 @@ from firm_hdl.estimates import Estimate, estimates_of
 from firm_hdl.metrics import Metrics, metrics_of
 from firm_hdl.node.capacity import rate_problems, size_problems
 from firm_hdl.node.control import IDENTITY, registers
-from firm_hdl.node.description import SERVICE_PARTS, Description, Direction, Store, Topic
+from firm_hdl.node.description import (
+    SERVICE_PARTS,
+    Description,
+    Direction,
+    Link,
+    Store,
+    Topic,
+)
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
 from firm_hdl.node.reading import LINK_OPTIONS
 from firm_hdl.timing import Cost, timing
@@ -32,7 +39,6 @@ def facts_of(description: Description) -> dict[str, Any]:
     :func:`firm_hdl.node.control.registers`.
     """
     link = description.link
-    options = LINK_OPTIONS[link.kind]
 
     # Many topics may have one type, and planning takes its time.
     @cache
@@ -49,7 +55,7 @@ def facts_of(description: Description) -> dict[str, Any]:
         "bus_bytes": description.bus_bytes,
         "clock_hz": description.clock_hz,
         "fingerprint": f"{description.fingerprint:016x}",
-        "link": {"kind": link.kind, **{name: getattr(link, name) for name in options}},
+        "link": {"kind": link.kind, **_link(link)},
         "frame": {
             "version": VERSION,
             "header": [{"name": each.name, "bytes": each.bytes} for each in HEADER],
@@ -61,6 +67,15 @@ def facts_of(description: Description) -> dict[str, Any]:
             for each in registers(description)
         ],
     }
+
+
+def _link(link: Link) -> dict[str, Any]:
+    """Return the options of a link; those of Ethernet only if it has one."""
+    options = {name: getattr(link, name) for name in LINK_OPTIONS[link.kind]}
+    if not link.has_ethernet:
+        for name in ("ethernet", "mac", "address", "gateway"):
+            options.pop(name, None)
+    return options
 
 
 def _topic(topic: Topic, figures_of: Callable[[Store], _Figures]) -> dict[str, Any]:

@@ -25,6 +25,9 @@ _LINK: dict[str, str] = {
     "frames_out": "m_axis",
     "datagrams_in": "udp_rx",
     "datagrams_out": "udp_tx",
+    "gmii": "gmii",
+    "rgmii": "rgmii",
+    "mii": "mii",
     "rx": "uart_rx",
     "tx": "uart_tx",
 }

@@ -1,6 +1,8 @@
 // The board as a process: Verilator runs it, and Linux sees it as a machine behind a TAP device.
 //
 // board TAP: join the network of a TAP device, which has to exist; runs until it is killed.
+//
+// What is simulated begins at the pins of a PHY. The PHY's clock is that of the node, half a cycle later.
 
 #include <fcntl.h>
 #include <linux/if.h>
@@ -21,7 +23,7 @@
 
 namespace {
 
-constexpr int kMostFrame = 1518, kLeastFrame = 60, kGap = 12;
+constexpr int kMostFrame = 1518, kLeastFrame = 60, kGap = 12, kReset = 64;
 
 uint32_t crc32(const std::vector<uint8_t>& bytes) {
   uint32_t crc = ~0u;
@@ -68,15 +70,15 @@ class Wire {
 
   // Set the inputs of the next cycle, and take the outputs of this one.
   void cycle() {
-    if (board_.tx_valid) {
-      from_board_.push_back(board_.tx_data);
+    if (board_.gmii_tx_en) {
+      from_board_.push_back(board_.gmii_txd);
     } else if (!from_board_.empty()) {
       deliver();
       from_board_.clear();
     }
-    board_.rx_valid = !to_board_.empty();
-    if (board_.rx_valid) {
-      board_.rx_data = to_board_.front();
+    board_.gmii_rx_dv = !to_board_.empty();
+    if (board_.gmii_rx_dv) {
+      board_.gmii_rxd = to_board_.front();
       to_board_.pop_front();
       gap_ = kGap;
     } else if (gap_ > 0) {
@@ -115,15 +117,17 @@ int main(int argc, char** argv) {
   std::fflush(stdout);
   for (uint64_t cycles = 0;; ++cycles) {
     // Without traffic, the board runs in slices, and the processor rests between them.
-    if (cycles % 256 == 0 && !wire.fetch() && wire.idle() && cycles % 16384 == 0) {
+    if (cycles > kReset && cycles % 256 == 0 && !wire.fetch() && wire.idle() && cycles % 16384 == 0) {
       pollfd waiting{tap, POLLIN, 0};
       poll(&waiting, 1, 1);
     }
-    board.resetn = cycles > 64;
-    board.clk = 0;
+    board.aresetn = cycles > kReset;
+    board.aclk = 0;
+    board.gmii_rx_clk = 1;
     board.eval();
     wire.cycle();
-    board.clk = 1;
+    board.aclk = 1;
+    board.gmii_rx_clk = 0;
     board.eval();
   }
 }

@@ -87,9 +87,10 @@ def link_script(
     Returns
     -------
     LinkScript or None
-        `None` for a link that takes too long to simulate: a bit of a UART is many cycles.
+        `None` for a link that takes too long to simulate: a bit of a UART is many cycles, and an
+        Ethernet needs another machine.
     """
-    if description.link.kind == "uart":
+    if description.link.kind == "uart" or description.link.has_ethernet:
         return None
     is_loop = has_accelerator and description.accelerator == LOOP
     writer = _Writer(description, knows_topics=not has_accelerator or is_loop)

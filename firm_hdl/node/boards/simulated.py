@@ -87,7 +87,9 @@ class SimulatedBoard(Board):
                 "a simulated board needs an 'accelerator' in the description of the node: without "
                 "one, nothing takes its messages"
             )
-        self._description = replace(description, link=Link(kind="stream"))
+        # The registers are those of the board.
+        link = Link(kind="stream", ethernet=description.link.ethernet)
+        self._description = replace(description, link=link)
         self._engine, self._report = engine, report
         self._wave = wave
         if wave is not None:

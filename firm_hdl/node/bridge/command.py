@@ -17,7 +17,7 @@ from firm_hdl.node.bridge.bridge import Bridge
 from firm_hdl.node.bridge.counters import BridgeCounters
 from firm_hdl.node.bridge.session import WrongBoardError
 from firm_hdl.node.capacity import rate_problems
-from firm_hdl.node.control import Register
+from firm_hdl.node.control import ETHERNET_COUNTERS, Register
 from firm_hdl.node.description import Description
 from firm_hdl.node.graphs import graph_of
 from firm_hdl.terminal import stage
@@ -284,4 +284,4 @@ def _way(bridge: Bridge) -> list[tuple[str, int]]:
 
 
 def _is_sign(register: Register) -> bool:
-    return register.part == "link" and register.name in _LINK_SIGNS
+    return register.part == "link" and register.name in (*_LINK_SIGNS, *ETHERNET_COUNTERS)

@@ -22,6 +22,7 @@ from firm_hdl.node.control import (
     Operation,
     Register,
     Result,
+    ethernet_counter,
     nominal_rate,
     registers,
 )
@@ -48,9 +49,12 @@ _SETTLED = 0x8100
 If one of these comes again later, the others seem to be behind, so that the board counts no gap. It
 believes such a number when the next one follows, so two requests are sent."""
 
-_NO_LOSSES = ("passed", "bytes_low", "bytes_high", "control", "control_full", "unsent")
-"""Counters that do not count losses: a request of control without room was repeated, and before a
-host has spoken, all that a node sends is unsent."""
+_NO_LOSSES = (
+    *("passed", "bytes_low", "bytes_high", "control", "control_full", "unsent"),
+    ethernet_counter("other"),
+)
+"""Counters that do not count losses: a request of control without room was repeated; before a host
+has spoken, all that a node sends is unsent; and a network has frames for others."""
 
 
 class WrongBoardError(Exception):

@@ -14,8 +14,8 @@ from firm_hdl.node.control import (
     CONTROL_BYTES,
     COUNTERS_FROM,
     IDENTITY,
-    LINK_COUNTERS,
     Register,
+    link_counters,
     registers,
 )
 from firm_hdl.node.description import (
@@ -93,7 +93,7 @@ class NodeCore(wiring.Component):
         Responses may come in any order.
     time : Out(time_layout())
         The clock that the host sets.
-    link_counters : In(link_counters_layout())
+    link_counters : In(link_counters_layout(description.link))
         Counters of the link, for the host to read.
     counters : Out(node_counters_layout(description))
     """
@@ -121,7 +121,7 @@ class NodeCore(wiring.Component):
                 "sent": Out(LinkSignature(bus)),
                 **groups,
                 "time": Out(time_layout()),
-                "link_counters": In(link_counters_layout()),
+                "link_counters": In(link_counters_layout(description.link)),
                 "counters": Out(node_counters_layout(description)),
             }
         )
@@ -276,7 +276,7 @@ class NodeCore(wiring.Component):
         """Bring all counters out, and to the host."""
         self._events["node", "control"] = control.counters.control
         self._events["node", "control_full"] = control.counters.control_full
-        for name in LINK_COUNTERS:
+        for name in link_counters(self.description.link):
             self._events["link", name] = self.link_counters[name]
         m.submodules.reader = reader = RegisterReader(len(registers(self.description)))
         values = list(self._identity(clock))

@@ -9,7 +9,8 @@ from amaranth.lib.wiring import Out
 
 from firm_hdl.gateware import PacketSignature
 from firm_hdl.gateware.signatures import packet_layout
-from firm_hdl.node.control import LINK_COUNTERS
+from firm_hdl.node.control import LINK_COUNTERS, link_counters
+from firm_hdl.node.description import Link
 from firm_hdl.node.frame import HEADER
 
 __all__ = [
@@ -77,9 +78,12 @@ def ResponseSignature(bus_bytes: int) -> wiring.Signature:
     )
 
 
-def link_counters_layout() -> data.StructLayout:
-    """Return the counters of a link, 32 bits each; those that it has no use for stay 0."""
-    return data.StructLayout(dict.fromkeys(LINK_COUNTERS, 32))
+def link_counters_layout(link: Link | None = None) -> data.StructLayout:
+    """Return the counters of a link, 32 bits each; those that it has no use for stay 0.
+
+    Without `link`, they are those that every link has.
+    """
+    return data.StructLayout(dict.fromkeys(link_counters(link) if link else LINK_COUNTERS, 32))
 
 
 def time_layout() -> data.StructLayout:

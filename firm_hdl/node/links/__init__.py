@@ -6,10 +6,19 @@ from typing import Any
 
 from firm_hdl.node.description import Description
 from firm_hdl.node.links.bytestream import ByteLink, UartLink
+from firm_hdl.node.links.ethernet import EthernetLink
 from firm_hdl.node.links.stream import StreamLink
 from firm_hdl.node.links.udp import UdpLink
 
-__all__ = ["ByteLink", "StreamLink", "UartLink", "UdpLink", "link_of", "medium_of"]
+__all__ = [
+    "ByteLink",
+    "EthernetLink",
+    "StreamLink",
+    "UartLink",
+    "UdpLink",
+    "link_of",
+    "medium_of",
+]
 
 
 def link_of(description: Description) -> Any:
@@ -19,7 +28,7 @@ def link_of(description: Description) -> Any:
         case "stream":
             return StreamLink(bus)
         case "udp":
-            return UdpLink(bus, link)
+            return EthernetLink(bus, link) if link.has_ethernet else UdpLink(bus, link)
         case "uart":
             return UartLink(bus, link, description.clock_hz)
 
@@ -31,6 +40,6 @@ def medium_of(description: Description) -> dict[str, Any]:
         case "stream":
             return StreamLink.medium(description.bus_bytes)
         case "udp":
-            return UdpLink.medium(link)
+            return EthernetLink.medium(link) if link.has_ethernet else UdpLink.medium(link)
         case "uart":
             return UartLink.medium()

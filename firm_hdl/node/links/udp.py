@@ -6,9 +6,10 @@ from ipaddress import IPv4Address
 from typing import Any
 
 from amaranth.hdl import Const, Module, Mux, Signal, Value
-from amaranth.lib import data, stream, wiring
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.ethernet.datagrams import DatagramSignature, datagram_layout
 from firm_hdl.gateware import PacketWidth
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.node.description import Link
@@ -152,42 +153,3 @@ class UdpLink(wiring.Component):
         unsent = Signal(counters_layout("unsent"))
         add_counters(m, unsent, {"unsent": moves & frames.payload.last & drops})
         m.d.comb += self.counters.unsent.eq(unsent.unsent)
-
-
-def datagram_layout(data_bytes: int) -> data.StructLayout:
-    """Return the payload of a stream of datagrams, with the names of LiteEth's raw UDP port.
-
-    Members
-    -------
-    data : unsigned(8 * data_bytes)
-        The first byte in the lowest bits.
-    last : unsigned(1)
-        Last word of the datagram.
-    last_be : unsigned(data_bytes)
-        With `last`: a single 1 at the last byte. Only sent; what comes is counted by `length`.
-    error : unsigned(1)
-        With `last`: the datagram is damaged. Only received. LiteEth has a bit for each byte; any of
-        them counts.
-    length : unsigned(16)
-        Bytes of the datagram's payload; like all that follows, the same in all its words.
-    ip_address : unsigned(32)
-        Address of the other side; its first number in the highest bits.
-    src_port, dst_port : unsigned(16)
-    """
-    return data.StructLayout(
-        {
-            "data": 8 * data_bytes,
-            "last": 1,
-            "last_be": data_bytes,
-            "error": 1,
-            "length": 16,
-            "ip_address": 32,
-            "src_port": 16,
-            "dst_port": 16,
-        }
-    )
-
-
-def DatagramSignature(data_bytes: int) -> stream.Signature:
-    """Return a stream of datagrams. See :func:`datagram_layout`."""
-    return stream.Signature(datagram_layout(data_bytes))

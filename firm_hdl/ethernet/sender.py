@@ -1,0 +1,380 @@
+"""What the node sends: frames made of templates, and of what waits in slots."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Cat, Const, Module, Mux, Signal
+from amaranth.lib import memory, wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.ethernet.header import ARP, BROADCAST, IPV4
+from firm_hdl.ethernet.ipv4 import ICMP, IGMP, UDP
+from firm_hdl.ethernet.slots import ARP_REPLY, ECHO, SlotReaderSignature
+from firm_hdl.ethernet.streams import SendSignature, add_word
+
+__all__ = ["FrameSender"]
+
+# Bytes of templates that are not constant, beside those of a slot's header, which have the numbers
+# 0 to 31: bytes of the destination's address in hardware, of the address that is asked for, and of
+# the checksum of IPv4.
+_MAC, _ASKED, _SUM_UPPER, _SUM_LOWER = 32, 33, 34, 35
+_FIELD = 256
+"""A byte of a template that is a field; its number is in the bits below."""
+
+_DO_NOT_CUT = 0x4000
+_TTL = 64
+
+
+def _sum(*words: int) -> int:
+    """Sum words up in one's complement."""
+    total = sum(words)
+    while total >> 16:
+        total = (total & 0xFFFF) + (total >> 16)
+    return total
+
+
+class _Templates:
+    """The bytes of all frames up to the payload, one frame after another.
+
+    Attributes
+    ----------
+    words : list of int
+        Bytes and fields of all templates.
+    first, size : dict of str to int
+        Place and size of each.
+    """
+
+    def __init__(self, mac: int, address: int, groups: tuple[int, ...]) -> None:
+        self.words: list[int] = []
+        self.first: dict[str, int] = {}
+        self.size: dict[str, int] = {}
+        own = [*mac.to_bytes(6, "big")]
+        ip = [*address.to_bytes(4, "big")]
+
+        def field(number: int, count: int = 1) -> list[int]:
+            return [_FIELD | number + k for k in range(count)]
+
+        # Ethernet, IPv4, and sizes of their addresses (RFC 826).
+        arp = [*ARP.to_bytes(2, "big"), 0, 1, *IPV4.to_bytes(2, "big"), 6, 4, 0]
+        everybody = [*BROADCAST.to_bytes(6, "big")]
+        self._add("ask", everybody + own + [*arp, 1] + own + ip + everybody + 4 * field(_ASKED))
+        self._add(
+            "answer",
+            [*field(0, 6), *own, *arp, 2, *own, *ip, *field(0, 6), *field(6, 4)],
+        )
+        start = 6 * field(_MAC) + own + [*IPV4.to_bytes(2, "big"), 0x45, 0]
+        checksum = [*field(_SUM_UPPER), *field(_SUM_LOWER)]
+        rest = [*checksum, *ip, *field(6, 4)]
+        echo = [*start, *field(10, 6), _TTL, ICMP, *rest]
+        # An echo reply has type 0 and code 0.
+        self._add("echo", [*echo, 0, 0, *field(0, 2)])
+        self._add("echo rest", echo)
+        udp = [*start, *field(10, 2), 0, 0, *_DO_NOT_CUT.to_bytes(2, "big"), _TTL, UDP, *rest]
+        self._add("datagram", [*udp, *field(16, 8)])
+        for number, group in enumerate(groups):
+            self._add(f"report {number}", self._report(own, address, group))
+
+    def _add(self, name: str, words: list[int]) -> None:
+        self.first[name], self.size[name] = len(self.words), len(words)
+        self.words += words
+
+    @staticmethod
+    def _report(own: list[int], address: int, group: int) -> list[int]:
+        """A report of IGMP version 2, with the option Router Alert (RFC 2236, RFC 2113)."""
+        alert = 0x94040000
+        # 24 bytes of header, 8 of IGMP; a report does not leave the network.
+        words = [0x4600, 32, 0, _DO_NOT_CUT, 1 << 8 | IGMP]
+        rest = [v >> shift & 0xFFFF for v in (address, group, alert) for shift in (16, 0)]
+        igmp = [0x1600, group >> 16, group & 0xFFFF]
+        words += [0xFFFF ^ _sum(*words, *rest), *rest]
+        words += [igmp[0], 0xFFFF ^ _sum(*igmp), *igmp[1:]]
+        to = (0x01005E << 24 | group & 0x7FFFFF).to_bytes(6, "big")
+        return [*to, *own, *b"".join(w.to_bytes(2, "big") for w in [IPV4, *words])]
+
+
+class FrameSender(wiring.Component):
+    """Send what waits: replies, datagrams, requests of ARP, reports of IGMP.
+
+    Headers come from a memory of templates, whose fields are bytes of a slot. The destination's
+    address in hardware comes from the cache; beyond the network, that of the gateway. Replies and
+    datagrams take turns.
+
+    A datagram whose destination is not known waits, and ARP asks; if no answer comes within `wait`
+    cycles, the datagram is dropped, and the destination counts as absent. An echo reply does not
+    wait.
+
+    From a datagram in its slot to its first byte on `frames`: 16 cycles, and those of the lookup.
+
+    Parameters
+    ----------
+    mac, address, prefix_bits, gateway : int
+        The node's addresses, bits of the address that are those of the network, and the gateway's
+        address, or 0.
+    groups : tuple of int
+    wait : int
+        Cycles.
+
+    Members
+    -------
+    replies, datagrams : Out(SlotReaderSignature())
+    report, group : In(1), In(range(len(groups)))
+        A report is to be sent, and of which group.
+    reported : Out(1)
+        Strobe: it is on its way.
+    tick : In(1)
+        Strobe: a machine whose entry is stale may be asked again.
+    ip, look, absent : Out(32), Out(1), Out(1)
+    done, found, gone, stale, mac : In(1), In(1), In(1), In(1), In(48)
+        As those of an :class:`firm_hdl.ethernet.arp.ArpCache`.
+    learned : In(1)
+        Strobe: the cache has changed.
+    frames : Out(SendSignature())
+    unresolved : Out(1)
+        Strobe: a frame was dropped, because its destination does not answer.
+    """
+
+    def __init__(
+        self,
+        mac: int,
+        address: int,
+        prefix_bits: int,
+        gateway: int,
+        groups: tuple[int, ...],
+        wait: int,
+    ):
+        self.own_mac, self.address, self.prefix_bits = mac, address, prefix_bits
+        self.gateway, self.groups, self.wait = gateway, groups, wait
+        super().__init__(
+            {
+                "replies": Out(SlotReaderSignature()),
+                "datagrams": Out(SlotReaderSignature()),
+                "report": In(1),
+                "group": In(range(max(1, len(groups)))),
+                "reported": Out(1),
+                "tick": In(1),
+                "ip": Out(32),
+                "look": Out(1),
+                "absent": Out(1),
+                "done": In(1),
+                "found": In(1),
+                "gone": In(1),
+                "stale": In(1),
+                "mac": In(48),
+                "learned": In(1),
+                "frames": Out(SendSignature()),
+                "unresolved": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        templates = _Templates(self.own_mac, self.address, self.groups)
+        m.submodules.templates = rom = memory.Memory(
+            shape=9, depth=len(templates.words), init=templates.words
+        )
+        word = rom.read_port()
+        out = self.frames
+
+        # What is sent: of replies or of datagrams, and from which template.
+        is_reply = Signal()
+        turn = Signal()
+        slots = (self.datagrams, self.replies)
+        header_at = Signal(5)
+        header_byte, payload_byte, kind = Signal(8), Signal(8), Signal(2)
+        payload_at, moves, release = Signal(11), Signal(), Signal()
+        for slot, chosen in zip(slots, (~is_reply, is_reply), strict=True):
+            m.d.comb += [
+                slot.header_at.eq(header_at),
+                slot.payload_at.eq(payload_at),
+                slot.payload_moves.eq(moves),
+                slot.release.eq(release & chosen),
+            ]
+        m.d.comb += [
+            header_byte.eq(Mux(is_reply, self.replies.header_byte, self.datagrams.header_byte)),
+            payload_byte.eq(Mux(is_reply, self.replies.payload_byte, self.datagrams.payload_byte)),
+            kind.eq(self.replies.kind),
+        ]
+
+        at, left_of_template = Signal(range(len(templates.words))), Signal(6)
+        left, has_payload, active = Signal(11), Signal(), Signal()
+        # The frame takes its slot with it; a request of ARP follows.
+        releases, asks_after = Signal(), Signal()
+
+        def begin(name: str) -> None:
+            m.d.sync += [
+                at.eq(templates.first[name]),
+                left_of_template.eq(templates.size[name]),
+                active.eq(1),
+            ]
+            m.next = "SEND"
+
+        hardware, key = Signal(48), Signal(32)
+        index = Signal(4)
+        total, checksum = Signal(17), Signal(16)
+        length = Signal(11)
+        # A datagram whose destination was asked for waits for an answer, until the time is over.
+        asked, retries, timer = Signal(), Signal(), Signal(range(self.wait + 1))
+        may_ask = Signal()
+        ip = (self.address >> 16, self.address & 0xFFFF)
+        udp_start = _sum(0x4500, _DO_NOT_CUT, _TTL << 8 | UDP, *ip)
+        icmp_start = _sum(0x4500, _TTL << 8 | ICMP, *ip)
+        host_bits = 32 - self.prefix_bits
+        m.d.comb += self.ip.eq(key)
+        m.d.sync += self.unresolved.eq(0)
+        with m.If(timer != 0):
+            m.d.sync += timer.eq(timer - 1)
+        with m.If(self.learned | (timer == 1)):
+            m.d.sync += retries.eq(1)
+        with m.If(self.tick):
+            m.d.sync += may_ask.eq(1)
+
+        # The steps of a byte: its place; the template's word, or the payload's byte; the byte.
+        there, from_payload, last = Signal(), Signal(), Signal()
+        this_last, in_template = Signal(), Signal()
+        goes = Signal()
+        m.d.comb += [
+            goes.eq(~out.valid | out.ready),
+            in_template.eq(left_of_template != 0),
+            this_last.eq(Mux(in_template, (left_of_template == 1) & ~has_payload, left == 1)),
+            moves.eq(goes),
+            word.addr.eq(at),
+            word.en.eq(goes),
+        ]
+        field = Signal(6)
+        is_field = Signal()
+        value = Signal(8)
+        m.d.comb += [field.eq(word.data[:6]), is_field.eq(word.data[8]), value.eq(word.data[:8])]
+        with m.If(is_field):
+            m.d.comb += value.eq(header_byte)
+            with m.Switch(field):
+                with m.Case(_MAC):
+                    m.d.comb += value.eq(hardware[40:])
+                with m.Case(_ASKED):
+                    m.d.comb += value.eq(key[24:])
+                with m.Case(_SUM_UPPER):
+                    m.d.comb += value.eq(checksum[8:])
+                with m.Case(_SUM_LOWER):
+                    m.d.comb += value.eq(checksum[:8])
+        with m.If(goes):
+            m.d.sync += [
+                there.eq(active),
+                from_payload.eq(~in_template),
+                last.eq(this_last),
+                out.valid.eq(there),
+                out.payload.data.eq(Mux(from_payload, payload_byte, value)),
+                out.payload.last.eq(last),
+            ]
+            with m.If(there & ~from_payload & is_field & (field == _MAC)):
+                m.d.sync += hardware.eq(hardware.rotate_left(8))
+            with m.If(there & ~from_payload & is_field & (field == _ASKED)):
+                m.d.sync += key.eq(key.rotate_left(8))
+            with m.If(active):
+                m.d.sync += active.eq(~this_last)
+                with m.If(in_template):
+                    m.d.sync += [at.eq(at + 1), left_of_template.eq(left_of_template - 1)]
+                with m.Else():
+                    m.d.sync += [payload_at.eq(payload_at + 1), left.eq(left - 1)]
+
+        m.d.comb += header_at.eq(field)
+        with m.FSM():
+            with m.State("IDLE"):
+                m.d.sync += [index.eq(6), has_payload.eq(0), payload_at.eq(0)]
+                m.d.sync += [asks_after.eq(0), releases.eq(1)]
+                datagram = self.datagrams.full & (~asked | retries)
+                with m.If(self.replies.full & ~(turn & datagram)):
+                    m.d.sync += [is_reply.eq(1), turn.eq(1), total.eq(icmp_start)]
+                    m.next = "REPLY"
+                with m.Elif(datagram):
+                    m.d.sync += [is_reply.eq(0), turn.eq(0), total.eq(udp_start)]
+                    m.next = "HEADER"
+                with m.Elif(self.report):
+                    m.d.comb += self.reported.eq(1)
+                    m.d.sync += releases.eq(0)
+                    for number in range(len(self.groups)):
+                        with m.If(self.group == number):
+                            begin(f"report {number}")
+            with m.State("REPLY"):
+                m.next = "HEADER"
+                with m.If(kind == ARP_REPLY):
+                    begin("answer")
+            with m.State("HEADER"):
+                # Bytes 6 to 11, and of an echo to 15, are those of the header that vary.
+                m.d.comb += header_at.eq(index)
+                m.d.sync += [
+                    index.eq(index + 1),
+                    total.eq(
+                        add_word(total, Mux(index[0], header_byte, Cat(Const(0, 8), header_byte)))
+                    ),
+                ]
+                with m.If(index < 10):
+                    m.d.sync += key.eq(Cat(header_byte, key))
+                with m.Elif(index < 12):
+                    m.d.sync += length.eq(Cat(header_byte, length))
+                with m.If(index == Mux(is_reply, 15, 11)):
+                    m.next = "HOP"
+            with m.State("HOP"):
+                m.d.sync += total.eq(add_word(total, Const(0, 16)))
+                m.d.sync += left.eq(length - Mux(is_reply, Mux(kind == ECHO, 24, 20), 28))
+                m.d.sync += hardware.eq(Cat(key[:23], Const(0x01005E << 1, 25)))
+                m.next = "LOOK"
+                with m.If(key[28:] == 0b1110):
+                    m.next = "START"
+                with m.Elif(key[host_bits:] != self.address >> host_bits):
+                    if self.gateway:
+                        m.d.sync += key.eq(self.gateway)
+                    else:
+                        m.next = "DROP"
+            with m.State("LOOK"):
+                m.d.comb += self.look.eq(1)
+                with m.If(self.done):
+                    m.d.sync += [hardware.eq(self.mac), asks_after.eq(self.stale & may_ask)]
+                    m.next = "START"
+                    with m.If(~self.found):
+                        m.next = "ASK"
+                        with m.If(asked & ~is_reply):
+                            m.next = "RETRY"
+                    with m.Elif(self.gone):
+                        m.next = "DROP"
+            with m.State("RETRY"):
+                m.next = "ABSENT"
+                with m.If(timer != 0):
+                    m.d.sync += retries.eq(0)
+                    m.next = "IDLE"
+            with m.State("ABSENT"):
+                m.d.comb += self.absent.eq(1)
+                with m.If(self.done):
+                    m.next = "DROP"
+            with m.State("DROP"):
+                m.d.comb += release.eq(1)
+                m.d.sync += self.unresolved.eq(1)
+                with m.If(~is_reply):
+                    m.d.sync += asked.eq(0)
+                m.next = "IDLE"
+            with m.State("ASK"):
+                begin("ask")
+                m.d.sync += [releases.eq(0), may_ask.eq(0)]
+                with m.If(is_reply):
+                    m.d.comb += release.eq(1)
+                    m.d.sync += self.unresolved.eq(1)
+                with m.Else():
+                    m.d.sync += [asked.eq(1), retries.eq(0), timer.eq(self.wait)]
+            with m.State("START"):
+                m.d.sync += [
+                    checksum.eq(~(total[:16] + total[16])),
+                    has_payload.eq(left != 0),
+                ]
+                with m.If(~is_reply):
+                    m.d.sync += asked.eq(0)
+                    begin("datagram")
+                with m.Elif(kind == ECHO):
+                    begin("echo")
+                with m.Else():
+                    begin("echo rest")
+            with m.State("SEND"), m.If(out.valid & out.ready & out.payload.last):
+                m.d.comb += release.eq(releases)
+                m.next = "IDLE"
+                with m.If(asks_after):
+                    m.next = "ASK AGAIN"
+            with m.State("ASK AGAIN"):
+                begin("ask")
+                m.d.sync += [releases.eq(0), may_ask.eq(0), asks_after.eq(0), has_payload.eq(0)]
+        return m

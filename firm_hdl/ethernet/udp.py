@@ -1,0 +1,393 @@
+"""UDP (RFC 768): datagrams that come, and datagrams to send."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal
+from amaranth.lib import wiring
+from amaranth.lib.wiring import In, Out
+
+from firm_hdl.ethernet.datagrams import DatagramSignature
+from firm_hdl.ethernet.ipv4 import UDP, Ipv4Signature, check_state_layout
+from firm_hdl.ethernet.slots import DATAGRAM, SlotWriterSignature
+from firm_hdl.ethernet.streams import add_word
+from firm_hdl.gateware.memories import BlockMemory
+
+__all__ = [
+    "MOST_PAYLOAD",
+    "DatagramReader",
+    "StoreSignature",
+    "UdpReceiver",
+    "UdpTransmitter",
+]
+
+MOST_PAYLOAD = 1472
+"""Largest payload of a datagram that is sent: it is not cut."""
+
+HEADER_BYTES = 8
+_SOURCE_BYTES = 4
+
+
+def StoreSignature() -> wiring.Signature:
+    """Return how stored datagrams are read, seen from the store.
+
+    A datagram is stored as the address of its source, 4 bytes, the header of UDP, and the payload.
+
+    Members
+    -------
+    full : Out(1)
+        There is a datagram.
+    moves : In(1)
+        The two steps of reading go on.
+    takes : In(1)
+        With `moves`: the next byte is read. It is on `byte` 2 steps later.
+    byte : Out(8)
+    release : In(1)
+        Strobe: all bytes were read.
+    """
+    return wiring.Signature(
+        {
+            "full": Out(1),
+            "moves": In(1),
+            "takes": In(1),
+            "byte": Out(8),
+            "release": In(1),
+        }
+    )
+
+
+class UdpReceiver(wiring.Component):
+    """Store datagrams that are right and come in one piece, and drop all others.
+
+    Right is a datagram for one of the node's ports, whose checksum is right or 0, whose length is
+    that of IPv4's payload, and which is not empty. Its bytes are written as they come; they count
+    when it has ended.
+
+    A byte per cycle. A datagram can be read 3 cycles after its `end`.
+
+    Parameters
+    ----------
+    memory_bytes : int
+        A power of two, at least 2048.
+    datagrams : int
+        Most datagrams in the memory.
+
+    Members
+    -------
+    datagrams : In(Ipv4Signature())
+    check : In(check_state_layout())
+    right : In(1)
+        As those of a :class:`firm_hdl.ethernet.ipv4.PayloadCheck`.
+    store : Out(StoreSignature())
+    no_port, wrong, empty, full : Out(1)
+        Strobes: a datagram was dropped, for one of these reasons.
+    """
+
+    def __init__(self, memory_bytes: int = 4096, datagrams: int = 32):
+        self.memory_bytes, self.most = memory_bytes, datagrams
+        super().__init__(
+            {
+                "datagrams": In(Ipv4Signature()),
+                "check": In(check_state_layout()),
+                "right": In(1),
+                "store": Out(StoreSignature()),
+                "no_port": Out(1),
+                "wrong": Out(1),
+                "empty": Out(1),
+                "full": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        came, header, check = self.datagrams.bytes, self.datagrams.header, self.check
+        ring = BlockMemory(m, 8, self.memory_bytes)
+        # Bytes from `head` to `tail` are those of datagrams that count.
+        at, tail, head = (Signal(range(self.memory_bytes), name=n) for n in ("at", "tail", "head"))
+        level = Signal(range(self.memory_bytes))
+        waiting = Signal(range(self.most + 1))
+        room, ours, ends, commit = Signal(), Signal(), Signal(), Signal()
+        is_source, in_payload = Signal(), Signal()
+        m.d.comb += [
+            ours.eq(header.udp & (header.offset == 0) & ~header.more),
+            is_source.eq((header.place >= 12) & (header.place < 16)),
+            in_payload.eq(header.place == 20),
+            ring.write_at.eq(at),
+            ring.write_word.eq(came.payload.data),
+            ring.writes.eq(came.valid & ~came.payload.end & ours & room & (is_source | in_payload)),
+            self.store.full.eq(waiting != 0),
+            ring.read_at.eq(head),
+            ring.reads.eq(self.store.moves),
+        ]
+        m.d.sync += [
+            level.eq(tail - head),
+            ends.eq(came.valid & came.payload.end & came.payload.good & ours),
+            self.no_port.eq(0),
+            self.wrong.eq(0),
+            self.empty.eq(0),
+            self.full.eq(0),
+        ]
+        with m.If(self.store.moves):
+            m.d.sync += [self.store.byte.eq(ring.word), head.eq(head + self.store.takes)]
+        with m.If(came.valid & (header.place == 11)):
+            # The largest frame has room, so the size need not be known.
+            m.d.sync += [
+                at.eq(tail),
+                room.eq((level < self.memory_bytes - MOST_PAYLOAD - 64) & (waiting != self.most)),
+            ]
+        with m.Elif(ring.writes):
+            m.d.sync += at.eq(at + 1)
+        with m.If(ends):
+            right = self.right & (check.length == header.length)
+            empty = check.length == HEADER_BYTES
+            m.d.comb += commit.eq(check.port & right & ~empty & room)
+            m.d.sync += [
+                self.no_port.eq(~check.port),
+                self.wrong.eq(check.port & ~right),
+                self.empty.eq(check.port & right & empty),
+                self.full.eq(check.port & right & ~empty & ~room),
+            ]
+            with m.If(commit):
+                m.d.sync += tail.eq(at)
+        m.d.sync += waiting.eq(waiting + commit - self.store.release)
+        return m
+
+
+class DatagramReader(wiring.Component):
+    """Read datagrams from stores, in turn.
+
+    A byte per cycle. The first byte is valid 16 cycles after a store is `full`. `ready` reaches the
+    memories' enables combinationally.
+
+    Parameters
+    ----------
+    stores : int
+        Number of stores.
+
+    Members
+    -------
+    stores : In(StoreSignature()), as an array
+    datagrams : Out(DatagramSignature(1))
+        Without `error`: what was damaged is not stored. `last_be` is that of `last`.
+    """
+
+    def __init__(self, stores: int):
+        self.count = stores
+        super().__init__(
+            {
+                "stores": In(StoreSignature()).array(stores),
+                "datagrams": Out(DatagramSignature(1)),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        out = self.datagrams
+        head_bytes = _SOURCE_BYTES + HEADER_BYTES
+        source = Signal(range(max(2, self.count)))
+        moves, takes, release = Signal(), Signal(), Signal()
+        byte = Signal(8)
+        stores: Sequence[wiring.PureInterface] = self.stores
+        for number, store in enumerate(stores):
+            chosen = source == number
+            m.d.comb += [
+                store.moves.eq(moves),
+                store.takes.eq(takes & chosen),
+                store.release.eq(release & chosen),
+            ]
+        m.d.comb += byte.eq(Array(store.byte for store in stores)[source])
+        # Steps of reading: whether there is a byte, and whether it is the last one.
+        there, last = Signal(2), Signal(2)
+        left = Signal(16)
+        # Addresses, ports, and lengths, in the order of the bytes, the first one highest.
+        head = Signal(8 * (head_bytes - 2))
+        length = Signal(16)
+        m.d.comb += [
+            out.payload.data.eq(byte),
+            out.payload.last.eq(last[1]),
+            out.payload.last_be.eq(last[1]),
+            out.payload.length.eq(length),
+            out.payload.dst_port.eq(head[16:32]),
+            out.payload.src_port.eq(head[32:48]),
+            out.payload.ip_address.eq(head[48:]),
+        ]
+        with m.FSM():
+            with m.State("IDLE"):
+                m.d.sync += [left.eq(head_bytes), there.eq(0), last.eq(0)]
+                for number, store in reversed(list(enumerate(stores))):
+                    with m.If(store.full):
+                        m.d.sync += source.eq(number)
+                        m.next = "HEAD"
+            with m.State("HEAD"):
+                m.d.comb += [moves.eq(1), takes.eq(left != 0)]
+                m.d.sync += [there.eq(Cat(takes, there[0])), left.eq(left - takes)]
+                with m.If(there[1] & takes):
+                    m.d.sync += head.eq(Cat(byte, head))
+                with m.If(~takes):
+                    # The checksum, which comes last, is not needed.
+                    rest = head[:16] - HEADER_BYTES
+                    m.d.sync += [left.eq(rest), length.eq(rest), there.eq(0)]
+                    m.next = "BODY"
+            with m.State("BODY"):
+                m.d.comb += [
+                    out.valid.eq(there[1]),
+                    moves.eq(~there[1] | out.ready),
+                    takes.eq(moves & (left != 0)),
+                ]
+                with m.If(moves):
+                    m.d.sync += [
+                        there.eq(Cat(left != 0, there[0])),
+                        last.eq(Cat(left == 1, last[0])),
+                        left.eq(left - (left != 0)),
+                    ]
+                with m.If(there[1] & last[1] & out.ready):
+                    m.d.comb += release.eq(1)
+                    m.next = "RELEASE"
+            with m.State("RELEASE"):
+                m.next = "IDLE"
+        return m
+
+
+class UdpTransmitter(wiring.Component):
+    """Take datagrams to send, and sum them up.
+
+    The header is written and summed beside the payload: in a cycle in which a byte of the payload
+    comes for one half of a word, one of the header fits into the other half. So a payload of 12
+    bytes or more takes a byte per cycle; a shorter one waits before its last byte. The datagram is
+    in its slot 5 cycles after its last byte.
+
+    A datagram is dropped if it has more than 1472 bytes, or another number of bytes than `length`.
+
+    Parameters
+    ----------
+    address : int
+        The node's address.
+
+    Members
+    -------
+    datagrams : In(DatagramSignature(1))
+        `last_be` and `error` do not count.
+    slot : Out(SlotWriterSignature())
+        Bytes 6 to 9 of the header are the destination, 10 and 11 the length of IPv4, 16 to 23 the
+        header of UDP.
+    unfit : Out(1)
+        Strobe: a datagram was dropped.
+    """
+
+    def __init__(self, address: int):
+        self.address = address
+        super().__init__(
+            {
+                "datagrams": In(DatagramSignature(1)),
+                "slot": Out(SlotWriterSignature()),
+                "unfit": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        came, slot = self.datagrams, self.slot
+        length, total_length = Signal(16), Signal(16)
+        # Bytes of the header in the order in which they are summed, with their places. Halves of
+        # words take turns, the lower one first. The length of IPv4 stands for UDP's length in the
+        # pseudo header; the constant makes up for the difference.
+        destination, source_port = came.payload.ip_address, came.payload.src_port
+        fields = [
+            (6, destination[16:]),
+            (8, destination[:16]),
+            (16, source_port),
+            (18, came.payload.dst_port),
+            (20, length),
+            (10, total_length),
+        ]
+        halves = [
+            (place + 1 - half, word[8 * half :][:8]) for place, word in fields for half in (0, 1)
+        ]
+        own = (self.address >> 16) + (self.address & 0xFFFF) + UDP + 0xFFFF - 20
+        start = own % 0xFFFF
+        count = Signal(range(MOST_PAYLOAD + 1))
+        step = Signal(range(len(halves) + 1))
+        total = Signal(17)
+        header_done, long, moves = Signal(), Signal(), Signal()
+        ended, checksum = Signal(), Signal(16)
+        from_header, from_payload = Signal(8), Signal(8)
+        upper, lower = Signal(8), Signal(8)
+        at_upper = Signal()
+        with m.Switch(step):
+            for number, (place, half) in enumerate(halves):
+                with m.Case(number):
+                    m.d.comb += [slot.header_at.eq(place), from_header.eq(half)]
+        m.d.comb += [
+            header_done.eq(step == len(halves)),
+            slot.payload_at.eq(count),
+            slot.payload_byte.eq(came.payload.data),
+            slot.payload_write.eq(moves),
+            slot.header_byte.eq(from_header),
+            slot.kind.eq(DATAGRAM),
+        ]
+        m.d.sync += self.unfit.eq(0)
+        with m.If(came.valid):
+            m.d.sync += [
+                length.eq(came.payload.length + HEADER_BYTES),
+                total_length.eq(came.payload.length + 28),
+            ]
+        with m.FSM():
+            with m.State("IDLE"):
+                m.d.sync += [count.eq(0), step.eq(0), total.eq(start), long.eq(0)]
+                with m.If(came.valid & slot.free):
+                    m.next = "TAKE"
+            with m.State("TAKE"):
+                # The last byte waits until the header, which comes with it, has been read.
+                m.d.comb += [
+                    came.ready.eq(
+                        ~came.payload.last | header_done | ((step == len(halves) - 1) & count[0])
+                    ),
+                    moves.eq(came.valid & came.ready),
+                    from_payload.eq(Mux(moves, came.payload.data, 0)),
+                ]
+                # The header's half is the one that the payload does not use.
+                header_moves = ~header_done & came.valid & (~moves | (step[0] == count[0]))
+                m.d.comb += slot.header_write.eq(header_moves)
+                head = Mux(header_moves, from_header, 0)
+                m.d.comb += [
+                    at_upper.eq(~count[0]),
+                    upper.eq(Mux(at_upper & moves, from_payload, Mux(step[0], head, 0))),
+                    lower.eq(Mux(~at_upper & moves, from_payload, Mux(step[0], 0, head))),
+                ]
+                m.d.sync += [
+                    total.eq(add_word(total, Cat(lower, upper))),
+                    step.eq(step + header_moves),
+                ]
+                with m.If(moves):
+                    m.d.sync += [
+                        count.eq(count + ~long),
+                        long.eq(long | (count == MOST_PAYLOAD)),
+                    ]
+                    with m.If(came.payload.last):
+                        m.next = "CARRY"
+                        m.d.sync += ended.eq((count + 1) == came.payload.length)
+            with m.State("CARRY"):
+                m.d.sync += total.eq(add_word(total, Const(0, 16)))
+                m.next = "SUM"
+            with m.State("SUM"):
+                folded = total[:16] + total[16]
+                m.d.sync += checksum.eq(Mux(folded[:16].all(), 0xFFFF, ~folded[:16]))
+                m.next = "UPPER"
+            with m.State("UPPER"):
+                m.d.comb += [
+                    slot.header_write.eq(1),
+                    slot.header_at.eq(22),
+                    slot.header_byte.eq(checksum[8:]),
+                ]
+                m.next = "LOWER"
+            with m.State("LOWER"):
+                m.d.comb += [
+                    slot.header_write.eq(1),
+                    slot.header_at.eq(23),
+                    slot.header_byte.eq(checksum[:8]),
+                    slot.commit.eq(ended & ~long),
+                ]
+                m.d.sync += self.unfit.eq(~ended | long)
+                m.next = "IDLE"
+        return m

@@ -1,0 +1,247 @@
+"""The edge against scapy: what it sends, what it takes, and that nothing bad gets through."""
+
+from __future__ import annotations
+
+import logging
+
+import pytest
+
+logging.getLogger("scapy").setLevel(logging.ERROR)
+scapy = pytest.importorskip("scapy.all")
+
+from tests.ethernet.bench import (  # noqa: E402
+    GROUP,
+    GROUP_MAC,
+    HOST,
+    HOST_MAC,
+    MAC,
+    NODE,
+    OTHER,
+    OTHER_MAC,
+    PREAMBLE,
+    Datagram,
+    Pause,
+    checked,
+    number,
+    run,
+    settings,
+    wire,
+)
+
+Ether, ARP, IP, ICMP, UDP, Raw = (
+    getattr(scapy, name) for name in ("Ether", "ARP", "IP", "ICMP", "UDP", "Raw")
+)
+BROADCAST = "ff:ff:ff:ff:ff:ff"
+
+
+def arp(op=1, ip=HOST, mac=HOST_MAC, target=NODE, to=BROADCAST):
+    return Ether(dst=to, src=mac) / ARP(op=op, hwsrc=mac, psrc=ip, pdst=target)
+
+
+def ip(dst=NODE, src=HOST, to=MAC, **options):
+    return Ether(dst=to, src=HOST_MAC) / IP(src=src, dst=dst, **options)
+
+
+def payload(size):
+    return bytes((7 * k + size) & 0xFF for k in range(size))
+
+
+def udp(size, port=7411, **options):
+    return ip(**options) / UDP(sport=5000, dport=port) / Raw(payload(size))
+
+
+def echo(size, **options):
+    return ip(**options) / ICMP(id=7, seq=size) / Raw(payload(size))
+
+
+def come(*sizes, port=7411):
+    return [(payload(size), number(HOST), 5000, port) for size in sizes]
+
+
+def understood(frame):
+    """Return a frame as scapy reads it, if scapy writes lengths, checksums and padding likewise."""
+    packet = Ether(frame)
+    bare = packet.copy()
+    for layer, fields in ((IP, ("len", "chksum", "ihl")), (UDP, ("len", "chksum"))):
+        if layer in bare:
+            for name in fields:
+                bare[layer].delfieldval(name)
+    if ICMP in bare:
+        bare[ICMP].delfieldval("chksum")
+    assert bytes(bare) == frame
+    assert len(frame) >= 60
+    return packet
+
+
+def carried(packet):
+    """Return the payload of a datagram, without padding of Ethernet."""
+    return bytes(packet[UDP].payload)[: packet[UDP].len - 8]
+
+
+def test_datagrams_go_both_ways_and_an_echo_comes_back():
+    steps = [wire(arp()), *(wire(udp(size)) for size in (1, 18, 19, 300))]
+    steps += [Datagram(payload(size)) for size in (1, 11, 12, 13, 300)]
+    steps += [wire(echo(size)) for size in (0, 1, 57)]
+    seen = run(steps, after=700)
+    answer, *datagrams, _, _, _ = map(understood, seen.frames)
+    assert (answer[ARP].op, answer[ARP].psrc, answer[ARP].hwsrc) == (2, NODE, MAC)
+    assert (answer[ARP].pdst, answer[ARP].hwdst, answer.dst) == (HOST, HOST_MAC, HOST_MAC)
+    echoes = [p for p in map(understood, seen.frames) if ICMP in p]
+    datagrams = [p for p in map(understood, seen.frames) if UDP in p]
+    for size, packet in zip((1, 11, 12, 13, 300), datagrams, strict=True):
+        assert carried(packet) == payload(size)
+        assert (packet.dst, packet.src, packet[IP].dst, packet[IP].src) == (
+            HOST_MAC,
+            MAC,
+            HOST,
+            NODE,
+        )
+        assert (packet[UDP].sport, packet[UDP].dport) == (7400, 5000)
+    for size, packet in zip((0, 1, 57), echoes, strict=True):
+        assert (packet[ICMP].type, packet[ICMP].id, packet[ICMP].seq) == (0, 7, size)
+        assert bytes(packet[ICMP].payload)[:size] == payload(size)
+        assert (packet[IP].src, packet[IP].dst, packet[IP].len) == (NODE, HOST, size + 28)
+    assert seen.datagrams == come(1, 18, 19, 300)
+    assert not seen.drops
+
+
+def changed(packet, place, value=None):
+    """Return a packet's frame with another byte, and a right frame check sequence."""
+    frame = bytearray(bytes(packet) + bytes(max(0, 60 - len(packet))))
+    frame[place] = frame[place] ^ 1 if value is None else value
+    return PREAMBLE + checked(bytes(frame))
+
+
+def options(count):
+    """Return `count` words of options: no operation."""
+    return [scapy.IPOption(b"\1") for _ in range(4 * count)]
+
+
+# Places in a frame: Ethernet has 14 bytes, IPv4 20, UDP 8.
+BAD = [
+    ("damaged", wire(udp(30))[:-1] + b"?"),
+    ("damaged", [(byte, place == 30) for place, byte in enumerate(wire(udp(30)))]),
+    ("damaged", b"\x55" * 6 + b"\x54" + wire(udp(30))[7:]),
+    ("damaged", b"\x55" * 9),
+    ("runt", PREAMBLE + checked(bytes(udp(17)))),
+    ("runt", PREAMBLE + b"abc"),
+    ("giant", PREAMBLE + checked(bytes(udp(30)) + bytes(1443))),
+    ("other", wire(udp(30, to=OTHER_MAC))),
+    ("other", wire(Ether(dst=MAC, src=HOST_MAC, type=0x86DD) / Raw(bytes(60)))),
+    ("other", wire(udp(30, dst=OTHER))),
+    ("other", wire(udp(30, to=BROADCAST))),
+    ("other", wire(udp(30, dst=GROUP, to=GROUP_MAC))),
+    ("other", wire(ip(proto=6) / Raw(bytes(30)))),
+    ("other", wire(ip() / ICMP(type=0) / Raw(bytes(30)))),
+    ("other", wire(echo(8, options=options(1)))),
+    ("other", wire(arp(target=OTHER))),
+    ("other", changed(arp(), 20, 8)),
+    ("other", wire(udp(0))),
+    ("malformed", changed(udp(30), 14, 0x55)),
+    ("malformed", changed(udp(30), 14, 0x44)),
+    ("malformed", changed(udp(30), 14, 0x40)),
+    ("malformed", changed(udp(30), 24)),
+    ("malformed", wire(udp(30, len=19))),
+    ("malformed", wire(udp(30, len=59))),
+    ("malformed", wire(udp(30, src="224.0.0.1"))),
+    ("malformed", wire(udp(30, src=NODE))),
+    ("checksum", changed(udp(30), 40)),
+    ("checksum", changed(udp(30), 70)),
+    ("checksum", wire(ip() / UDP(dport=7411, len=39) / Raw(payload(30)))),
+    ("checksum", wire(ip() / UDP(dport=7411, len=37) / Raw(payload(30)))),
+    ("checksum", changed(echo(30), 50)),
+    ("port", wire(udp(30, port=7412))),
+]
+
+
+def test_bad_frames_leave_no_trace_but_a_count():
+    """After each of them comes a good one, as soon as Ethernet allows."""
+    steps, want = [], []
+    for count, (_, frame) in enumerate(BAD):
+        steps += [frame, wire(udp(count + 1))]
+        want += come(count + 1)
+    seen = run(steps, gap=12)
+    assert seen.datagrams == want
+    assert seen.frames == []
+    for name in seen.drops:
+        assert seen.drops[name] == sum(name == reason for reason, _ in BAD), name
+    assert sum(seen.drops.values()) == len(BAD)
+
+
+def test_good_frames_of_all_forms_pass_with_stalls_everywhere():
+    no_checksum = udp(9)
+    no_checksum[UDP].chksum = 0
+    steps = [wire(arp(op=2, to=MAC)), PREAMBLE[-2:] + wire(udp(1))[8:]]
+    steps += [wire(udp(20, options=options(count))) for count in (1, 10)]
+    steps += [wire(no_checksum), wire(udp(472))]
+    # Padding that is not 0, and a sum that is 0 only with its carry.
+    steps += [PREAMBLE + checked(bytes(udp(3)) + b"\xff" * 40)]
+    steps += [Datagram(payload(n)) for n in (1, 2, 3, 12, 40)]
+    steps += [Datagram(b"\xff" * 20 + bytes([0x2D, 0x4F]))]
+    steps += [Datagram(bytes(1473)), Datagram(b"short", length=6), Datagram(b"long", length=3)]
+    steps += [Datagram(b"after")]
+    seen = run(steps, holes=0.2, stalls=0.4, slow=0.2, after=1500)
+    assert seen.datagrams == come(1, 20, 20, 9, 472, 3)
+    sent = [carried(packet) for packet in map(understood, seen.frames)]
+    assert sent[:5] == [payload(n) for n in (1, 2, 3, 12, 40)] and sent[6:] == [b"after"]
+    assert seen.drops == {"unfit": 3}
+
+
+def test_addresses_are_asked_for_and_forgotten():
+    own = settings(tick_bits=15, gateway=number("192.168.1.1"))
+    far = wire(arp(ip="192.168.1.1", mac=OTHER_MAC))
+    steps = [
+        # Nobody answers, so the first datagram is dropped after a while, and the next one at once.
+        *(Datagram(payload(3), to="192.168.1.99"), Pause(700)),
+        *(Datagram(payload(4), to="192.168.1.99"), Pause(100)),
+        # A datagram waits for the answer. Beyond the network, the gateway is asked.
+        *(Datagram(b"near"), Pause(100), wire(arp(op=2, to=MAC)), Pause(300)),
+        *(Datagram(b"far", to="10.0.0.7"), Pause(100), far, Pause(300)),
+        # A group needs no answer.
+        *(Datagram(b"group", to=GROUP), Pause(200)),
+    ]
+    seen = run(steps, own, after=100)
+    packets = list(map(understood, seen.frames))
+    asked = [p[ARP].pdst for p in packets if ARP in p and p[ARP].op == 1]
+    assert asked == ["192.168.1.99", HOST, "192.168.1.1"]
+    assert all(p.dst == BROADCAST for p in packets if ARP in p and p[ARP].op == 1)
+    sent = [
+        (p.dst, p[IP].dst, bytes(p[UDP].payload)[: p[UDP].len - 8]) for p in packets if UDP in p
+    ]
+    assert sent == [
+        (HOST_MAC, HOST, b"near"),
+        (OTHER_MAC, "10.0.0.7", b"far"),
+        (GROUP_MAC, GROUP, b"group"),
+    ]
+    assert seen.drops == {"unresolved": 2}
+
+
+def fragments(size, ident, cut=64, src=HOST):
+    """Return the frames of a datagram in fragments."""
+    whole = ip(id=ident, src=src)[IP] / UDP(sport=5000, dport=7411) / Raw(payload(size))
+    return [
+        wire(Ether(dst=MAC, src=HOST_MAC) / part) for part in scapy.fragment(whole, fragsize=cut)
+    ]
+
+
+def test_fragments_in_order_become_datagrams_and_others_are_dropped():
+    own = settings(fragment_bytes=4096, tick_bits=11)
+    a, b, c = fragments(200, 1), fragments(150, 1, src=OTHER), fragments(90, 2)
+    wrong = fragments(100, 3)
+    # The checksum of the first fragment's header is that of all.
+    wrong[1] = changed(Ether(wrong[1][8:-4]), 40)
+    small = [wire(udp(size)) for size in (5, 6)]
+    lost, late = fragments(200, 4), fragments(180, 5)
+    steps = [
+        *(a[0], b[0], small[0], a[1], b[1], a[2], small[1], a[3], b[2]),
+        *(Pause(400), *wrong),
+        *c,
+        *(lost[0], lost[2], lost[3]),
+        *(late[0], Pause(5 << 11), *late[1:]),
+    ]
+    seen = run(steps, own, after=800)
+    others = [(payload(150), number(OTHER), 5000, 7411)]
+    assert sorted(seen.datagrams) == sorted([*come(200, 5, 6, 90), *others])
+    # Of the wrong one, the last; of the lost one, two; of the late one, itself and its rest.
+    assert seen.drops == {"fragment": 1 + 2 + 1 + len(late) - 1}
+    assert seen.frames == []
