@@ -38,9 +38,9 @@ Direction: TypeAlias = Literal["in", "out"]
 
 Language: TypeAlias = Literal["vhdl", "verilog", "systemverilog"]
 
-LinkKind: TypeAlias = Literal["stream", "udp", "uart"]
+LinkKind: TypeAlias = Literal["stream", "udp", "uart", "rtps"]
 
-LINKS: tuple[LinkKind, ...] = ("stream", "udp", "uart")
+LINKS: tuple[LinkKind, ...] = ("stream", "udp", "uart", "rtps")
 """All links."""
 
 SERVICE_PARTS: dict[Direction, str] = {"in": "request", "out": "response"}
@@ -152,11 +152,11 @@ class Link:
     kind : LinkKind
     memory_bytes : int
         Memory in which a message is put together and checked (`udp` and `uart`). The largest
-        message that passes has 16 bytes less.
+        message that passes has 16 bytes less. With `rtps`, datagrams wait there.
     packets : int
-        Most messages in that memory.
+        Most messages in that memory; most datagrams with `rtps`.
     datagram_bytes : int
-        Most bytes of a datagram's payload, header included (`udp`).
+        Most bytes of a datagram's payload, header included (`udp`, and what `rtps` sends).
     data_bytes : int
         Bytes per cycle at the interface of the core below (`udp`).
     port : int
@@ -167,6 +167,18 @@ class Link:
         Port of the host (`udp`); counts only with `host`.
     baud : int
         Bits per second (`uart`).
+    domain : int
+        ROS_DOMAIN_ID (`rtps`).
+    address : str
+        IPv4 address of the node (`rtps`).
+    participant : int
+        Number of the participant on its address, from which its ports follow (`rtps`).
+    peers : int
+        Most participants that the node knows at a time (`rtps`).
+    matches : int
+        Most endpoints of peers that are matched with those of the node at a time (`rtps`).
+    static_peers : tuple of str
+        IPv4 addresses that are told of the node besides the multicast group (`rtps`).
     """
 
     kind: LinkKind
@@ -178,6 +190,12 @@ class Link:
     host: str = ""
     host_port: int = 7411
     baud: int = 1_000_000
+    domain: int = 0
+    address: str = ""
+    participant: int = 0
+    peers: int = 8
+    matches: int = 32
+    static_peers: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

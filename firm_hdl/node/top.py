@@ -26,6 +26,7 @@ _LINK: dict[str, str] = {
     "datagrams_out": "udp_tx",
     "rx": "uart_rx",
     "tx": "uart_tx",
+    "nonce": "nonce",
 }
 """How ports of links are called."""
 

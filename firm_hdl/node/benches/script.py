@@ -87,9 +87,10 @@ def link_script(
     Returns
     -------
     LinkScript or None
-        `None` for a link that takes too long to simulate: a bit of a UART is many cycles.
+        `None` for a link that takes too long to simulate, as a bit of a UART is many cycles; and for
+        a participant of ROS 2, which has no frames.
     """
-    if description.link.kind == "uart":
+    if description.link.kind in ("uart", "rtps"):
         return None
     is_loop = has_accelerator and description.accelerator == LOOP
     writer = _Writer(description, knows_topics=not has_accelerator or is_loop)

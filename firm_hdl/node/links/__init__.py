@@ -6,10 +6,11 @@ from typing import Any
 
 from firm_hdl.node.description import Description
 from firm_hdl.node.links.bytestream import ByteLink, UartLink
+from firm_hdl.node.links.rtps import RtpsLink
 from firm_hdl.node.links.stream import StreamLink
 from firm_hdl.node.links.udp import UdpLink
 
-__all__ = ["ByteLink", "StreamLink", "UartLink", "UdpLink", "link_of", "medium_of"]
+__all__ = ["ByteLink", "RtpsLink", "StreamLink", "UartLink", "UdpLink", "link_of", "medium_of"]
 
 
 def link_of(description: Description) -> Any:
@@ -22,6 +23,8 @@ def link_of(description: Description) -> Any:
             return UdpLink(bus, link)
         case "uart":
             return UartLink(bus, link, description.clock_hz)
+        case "rtps":
+            return RtpsLink(description)
 
 
 def medium_of(description: Description) -> dict[str, Any]:
@@ -34,3 +37,5 @@ def medium_of(description: Description) -> dict[str, Any]:
             return UdpLink.medium(link)
         case "uart":
             return UartLink.medium()
+        case "rtps":
+            return RtpsLink.medium()
