@@ -47,9 +47,9 @@ EthernetKind: TypeAlias = Literal["stream", "gmii", "rgmii", "mii"]
 ETHERNETS: tuple[EthernetKind, ...] = ("stream", "gmii", "rgmii", "mii")
 """Where a link `udp` ends: at datagrams for a core below, or at the pins of a PHY."""
 
-LinkKind: TypeAlias = Literal["stream", "udp", "uart"]
+LinkKind: TypeAlias = Literal["stream", "udp", "uart", "rtps"]
 
-LINKS: tuple[LinkKind, ...] = ("stream", "udp", "uart")
+LINKS: tuple[LinkKind, ...] = ("stream", "udp", "uart", "rtps")
 """All links."""
 
 SERVICE_PARTS: dict[Direction, str] = {"in": "request", "out": "response"}
@@ -161,11 +161,11 @@ class Link:
     kind : LinkKind
     memory_bytes : int
         Memory in which a message is put together and checked (`udp` and `uart`). The largest
-        message that passes has 16 bytes less.
+        message that passes has 16 bytes less. With `rtps`, datagrams wait there.
     packets : int
-        Most messages in that memory.
+        Most messages in that memory; most datagrams with `rtps`.
     datagram_bytes : int
-        Most bytes of a datagram's payload, header included (`udp`).
+        Most bytes of a datagram's payload, header included (`udp`, and what `rtps` sends).
     data_bytes : int
         Bytes per cycle at the interface of the core below (`udp`).
     port : int
@@ -175,16 +175,27 @@ class Link:
     host_port : int
         Port of the host (`udp`); counts only with `host`.
     ethernet : EthernetKind
-        Where the hardware ends (`udp`).
+        Where the hardware ends (`udp`, `rtps`).
     mac : str
         The node's address in hardware, 6 bytes in hexadecimal with ``:`` between them; this and
-        what follows only with an `ethernet` that is not `stream`.
+        `gateway` only with an `ethernet` that is not `stream`.
     address : str
-        IPv4 address of the node, with the bits of the network: ``192.168.1.50/24``.
+        IPv4 address of the node, with the bits of the network if there is an `ethernet`:
+        ``192.168.1.50/24``.
     gateway : str
         IPv4 address of the way to other networks; empty: there is none.
     baud : int
         Bits per second (`uart`).
+    domain : int
+        ROS_DOMAIN_ID (`rtps`).
+    participant : int
+        Number of the participant on its address, from which its ports follow (`rtps`).
+    peers : int
+        Most participants that the node knows at a time (`rtps`).
+    matches : int
+        Most endpoints of peers that are matched with those of the node at a time (`rtps`).
+    static_peers : tuple of str
+        IPv4 addresses that are told of the node besides the multicast group (`rtps`).
     """
 
     kind: LinkKind
@@ -200,11 +211,21 @@ class Link:
     address: str = ""
     gateway: str = ""
     baud: int = 1_000_000
+    domain: int = 0
+    participant: int = 0
+    peers: int = 8
+    matches: int = 32
+    static_peers: tuple[str, ...] = ()
 
     @property
     def has_ethernet(self) -> bool:
         """Whether the node has all layers down to the pins of a PHY."""
-        return self.kind == "udp" and self.ethernet != "stream"
+        return self.ethernet != "stream"
+
+    @property
+    def ip(self) -> str:
+        """The IPv4 address of the node, without the bits of its network."""
+        return self.address.partition("/")[0]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

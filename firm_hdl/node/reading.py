@@ -170,6 +170,8 @@ class _Reader:
         names = _Names(given.get("namespace", "/"), given.get("node", "node"), {})
         if "remap" in known:
             names.remap = self._remap(known["remap"], library, names)
+        if link.kind == "rtps" and dialect == "ros1":
+            known["link"].error("a link of kind 'rtps' is for ROS 2")
         topics = self._topics(known, library, names, bus_bytes, link)
         self._check_remap(names)
         if not topics and not self.marked.noted:
@@ -427,6 +429,10 @@ LINK_OPTIONS: dict[str, tuple[str, ...]] = {
         *("ethernet", "mac", "address", "gateway"),
     ),
     "uart": ("memory_bytes", "packets", "baud"),
+    "rtps": (
+        *("address", "domain", "participant", "static_peers", "peers", "matches"),
+        *("memory_bytes", "packets", "datagram_bytes", "ethernet", "mac", "gateway"),
+    ),
 }
 """The options of each kind of link."""
 
@@ -439,8 +445,19 @@ _LIMITS: dict[str, tuple[int, int]] = {
     "port": (1, 65_535),
     "host_port": (1, 65_535),
     "baud": (1, 100_000_000),
+    "domain": (0, 232),
+    "participant": (0, 119),
+    "peers": (1, 32),
+    "matches": (4, 256),
 }
 """Least and most of each option."""
+
+_DISCOVERY_BYTES = 1 << 12
+"""Memory for datagrams of discovery, of which several come at once."""
+
+_PORTS, _PORTS_PER_DOMAIN, _LAST_PORT = 7411, 250, 65_535
+"""Port of user data of participant 0 in domain 0, and the distance to the next domain (RTPS 9.6.1).
+Participants have two ports each."""
 
 _LEAST_CYCLES = 4
 """Cycles per bit of a UART: fewer do not find the middle of a bit."""
@@ -477,15 +494,15 @@ def read_link(marked: Marked, entry: Entry, clock_hz: float) -> Link:
     if given.get("ethernet", "stream") != "stream":
         given |= _read_ethernet(given["ethernet"], known, clock_hz)
     elif "ethernet" not in known or given["ethernet"] == known["ethernet"].value.value:
-        for name in _OF_ETHERNET:
+        for name in ("mac", "gateway") if kind == "rtps" else ("mac", "address", "gateway"):
             if name in known:
                 known[name].error_at_key(f"'{name}' counts only beside an 'ethernet' with pins")
+    if kind == "rtps":
+        given |= _participant(known, entry, given)
     link = Link(**given)
     _check(link, known, entry, clock_hz)
     return link
 
-
-_OF_ETHERNET = ("mac", "address", "gateway")
 
 _LEAST_MII_HZ = 25e6
 _GIGABIT_HZ = 125e6
@@ -524,13 +541,46 @@ def _read_ethernet(kind: str, known: dict[str, Entry], clock_hz: float) -> dict[
     return given
 
 
+def _participant(known: dict[str, Entry], entry: Entry, numbers: dict[str, Any]) -> dict[str, Any]:
+    """Read the addresses of a participant, and check that it has ports."""
+    found: dict[str, Any] = {}
+    if numbers.get("ethernet", "stream") == "stream":
+        if "address" in known:
+            found["address"] = known["address"].checked(_host_problem)
+        else:
+            entry.error_at_key(
+                "a link of kind 'rtps' needs an 'address', the IPv4 address of the node"
+            )
+    if "static_peers" in known:
+        texts = known["static_peers"].texts()
+        for problem in filter(None, map(_host_problem, texts)):
+            known["static_peers"].error(problem)
+        found["static_peers"] = tuple(texts)
+    if "packets" not in known:
+        # Peers announce their endpoints in bursts.
+        found["packets"] = 64
+    domain, number = numbers.get("domain", 0), numbers.get("participant", 0)
+    if _PORTS + _PORTS_PER_DOMAIN * domain + 2 * number > _LAST_PORT:
+        place = known.get("participant", known.get("domain", entry))
+        place.error(f"domain {domain} has no UDP ports for participant {number}")
+    return found
+
+
+def _host_problem(text: str) -> str:
+    if problem := _address_problem(text):
+        return problem
+    address = IPv4Address(text)
+    is_host = not (address.is_multicast or address.is_unspecified or address.is_reserved)
+    return "" if is_host else f"'{text}' is no address of one host"
+
+
 def _check(link: Link, known: dict[str, Entry], entry: Entry, clock_hz: float) -> None:
     """Check what limits alone do not say."""
     if link.memory_bytes & (link.memory_bytes - 1):
         known["memory_bytes"].error(f"'memory_bytes' must be a power of two: {link.memory_bytes}")
     if link.data_bytes not in NODE_BUS_BYTES:
         known["data_bytes"].error(f"'data_bytes' must be 1, 2, 4, 8 or 16, not {link.data_bytes}")
-    if link.datagram_bytes % 16:
+    if link.kind == "udp" and link.datagram_bytes % 16:
         near = link.datagram_bytes // 16 * 16
         known["datagram_bytes"].error(f"'datagram_bytes' must be a multiple of 16, such as {near}")
     if link.kind == "uart":
@@ -553,10 +603,13 @@ def _check_baud(link: Link, place: Entry, clock_hz: float) -> None:
 
 def with_memory(link: Link, topics: list[Topic], entry: Entry | None) -> Link:
     """Give the link's memory the size of the largest one behind it, unless one is named."""
-    stores = [topic.store("in") for topic in topics if topic.has("in")]
-    if not stores or (entry is not None and _names_memory(entry)):
+    sizes = [topic.store("in").memory_bytes for topic in topics if topic.has("in")]
+    if entry is not None and _names_memory(entry):
         return link
-    return replace(link, memory_bytes=max(1 << 10, *(each.memory_bytes for each in stores)))
+    if link.kind == "rtps":
+        # A datagram has more than its message, and those of discovery come to every node.
+        return replace(link, memory_bytes=2 * max([_DISCOVERY_BYTES, *sizes]))
+    return replace(link, memory_bytes=max([1 << 10, *sizes])) if sizes else link
 
 
 def _names_memory(entry: Entry) -> bool:

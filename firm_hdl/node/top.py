@@ -30,6 +30,7 @@ _LINK: dict[str, str] = {
     "mii": "mii",
     "rx": "uart_rx",
     "tx": "uart_tx",
+    "nonce": "nonce",
 }
 """How ports of links are called."""
 

@@ -87,10 +87,10 @@ def link_script(
     Returns
     -------
     LinkScript or None
-        `None` for a link that takes too long to simulate: a bit of a UART is many cycles, and an
-        Ethernet needs another machine.
+        `None` for a link that takes too long to simulate, as a bit of a UART is many cycles; for an
+        Ethernet, which needs another machine; and for a participant of ROS 2, which has no frames.
     """
-    if description.link.kind == "uart" or description.link.has_ethernet:
+    if description.link.kind in ("uart", "rtps") or description.link.has_ethernet:
         return None
     is_loop = has_accelerator and description.accelerator == LOOP
     writer = _Writer(description, knows_topics=not has_accelerator or is_loop)

@@ -7,12 +7,14 @@ from typing import Any
 from firm_hdl.node.description import Description
 from firm_hdl.node.links.bytestream import ByteLink, UartLink
 from firm_hdl.node.links.ethernet import EthernetLink
+from firm_hdl.node.links.rtps import RtpsLink
 from firm_hdl.node.links.stream import StreamLink
 from firm_hdl.node.links.udp import UdpLink
 
 __all__ = [
     "ByteLink",
     "EthernetLink",
+    "RtpsLink",
     "StreamLink",
     "UartLink",
     "UdpLink",
@@ -24,22 +26,30 @@ __all__ = [
 def link_of(description: Description) -> Any:
     """Return the link of a description, a component with `received`, `sent` and `counters`."""
     link, bus = description.link, description.bus_bytes
+    if link.has_ethernet:
+        return EthernetLink(description)
     match link.kind:
         case "stream":
             return StreamLink(bus)
         case "udp":
-            return EthernetLink(bus, link) if link.has_ethernet else UdpLink(bus, link)
+            return UdpLink(bus, link)
         case "uart":
             return UartLink(bus, link, description.clock_hz)
+        case "rtps":
+            return RtpsLink(description)
 
 
 def medium_of(description: Description) -> dict[str, Any]:
     """Return the members of a description's link that face the medium, without making the link."""
     link = description.link
+    if link.has_ethernet:
+        return EthernetLink.medium(link)
     match link.kind:
         case "stream":
             return StreamLink.medium(description.bus_bytes)
         case "udp":
-            return EthernetLink.medium(link) if link.has_ethernet else UdpLink.medium(link)
+            return UdpLink.medium(link)
         case "uart":
             return UartLink.medium()
+        case "rtps":
+            return RtpsLink.medium()

@@ -1,4 +1,4 @@
-"""The link over UDP with an Ethernet of its own: from the pins of a PHY to messages."""
+"""Links over UDP with an Ethernet of their own: from the pins of a PHY to messages."""
 
 from __future__ import annotations
 
@@ -13,9 +13,12 @@ from firm_hdl.ethernet.edge import EthernetEdge, EthernetSettings
 from firm_hdl.ethernet.phy import PHYS, GmiiSignature, MiiSignature, RgmiiSignature
 from firm_hdl.gateware.packets.counters import add_counters
 from firm_hdl.node.control import ethernet_counter
-from firm_hdl.node.description import Link
+from firm_hdl.node.description import Description, Link
 from firm_hdl.node.gateware.streams import LinkSignature, link_counters_layout, passes
+from firm_hdl.node.links.rtps import RtpsLink
 from firm_hdl.node.links.udp import UdpLink
+from firm_hdl.node.rtps.endpoints import ports_of_link
+from firm_hdl.rtps.wire.locators import MULTICAST_GROUP
 
 __all__ = ["EthernetLink"]
 
@@ -23,17 +26,15 @@ _PINS = {"gmii": GmiiSignature, "rgmii": RgmiiSignature, "mii": MiiSignature}
 
 
 class EthernetLink(wiring.Component):
-    """A :class:`firm_hdl.node.links.UdpLink` on top of an edge to Ethernet.
+    """A :class:`.UdpLink` or a :class:`.RtpsLink` on top of an edge to Ethernet.
 
     Two clock domains or three: `sync`, and those of the PHY, whose clocks are pins. The reset of
     `sync` is enough.
 
     Parameters
     ----------
-    bus_bytes : int
-        Bytes per beat of the messages: 1, 2, 4, 8 or 16.
-    link : Link
-        With `ethernet`.
+    description : Description
+        Its link has an `ethernet`.
 
     Members
     -------
@@ -41,14 +42,17 @@ class EthernetLink(wiring.Component):
     sent : In(LinkSignature(bus_bytes))
     counters : Out(link_counters_layout(link))
     gmii, rgmii or mii : Out(the signature of the pins)
+    nonce : In(32)
+        Of an :class:`.RtpsLink`.
     """
 
-    def __init__(self, bus_bytes: int, link: Link):
-        self.bus_bytes, self.link = bus_bytes, link
+    def __init__(self, description: Description):
+        self.description = description
+        bus, link = description.bus_bytes, description.link
         super().__init__(
             {
-                "received": Out(LinkSignature(bus_bytes)),
-                "sent": In(LinkSignature(bus_bytes)),
+                "received": Out(LinkSignature(bus)),
+                "sent": In(LinkSignature(bus)),
                 "counters": Out(link_counters_layout(link)),
                 **self.medium(link),
             }
@@ -57,12 +61,23 @@ class EthernetLink(wiring.Component):
     @staticmethod
     def medium(link: Link) -> dict[str, Any]:
         """Return the members that face the medium."""
-        return {link.ethernet: Out(_PINS[link.ethernet]())}
+        nonce = {"nonce": In(32)} if link.kind == "rtps" else {}
+        return {link.ethernet: Out(_PINS[link.ethernet]()), **nonce}
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        link = self.link
+        link = self.description.link
         own = IPv4Interface(link.address)
+        upper: UdpLink | RtpsLink
+        ports: tuple[int, ...] = (link.port,)
+        groups: tuple[int, ...] = ()
+        if link.kind == "rtps":
+            ports = tuple(ports_of_link(self.description))
+            groups = (int(IPv4Address(MULTICAST_GROUP)),)
+            m.submodules.rtps = upper = RtpsLink(self.description)
+            m.d.comb += upper.nonce.eq(self.nonce)
+        else:
+            m.submodules.udp = upper = UdpLink(self.description.bus_bytes, link)
         m.submodules.phy = phy = PHYS[link.ethernet]()
         m.submodules.network = network = EthernetEdge(
             EthernetSettings(
@@ -70,18 +85,18 @@ class EthernetLink(wiring.Component):
                 address=int(own.ip),
                 prefix_bits=own.network.prefixlen,
                 gateway=int(IPv4Address(link.gateway)) if link.gateway else 0,
-                ports=(link.port,),
+                ports=ports,
+                groups=groups,
             )
         )
-        m.submodules.udp = udp = UdpLink(self.bus_bytes, link)
         wiring.connect(m, phy.pins, wiring.flipped(getattr(self, link.ethernet)))
         wiring.connect(m, phy.received, network.symbols_in)
         wiring.connect(m, network.symbols_out, phy.sent)
-        wiring.connect(m, network.received, udp.datagrams_in)
-        wiring.connect(m, udp.datagrams_out, network.sent)
-        m.d.comb += [*passes(udp.received, self.received), *passes(self.sent, udp.sent)]
-        for name in udp.counters.shape().members:
-            m.d.comb += self.counters[name].eq(udp.counters[name])
+        wiring.connect(m, network.received, upper.datagrams_in)
+        wiring.connect(m, upper.datagrams_out, network.sent)
+        m.d.comb += [*passes(upper.received, self.received), *passes(self.sent, upper.sent)]
+        for name in upper.counters.shape().members:
+            m.d.comb += self.counters[name].eq(upper.counters[name])
         names = network.drops.shape().members
         add_counters(
             m, self.counters, {ethernet_counter(name): network.drops[name] for name in names}

@@ -1,0 +1,131 @@
+// The board as a process: Verilator runs the node, and UDP sockets are what lies below it.
+//
+// board ADDRESS CYCLES PORT...: the node has this IPv4 address and these ports, the first of which
+// takes part in the group of discovery. The clock runs at CYCLES per second at most, and as fast as
+// the machine can while there is something to do. Runs until it is killed.
+
+#include <arpa/inet.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <vector>
+
+#include "Vnode.h"
+#include "verilated.h"
+
+namespace {
+
+constexpr uint32_t kGroup = 0xEFFF0001;
+constexpr int kSlice = 1024;
+
+struct Datagram {
+  uint32_t address;
+  uint16_t from, to;
+  std::vector<uint8_t> bytes;
+};
+
+double seconds() {
+  using clock = std::chrono::steady_clock;
+  return std::chrono::duration<double>(clock::now().time_since_epoch()).count();
+}
+
+int open_socket(uint32_t address, uint16_t port, bool in_group) {
+  int made = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0), one = 1, size = 1 << 20;
+  setsockopt(made, SOL_SOCKET, SO_REUSEADDR, &one, sizeof one);
+  setsockopt(made, SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
+  sockaddr_in here{};
+  here.sin_family = AF_INET;
+  here.sin_port = htons(port);
+  here.sin_addr.s_addr = htonl(in_group ? kGroup : address);
+  if (bind(made, reinterpret_cast<sockaddr*>(&here), sizeof here)) std::perror("bind"), std::exit(1);
+  ip_mreq group{{htonl(kGroup)}, {htonl(address)}};
+  if (in_group) setsockopt(made, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group);
+  in_addr interface{htonl(address)};
+  setsockopt(made, IPPROTO_IP, IP_MULTICAST_IF, &interface, sizeof interface);
+  return made;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 4) return std::fprintf(stderr, "usage: board ADDRESS CYCLES PORT...\n"), 2;
+  const uint32_t address = ntohl(inet_addr(argv[1]));
+  const double rate = std::atof(argv[2]);
+  std::vector<pollfd> sockets;
+  std::vector<uint16_t> ports;
+  for (int i = 3; i < argc; ++i) {
+    ports.push_back(std::atoi(argv[i]));
+    sockets.push_back({open_socket(address, ports.back(), i == 3), POLLIN, 0});
+  }
+  Vnode node;
+  std::deque<Datagram> to_node;
+  std::vector<uint8_t> from_node;
+  size_t at = 0;
+  node.aclk = 0;
+  node.aresetn = 0;
+  node.udp_tx_ready = 1;
+  node.nonce = static_cast<uint32_t>(getpid()) << 16 ^ static_cast<uint32_t>(seconds() * 1e6);
+  std::printf("ready\n");
+  std::fflush(stdout);
+  const double start = seconds();
+  uint64_t cycles = 0, idle = 0;
+  for (;;) {
+    const bool rests = idle > 16 * kSlice && cycles > (seconds() - start) * rate;
+    if (poll(sockets.data(), sockets.size(), rests ? 1 : 0) > 0) {
+      for (size_t i = 0; i < sockets.size(); ++i) {
+        static uint8_t buffer[1 << 16];
+        sockaddr_in from{};
+        socklen_t length = sizeof from;
+        ssize_t size = recvfrom(sockets[i].fd, buffer, sizeof buffer, 0,
+                                reinterpret_cast<sockaddr*>(&from), &length);
+        if (size <= 0) continue;
+        to_node.push_back({ntohl(from.sin_addr.s_addr), ntohs(from.sin_port), ports[i],
+                           {buffer, buffer + size}});
+        idle = 0;
+      }
+    }
+    if (rests && to_node.empty()) continue;
+    for (int i = 0; i < kSlice; ++i, ++cycles, ++idle) {
+      node.aresetn = cycles > 8;
+      const bool comes = node.aresetn && !to_node.empty();
+      node.udp_rx_valid = comes;
+      if (comes) {
+        const Datagram& next = to_node.front();
+        node.udp_rx_data = next.bytes[at];
+        node.udp_rx_last = at + 1 == next.bytes.size();
+        node.udp_rx_length = next.bytes.size();
+        node.udp_rx_ip_address = next.address;
+        node.udp_rx_src_port = next.from;
+        node.udp_rx_dst_port = next.to;
+      }
+      node.eval();
+      if (comes && node.udp_rx_ready) {
+        idle = 0;
+        if (++at == to_node.front().bytes.size()) to_node.pop_front(), at = 0;
+      }
+      if (node.udp_tx_valid) {
+        idle = 0;
+        from_node.push_back(node.udp_tx_data);
+        if (node.udp_tx_last) {
+          if (from_node.size() != node.udp_tx_length) std::fprintf(stderr, "a wrong length\n");
+          sockaddr_in to{};
+          to.sin_family = AF_INET;
+          to.sin_port = htons(node.udp_tx_dst_port);
+          to.sin_addr.s_addr = htonl(node.udp_tx_ip_address);
+          sendto(sockets[1].fd, from_node.data(), from_node.size(), 0,
+                 reinterpret_cast<sockaddr*>(&to), sizeof to);
+          from_node.clear();
+        }
+      }
+      node.aclk = 1;
+      node.eval();
+      node.aclk = 0;
+    }
+  }
+}

@@ -1,0 +1,1059 @@
+"""The state of a participant, and all that it decides: whom it knows, what it sends, and when."""
+
+from __future__ import annotations
+
+import hashlib
+from ipaddress import IPv4Address
+from typing import Any
+
+from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import stream, wiring
+from amaranth.lib.wiring import In, Out
+from amaranth.utils import ceil_log2
+
+from firm_hdl.gateware import PacketWidth
+from firm_hdl.gateware.memories import BlockMemory, LutMemory
+from firm_hdl.node.description import Description
+from firm_hdl.node.gateware.streams import LinkSignature
+from firm_hdl.node.rtps.endpoints import Endpoint, ports_of_link
+from firm_hdl.node.rtps.events import EventKind, announced_layout, event_layout, raw
+from firm_hdl.node.rtps.history import MOST_SAMPLES, Part
+from firm_hdl.node.rtps.names import digest_of
+from firm_hdl.node.rtps.tables import (
+    BUILTIN_ROWS,
+    identity_layout,
+    peer_layout,
+    row_layout,
+    sample_layout,
+    writer_layout,
+)
+from firm_hdl.node.rtps.templates import HEAD_BYTES, Job, Templates
+from firm_hdl.node.rtps.transmitter import order_layout
+from firm_hdl.rtps.wire.guid import (
+    PUBLICATIONS_READER,
+    PUBLICATIONS_WRITER,
+    SUBSCRIPTIONS_READER,
+    SUBSCRIPTIONS_WRITER,
+    VENDOR,
+)
+from firm_hdl.rtps.wire.locators import MULTICAST_GROUP, Ports
+
+__all__ = ["TICKS_PER_SECOND", "Engine"]
+
+TICKS_PER_SECOND = 20
+
+# Writers and readers that every participant has: SEDP, and the graph of ROS 2.
+_FIXED_WRITERS, _FIXED_READERS = 3, 2
+_GRAPH = 2
+# Ticks: between heartbeats to a reader that does not answer, at first; between requests for what is
+# missing; between greetings of a writer that has said nothing yet.
+_HEARTBEAT, _REPEAT, _GREETING = 2, 2, 5
+_MOST_TIMER = _MOST_TRIES = 15
+# Seconds after which a peer without matched endpoints may give way to another one.
+_GRACE = 3
+# Seconds to wait for a datagram, whose time of arrival makes the GUID prefix new.
+_PATIENCE = 4
+# Requests whose replies are awaited: a power of two.
+_REQUESTS = 32
+# How GUID prefixes of Fast DDS begin, which answers a first ACKNACK at once if its base is 0.
+_FAST_DDS = 0x0F01
+_READER_BIT = 2
+_STATIC_PARTICIPANTS = 4
+_LITTLE, _FINAL = 1, 2
+
+
+class Engine(wiring.Component):
+    """Take events and samples; keep peers, matched endpoints and histories; order datagrams.
+
+    One thing at a time is done: an event, a new sample, an announcement, or the next row of the
+    table of matched endpoints, whose state says what is due. So each datagram that is sent, and
+    each event, takes a bounded number of cycles, and nothing waits for a peer.
+
+    A place for a peer is free after its lease; without a free one, a peer that has had no matched
+    endpoint for 3 seconds gives way. One that has is never displaced.
+
+    Parameters
+    ----------
+    description : Description
+    templates : Templates
+    writers, readers : sequence of Endpoint
+        As :class:`.Own` has them.
+    parts : sequence of Part
+        The memory of each writer but the first.
+
+    Members
+    -------
+    events, announced, knows, wants : as of a `MessageReader`
+    topic, tag : Out(16), Out(32)
+        Of the payload that is wanted.
+    sent : In(LinkSignature(bus_bytes))
+        Messages of publications and services.
+    nonce : In(32)
+        Not 0: makes the GUID prefix of this start another one than those before. 0: the time at
+        which the first datagram comes does so; without any, 4 seconds are waited for one.
+    came : In(1)
+        A datagram is there.
+    own : Out(96)
+        GUID prefix.
+    order, starts, ends : as of a `Transmitter`
+    write_at, write_byte, writes : as of a `History`
+    lost, late, stray, cut, unsent : Out(1)
+        High for one cycle: samples that will not come; a sample that came twice; one that is for
+        nobody; one in fragments; what found no place, or has no way.
+    """
+
+    def __init__(
+        self,
+        description: Description,
+        templates: Templates,
+        writers: tuple[Endpoint, ...],
+        readers: tuple[Endpoint, ...],
+        parts: tuple[Part, ...],
+    ):
+        self.description, self.templates = description, templates
+        self.writers, self.readers, self.parts = writers, readers, parts
+        self.memory_bytes = max(2, *(each.base + each.bytes for each in parts)) if parts else 2
+        self.address_bits = ceil_log2(self.memory_bytes)
+        link = description.link
+        self.peers = link.peers
+        self.first_row = BUILTIN_ROWS * link.peers
+        self.rows = self.first_row + link.matches
+        order = order_layout(len(templates.rom), self.memory_bytes)
+        super().__init__(
+            {
+                "events": In(stream.Signature(event_layout())),
+                "announced": In(announced_layout()),
+                "knows": Out(1),
+                "wants": Out(1),
+                "topic": Out(16),
+                "tag": Out(32),
+                "sent": In(LinkSignature(description.bus_bytes)),
+                "nonce": In(32),
+                "came": In(1),
+                "own": Out(96),
+                "order": Out(order),
+                "starts": Out(1),
+                "ends": In(1),
+                "write_at": Out(self.address_bits),
+                "write_byte": Out(8),
+                "writes": Out(1),
+                **dict.fromkeys(("lost", "late", "stray", "cut", "unsent"), Out(1)),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        self._declare(m)
+        self._ticks(m)
+        self._compare(m)
+        self._declare_intake(m)
+        with m.FSM():
+            self._start(m)
+            with m.State("IDLE"):
+                m.d.sync += [self._second.eq(0), self._turn.eq(1)]
+                self._begin_scan(m)
+                with m.If(self.events.valid & self._turn):
+                    m.d.sync += self._turn.eq(0)
+                    m.next = "EVENT"
+                with m.Elif(self._second_due):
+                    m.next = "SECOND"
+                with m.Elif(self._multicast_due | (self._static != 0) | self._due.any()):
+                    m.next = "ANNOUNCE"
+                with m.Elif(self.sent.valid & self._quiet):
+                    m.next = "INTAKE"
+                with m.Else():
+                    m.d.sync += self._at.eq(self._sweep)
+                    m.next = "ROW"
+            self._announcements(m)
+            self._events(m)
+            self._participants(m)
+            self._listening(m)
+            self._matching(m)
+            self._sweeping(m)
+            self._sampling(m)
+            self._datagrams(m)
+            self._taking(m)
+        return m
+
+    # What the states share.
+
+    def _declare(self, m: Module) -> None:
+        """Make the memories and the registers that several states use."""
+        peers, rows, address = self.peers, self.rows, self.address_bits
+        endpoints = max(_FIXED_WRITERS, _FIXED_READERS) + max(len(self.parts), len(self.readers))
+        self._row = row = Signal(row_layout(peers, endpoints))
+        self._rows = _memory(m, "rows", row.shape(), rows)
+        self._peers = _memory(m, "peers", peer_layout(), peers)
+        samples = MOST_SAMPLES * max(1, len(self.parts))
+        self._samples = _memory(m, "samples", sample_layout(address), samples)
+        self._identities = _memory(m, "identities", identity_layout(peers), _REQUESTS)
+        states = LutMemory(m, "states", writer_layout(address), max(2, len(self.parts)))
+        self._states, self._state = states, states.reader()
+        # The row and the participant that are worked on, and what is known of our writer.
+        self._row_at = Signal(range(rows))
+        self._peer, self._peer_row = Signal(range(peers)), Signal(peer_layout())
+        self._known, self._accepts = Signal(), Signal()
+        self._last, self._gone, self._lower = Signal(32), Signal(32), Signal(32)
+        # A scan of a memory: the address, that of the word, and whether word and register are there.
+        self._at, self._at_word = Signal(range(rows + 1)), Signal(range(rows + 1))
+        self._has_word, self._has_row = Signal(), Signal()
+        self._key, self._hit, self._second = Signal(32), Signal(), Signal()
+        self._free, self._has_free = Signal(range(rows)), Signal()
+        # Which peers there are, which are matched with us, and which have to be told of us.
+        self._live, self._matched, self._due = Signal(peers), Signal(peers), Signal(peers)
+        self._left = Array(Signal(7, name=f"left_{n}") for n in range(peers))
+        self._young = Array(Signal(2, name=f"young_{n}") for n in range(peers))
+        self._dying = Array(Signal(2, name=f"dying_{n}") for n in range(peers))
+        self._sweep, self._turn = Signal(range(rows)), Signal()
+        # Whether a whole sweep sent no sample for the first time: then a new one is taken.
+        self._quiet, self._clean = Signal(), Signal()
+        self._tick_due, self._tick_pass, self._second_due = Signal(), Signal(), Signal()
+        self._statics = [int(IPv4Address(each)) for each in self.description.link.static_peers]
+        self._most_static = _STATIC_PARTICIPANTS * len(self._statics)
+        self._multicast_due, self._static = Signal(), Signal(range(self._most_static + 1))
+        # The datagram that is ordered.
+        self._job, self._stores = Signal(range(len(self.templates.every))), Signal()
+        self._number, self._count = Signal(32), Signal(32)
+        self._from, self._to = Signal(32), Signal(32)
+        self._bits, self._bitmap, self._is_final = Signal(32), Signal(32), Signal()
+        self._address, self._port = Signal(32), Signal(16)
+        self._start_at, self._size = Signal(range(len(self.templates.rom))), Signal(16)
+        self._sample = Signal(sample_layout(address))
+        self._identity = Signal(identity_layout(peers))
+        self._nonce, self._cycles = Signal(32), Signal(32)
+        m.d.sync += self._cycles.eq(self._cycles + 1)
+        m.d.comb += [
+            self.own.eq(Cat(Const(self._fixed_prefix(), 64), self._nonce)),
+            self.knows.eq(self._known),
+            self.wants.eq(self._accepts),
+            self._rows.write_at.eq(self._row_at),
+            self._rows.write_word.eq(row),
+            self._rows.read_at.eq(self._at),
+            self._peers.write_at.eq(self._peer),
+            self._peers.read_at.eq(self._at),
+        ]
+        self._fill_order(m)
+
+    def _fixed_prefix(self) -> int:
+        """Return the first 8 bytes of the GUID prefix: the vendor (9.3.1.5), and the node's own."""
+        link = self.description.link
+        text = f"{self.description.fingerprint} {link.ip} {link.domain} {link.participant}"
+        return int.from_bytes(VENDOR + hashlib.sha256(text.encode()).digest()[:6], "little")
+
+    def _ticks(self, m: Module) -> None:
+        """Note that a tick or a second is over."""
+        cycles = max(2, round(self.description.clock_hz / TICKS_PER_SECOND))
+        left, ticks = Signal(range(cycles)), Signal(range(TICKS_PER_SECOND))
+        m.d.sync += left.eq(left - 1)
+        with m.If(left == 0):
+            m.d.sync += [left.eq(cycles - 1), ticks.eq(ticks - 1), self._tick_due.eq(1)]
+            with m.If(ticks == 0):
+                m.d.sync += [ticks.eq(TICKS_PER_SECOND - 1), self._second_due.eq(1)]
+
+    def _fill_order(self, m: Module) -> None:
+        """Tell the transmitter the registers of the datagram that is ordered."""
+        order, row, fields = self.order, self._row, self.order.fields
+        parts, user = self.parts, row.local - _FIXED_WRITERS
+        padded, head = Signal(16), Signal(16)
+        m.d.comb += [
+            order.start.eq(self._start_at),
+            order.size.eq(self._size),
+            order.address.eq(self._address),
+            order.port.eq(self._port),
+            order.at.eq(self._sample.at),
+            order.payload_bytes.eq(self._sample.bytes),
+            fields.own.eq(self.own),
+            fields.peer.eq(self._peer_row.prefix),
+            fields.number.eq(self._number),
+            fields.first.eq(self._from),
+            fields.last.eq(self._to),
+            fields.count.eq(self._count),
+            fields.bits.eq(self._bits),
+            fields.bitmap.eq(self._bitmap),
+            fields.flags.eq(_LITTLE | Mux(self._is_final, _FINAL, 0)),
+            fields.related.eq(self._identity.guid),
+            fields.related_number.eq(self._identity.number),
+            padded.eq(Cat(Const(0, 2), (self._sample.bytes + 3)[2:])),
+            head.eq(Mux(self._job == Job.REPLY, HEAD_BYTES[Job.REPLY], HEAD_BYTES[Job.SAMPLE])),
+            fields.size.eq(head + padded),
+        ]
+        for number, part in enumerate(parts):
+            with m.If(user == number):
+                m.d.comb += [order.base.eq(part.base), order.mask.eq(part.bytes - 1)]
+        own_writers = [PUBLICATIONS_WRITER, SUBSCRIPTIONS_WRITER, *_entities(self.writers)]
+        own_readers = [PUBLICATIONS_READER, SUBSCRIPTIONS_READER, *_entities(self.readers)]
+        writer, reader = (
+            _at([raw(each) for each in own], row.local) for own in (own_writers, own_readers)
+        )
+        m.d.comb += [
+            fields.reader.eq(Mux(row.writes, row.remote, reader)),
+            fields.writer.eq(Mux(row.writes, writer, row.remote)),
+        ]
+        self._padded = padded
+
+    def _begin_scan(self, m: Module) -> None:
+        m.d.sync += [
+            self._at.eq(0),
+            self._has_word.eq(0),
+            self._has_row.eq(0),
+            self._has_free.eq(0),
+        ]
+
+    def _kill(self, m: Module, peer: Value) -> None:
+        """Forget a peer. Its place is free after two sweeps, which clear its rows."""
+        m.d.sync += [
+            self._live.bit_select(peer, 1).eq(0),
+            self._matched.bit_select(peer, 1).eq(0),
+            self._due.bit_select(peer, 1).eq(0),
+            self._dying[peer].eq(2),
+        ]
+
+    def _send(self, m: Module, job: Any) -> None:
+        """Order a datagram to the endpoint of the row, which is stored after that."""
+        m.d.sync += [self._job.eq(job), self._stores.eq(1), self._at.eq(self._row.peer)]
+        m.next = "PEER"
+
+    # From reset to the first datagram.
+
+    def _start(self, m: Module) -> None:
+        cycles = self._cycles
+        with m.State("INIT"):
+            # Memories keep their content in a reset.
+            m.d.comb += [
+                self._rows.writes.eq(1),
+                self._rows.write_at.eq(self._at),
+                self._states.write.en.eq(1),
+                self._states.write.addr.eq(self._at),
+            ]
+            m.d.sync += self._at.eq(self._at + 1)
+            with m.If(self._at == self.rows - 1):
+                m.next = "NONCE"
+        with m.State("NONCE"):
+            most = min(round(_PATIENCE * self.description.clock_hz), (1 << 32) - 256)
+            is_late = cycles[8:] >= most >> 8
+            with m.If((self.nonce != 0) | self.came | is_late):
+                m.d.sync += [
+                    self._nonce.eq(Mux(self.nonce != 0, self.nonce, cycles)),
+                    self._multicast_due.eq(1),
+                    self._static.eq(self._most_static),
+                ]
+                m.next = "IDLE"
+
+    # Announcements of this participant (8.5.3.3.1), and what else is due once per second.
+
+    def _announcements(self, m: Module) -> None:
+        with m.State("SECOND"):
+            m.d.sync += [
+                self._second_due.eq(0),
+                self._multicast_due.eq(1),
+                self._static.eq(self._most_static),
+                self._due.eq(self._live),
+            ]
+            for each in range(self.peers):
+                left, young = self._left[each], self._young[each]
+                m.d.sync += [left.eq(left - 1), young.eq(Mux(young == 0, 0, young - 1))]
+                with m.If(self._live[each] & (left == 0)):
+                    self._kill(m, Const(each, range(self.peers)))
+            m.next = "IDLE"
+        domain = self.description.link.domain
+        ports = [Ports.of(domain, each).discovery for each in range(_STATIC_PARTICIPANTS)]
+        with m.State("ANNOUNCE"):
+            m.d.sync += [self._job.eq(Job.ANNOUNCE), self._stores.eq(0)]
+            m.next = "JOB"
+            with m.If(self._multicast_due):
+                m.d.sync += [
+                    self._multicast_due.eq(0),
+                    self._address.eq(int(IPv4Address(MULTICAST_GROUP))),
+                    self._port.eq(Ports.of(domain, 0).discovery_multicast),
+                ]
+            with m.Elif(self._static != 0):
+                place = self._static - 1
+                m.d.sync += [
+                    self._static.eq(place),
+                    self._address.eq(_at(self._statics, place[2:])),
+                    self._port.eq(_at(ports, place[:2])),
+                ]
+            with m.Else():
+                which = _lowest(self._due)
+                m.d.sync += [self._due.bit_select(which, 1).eq(0), self._at.eq(which)]
+                m.next = "PEER"
+
+    # Events, and the scans that they need.
+
+    def _events(self, m: Module) -> None:
+        event, row = self.events.payload, self._row
+        with m.State("EVENT"):
+            m.d.sync += [
+                self._accepts.eq(0),
+                self._key.eq(Mux(event.kind == EventKind.ACKNACK, event.reader, event.writer)),
+            ]
+            m.next = "FIND"
+            with m.If(event.kind == EventKind.SOURCE):
+                m.next = "FIND_PEER"
+            with m.Elif(event.kind == EventKind.PARTICIPANT):
+                m.next = "PLACE"
+            with m.Elif(~self._live.bit_select(self._peer, 1)):
+                m.next = "DONE"
+            with m.Elif(event.kind == EventKind.PARTICIPANT_GONE):
+                self._kill(m, self._peer)
+                m.next = "DONE"
+
+        with m.State("FIND"):
+            is_same = row.valid & (row.peer == self._peer) & (row.remote == self._key)
+            is_free = ~row.valid & (self._row_at >= self.first_row)
+            self._scan(m, self._rows)
+            with m.If(self._has_row & is_free & ~self._has_free):
+                m.d.sync += [self._free.eq(self._row_at), self._has_free.eq(1)]
+            with m.If(self._has_row & (is_same | (self._row_at == self.rows - 1))):
+                m.d.sync += self._hit.eq(is_same)
+                m.next = "FOUND"
+            with m.Else():
+                m.d.sync += [
+                    Value.cast(row).eq(self._rows.word),
+                    self._row_at.eq(self._at_word),
+                ]
+
+        with m.State("FOUND"):
+            with m.If(self._second):
+                m.next = "MATCH"
+            with m.Elif(~self._hit | (row.writes != (event.kind == EventKind.ACKNACK))):
+                m.d.comb += self.stray.eq(1)
+                m.next = "DONE"
+            with m.Else():
+                with m.Switch(event.kind):
+                    for each in (EventKind.HEARTBEAT, EventKind.GAP, EventKind.ACKNACK):
+                        with m.Case(each):
+                            m.next = each.name
+                    with m.Default():
+                        m.next = "SAMPLE"
+
+        with m.State("STORE_EVENT"):
+            m.d.comb += self._rows.writes.eq(1)
+            m.next = "DONE"
+        with m.State("DONE"):
+            m.d.comb += self.events.ready.eq(1)
+            m.next = "IDLE"
+
+    def _scan(self, m: Module, memory: BlockMemory) -> None:
+        """Read the next word of a memory; it comes a cycle later, and is registered then."""
+        m.d.comb += memory.reads.eq(1)
+        m.d.sync += [
+            self._at.eq(self._at + 1),
+            self._at_word.eq(self._at),
+            self._has_word.eq(1),
+            self._has_row.eq(self._has_word),
+        ]
+
+    # Participants (8.5.3.3.2).
+
+    def _participants(self, m: Module) -> None:
+        event, announced = self.events.payload, self.announced
+        peer, peer_row = self._peer, self._peer_row
+        with m.State("FIND_PEER"):
+            is_same = self._live.bit_select(peer, 1) & (peer_row.prefix == event.source)
+            self._scan(m, self._peers)
+            with m.If(self._has_row & (is_same | (peer == self.peers - 1))):
+                m.d.sync += self._known.eq(is_same)
+                with m.If(is_same):
+                    m.d.sync += self._left[peer].eq(peer_row.lease)
+                m.next = "DONE"
+            with m.Else():
+                m.d.sync += [
+                    Value.cast(peer_row).eq(self._peers.word),
+                    peer.eq(self._at_word),
+                ]
+
+        with m.State("PLACE"):
+            is_free = Cat(~self._live[n] & (self._dying[n] == 0) for n in range(self.peers))
+            strangers = self._live & ~self._matched & Cat(each == 0 for each in self._young)
+            m.next = "PLACED"
+            with m.If(~announced.is_participant):
+                m.next = "DONE"
+            with m.Elif(~self._known & is_free.any()):
+                m.d.sync += peer.eq(_lowest(is_free))
+            with m.Elif(~self._known):
+                m.d.comb += self.unsent.eq(1)
+                with m.If(strangers.any()):
+                    # Its place is free when the newcomer announces itself again.
+                    self._kill(m, _lowest(strangers))
+                m.next = "DONE"
+
+        with m.State("PLACED"):
+            word, user = self._peers.write_word, announced.user
+            m.d.comb += [
+                self._peers.writes.eq(1),
+                word.prefix.eq(event.source),
+                word.discovery.eq(announced.discovery),
+                word.user.eq(Mux(user.port == 0, announced.discovery.as_value(), user.as_value())),
+                word.lease.eq(announced.lease),
+            ]
+            m.d.sync += self._left[peer].eq(announced.lease)
+            m.next = "DONE"
+            with m.If(~self._known):
+                m.d.sync += [
+                    self._known.eq(1),
+                    self._live.bit_select(peer, 1).eq(1),
+                    self._due.bit_select(peer, 1).eq(1),
+                    self._young[peer].eq(_GRACE),
+                ]
+                m.next = "BUILTIN"
+
+        with m.State("BUILTIN"):
+            # 8.5.5.1: the endpoints of SEDP are matched with those of each participant.
+            writers = [PUBLICATIONS_WRITER, SUBSCRIPTIONS_WRITER]
+            readers = [PUBLICATIONS_READER, SUBSCRIPTIONS_READER]
+            place, word = self._at[:2], self._rows.write_word
+            m.d.comb += [
+                self._rows.writes.eq(1),
+                self._rows.write_at.eq(Cat(place, peer)),
+                Value.cast(word).eq(0),
+                word.valid.eq(1),
+                word.writes.eq(place[1]),
+                word.local.eq(place[0]),
+                word.peer.eq(peer),
+                word.remote.eq(_at([raw(each) for each in (*writers, *readers)], place)),
+                word.reliable.eq(1),
+                word.next.eq(1),
+                word.end.eq(1),
+                word.first.eq(1),
+                word.ask.eq(1),
+            ]
+            m.d.sync += self._at.eq(self._at + 1)
+            with m.If(place == BUILTIN_ROWS - 1):
+                m.next = "DONE"
+
+    # Our readers (8.4.12): what comes of a writer, in order, and what is missing.
+
+    def _listening(self, m: Module) -> None:
+        event, row = self.events.payload, self._row
+        number, bits = event.number, self._bits
+        with m.State("HEARTBEAT"):
+            # What the writer no longer has is lost.
+            with m.If(number > row.next):
+                m.d.comb += self.lost.eq(row.synced)
+                m.d.sync += [row.next.eq(number), row.tries.eq(0)]
+                with m.If(number > row.end):
+                    m.d.sync += row.end.eq(number)
+            m.d.sync += row.synced.eq(row.synced | row.reliable)
+            m.next = "HEARTBEAT_END"
+        with m.State("HEARTBEAT_END"):
+            end = Mux(event.last >= row.end, event.last + 1, row.end)
+            m.d.sync += [
+                row.end.eq(Mux(row.reliable, end, row.end)),
+                row.ask.eq(row.ask | (row.reliable & (~event.is_final | (row.next != end)))),
+            ]
+            m.next = "STORE_EVENT"
+
+        with m.State("GAP"):
+            # 8.3.8.4: from `number` to below `last`, and the bits from `last` on.
+            m.d.sync += bits.eq(0)
+            m.next = "GAP_BITS"
+            with m.If(row.reliable & (number <= row.next) & (event.last >= row.next)):
+                m.d.sync += [row.next.eq(event.last), row.tries.eq(0), bits.eq(event.bits)]
+        with m.State("GAP_BITS"):
+            with m.If(bits[31]):
+                m.d.sync += [bits.eq(bits << 1), row.next.eq(row.next + 1)]
+            with m.Else():
+                with m.If(row.next > row.end):
+                    m.d.sync += row.end.eq(row.next)
+                m.next = "STORE_EVENT"
+
+        with m.State("SAMPLE"):
+            is_new = number >= row.next
+            takes = Mux(row.reliable, row.synced & (number == row.next), is_new)
+            is_fragment = event.kind == EventKind.FRAGMENT
+            m.d.sync += self._accepts.eq(takes)
+            m.next = "SAMPLED"
+            with m.If(takes):
+                m.d.comb += [
+                    self.cut.eq(is_fragment),
+                    self.lost.eq(row.synced & (number != row.next)),
+                ]
+                m.d.sync += [row.next.eq(number + 1), row.tries.eq(0)]
+                with m.If(~row.reliable):
+                    # Of a best-effort writer, the first sample says where its samples begin.
+                    m.d.sync += row.synced.eq(1)
+            with m.Elif(is_new & row.synced):
+                # Something before it is missing. A request for it may be on its way.
+                m.d.sync += row.ask.eq(row.ask | (row.timer == 0))
+            with m.Elif(~is_new & ~is_fragment):
+                m.d.comb += self.late.eq(1)
+            with m.If((takes | (is_new & row.synced)) & (number >= row.end)):
+                m.d.sync += row.end.eq(number + 1)
+
+        with m.State("SAMPLED"):
+            m.d.comb += self._rows.writes.eq(1)
+            self._begin_scan(m)
+            m.next = "DONE"
+            with m.If(self._accepts):
+                with m.Switch(event.kind):
+                    with m.Case(EventKind.ENDPOINT):
+                        m.d.sync += [self._second.eq(1), self._key.eq(self.announced.entity)]
+                        m.next = "FIND"
+                    with m.Case(EventKind.ENDPOINT_GONE):
+                        m.d.sync += [self._second.eq(1), self._key.eq(event.entity)]
+                        m.next = "FIND"
+                    with m.Case(EventKind.SAMPLE):
+                        m.next = "DELIVER"
+
+        with m.State("DELIVER"):
+            # The tag of a request leads to its identity, which the reply has to name.
+            named = event.has_related & (event.related != 0)
+            word = self._identities.write_word
+            m.d.comb += [
+                self._identities.writes.eq(1),
+                self._identities.write_at.eq(self.tag + 1),
+                word.tag.eq(self.tag + 1),
+                word.peer.eq(self._peer),
+                word.guid.eq(Mux(named, event.related, Cat(event.source, event.writer))),
+                word.number.eq(number),
+            ]
+            topics = [each.topic.id for each in self.readers if each.topic]
+            m.d.sync += [
+                self.topic.eq(_at(topics, row.local - _FIXED_READERS)),
+                self.tag.eq(self.tag + 1),
+            ]
+            m.next = "DONE"
+
+    # Endpoints of peers (8.5.5.2): which of ours they match, if any.
+
+    def _compare(self, m: Module) -> None:
+        """Find the endpoint of ours that has the topic and the type of what is announced."""
+        event, announced = self.events.payload, self.announced
+        is_writer = event.writer == raw(PUBLICATIONS_WRITER)
+        self._is_same, self._local = Signal(), Signal.like(self._row.local)
+        self._depth = Signal(range(MOST_SAMPLES + 1))
+        self._is_reliable, self._is_durable = Signal(), Signal()
+        m.d.sync += self._is_same.eq(0)
+        writers = [(_GRAPH + n, each, False) for n, each in enumerate(self.writers)]
+        readers = [(_FIXED_READERS + n, each, True) for n, each in enumerate(self.readers)]
+        for number, own, listens in (*writers, *readers):
+            data, part = own.data, number - _FIXED_WRITERS
+            is_same = (announced.topic == digest_of(data.topic)) & (
+                announced.type == digest_of(data.type_name)
+            )
+            with m.If(is_same & (is_writer == listens)):
+                m.d.sync += [
+                    self._is_same.eq(1),
+                    self._local.eq(number),
+                    self._is_reliable.eq(data.qos.reliable),
+                    self._is_durable.eq(data.qos.durability),
+                    self._depth.eq(1 if listens or part < 0 else self.parts[part].depth),
+                ]
+
+    def _matching(self, m: Module) -> None:
+        event, announced, row = self.events.payload, self.announced, self._row
+        is_writer = event.writer == raw(PUBLICATIONS_WRITER)
+        # DDS 2.2.3: what is offered is at least what is asked for.
+        reliable, durable = announced.is_reliable, announced.durability
+        fits = Mux(
+            is_writer,
+            (reliable | ~self._is_reliable) & (durable >= self._is_durable),
+            (self._is_reliable | ~reliable) & (durable <= self._is_durable),
+        )
+        local, depth = self._local, self._depth
+        with m.State("MATCH"):
+            is_graph = local == _GRAPH
+            m.d.comb += self._state.addr.eq(local - _FIXED_WRITERS)
+            m.d.sync += [
+                self._last.eq(Mux(is_graph, 1, self._state.data.last)),
+                self._gone.eq(Mux(is_graph, 0, self._state.data.gone)),
+            ]
+            m.next = "DONE"
+            with m.If(event.kind == EventKind.ENDPOINT_GONE):
+                with m.If(self._hit & (self._row_at >= self.first_row)):
+                    m.d.sync += Value.cast(row).eq(0)
+                    m.next = "STORE_EVENT"
+            with m.Elif(~self._hit & announced.is_endpoint & self._is_same & fits):
+                m.d.comb += self.unsent.eq(~self._has_free)
+                with m.If(self._has_free):
+                    m.d.sync += self._row_at.eq(self._free)
+                    m.next = "MATCHED"
+        with m.State("MATCHED"):
+            # A volatile reader begins with the next sample, any other one with the history.
+            kept, first = Signal(32), Signal(32)
+            replays = (durable != 0) & self._is_durable
+            m.d.comb += [
+                kept.eq(self._last - self._gone),
+                first.eq(self._last + 1 - Mux(replays, Mux(kept > depth, depth, kept), 0)),
+            ]
+            m.d.sync += [
+                Value.cast(row).eq(0),
+                row.valid.eq(1),
+                row.writes.eq(~is_writer),
+                row.peer.eq(self._peer),
+                row.remote.eq(announced.entity),
+                row.local.eq(local),
+                row.reliable.eq(reliable & self._is_reliable),
+                row.next.eq(Mux(is_writer, 1, first)),
+                row.end.eq(Mux(is_writer, 1, first)),
+                row.first.eq(first),
+                row.ask.eq(reliable & self._is_reliable),
+                self._matched.bit_select(self._peer, 1).eq(1),
+            ]
+            m.next = "STORE_EVENT"
+
+        with m.State("ACKNACK"):
+            # 8.4.9.2. Base 0 is how Fast DDS greets a writer.
+            base = Mux(event.number == 0, 1, event.number)
+            m.d.sync += [
+                row.next.eq(base),
+                row.base.eq(base),
+                row.request.eq(Mux(event.number == 0, 0, event.bits)),
+                row.tries.eq(0),
+                row.ask.eq(row.ask | (~event.is_final & (event.bits == 0))),
+            ]
+            m.next = "STORE_EVENT"
+
+    # The rows in turn, and what is due for each.
+
+    def _sweeping(self, m: Module) -> None:
+        row = self._row
+        with m.State("ROW"):
+            m.d.comb += self._rows.reads.eq(1)
+            m.d.sync += self._row_at.eq(self._at)
+            m.next = "ROW_READ"
+        with m.State("ROW_READ"):
+            m.d.sync += Value.cast(row).eq(self._rows.word)
+            m.next = "ROW_STATE"
+            with m.If(~self._rows.word[0]):
+                m.next = "NEXT"
+        with m.State("ROW_STATE"):
+            counts = [len(self.writers), len(self.readers), 1]
+            is_fixed = row.local < _FIXED_WRITERS
+            m.d.comb += self._state.addr.eq(row.local - _FIXED_WRITERS)
+            m.d.sync += [
+                self._last.eq(Mux(is_fixed, _at(counts, row.local), self._state.data.last)),
+                self._gone.eq(Mux(is_fixed, 0, self._state.data.gone)),
+            ]
+            m.next = "ROW_LOWER"
+            with m.If(~self._live.bit_select(row.peer, 1)):
+                m.d.sync += Value.cast(row).eq(0)
+                m.next = "STORE"
+        with m.State("ROW_LOWER"):
+            m.d.sync += self._lower.eq(Mux(row.first > self._gone, row.first, self._gone + 1))
+            m.next = "LISTENS"
+            with m.If(row.writes):
+                m.next = "WRITES"
+        self._writes_state(m)
+        self._listens_state(m)
+        with m.State("STORE"):
+            m.d.comb += self._rows.writes.eq(1)
+            m.next = "NEXT"
+        with m.State("NEXT"):
+            m.d.sync += self._sweep.eq(self._sweep + 1)
+            with m.If(self._sweep == self.rows - 1):
+                m.d.sync += [
+                    self._sweep.eq(0),
+                    self._quiet.eq(self._clean),
+                    self._clean.eq(1),
+                    self._tick_pass.eq(self._tick_due),
+                    self._tick_due.eq(0),
+                ]
+                for each in self._dying:
+                    with m.If(each != 0):
+                        m.d.sync += each.eq(each - 1)
+            m.next = "IDLE"
+
+    def _writes_state(self, m: Module) -> None:
+        """Serve a reader (8.4.9): samples that it asks for, new ones, heartbeats."""
+        row = self._row
+        with m.State("WRITES"):
+            m.d.sync += [
+                self._from.eq(self._lower),
+                self._to.eq(self._last),
+                self._is_final.eq(row.next > self._last),
+            ]
+            m.next = "NEXT"
+            with m.If(row.request != 0):
+                m.next = "REPAIR"
+            with m.Elif(row.end <= self._last):
+                m.d.sync += [self._clean.eq(0), self._number.eq(row.end)]
+                with m.If(row.end < self._lower):
+                    m.d.sync += row.end.eq(self._lower)
+                    m.next = "STORE"
+                with m.Else():
+                    m.d.sync += row.end.eq(row.end + 1)
+                    m.next = "FETCH"
+            with m.Elif(row.ask):
+                # Ever more seldom while the reader does not answer.
+                pause = Mux(row.tries < 3, _HEARTBEAT << row.tries[:2], _MOST_TIMER)
+                m.d.sync += [
+                    row.ask.eq(0),
+                    row.timer.eq(pause),
+                    row.tries.eq(Mux(row.tries == _MOST_TRIES, row.tries, row.tries + 1)),
+                ]
+                self._send(m, Job.HEARTBEAT)
+            with m.Elif(self._tick_pass):
+                m.next = "STORE"
+                with m.If(row.timer != 0):
+                    m.d.sync += row.timer.eq(row.timer - 1)
+                with m.Else():
+                    m.d.sync += row.ask.eq(row.reliable & (row.next <= self._last))
+
+        with m.State("REPAIR"):
+            m.d.sync += [row.request.eq(row.request << 1), row.base.eq(row.base + 1)]
+            with m.If(row.request == 0):
+                m.next = "STORE"
+            with m.If(row.request[31]):
+                # The heartbeat that is due after the last one tells what is missing then.
+                m.d.sync += [self._number.eq(row.base), row.ask.eq(1)]
+                m.next = "FETCH"
+                with m.If(row.base > self._last):
+                    m.d.sync += row.request.eq(0)
+                    m.next = "STORE"
+                with m.Elif(row.base < self._lower):
+                    m.d.sync += [self._from.eq(row.base), self._to.eq(self._lower)]
+                    m.d.sync += row.request.eq(0)
+                    self._send(m, Job.GAP)
+
+    def _listens_state(self, m: Module) -> None:
+        """Answer a writer (8.4.12.2): acknowledge what came, and ask for what is missing."""
+        row = self._row
+        with m.State("LISTENS"):
+            missing = Signal(32)
+            m.d.comb += missing.eq(row.end - row.next)
+            is_many, lacks = missing >= 32, row.synced & (missing != 0)
+            m.d.sync += [
+                self._number.eq(row.next),
+                self._bits.eq(Mux(is_many, 32, missing)),
+                self._bitmap.eq(~(Const(0xFFFF_FFFF, 32) >> Mux(is_many, 32, missing[:6]))),
+                self._is_final.eq(row.synced),
+            ]
+            m.next = "NEXT"
+            with m.If(row.ask & lacks & (row.tries == _MOST_TRIES)):
+                # Such as a sample that is larger than the memory: it will never come.
+                m.d.comb += self.lost.eq(1)
+                m.d.sync += [row.next.eq(row.next + 1), row.tries.eq(0)]
+                m.next = "STORE"
+            with m.Elif(row.ask):
+                m.d.sync += [
+                    row.ask.eq(0),
+                    row.timer.eq(Mux(row.synced, _REPEAT, _GREETING)),
+                    row.tries.eq(row.tries + lacks),
+                ]
+                self._send(m, Mux(lacks, Job.ACKNACK_MISSING, Job.ACKNACK))
+            with m.Elif(self._tick_pass):
+                m.next = "STORE"
+                with m.If(row.timer != 0):
+                    m.d.sync += row.timer.eq(row.timer - 1)
+                with m.Else():
+                    m.d.sync += row.ask.eq(row.reliable & (lacks | ~row.synced))
+
+    # Samples of our writers.
+
+    def _sampling(self, m: Module) -> None:
+        """Find sample `_number` of the row's writer, and order it, or a GAP in its place."""
+        row, templates = self._row, self.templates
+        identity, sample = self._identity, self._sample
+        with m.State("FETCH"):
+            firsts = [templates.writers, templates.readers, templates.graph]
+            user = row.local - _FIXED_WRITERS
+            place = Cat(self._number[: ceil_log2(MOST_SAMPLES)], user)
+            m.d.comb += [self._samples.read_at.eq(place), self._samples.reads.eq(1)]
+            m.next = "FETCHED"
+            with m.If(row.local < _FIXED_WRITERS):
+                m.d.sync += row.ask.eq(1)
+                self._send(m, _at(firsts, row.local) + self._number - 1)
+        with m.State("FETCHED"):
+            m.d.sync += Value.cast(sample).eq(self._samples.word)
+            m.next = "IDENTITY"
+        services = [
+            _FIXED_WRITERS - 1 + number
+            for number, each in enumerate(self.writers)
+            if each.is_service
+        ]
+        with m.State("IDENTITY"):
+            m.d.comb += [
+                self._identities.read_at.eq(sample.tag),
+                self._identities.reads.eq(1),
+            ]
+            is_reply = Cat(row.local == each for each in services).any() if services else Const(0)
+            m.next = "IDENTIFIED"
+            with m.If(~is_reply):
+                self._send(m, Job.SAMPLE)
+        with m.State("IDENTIFIED"):
+            m.d.sync += Value.cast(identity).eq(self._identities.word)
+            m.next = "REPLY"
+        with m.State("REPLY"):
+            # A client that names no reader has one in the participant that asked.
+            asked = identity.guid[96:]
+            is_named = asked[24 + _READER_BIT]
+            is_for = (identity.tag == sample.tag) & (identity.peer == row.peer)
+            self._send(m, Job.REPLY)
+            with m.If(~is_for | (is_named & (asked != row.remote))):
+                m.d.sync += [self._from.eq(self._number), self._to.eq(self._number + 1)]
+                self._send(m, Job.GAP)
+
+    # Datagrams.
+
+    def _datagrams(self, m: Module) -> None:
+        row, peer_row, job = self._row, self._peer_row, self._job
+        with m.State("PEER"):
+            m.d.comb += self._peers.reads.eq(1)
+            m.next = "PEER_READ"
+        with m.State("PEER_READ"):
+            m.d.sync += Value.cast(peer_row).eq(self._peers.word)
+            m.next = "WAY"
+        with m.State("WAY"):
+            is_user = self._stores & (self._row_at >= self.first_row)
+            m.d.sync += Cat(self._address, self._port).eq(
+                Mux(is_user, peer_row.user.as_value(), peer_row.discovery.as_value())
+            )
+            is_greeting = self._stores & (job == Job.ACKNACK) & ~row.synced
+            with m.If(is_greeting & (peer_row.prefix[:16] == _FAST_DDS)):
+                m.d.sync += self._number.eq(0)
+            m.next = "JOB"
+        with m.State("JOB"):
+            every = self.templates.every
+            has_payload = (job == Job.SAMPLE) | (job == Job.REPLY)
+            m.d.sync += [
+                self._start_at.eq(_at(self.templates.starts, job)),
+                self._size.eq(
+                    _at([each.size for each in every], job) + Mux(has_payload, self._padded, 0)
+                ),
+            ]
+            m.next = "SEND"
+        with m.State("SEND"):
+            m.d.comb += self.starts.eq(1)
+            m.next = "SENDING"
+        with m.State("SENDING"):
+            with m.If(self.ends):
+                m.d.sync += self._count.eq(self._count + 1)
+                m.next = "IDLE"
+                with m.If(self._stores):
+                    m.next = "STORE"
+
+    # New samples.
+
+    def _declare_intake(self, m: Module) -> None:
+        """Make what a message goes through on its way into the history."""
+        address, sent = self.address_bits, self.sent
+        m.submodules.width = width = PacketWidth(self.description.bus_bytes, 1)
+        self._width, self._fed = width, Signal()
+        # Number of the writer, counted from that of the first topic.
+        self._user, self._tag, self._length = Signal.like(self._row.local), Signal(32), Signal(17)
+        self._taker, self._place = Signal(writer_layout(address)), Signal(address)
+        self._limit, base, mask = Signal(address + 1), Signal(address), Signal(address)
+        self._mask = mask
+        for number, part in enumerate(self.parts):
+            with m.If(self._user == number):
+                m.d.comb += [
+                    self._limit.eq(part.bytes),
+                    base.eq(part.base),
+                    mask.eq(part.bytes - 1),
+                ]
+        m.d.comb += [
+            width.packets_in.payload.eq(sent.payload.beat),
+            self.write_at.eq(base | (self._place & mask)),
+            self.write_byte.eq(width.packets_out.payload.data[0]),
+        ]
+
+    def _taking(self, m: Module) -> None:
+        """Take a message of a publication or a service into the history of its writer."""
+        sent, width, fed = self.sent, self._width, self._fed
+        user, tag, length = self._user, self._tag, self._length
+        state, place, limit, mask = self._taker, self._place, self._limit, self._mask
+        address, narrow = self.address_bits, width.packets_out
+        topics = [each.topic.id for each in self.writers if each.topic]
+        room = self.description.link.datagram_bytes
+        heads = self.templates.every[Job.SAMPLE : Job.REPLY + 1]
+        # With up to three bytes of padding.
+        most = room - max(each.size for each in heads) - 3
+        with m.State("INTAKE"):
+            known = Const(0)
+            for number, topic in enumerate(topics):
+                with m.If(sent.payload.topic == topic):
+                    m.d.sync += user.eq(number)
+                known = known | (sent.payload.topic == topic)
+            long = sent.payload.length
+            m.d.sync += [
+                tag.eq(sent.payload.tag),
+                length.eq(long),
+                fed.eq(0),
+                self._quiet.eq(0),
+                self._clean.eq(0),
+            ]
+            m.next = "INTAKE_STATE"
+            with m.If(~known | (long > most) | (long == 0)):
+                m.d.comb += self.unsent.eq(1)
+                m.next = "DISCARD"
+        with m.State("DISCARD"):
+            m.d.comb += sent.ready.eq(1)
+            with m.If(sent.valid & sent.payload.beat.last):
+                m.next = "IDLE"
+        with m.State("INTAKE_STATE"):
+            m.d.comb += self._state.addr.eq(user)
+            m.d.sync += [state.eq(self._state.data), place.eq(self._state.data.at)]
+            m.next = "ROOM"
+            with m.If(length > limit):
+                m.d.comb += self.unsent.eq(1)
+                m.next = "DISCARD"
+        oldest = Cat((state.gone + 1)[: ceil_log2(MOST_SAMPLES)], user)
+        with m.State("ROOM"):
+            is_full = (state.last - state.gone)[ceil_log2(MOST_SAMPLES)]
+            m.d.comb += [self._samples.read_at.eq(oldest), self._samples.reads.eq(1)]
+            m.next = "COPY"
+            with m.If(is_full | (state.used + length > limit)):
+                m.next = "FORGET"
+        with m.State("FORGET"):
+            freed = Signal(sample_layout(address))
+            m.d.comb += Value.cast(freed).eq(self._samples.word)
+            m.d.sync += [state.gone.eq(state.gone + 1), state.used.eq(state.used - freed.bytes)]
+            m.next = "ROOM"
+        with m.State("COPY"):
+            m.d.comb += [
+                width.packets_in.valid.eq(sent.valid & ~fed),
+                sent.ready.eq(width.packets_in.ready & ~fed),
+                narrow.ready.eq(1),
+                self.writes.eq(narrow.valid),
+            ]
+            with m.If(sent.valid & sent.ready & sent.payload.beat.last):
+                m.d.sync += fed.eq(1)
+            with m.If(narrow.valid):
+                m.d.sync += place.eq(place + 1)
+                with m.If(narrow.payload.last):
+                    m.next = "COPIED"
+        with m.State("COPIED"):
+            number = state.last + 1
+            word, written = self._samples.write_word, self._states.write
+            m.d.comb += [
+                self._samples.writes.eq(1),
+                self._samples.write_at.eq(Cat(number[: ceil_log2(MOST_SAMPLES)], user)),
+                word.at.eq(state.at),
+                word.bytes.eq(length),
+                word.tag.eq(tag),
+                written.en.eq(1),
+                written.addr.eq(user),
+                written.data.last.eq(number),
+                written.data.gone.eq(state.gone),
+                written.data.at.eq(place & mask),
+                written.data.used.eq(state.used + length),
+            ]
+            # Those who wait for it come next.
+            m.d.sync += self._sweep.eq(self.first_row)
+            m.next = "IDLE"
+
+
+def _memory(m: Module, name: str, shape: Any, depth: int) -> BlockMemory:
+    """Add a memory in a module of its own."""
+    m.submodules[name] = inner = Module()
+    return BlockMemory(inner, shape, 1 << max(1, ceil_log2(depth)))
+
+
+def _entities(endpoints: tuple[Endpoint, ...]) -> list[int]:
+    return [each.data.guid.entity for each in endpoints]
+
+
+def _at(values: list[int], index: Any) -> Value:
+    """Return a constant by its number."""
+    width = max(each.bit_length() for each in [1, *values])
+    return Array(Const(each, width) for each in values or [0])[Value.cast(index).as_unsigned()]
+
+
+def _lowest(bits: Value) -> Value:
+    """Return the number of the lowest bit that is 1."""
+    found: Value = Const(len(bits) - 1, range(len(bits)))
+    for place in reversed(range(len(bits) - 1)):
+        found = Mux(bits[place], place, found)
+    return found

@@ -1,0 +1,105 @@
+"""Rows of the engine's tables: peers, matched endpoints, samples, and requests."""
+
+from __future__ import annotations
+
+from amaranth.lib import data
+
+__all__ = [
+    "BUILTIN_ROWS",
+    "identity_layout",
+    "peer_layout",
+    "row_layout",
+    "sample_layout",
+    "writer_layout",
+]
+
+BUILTIN_ROWS = 4
+"""Rows of each peer for SEDP: its two writers, then its two readers."""
+
+
+def peer_layout() -> data.StructLayout:
+    """Return a participant: its GUID prefix, its locators, and its lease in seconds."""
+    locator = data.StructLayout({"address": 32, "port": 16})
+    return data.StructLayout({"prefix": 96, "discovery": locator, "user": locator, "lease": 7})
+
+
+def row_layout(peers: int, endpoints: int) -> data.StructLayout:
+    """Return an endpoint of a peer that is matched with one of ours (8.4.7.5, 8.4.10.4).
+
+    Numbers are the lower half of sequence numbers.
+
+    Members
+    -------
+    valid : unsigned(1)
+    writes : unsigned(1)
+        It is a reader, and our endpoint writes to it; else it is a writer, to which ours listens.
+    peer : range(peers)
+    remote : unsigned(32)
+        Its entity identifier, the first byte lowest.
+    local : range(endpoints)
+        Number of our writer or reader.
+    reliable : unsigned(1)
+        Whether both sides are.
+    next : unsigned(32)
+        The lowest number that was not acknowledged, or that we still wait for.
+    end : unsigned(32)
+        The lowest number that was never sent, or that the writer is not known to have.
+    first : unsigned(32)
+        The lowest number that is for this reader.
+    base, request : unsigned(32)
+        The number of the highest bit of `request`, whose bits are samples to send again.
+    synced : unsigned(1)
+        Whether the writer has said where its samples begin.
+    ask : unsigned(1)
+        A HEARTBEAT or an ACKNACK is due.
+    timer : unsigned(4)
+        Ticks to the next one that nothing else causes.
+    tries : unsigned(4)
+        How often one was sent since the last progress.
+    """
+    return data.StructLayout(
+        {
+            "valid": 1,
+            "writes": 1,
+            "peer": range(peers),
+            "remote": 32,
+            "local": range(endpoints),
+            "reliable": 1,
+            "next": 32,
+            "end": 32,
+            "first": 32,
+            "base": 32,
+            "request": 32,
+            "synced": 1,
+            "ask": 1,
+            "timer": 4,
+            "tries": 4,
+        }
+    )
+
+
+def writer_layout(address_bits: int) -> data.StructLayout:
+    """Return the state of one of our writers of topics.
+
+    Members
+    -------
+    last, gone : unsigned(32)
+        The newest number, and the newest of those that the history no longer has.
+    at, used : unsigned(address_bits), unsigned(address_bits + 1)
+        Place of the next byte in the writer's memory, and bytes in use.
+    """
+    return data.StructLayout({"last": 32, "gone": 32, "at": address_bits, "used": address_bits + 1})
+
+
+def sample_layout(address_bits: int) -> data.StructLayout:
+    """Return a sample of the history: its place, its bytes, and the tag of the request."""
+    return data.StructLayout({"at": address_bits, "bytes": 16, "tag": 32})
+
+
+def identity_layout(peers: int) -> data.StructLayout:
+    """Return the identity of a request (DDS-RPC 7.6.2).
+
+    `tag` is what the topic knows it by, `peer` its sender, and `guid` and `number` are what the
+    reply has to name.
+    """
+    return data.StructLayout({"tag": 32, "peer": range(peers), "guid": 128, "number": 32})

@@ -1,0 +1,166 @@
+"""From templates, fields and payloads to datagrams."""
+
+from __future__ import annotations
+
+from amaranth.hdl import Cat, Module, Mux, Signal
+from amaranth.lib import data, wiring
+from amaranth.lib.memory import Memory
+from amaranth.lib.wiring import In, Out
+from amaranth.utils import ceil_log2
+
+from firm_hdl.gateware.packets.slice import StreamSlice
+from firm_hdl.node.gateware.streams import passes
+from firm_hdl.node.links.udp import DatagramSignature, datagram_layout
+from firm_hdl.node.rtps.templates import Op, Templates, fields_layout, op_layout
+
+__all__ = ["Transmitter", "order_layout"]
+
+
+def order_layout(rom_words: int, memory_bytes: int) -> data.StructLayout:
+    """Return what is to be sent.
+
+    Members
+    -------
+    start : range(rom_words)
+        Place of the template.
+    size : unsigned(16)
+        Bytes of the datagram.
+    address, port : unsigned(32), unsigned(16)
+        Where to.
+    base, mask, at : bits of an address in the memory of samples
+        Byte n of the payload is at ``base | ((at + n) & mask)``.
+    payload_bytes : unsigned(16)
+    fields : fields_layout()
+    """
+    address = max(1, ceil_log2(memory_bytes))
+    return data.StructLayout(
+        {
+            "start": range(rom_words),
+            "size": 16,
+            "address": 32,
+            "port": 16,
+            "base": address,
+            "mask": address,
+            "at": address,
+            "payload_bytes": 16,
+            "fields": fields_layout(),
+        }
+    )
+
+
+class Transmitter(wiring.Component):
+    """Play a template, byte by byte.
+
+    A byte per cycle; 2 cycles from `starts` to the first one, and 2 more before and behind a
+    payload. A payload is padded with zeros to a multiple of 4 bytes (9.4.1).
+
+    Parameters
+    ----------
+    templates : Templates
+    memory_bytes : int
+        Of the memory of samples.
+    port : int
+        Where datagrams come from.
+
+    Members
+    -------
+    order : In(order_layout(...))
+        Must not change from `starts` to `ends`.
+    starts : In(1)
+        Send; only while nothing is sent.
+    ends : Out(1)
+        High for one cycle when the last byte has been passed on.
+    read_at, reads, byte : Out, Out(1), In(8)
+        Port of the memory of samples, whose byte comes a cycle later.
+    datagrams : Out(DatagramSignature(1))
+    """
+
+    def __init__(self, templates: Templates, memory_bytes: int, port: int):
+        self.rom, self.port = templates.rom, port
+        layout = order_layout(len(self.rom), memory_bytes)
+        super().__init__(
+            {
+                "order": In(layout),
+                "starts": In(1),
+                "ends": Out(1),
+                "read_at": Out(layout.members["at"]),
+                "reads": Out(1),
+                "byte": In(8),
+                "datagrams": Out(DatagramSignature(1)),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        order = self.order
+        m.submodules.slice = out = StreamSlice(datagram_layout(1))
+        m.submodules.rom = rom = Memory(shape=op_layout(), depth=len(self.rom), init=self._init())
+        op_port = rom.read_port()
+        op = op_port.data
+        at = Signal(range(len(self.rom) + 1))
+        place = Signal(17)
+        moves, is_pad = Signal(), Signal()
+        field = Cat(order.fields).word_select(op.value[:7], 8)
+        m.d.comb += [
+            *passes(out.o, self.datagrams),
+            moves.eq(out.i.valid & out.i.ready),
+            op_port.addr.eq(at),
+            out.i.payload.length.eq(order.size),
+            out.i.payload.ip_address.eq(order.address),
+            out.i.payload.src_port.eq(self.port),
+            out.i.payload.dst_port.eq(order.port),
+            out.i.payload.last_be.eq(out.i.payload.last),
+            is_pad.eq(place >= order.payload_bytes),
+            self.read_at.eq(order.base | ((order.at + place) & order.mask)),
+        ]
+        # Each state reads the word of the next cycle.
+        with m.FSM():
+            with m.State("IDLE"):
+                m.d.comb += op_port.en.eq(0)
+                m.d.sync += at.eq(order.start)
+                with m.If(self.starts):
+                    m.next = "READ"
+            with m.State("READ"):
+                m.d.comb += op_port.en.eq(1)
+                m.d.sync += [at.eq(at + 1), place.eq(0)]
+                m.next = "PLAY"
+            with m.State("PLAY"):
+                is_payload = op.op == Op.PAYLOAD
+                m.d.comb += [
+                    out.i.valid.eq(~is_payload),
+                    out.i.payload.data.eq(Mux(op.op == Op.FIELD, field, op.value)),
+                    out.i.payload.last.eq(op.last),
+                    op_port.en.eq(moves),
+                ]
+                with m.If(moves):
+                    m.d.sync += at.eq(at + 1)
+                    with m.If(op.last):
+                        m.d.comb += self.ends.eq(1)
+                        m.next = "IDLE"
+                with m.If(is_payload):
+                    m.d.comb += [op_port.en.eq(1), self.reads.eq(1)]
+                    m.d.sync += [at.eq(at + 1), place.eq(1)]
+                    m.next = "PAYLOAD"
+            with m.State("PAYLOAD"):
+                # `place` is one ahead, as the memory answers a cycle later.
+                shown = Signal(17)
+                is_byte = Signal()
+                m.d.comb += [
+                    shown.eq(place - 1),
+                    is_byte.eq(shown < order.payload_bytes),
+                    out.i.valid.eq(1),
+                    out.i.payload.data.eq(Mux(is_byte, self.byte, 0)),
+                    op_port.en.eq(0),
+                    self.reads.eq(moves),
+                ]
+                with m.If(moves):
+                    m.d.sync += place.eq(place + 1)
+                    with m.If((place[:2] == 0) & is_pad):
+                        m.next = "PLAY"
+        return m
+
+    def _init(self) -> list[dict[str, int]]:
+        """Return the words as values of `op_layout`."""
+        return [
+            {"value": word & 0xFF, "op": word >> 8 & 3, "last": word >> 10} for word in self.rom
+        ]
