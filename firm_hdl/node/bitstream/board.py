@@ -209,9 +209,7 @@ def _board(
             for site in _words(keys[level], _SITE, _A_SITE)
         ),
         pins={
-            pin.name: pin
-            for group, entry in groups.items()
-            for pin in _group(group, entry, usual)
+            pin.name: pin for group, entry in groups.items() for pin in _group(group, entry, usual)
         },
         load=" ".join(keys["load"].text().split()) if "load" in keys else "openFPGALoader",
     )

@@ -164,7 +164,7 @@ def build_bitstream(
         made = every, manifest_of(inputs, every, {"bitstream": found})
         return build_folder(out, folder, inputs, lambda: made, force=force) is None
 
-    known = (read_manifest(folder) or {}).get("bitstream")
+    known: Any = (read_manifest(folder) or {}).get("bitstream")
     if write({}, None, force=force or not known):
         return Bitstream(
             file=folder / family.bitstream, report=folder / REPORT, was_current=True, facts=known
@@ -188,7 +188,7 @@ def build_bitstream(
                     "path that takes longest"
                 )
             report(f"packs {family.bitstream}")
-            command = [*tools.packer.command, family.netlist[1], family.bitstream]
+            command = [*tools.packer.command, *family.pack, family.netlist[1], family.bitstream]
             _run(tools.packer, command, place)
             data = made_by(family.packer, place / family.bitstream).read_bytes()
     except ToolError as error:
@@ -302,7 +302,10 @@ def _figures(said: Mapping[str, Any], top: BoardTop) -> dict[str, Any]:
         for name, each in said["utilization"].items()
         if each["used"]
     }
-    inside = [each for each in said.get("critical_paths", ()) if each["from"] == each["to"]]
+    # Paths from pins and to pins have no clock, and no limit.
+    inside = [
+        each for each in said.get("critical_paths", ()) if each["from"] == each["to"] != "<async>"
+    ]
     paths = [
         [[round(step["delay"], 3), step["type"], step["to"]["cell"]] for step in each["path"]]
         for each in inside

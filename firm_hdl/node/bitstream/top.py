@@ -115,7 +115,7 @@ def board_top(
     clock_hz = board.clock_hz if pll is None else pll.hz
     return BoardTop(
         verilog=_verilog(header, module, board, pll, clock_hz, found),
-        constraints=board.family.constrain(list(_sites(board, found)), board.clock_hz / 1e6),
+        constraints=board.family.constrain(list(_sites(board, found)), {"clk": board.clock_hz}),
         clock_hz=clock_hz,
     )
 
