@@ -188,7 +188,8 @@ def _io(
     found = []
     for name, inner in members.items():
         direction = _DIRECTIONS.get(tuple(sorted(inner)))
-        bits = max(port["width"] for end, port in inner.items() if end != "oe")
+        widths = {end: port["width"] for end, port in inner.items()}
+        bits = widths.get("o", widths.get("i", 1))
         if name not in given:
             problem(
                 description.accelerator_span,
@@ -196,8 +197,9 @@ def _io(
                 f" into the description; {board.name} has {', '.join(board.groups())}",
             )
             continue
-        if direction is None or inner.get("oe", {"width": 1})["width"] != 1:
-            problem(given[name].span, f"'{name}' is no pin: it has {', '.join(sorted(inner))}")
+        if direction is None or widths != {end: 1 if end == "oe" else bits for end in inner}:
+            members_of = ", ".join(f"{end} of {width} bits" for end, width in widths.items())
+            problem(given[name].span, f"'{name}' is no pin: it has {members_of}")
             continue
         pins: list[Pin] = []
         for word, span in zip(given[name].pins, given[name].spans, strict=True):

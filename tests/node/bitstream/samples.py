@@ -68,7 +68,8 @@ BITSTREAM = bytes(range(256))
 
 YOSYS = """
 import sys
-assert "synth_ecp5" in sys.argv[-1] and "top.v" in sys.argv[-1]
+assert "synth_ecp5" in sys.argv[-1] and "read_verilog top.v" in sys.argv[-1]
+assert "module \\\\pins_verilog" in open("node.il").read()
 open("top.json", "w").write("{}")
 """
 NEXTPNR = """
