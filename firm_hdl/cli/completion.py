@@ -13,7 +13,7 @@ from argcomplete.shell_integration import shellcode
 from firm_hdl.export.options import EXTRAS
 from firm_hdl.frontend import Library, open_library
 from firm_hdl.frontend.spelling import SUFFIXES
-from firm_hdl.node.bitstream.board import board_names
+from firm_hdl.node.bitstream import board_names
 
 __all__ = ["called_in", "complete", "shell_code"]
 

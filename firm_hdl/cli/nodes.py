@@ -19,7 +19,7 @@ from firm_hdl.terminal import stage
 if TYPE_CHECKING:
     from firm_hdl.export.design import BuiltDesign
     from firm_hdl.node import Description
-    from firm_hdl.node.bitstream.board import Board
+    from firm_hdl.node.bitstream import Board
 
 __all__ = ["add_node"]
 
@@ -152,7 +152,7 @@ def _node(args: argparse.Namespace) -> None:
     from firm_hdl.node import read_description
 
     if args.action == "build" and args.target == "list":
-        from firm_hdl.node.bitstream.board import board_list
+        from firm_hdl.node.bitstream import board_list
 
         print("\n".join(board_list()))
         return
@@ -221,7 +221,7 @@ def _act(args: argparse.Namespace, description: Description) -> None:
             ]
         return
     if args.action == "build":
-        from firm_hdl.node.bitstream.board import read_board
+        from firm_hdl.node.bitstream import read_board
         from firm_hdl.node.build import build_node
 
         # What is wrong with it is found at once.

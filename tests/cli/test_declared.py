@@ -119,7 +119,12 @@ def test_other_actions_of_a_node_have_these_defaults():
     assert parsed("node", "info", "n.yaml") == {**info, "as_json": False, "members": False}
     assert parsed("node", "new", "n.yaml") == {**info, "action": "new", "language": None}
     build = {**info, "action": "build", "out": "node_out", "force": False}
-    assert parsed("node", "build", "n.yaml") == {**build, "sim": False, "engine": "auto"}
+    assert parsed("node", "build", "n.yaml") == {
+        **build,
+        "sim": False,
+        "engine": "auto",
+        "target": None,
+    }
     assert is_refused("node", "info", "n.yaml", "--board", "sim")
 
 

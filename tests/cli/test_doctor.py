@@ -46,6 +46,8 @@ def test_the_doctor_says_what_is_here_and_how_to_get_the_rest(tmp_path):
     assert items["Icarus Verilog"]["version"] == "version 99.9"
     assert "'/none/ghdl'" in items["GHDL"]["how"]
     assert "'/none/g++'" in items["C++ compiler"]["how"]
+    assert items["nextpnr-ecp5 and ecppack"]["enables"].endswith("boards with ECP5")
+    assert "apt install openfpgaloader" in items["openFPGALoader"]["how"]
     assert "apt install python3-genmsg" in items["genmsg"]["how"]
     assert "make oracles-ros2" in items["rosidl_parser-4.9"]["how"]
     assert "which is Python 3.1, and firm-hdl runs in" in items["rospy"]["how"]
@@ -82,6 +84,8 @@ def completed(*words):
 def test_bash_completes_commands_options_and_types():
     assert completed("firm-hdl", "bu") == ["build"]
     assert completed("firm-hdl", "node", "run", "--gr") == ["--graph"]
+    board = completed("firm-hdl", "node", "build", "n.yaml", "--board", "ulx3s-1")
+    assert board == ["ulx3s-12f"]
     words = completed("firm-hdl", "build", "--with", "systemverilog,")
     assert "systemverilog,all" in words
     types = completed("firm-hdl", "info", "--distro", "noetic", "sensor_msgs/Im")

@@ -211,3 +211,30 @@ def test_the_line_of_the_robot_is_a_twist():
     twist = STORE.deserialize_cdr(packet, "geometry_msgs/msg/Twist")
     assert (twist.linear.x, twist.angular.z) == (0.5, 0.2)
     assert bytes(STORE.serialize_cdr(twist, "geometry_msgs/msg/Twist")) == packet
+
+
+def test_led_shows_numbers_and_says_where_buttons_change(modules):
+    led = load_accelerator(read_description(EXAMPLES / "led" / "led.yaml"))
+    came, sent = led.subscribe.lights.data, led.publish.buttons.data
+    found = []
+
+    async def check(ctx):
+        ctx.set(came.payload, 0x5A)
+        ctx.set(came.valid, 1)
+        await ctx.tick()
+        ctx.set(came.valid, 0)
+        for pressed in (2, 3):
+            ctx.set(led.buttons, pressed)
+            await ctx.tick().repeat(5)
+        ctx.set(sent.ready, 1)
+        for _ in range(5):
+            found.append((ctx.get(sent.valid), ctx.get(sent.payload)))
+            await ctx.tick()
+        assert ctx.get(led.lights) == 0x5A
+
+    simulator = Simulator(led)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(check)
+    simulator.run()
+    # The first number waits until it is taken; then comes the newest.
+    assert [number for valid, number in found if valid] == [2, 3]

@@ -6,4 +6,6 @@ between a node and its pins, and :mod:`build` runs Yosys, nextpnr and the packer
 
 from __future__ import annotations
 
-__all__: list[str] = []
+from firm_hdl.node.bitstream.board import Board, board_list, board_names, read_board
+
+__all__ = ["Board", "board_list", "board_names", "read_board"]

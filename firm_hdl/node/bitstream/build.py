@@ -11,17 +11,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from firm_hdl import rtlil
 from firm_hdl.errors import UserError
 from firm_hdl.export.design import BuiltDesign
 from firm_hdl.export.folder import build_folder, read_manifest
 from firm_hdl.export.manifest import digest, inputs_of, manifest_of
+from firm_hdl.garbage import search_put_off
 from firm_hdl.jobs import ProgramMissingError, ToolError, made_by, run_tool
+from firm_hdl.jobs.processes import unwound_when_terminated
 from firm_hdl.jobs.programs import Program, find_packaged, find_yosys, which, yowasp_command
 from firm_hdl.node.accelerator import load_accelerator
 from firm_hdl.node.bitstream.board import Board
 from firm_hdl.node.bitstream.families import Family
 from firm_hdl.node.bitstream.top import BoardTop, board_top
 from firm_hdl.node.description import Description
+from firm_hdl.node.node import Node
+from firm_hdl.node.top import NodeTop
 
 __all__ = ["Bitstream", "build_bitstream", "find_tools"]
 
@@ -92,11 +97,11 @@ def find_tools(family: Family, *, is_run: bool = True) -> Tools:
         raise ProgramMissingError(f"{family.placer} is not installed: {PIP}")
     # icepack does not tell its version.
     path = which(family.packer)
-    command = yowasp_command(family.package, family.packer) or (path and (path,))
+    command = yowasp_command(family.package, family.packer) or ((path,) if path else None)
     if not command:
         raise ProgramMissingError(f"{family.packer} is not installed: {PIP}")
     return Tools(
-        yosys=find_yosys(f": {PIP}", is_measured=True, is_run=is_run),
+        yosys=find_yosys(f": {PIP}", is_run=is_run),
         placer=placer,
         packer=Program(title=family.packer, command=command, version=""),
     )
@@ -135,15 +140,8 @@ def build_bitstream(
     """
     node = read_manifest(built.folder)
     assert node is not None, "it was just built"
-    verilog = node["verilog"]
-    top = board_top(description, node["ports"], verilog["module"], board)
-    sources = {
-        verilog["file"]: (built.folder / verilog["file"]).read_text(encoding="utf-8"),
-        "top.v": top.verilog,
-    }
-    if description.hdl is not None:
-        # In VHDL, too: as for a simulation, it is read gate by gate.
-        sources |= load_accelerator(description).modules
+    module = node["verilog"]["module"]
+    top = board_top(description, node["ports"], module, board)
     family = board.family
     files = {"top.v": top.verilog, family.constraints[1]: top.constraints}
     options = [family.devices[board.device], "--package", board.package]
@@ -152,7 +150,8 @@ def build_bitstream(
     facts = {
         "board": board.name,
         "options": options,
-        "sources": {name: digest(text) for name, text in {**sources, **files}.items()},
+        "files": {name: digest(text) for name, text in files.items()},
+        **{key: node["inputs"][key] for key in ("design_sha256", "accelerator_files")},
     }
     inputs = inputs_of(facts)
     folder = built.folder / "boards" / board.name
@@ -164,18 +163,23 @@ def build_bitstream(
         made = every, manifest_of(inputs, every, {"bitstream": found})
         return build_folder(out, folder, inputs, lambda: made, force=force) is None
 
-    known = (read_manifest(folder) or {}).get("bitstream")
+    known: Any = (read_manifest(folder) or {}).get("bitstream")
     if write({}, None, force=force or not known):
         return Bitstream(
             file=folder / family.bitstream, report=folder / REPORT, was_current=True, facts=known
         )
     try:
         tools = find_tools(family)
-        with tempfile.TemporaryDirectory(prefix="firm-hdl-board-") as name:
+        # Tools run for minutes, and end with this process.
+        with (
+            unwound_when_terminated(),
+            tempfile.TemporaryDirectory(prefix="firm-hdl-board-") as name,
+        ):
             place = Path(name)
-            for file, text in {**sources, **files}.items():
-                (place / file).write_bytes(text.encode("utf-8", "surrogateescape"))
-            found = _placed(tools, place, family, list(sources), options, top, report)
+            for file, text in files.items():
+                (place / file).write_text(text, encoding="utf-8")
+            reads = ["read_verilog top.v", *_sources(description, module, place)]
+            found = _placed(tools, place, family, reads, options, top, report)
             text = _report_text(description, board, top, found)
             misses = [each for each in found["clocks"].values() if not each["is_met"]]
             if misses:
@@ -188,7 +192,7 @@ def build_bitstream(
                     "path that takes longest"
                 )
             report(f"packs {family.bitstream}")
-            command = [*tools.packer.command, family.netlist[1], family.bitstream]
+            command = [*tools.packer.command, *family.pack, family.netlist[1], family.bitstream]
             _run(tools.packer, command, place)
             data = made_by(family.packer, place / family.bitstream).read_bytes()
     except ToolError as error:
@@ -200,11 +204,31 @@ def build_bitstream(
     )
 
 
+def _sources(description: Description, module: str, folder: Path) -> list[str]:
+    """Write the node for Yosys; return the commands that read it.
+
+    The node is in RTLIL: Yosys reads a large memory in Verilog, word by word, for many minutes.
+    """
+    accelerator = load_accelerator(description)
+    with search_put_off():
+        circuit = rtlil.rtlil_of(NodeTop(Node(description, accelerator)), name=module)
+    (folder / "node.il").write_text(rtlil.without_indices(circuit), encoding="utf-8")
+    reads = ["read_rtlil node.il"]
+    if description.hdl is not None:
+        # VHDL is there as for a simulation: gate by gate. Yosys itself reads less of SystemVerilog.
+        is_slang = description.hdl.language == "systemverilog"
+        read = f"read_slang --top {description.hdl.entity}" if is_slang else "read_verilog -sv"
+        for file, text in accelerator.modules.items():
+            (folder / file).write_bytes(text.encode("utf-8", "surrogateescape"))
+            reads.append(f"{read} {file}")
+    return reads
+
+
 def _placed(
     tools: Tools,
     folder: Path,
     family: Family,
-    sources: list[str],
+    reads: list[str],
     options: list[str],
     top: BoardTop,
     report: Callable[[str], None],
@@ -216,7 +240,6 @@ def _placed(
     ToolError, UserError
     """
     report("synthesis")
-    reads = [f"read_verilog {'-sv ' * name.endswith('.sv')}{name}" for name in sources]
     script = "; ".join([*reads, _PREPARATION, f"{family.synthesis} -json top.json"])
     _run(tools.yosys, [*tools.yosys.command, "-q", "-l", "yosys.log", "-p", script], folder)
     made_by("Yosys", folder / "top.json", may_be_empty=False)
@@ -302,7 +325,10 @@ def _figures(said: Mapping[str, Any], top: BoardTop) -> dict[str, Any]:
         for name, each in said["utilization"].items()
         if each["used"]
     }
-    inside = [each for each in said.get("critical_paths", ()) if each["from"] == each["to"]]
+    # Paths from pins and to pins have no clock, and no limit.
+    inside = [
+        each for each in said.get("critical_paths", ()) if each["from"] == each["to"] != "<async>"
+    ]
     paths = [
         [[round(step["delay"], 3), step["type"], step["to"]["cell"]] for step in each["path"]]
         for each in inside
@@ -330,6 +356,11 @@ def _report_text(
     lines += ["no board was at hand: the bitstream was never tried on one", ""]
     lines += [f"{name:16} {used:7} of {of}" for name, (used, of) in found["cells"].items()]
     lines += ["", *(f"{name} {version}" for name, version in found["tools"].items())]
-    lines += ["", *found["commands"], "", "the path that takes longest, in ns:"]
+    lines += [
+        "",
+        *found["commands"],
+        "# node.il is the node in RTLIL; NAME_verilog.v means the same",
+    ]
+    lines += ["", "the path that takes longest, in ns:"]
     lines += [f"{delay:8.3f}  {kind:10} {cell}" for delay, kind, cell in found["path"]]
     return "\n".join(lines) + "\n"

@@ -64,12 +64,14 @@ class Family:
     constraints, netlist, bitstream : str
         Options of nextpnr for the files of constraints and of its result, and names of these files
         and of the bitstream: ``lpf pins.lpf``.
+    pack : tuple of str
+        Options of the packer.
     pll : callable
         Called with the frequency at the pin, the frequency that is wanted, and whether the pin is
         the PLL's own. It returns the PLL that comes nearest, if there is any.
     constrain : callable
-        Called with the ports and their pins, and the frequency of the port ``clk`` in MHz. It
-        returns the file of constraints.
+        Called with the ports and their pins, and with the frequencies in Hz of those ports that
+        are clocks. It returns the file of constraints.
     """
 
     name: str
@@ -81,8 +83,9 @@ class Family:
     constraints: tuple[str, str]
     netlist: tuple[str, str]
     bitstream: str
+    pack: tuple[str, ...] = ()
     pll: Callable[[float, float, bool], Pll | None]
-    constrain: Callable[[Sequence[tuple[str, Pin]], float], str]
+    constrain: Callable[[Sequence[tuple[str, Pin]], Mapping[str, float]], str]
 
 
 def _ecp5_pll(source: float, wanted: float, is_pad: bool) -> Pll | None:
@@ -165,10 +168,10 @@ def _ice40_pll(source: float, wanted: float, is_pad: bool) -> Pll | None:
     )
 
 
-def _lpf(ports: Sequence[tuple[str, Pin]], clock_mhz: float) -> str:
+def _lpf(ports: Sequence[tuple[str, Pin]], clocks: Mapping[str, float]) -> str:
     """Write constraints of ECP5."""
     keys = {"standard": "IO_TYPE", "pull": "PULLMODE", "drive": "DRIVE", "slew": "SLEWRATE"}
-    lines = [f'FREQUENCY PORT "clk" {clock_mhz:.6f} MHZ;\n']
+    lines = [f'FREQUENCY PORT "{port}" {hz / 1e6:.6f} MHZ;\n' for port, hz in clocks.items()]
     for port, pin in ports:
         lines.append(f'LOCATE COMP "{port}" SITE "{pin.site}";\n')
         words = [f"{keys[key]}={value.upper()}" for key, value in pin.electrical.items()]
@@ -177,9 +180,9 @@ def _lpf(ports: Sequence[tuple[str, Pin]], clock_mhz: float) -> str:
     return "".join(lines)
 
 
-def _pcf(ports: Sequence[tuple[str, Pin]], clock_mhz: float) -> str:
+def _pcf(ports: Sequence[tuple[str, Pin]], clocks: Mapping[str, float]) -> str:
     """Write constraints of iCE40, whose pins have one option: a resistor to the supply."""
-    lines = [f"set_frequency clk {clock_mhz:.6f}\n"]
+    lines = [f"set_frequency {port} {hz / 1e6:.6f}\n" for port, hz in clocks.items()]
     for port, pin in ports:
         pull = "-pullup yes " if pin.electrical.get("pull") == "up" else ""
         lines.append(f"set_io {pull}{port} {pin.site}\n")
@@ -200,6 +203,7 @@ _ECP5 = Family(
     constraints=("--lpf", "pins.lpf"),
     netlist=("--textcfg", "top.config"),
     bitstream="bitstream.bit",
+    pack=("--compress",),
     pll=_ecp5_pll,
     constrain=_lpf,
 )

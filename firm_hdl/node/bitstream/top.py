@@ -22,8 +22,10 @@ RESET_SECONDS = 20e-6
 """How long the node is reset after the start. Block RAMs of iCE40 have their contents only 10 us
 after it."""
 
-LINKS = {"uart": "uart"}
-"""The group of pins that a board has for each kind of link."""
+LINKS = ("uart", "rgmii")
+"""Links with pins of their own: names of a board's groups, and how names of ports begin."""
+
+_RGMII_HZ = 125e6
 
 _ENDS = {"i": "in", "o": "out", "oe": "out"}
 """Members of one pin, as `amaranth.lib.io` names them, with their directions."""
@@ -92,10 +94,14 @@ def board_top(
         problems.append(Diagnostic(message=message, span=span))
 
     pll = _pll(description, board, problem)
-    fixed = [board.clock, *([board.reset] if board.reset else ())]
-    fixed += [pin for pin, _ in board.constants]
-    taken = {pin.site: pin.name for pin in fixed}
     found = _link(description, ports, board, problem)
+    constants = list(board.constants)
+    is_rgmii = any(port.name.startswith("rgmii_") for port in found)
+    if is_rgmii and "rgmii.rst_n" in board.pins:
+        constants.append((board.pins["rgmii.rst_n"], True))
+    fixed = [board.clock, *([board.reset] if board.reset else ())]
+    fixed += [pin for pin, _ in constants]
+    taken = {pin.site: pin.name for pin in fixed}
     for pin in (pin for port in found for pin in port.pins):
         if taken.setdefault(pin.site, pin.name) != pin.name:
             problem(
@@ -114,8 +120,11 @@ def board_top(
     header = f"{description.node} on {board.title}: clock, reset and pins, made by firm-hdl"
     clock_hz = board.clock_hz if pll is None else pll.hz
     return BoardTop(
-        verilog=_verilog(header, module, board, pll, clock_hz, found),
-        constraints=board.family.constrain(list(_sites(board, found)), board.clock_hz / 1e6),
+        verilog=_verilog(header, module, board, constants, pll, clock_hz, found),
+        constraints=board.family.constrain(
+            list(_sites(board, constants, found)),
+            {"clk": board.clock_hz, **({"rgmii_rxc": _RGMII_HZ} if is_rgmii else {})},
+        ),
         clock_hz=clock_hz,
     )
 
@@ -140,23 +149,21 @@ def _link(
     description: Description, ports: Sequence[Mapping[str, Any]], board: Board, problem: Problem
 ) -> list[_Port]:
     """Give the ports of the link the pins of the same names."""
-    kind = description.link.kind
     where = description.link_span or description.node_span
-    if kind not in LINKS:
-        problem(
-            where,
-            f"a board needs a link with pins, which is {' or '.join(LINKS)}; with '{kind}', you "
-            "write the top level",
-        )
+    of_link = [port for port in ports if port["member"].startswith("link.")]
+    group = of_link[0]["name"].partition("_")[0]
+    if group not in LINKS:
+        links = " and ".join(each for each in LINKS if each in board.groups())
+        kind = description.link.kind
+        problem(where, f"{board.name} has {links}; for '{kind}', the top level is yours to write")
         return []
-    group = LINKS[kind]
     found = []
-    for port in (port for port in ports if port["member"].startswith("link.")):
+    for port in of_link:
         width = port["width"]
         names = [f"{port['name']}{bit if width > 1 else ''}" for bit in range(width)]
         names = [name.replace("_", ".", 1) for name in names]
         if missing := [name for name in names if name not in board.pins]:
-            problem(where, f"{board.name} has no pin '{missing[0]}' for the link '{group}'")
+            problem(where, f"{board.name} has no pin '{missing[0]}' for the link")
             continue
         pins = [board.pins[name] for name in names]
         inner = {port["direction"][0]: port["name"]}
@@ -188,7 +195,8 @@ def _io(
     found = []
     for name, inner in members.items():
         direction = _DIRECTIONS.get(tuple(sorted(inner)))
-        bits = max(port["width"] for end, port in inner.items() if end != "oe")
+        widths = {end: port["width"] for end, port in inner.items()}
+        bits = widths.get("o", widths.get("i", 1))
         if name not in given:
             problem(
                 description.accelerator_span,
@@ -196,8 +204,9 @@ def _io(
                 f" into the description; {board.name} has {', '.join(board.groups())}",
             )
             continue
-        if direction is None or inner.get("oe", {"width": 1})["width"] != 1:
-            problem(given[name].span, f"'{name}' is no pin: it has {', '.join(sorted(inner))}")
+        if direction is None or widths != {end: 1 if end == "oe" else bits for end in inner}:
+            members_of = ", ".join(f"{end} of {width} bits" for end, width in widths.items())
+            problem(given[name].span, f"'{name}' is no pin: it has {members_of}")
             continue
         pins: list[Pin] = []
         for word, span in zip(given[name].pins, given[name].spans, strict=True):
@@ -247,12 +256,14 @@ def _unknown(board: Board, word: str) -> str:
     return f"{board.name} has no pin '{word}'{hint} It has {', '.join(board.groups())}"
 
 
-def _sites(board: Board, ports: Sequence[_Port]) -> Iterator[tuple[str, Pin]]:
+def _sites(
+    board: Board, constants: Sequence[tuple[Pin, bool]], ports: Sequence[_Port]
+) -> Iterator[tuple[str, Pin]]:
     """Yield each bit of a port of the top level, with its pin."""
     yield "clk", board.clock
     if board.reset:
         yield "reset", board.reset
-    for pin, _ in board.constants:
+    for pin, _ in constants:
         yield f"constant_{pin.site}", pin
     for port in ports:
         for bit, pin in enumerate(port.pins):
@@ -260,14 +271,20 @@ def _sites(board: Board, ports: Sequence[_Port]) -> Iterator[tuple[str, Pin]]:
 
 
 def _verilog(
-    header: str, module: str, board: Board, pll: Pll | None, clock_hz: float, ports: Sequence[_Port]
+    header: str,
+    module: str,
+    board: Board,
+    constants: Sequence[tuple[Pin, bool]],
+    pll: Pll | None,
+    clock_hz: float,
+    ports: Sequence[_Port],
 ) -> str:
     declared = ["input wire clk"]
     if board.reset:
         declared.append("input wire reset")
-    declared += [f"output wire constant_{pin.site}" for pin, _ in board.constants]
+    declared += [f"output wire constant_{pin.site}" for pin, _ in constants]
     inside, connected = [], [".aclk(aclk)", ".aresetn(aresetn)"]
-    for pin, level in board.constants:
+    for pin, level in constants:
         inside.append(f"  assign constant_{pin.site} = 1'b{int(level)};\n")
     for port in ports:
         width = len(port.pins)

@@ -1,15 +1,29 @@
-# amaranth: UnusedElaboratable=no
 """The node of all tests here."""
 
 from __future__ import annotations
 
+import contextlib
+import io
+
 import pytest
 
-from firm_hdl.node.build import build_node
-from tests.node.bitstream.samples import description
+from firm_hdl.cli import main
+from firm_hdl.export.design import BuiltDesign
+from firm_hdl.node.bitstream import build
+from tests.node.bitstream.samples import PINS, TEXT, fake_tools
 
 
 @pytest.fixture(scope="session")
 def node(tmp_path_factory):
-    """The node of the description of `samples`; copy its folder before you change it."""
-    return build_node(description(), tmp_path_factory.mktemp("pins"))
+    """The node of `samples`, as the command makes it with a bitstream and says it in `said.txt`.
+
+    Copy its folder before you change it.
+    """
+    out = tmp_path_factory.mktemp("bitstream")
+    (out / "pins.yaml").write_text(TEXT + PINS)
+    command = ["node", "build", str(out / "pins.yaml"), "--out", str(out), "--board", "ulx3s-45f"]
+    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(io.StringIO()) as said:
+        patch.setattr(build, "find_tools", lambda family: fake_tools(7.5))
+        main(command)
+    (out / "pins" / "said.txt").write_text(said.getvalue())
+    return BuiltDesign(folder=out / "pins", was_current=False)

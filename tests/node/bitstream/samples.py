@@ -1,17 +1,21 @@
-"""A node with pins of each kind, and boards for it."""
+"""A node with pins of each kind, and tools that only pretend to make a bitstream of it."""
 
 from __future__ import annotations
+
+import sys
 
 from amaranth.hdl import Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 
+from firm_hdl.jobs.programs import Program
 from firm_hdl.node import accelerator_signature, read_description_text
+from firm_hdl.node.bitstream.build import Tools
 from tests.node.samples import LIBRARY
 
-__all__ = ["PINS", "Pins", "description"]
+__all__ = ["BITSTREAM", "PINS", "TEXT", "Pins", "description", "fake_tools"]
 
-_TEXT = """\
+TEXT = """\
 node: pins
 clock_mhz: 5
 bus_bytes: 1
@@ -52,8 +56,60 @@ class Pins(wiring.Component):
 
 def description(pins=PINS, changes=()):
     """Read the description, with other words in place of some."""
-    text = _TEXT + pins
+    text = TEXT + pins
     for old, new in dict(changes).items():
         assert old in text
         text = text.replace(old, new)
     return read_description_text(text, name="pins.yaml", library=LIBRARY)
+
+
+# Bytes that are no text.
+BITSTREAM = bytes(range(256))
+
+YOSYS = """
+import sys
+assert "synth_ecp5" in sys.argv[-1] and "read_verilog top.v" in sys.argv[-1]
+assert "module \\\\pins_verilog" in open("node.il").read()
+open("top.json", "w").write("{}")
+"""
+NEXTPNR = """
+import json, sys
+seed = int(sys.argv[sys.argv.index("--seed") + 1])
+reached = MHZ[seed - 1]
+if not reached:
+    open("nextpnr.log", "w").write(
+        "Info: TRELLIS_IO: 9/ 197 4%\\nInfo: TRELLIS_FF: 30000/ 24288 123%\\nERROR: no room\\n"
+    )
+    sys.exit(1)
+open(sys.argv[sys.argv.index("--textcfg") + 1], "w").write(str(seed))
+step = {"delay": 1.25, "type": "routing", "to": {"cell": "slow"}}
+json.dump({
+    "fmax": {"aclk": {"achieved": reached, "constraint": 5}},
+    "utilization": {"TRELLIS_FF": {"used": 10, "available": 24288}},
+    "critical_paths": [
+        {"from": "<async>", "to": "<async>", "path": [step, step]},
+        {"from": "aclk", "to": "aclk", "path": [step]},
+    ],
+}, open("report.json", "w"))
+"""
+PACKER = """
+import sys
+assert open(sys.argv[-2]).read() == "SEED"
+open(sys.argv[-1], "wb").write(bytes(range(256)))
+"""
+
+
+def fake_tools(*mhz, seed=1):
+    """Return tools that reach some MHz, by seed, and pack the result of one seed only.
+
+    A node that reaches 0 MHz is too large.
+    """
+
+    def program(title, code):
+        return Program(title=title, command=(sys.executable, "-c", code), version="9")
+
+    return Tools(
+        yosys=program("Yosys", YOSYS),
+        placer=program("nextpnr-ecp5", NEXTPNR.replace("MHZ", repr(mhz))),
+        packer=program("ecppack", PACKER.replace("SEED", str(seed))),
+    )

