@@ -12,6 +12,7 @@ from amaranth.hdl import Fragment, UnusedElaboratable
 
 from firm_hdl import (
     Deserializer,
+    MessageBuffer,
     PacketArbiter,
     PacketCrossing,
     PacketFifo,
@@ -47,6 +48,7 @@ REFUSED: list[tuple[Any, tuple[Any, ...], dict[str, Any]]] = [
     (Deserializer, (), {}),
     (Deserializer, (TWIST,), {"bus_bytes": 3}),
     (Serializer, ("geometry_msgs/msg/Twist",), {}),
+    (MessageBuffer, (TWIST,), {"bus_bytes": 3}),
     (Parser, (TWIST,), {"max_message_bytes": 1}),
     (RecordReader, (TWIST,), {"fields": "linear"}),
     (RecordWriter, (TWIST,), {"fields": ["speed"]}),
