@@ -153,7 +153,7 @@ def test_a_thousand_unknown_types_are_reported_in_no_time(tmp_path):
         assert len(error.value.diagnostics) == 1000
 
 
-@settings(deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=by_depth(40, 200), deadline=None, suppress_health_check=list(HealthCheck))
 @given(definition=definitions("ros1") | definitions("ros2", wide=True))
 def test_random_definitions_come_back_from_their_texts(tmp_path_factory, definition):
     root = tmp_path_factory.mktemp("ws")
