@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.model import PRIMITIVES, Array, Constant, Field, Message, Sequence, String
+from tests.depth import by_depth
 from tests.steps import calls_at_most
 from tests.strategies import definitions
 

@@ -11,6 +11,7 @@ import pytest
 
 from firm_hdl.rtlil.ir import Assign, Bits, Case, Slice, Statement, Switch
 from firm_hdl.vhdl.process import flatten, merged
+from tests.depth import by_depth
 
 Body = tuple[Statement, ...]
 WIDTHS = {"s": 2, "t": 2, "u": 1}
