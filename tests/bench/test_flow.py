@@ -75,6 +75,7 @@ def test_a_circuit_that_nextpnr_refuses_has_an_area(ecp5: Device) -> None:
     assert found.problem.startswith("nextpnr-ecp5 failed: ")
 
 
+@pytest.mark.thorough
 def test_a_circuit_of_cells_that_do_not_count_has_no_figures() -> None:
     ice40 = ("ice40", "SB_CARRY", r"SB_CARRY, SB_DFF.*, .* counts on iCE40 HX8K")
     xc7 = ("xc7", "CARRY4", "CARRY4, FDRE, .* counts on AMD 7 series")

@@ -175,7 +175,7 @@ def test_converters_are_proved_equal(
 @pytest.mark.parametrize(
     ("direction", "part"), [("deserializer", "mover"), ("serializer", "collector")]
 )
-@pytest.mark.sampled(2)
+@pytest.mark.thorough
 def test_a_broken_converter_is_found(direction: Direction, part: str, tools: Tools) -> None:
     name, bus_bytes = by_depth(("std_msgs/msg/Bool", 1), ("std_msgs/msg/String", 8))
     rtlil, vhdl = converter_vhdl(load_message(name), direction, bus_bytes=bus_bytes)

@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
 from firm_hdl.model import PRIMITIVES, Array, Constant, Field, Message, Sequence, String
+from tests.depth import by_depth
 from tests.steps import calls_at_most
 from tests.strategies import definitions
 
@@ -153,7 +154,7 @@ def test_a_thousand_unknown_types_are_reported_in_no_time(tmp_path):
         assert len(error.value.diagnostics) == 1000
 
 
-@settings(deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=by_depth(40, 200), deadline=None, suppress_health_check=list(HealthCheck))
 @given(definition=definitions("ros1") | definitions("ros2", wide=True))
 def test_random_definitions_come_back_from_their_texts(tmp_path_factory, definition):
     root = tmp_path_factory.mktemp("ws")

@@ -157,6 +157,7 @@ BOOK_CASES = [
 ]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 2, 4, 8, 16, 32, 64]))
 def test_a_parser_finds_late_that_lengths_in_a_row_claim_too_much(bus_bytes):
     parser = Parser(BOOK, bus_bytes=bus_bytes, max_message_bytes=MOST)

@@ -10,6 +10,7 @@ from firm_hdl.gateware.positions import pick
 from tests.depth import by_depth
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("constant", [True, False])
 def test_a_value_is_picked_from_thousands(constant):
     # Expressions with one level per case would be nested too deeply for Python.

@@ -124,7 +124,7 @@ def test_the_layout_has_the_fields_of_the_message():
         [(f, b) for f in (None, ["corners"], ["holes", "closed"]) for b in (1, 4, 8, 16)],
     ),
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_records_come_through_with_the_rest_beside_them(bus_bytes, fields):
     values = [
         {

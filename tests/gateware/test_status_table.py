@@ -173,11 +173,13 @@ def test_first_error_of_a_packet_in_wire_order_is_reported(bus_bytes):
     check_reading(MESSAGE, READ, bus_bytes, stalls_on(bus_bytes))
 
 
+@pytest.mark.sampled(2)
 @every_bus
 def test_string_at_the_end_of_a_message_is_checked_before_trailing_bytes(bus_bytes):
     check_reading(LAST, READ_LAST, bus_bytes, stalls_on(bus_bytes))
 
 
+@pytest.mark.sampled(2)
 @some_buses
 def test_limits_are_exact_without_alignment(bus_bytes):
     plans = stalls_on(bus_bytes)

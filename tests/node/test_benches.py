@@ -162,6 +162,7 @@ SPIES = {
 }
 
 
+@pytest.mark.thorough
 def test_lanes_that_are_not_kept_have_noise(folders, ghdl, iverilog, tmp_path):
     folder = shutil.copytree(folders("stream"), tmp_path / "relay")
     for name, spy in SPIES.items():

@@ -150,6 +150,19 @@ def test_a_clock_is_set_only_if_it_is_certainly_far_away(offset, delay, sets):
     assert (request is not None and request.operation == Operation.SET_TIME) is sets
 
 
+def test_a_clock_that_was_set_is_not_corrected_by_times_of_before():
+    keeper = ClockKeeper(NOMINAL)
+    for second, offset, operation in (
+        (0, 0, None),
+        (1, 0, Operation.SET_RATE),
+        (2, 10**9, Operation.SET_TIME),
+        (3, 0, None),
+        (4, 0, Operation.SET_RATE),
+    ):
+        request = sampled(keeper, START + second * 10**9, offset)
+        assert (request and request.operation) == operation, second
+
+
 def test_a_keeper_that_never_changes_the_rate_is_found():
     """The twin: without corrections, 100 ppm are 10 ms after 100 s."""
 

@@ -55,6 +55,7 @@ def few_topics():
     return read_description_text("\n".join(lines), library=open_library("lyrical", (), ()))
 
 
+@pytest.mark.thorough
 def test_two_topics_have_a_beat_in_every_cycle_too():
     check_cycles(CoreBench(few_topics()), 2)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import random
 import struct
+from functools import cache
 
 import pytest
 from amaranth.hdl import DriverConflict, Fragment
@@ -29,6 +30,13 @@ def string(text):
     return b"\0\1\0\0" + struct.pack("<I", len(data)) + data
 
 
+@cache
+def echo_bench(bus):
+    """Return a node with an accelerator that answers, in a bench whose runs begin anew."""
+    description = read(echo_text(bus_bytes=str(bus)))
+    return description, stream_node(description)[1]
+
+
 def stream_node(description, accelerator=None):
     node = Node(description, accelerator)
     bus = description.bus_bytes
@@ -48,8 +56,7 @@ def texts(count):
 
 @pytest.mark.parametrize("bus", by_depth([8], [1, 2, 8, 16]))
 def test_an_accelerator_is_alive_behind_a_link(bus):
-    description = read(echo_text(bus_bytes=str(bus)))
-    _, bench = stream_node(description)
+    description, bench = echo_bench(bus)
     strings = texts(6)
     requests = packets_of(description.topics[3].store("in").message, 5, most=200)
     set_time = ControlRequest(operation=Operation.SET_TIME, seconds=77, nanoseconds=5)
@@ -107,8 +114,7 @@ def expected_echo(frames):
 @pytest.mark.parametrize("seed", range(by_depth(1, 8)))
 def test_nothing_gets_behind_the_gates_that_is_not_right(seed):
     rng = random.Random(seed)
-    description = read(echo_text())
-    _, bench = stream_node(description)
+    _, bench = echo_bench(8)
     count = by_depth(12, 30)
     good = frames_of(NodeMessage(topic=1, packet=string(text)) for text in texts(count))
     frames = [damaged(frame, rng) if rng.random() < 0.6 else frame for frame in good]

@@ -47,6 +47,7 @@ def fake(tmp_path, monkeypatch):
     return put
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("status", [0, pytest.param(1, marks=pytest.mark.thorough)])
 def test_bench_does_not_pass_with_a_silent_ghdl(fake, capsys, status):
     fake(SILENT[status], "ghdl")

@@ -97,6 +97,7 @@ def test_yosys_infers_distributed_ram(name: str, tmp_path: Path) -> None:
     assert "TRELLIS_FF" not in cells
 
 
+@pytest.mark.thorough
 def test_yosys_makes_registers_of_unsuitable_memories(tmp_path: Path) -> None:
     text = _verilog("asynchronous").replace(
         "always @(posedge clk)", "always @(posedge clk, posedge rst) if (rst) mem[0] <= 0; else"

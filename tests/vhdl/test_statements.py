@@ -11,6 +11,7 @@ import pytest
 
 from firm_hdl.rtlil.ir import Assign, Bits, Case, Slice, Statement, Switch
 from firm_hdl.vhdl.process import flatten, merged
+from tests.depth import by_depth
 
 Body = tuple[Statement, ...]
 WIDTHS = {"s": 2, "t": 2, "u": 1}
@@ -66,7 +67,7 @@ def assign(wire: str, text: str) -> Assign:
     return Assign(target=(Slice(wire, 0, 4),), value=(Bits(text),))
 
 
-@pytest.mark.parametrize("start", range(0, 600, 100))
+@pytest.mark.parametrize("start", range(0, by_depth(200, 600), 100))
 def test_merged_statements_assign_the_same_values(start: int) -> None:
     for seed in range(start, start + 100):
         chosen = random.Random(seed)

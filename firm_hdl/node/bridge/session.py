@@ -349,7 +349,6 @@ class Session:
         self.restarts += 1
         self.is_ready = False
         self._todo.clear()
-        self._clock_request = None
         self._keeper = ClockKeeper(nominal_rate(self._description.clock_hz))
         self._next_sample = self._next_round = now
         if self._is_finishing:

@@ -11,7 +11,7 @@ from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.signatures import packet_layout
 from firm_hdl.node.frame import FRAGMENT_UNIT, HEADER_BYTES, LATE_MESSAGES, VERSION
-from firm_hdl.node.gateware.header import header_beats
+from firm_hdl.node.gateware.header import frame_output, header_beats
 from firm_hdl.node.gateware.streams import header_layout
 
 __all__ = ["REASSEMBLER_COUNTERS", "Fragmenter", "Reassembler"]
@@ -70,8 +70,7 @@ class Fragmenter(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        layout = data.StructLayout({"beat": packet_layout(self.bus_bytes), "size": SIZE_BITS})
-        m.submodules.slice = out = StreamSlice(layout)
+        out = frame_output(m, self.frames, self.size, "size")
         header = Signal(header_layout())
         is_empty = Signal()
         # Bytes of the message that are not sent, those of the frame included.
@@ -79,13 +78,7 @@ class Fragmenter(wiring.Component):
         is_final = Signal()
         size = Signal(SIZE_BITS)
         number = Signal(range(max(self.beats, self.room // self.bus_bytes)))
-        m.d.comb += [
-            out.i.payload.size.eq(size),
-            self.frames.payload.eq(out.o.payload.beat),
-            self.frames.valid.eq(out.o.valid),
-            self.size.eq(out.o.payload.size),
-            out.o.ready.eq(self.frames.ready),
-        ]
+        m.d.comb += out.i.payload.size.eq(size)
         with m.FSM():
             with m.State("TAKE"):
                 self._take(m, header, is_empty, number)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from amaranth.hdl import Cat, Module, Mux, Signal, Value
-from amaranth.lib import data, wiring
+from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware import PacketSignature
 from firm_hdl.gateware.packets.slice import StreamSlice
-from firm_hdl.gateware.signatures import packet_layout
 from firm_hdl.node.frame import FLAG_LAST, FLAG_START, HEADER_BYTES, VERSION
 from firm_hdl.node.gateware.streams import (
     TOPIC_BITS,
@@ -18,7 +17,7 @@ from firm_hdl.node.gateware.streams import (
     passes,
 )
 
-__all__ = ["HeaderInsert", "HeaderStrip", "header_beats"]
+__all__ = ["HeaderInsert", "HeaderStrip", "frame_output", "header_beats"]
 
 
 def header_beats(bus_bytes: int) -> int:
@@ -32,6 +31,19 @@ def header_beats(bus_bytes: int) -> int:
     if HEADER_BYTES % bus_bytes:
         raise ValueError(f"Bus width must be at most {HEADER_BYTES} bytes, not {bus_bytes}")
     return HEADER_BYTES // bus_bytes
+
+
+def frame_output(m: Module, frames: stream.Interface, beside: Value, name: str) -> StreamSlice:
+    """Return a slice before an output of frames; its payload also has what is beside each beat."""
+    layout = data.StructLayout({"beat": frames.payload.shape(), name: len(beside)})
+    m.submodules.slice = out = StreamSlice(layout)
+    m.d.comb += [
+        frames.payload.eq(out.o.payload.beat),
+        frames.valid.eq(out.o.valid),
+        out.o.ready.eq(frames.ready),
+        beside.eq(out.o.payload[name]),
+    ]
+    return out
 
 
 class HeaderInsert(wiring.Component):
@@ -68,8 +80,7 @@ class HeaderInsert(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        layout = data.StructLayout({"beat": packet_layout(self.bus_bytes), "topic": TOPIC_BITS})
-        m.submodules.slice = out = StreamSlice(layout)
+        out = frame_output(m, self.frames, self.topic, "topic")
         came, beat, bits = self.i.payload, self.i.payload.beat, 8 * self.bus_bytes
         # The first beat of a message waits on `i` while its header is sent:
         #
@@ -96,10 +107,6 @@ class HeaderInsert(wiring.Component):
             out.i.valid.eq(self.i.valid),
             # A message without bytes ends with its header.
             self.i.ready.eq(out.i.ready & (~in_header | (is_empty & ends_header))),
-            self.frames.payload.eq(out.o.payload.beat),
-            self.frames.valid.eq(out.o.valid),
-            out.o.ready.eq(self.frames.ready),
-            self.topic.eq(out.o.payload.topic),
         ]
         with m.If(in_header):
             word = Value.cast(header).word_select(sent[: (self.beats - 1).bit_length()], bits)

@@ -40,19 +40,7 @@ def checked_verilog(
     sources: Mapping[str, bytes],
     wanted: Sequence[AcceleratorPort],
 ) -> tuple[AcceleratorPort, ...]:
-    """Check files of Verilog or SystemVerilog, and the ports of the module.
-
-    Returns
-    -------
-    tuple of AcceleratorPort
-        Those of `wanted` that the module has.
-
-    Raises
-    ------
-    DefinitionError
-        If the Verilog is wrong, or has no such module or other ports.
-    ProgramMissingError
-    """
+    """Check files of Verilog or SystemVerilog, and the ports of the module, as `checked_vhdl`."""
     said, is_right = _lint(description, sources, wanted)
     if is_right and not (_MISSING.search(said) or _WIDTH.search(said) or _UNDRIVEN.search(said)):
         return tuple(wanted)

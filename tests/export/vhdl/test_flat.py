@@ -23,7 +23,7 @@ from tests.tools import run_script
     ("name", "bus_bytes"),
     [
         *by_depth(
-            [("std_msgs/msg/Header", 4)],
+            [("std_msgs/msg/Byte", 4)],
             [("", 8), ("sensor_msgs/msg/JointState", 8), ("std_msgs/msg/Bool", 1), ("", 1)],
         ),
     ],

@@ -371,6 +371,22 @@ def test_a_restart_is_no_gap_whatever_its_first_number_is_ahead_of(before, lost)
     assert numbers == sorted(numbers) and numbers[-1] == 9
 
 
+def test_answers_that_were_lost_before_a_restart_are_no_lost_messages():
+    ways = itertools.cycle([False, True])
+    talk = Talk()
+    talk.run(6)
+    # Each request arrives, and its answer does not.
+    talk.loses = lambda: next(ways)
+    talk.run(2)
+    talk.loses = lambda: False
+    for restarts in (0, 1):
+        talk.run(6)
+        assert talk.session.restarts == restarts
+        assert talk.session.lost_on_the_way()["lost"] == 0
+        talk.node = FakeNode()
+        talk.session.take(published(talk.node), talk.now, talk.wall)
+
+
 def test_a_gap_before_a_restart_stays_counted():
     talk = Talk()
     talk.run(2)

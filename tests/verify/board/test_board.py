@@ -125,6 +125,26 @@ class CountsTooManyBytes(LoopNode):
         super().count(topic, name, by + (name == "bytes_low" and self.heard == 3))
 
 
+class CountsTooManyBytesBack(LoopNode):
+    """It counts a byte that it did not send."""
+
+    def count(self, topic, name, by=1):
+        is_back = topic in self.loops.values()
+        super().count(topic, name, by + (is_back and name == "bytes_low" and self.heard == 3))
+
+
+class LosesAndSwaps(LoopNode):
+    """One packet does not come back, and two others come in the other order."""
+
+    def answers(self, packet):
+        if self.heard == 3:
+            self.kept = packet
+        elif self.heard != 2:
+            yield packet
+        if self.heard == 4:
+            yield self.kept
+
+
 class Restarts(LoopNode):
     """It starts again after some packets."""
 
@@ -187,6 +207,8 @@ FAULTS = {
     Refuses: r"board: 1 of 7 packets did not come back",
     Miscounts: r"damaged packets: 'truncated' of /loopback/in/std_msgs/String counts 0 instead of",
     CountsTooManyBytes: r"board: /loopback/in/std_msgs/String counts \d+ bytes instead of \d+",
+    CountsTooManyBytesBack: r"board: /loopback/out/std_msgs/String counts \d+ bytes instead of",
+    LosesAndSwaps: r"board: packet 1 of 7 differs at byte",
     Restarts: r"fake: the board has started again during the test",
     FallsSilent: r"fake: the board does not answer for 0\.2 s",
     Mute: r"^fake: the board does not answer for 0\.2 s$",

@@ -199,6 +199,7 @@ def offered(trace, rows):
     return found
 
 
+@pytest.mark.thorough
 def test_vhdl_that_ghdl_refuses_is_a_failure(ghdl, monkeypatch):
     change_line(monkeypatch, "_serializer_flat.vhd", "architecture rtl", "architecture of")
     result = accepted("lyrical", HEADER)

@@ -150,7 +150,7 @@ UNDEFINED = ("no initial value", "undefined")
     ],
     indirect=["of_verilog"],
 )
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(14)
 def test_a_changed_line_is_found(of_verilog, monkeypatch, change):
     *where, output = CHANGES[change]
     change_line(monkeypatch, *where)

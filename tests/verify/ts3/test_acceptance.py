@@ -133,6 +133,7 @@ def test_faults_in_hardware_are_found(monkeypatch, which, fault, output):
 RUNS = ("hardware: ", "hardware, Stalls(", "hardware, broken packets, Stalls(")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("number", range(len(RUNS)))
 def test_all_outputs_of_a_run_are_judged(monkeypatch, number):
     """Each output of a run is changed in turn, as little as possible."""

@@ -95,7 +95,10 @@ def test_same_circuits_are_simulated_once(tmp_path, capsys):
 
 @pytest.mark.parametrize(
     ("arguments", "simulated"),
-    [(["--all"], 1), (["p/msg/A", "p/msg/B"], 2)],
+    [
+        (["--all"], 1),
+        pytest.param(["p/msg/A", "p/msg/B"], 2, marks=pytest.mark.thorough),
+    ],
 )
 def test_all_types_share_circuits_and_those_with_a_name_do_not(tmp_path, arguments, simulated):
     (tmp_path / "p" / "msg").mkdir(parents=True)
