@@ -130,13 +130,14 @@ QUOTES = [
     ("howto/systemverilog.md", "systemverilog", "sv_motor/motor.sv"),
     ("howto/verilog.md", "verilog", "cocotb_motor/motor.v"),
     ("howto/cocotb.md", "py", "cocotb_motor/test_motor.py"),
-    ("howto/amaranth.md", "py", "half_speed.py"),
+    ("howto/amaranth.md", "py", "half_speed.py image_filter.py cloud_filter.py soc_part.py"),
 ]
 
 
-@pytest.mark.parametrize(("page", "language", "example"), QUOTES)
-def test_pages_quote_the_examples(page, language, example):
-    text = (ROOT / "examples" / example).read_text(encoding="utf-8")
+@pytest.mark.parametrize(("page", "language", "examples"), QUOTES)
+def test_pages_quote_the_examples(page, language, examples):
+    files = [ROOT / "examples" / name for name in examples.split()]
+    text = "".join(file.read_text(encoding="utf-8") for file in files)
     page_text = (DOCS / page).read_text(encoding="utf-8")
     quoted = [m[2] for m in BLOCK.finditer(page_text) if m[1] == language]
     assert quoted and all(part in text for part in quoted)
