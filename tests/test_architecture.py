@@ -55,7 +55,7 @@ MAY_IMPORT = {
 MAY_IMPORT["accelerator"] = {"gateware", "model", "plan", "sim", "wire"}
 MAY_IMPORT["export"] = {
     *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl", "verilog"),
-    *("model", "frontend", "wire", "plan", "timing", "estimates", "gateware"),
+    *("model", "frontend", "wire", "plan", "timing", "program", "estimates", "gateware"),
 }
 MAY_IMPORT["node"] = {
     # `terminal`: names of peers are printed. `equivalence`, `jobs`: accelerators in VHDL and
@@ -72,7 +72,7 @@ MAY_IMPORT["covering"] = {
 MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
     "cases",
-    *(MAY_IMPORT["export"] - {"estimates", "garbage", "rtlil", "timing"}),
+    *(MAY_IMPORT["export"] - {"estimates", "garbage", "program", "rtlil", "timing"}),
     *("arguments", "drawing", "export", "identity", "node", "recordings", "sim", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {

@@ -7,6 +7,7 @@ A back end turns a type's converters into files and into entries of the manifest
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -19,8 +20,12 @@ from firm_hdl.garbage import search_put_off
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
+from firm_hdl.program import deserializer_program, program_lines, serializer_program
 from firm_hdl.rtlil import netlist_of, rtlil_of
 from firm_hdl.rtlil.ir import Design
+
+MOST_STEPS = 64
+"""Most steps that the head of a file lists."""
 
 __all__ = ["BuildError", "Converters", "Output", "module_name"]
 
@@ -106,6 +111,17 @@ class Converters:
             f"definition (SHA-256): {self.inputs['definition_sha256']}\n"
             f"What each port means: {MANIFEST}.\n"
         )
+
+    def steps(self, direction: Direction) -> str:
+        """Write the steps of a converter, one per line, for a comment at the head of its file."""
+        make = deserializer_program if direction == "deserializer" else serializer_program
+        program = make(self.plan)
+        if len(program.states) > MOST_STEPS:
+            return f"{len(program.states)} steps: `firm-hdl plan --program` prints them.\n"
+        lines = ["Steps, as `firm-hdl plan --program` prints and explains them:"]
+        for line in program_lines(program):
+            lines += textwrap.wrap(line, 95, subsequent_indent="      ", break_long_words=False)
+        return "".join(f"{line}\n" for line in lines)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,12 +7,16 @@ and 8 MB of text. RTLIL extends a constant that has fewer digits than bits by it
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Iterator
 from typing import Any
 
 from amaranth.back import rtlil
 from amaranth.hdl import Elaboratable, Fragment, ValueCastable, _ir, _nir
 from amaranth.hdl._ir import PortDirection
 from amaranth.lib import wiring
+
+from firm_hdl.names.attributes import PURPOSE
 
 __all__ = ["convert_fragment", "rtlil_of"]
 
@@ -66,6 +70,7 @@ def rtlil_of(design: Any, *, name: str, ports: Any = None, platform: Any = None)
 
 def convert_fragment(fragment: Fragment, ports: Any, *, name: str) -> str:
     """Return an elaborated design as RTLIL. Parameters are those of `amaranth.back.rtlil`."""
+    purposes = dict(_purposes(fragment, (name,)))
     netlist = _ir.build_netlist(fragment, ports=ports, name=name)
     empty = rtlil.EmptyModuleChecker(netlist)
     design, names = rtlil.Design(emit_src=False), rtlil._ast.SignalDict()
@@ -75,8 +80,24 @@ def convert_fragment(fragment: Fragment, ports: Any, *, name: str) -> str:
         builder = design.module(".".join(module.name), src_loc=module.src_loc)
         if index == 0:
             builder.attribute("top", 1)
+        if purpose := purposes.get(module.name):
+            builder.attribute(PURPOSE, purpose)
         _Emitter(builder, netlist, module, names, empty_checker=empty).emit()
     return str(design)
+
+
+def _purposes(fragment: Fragment, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Yield the paths of modules, and the class of each with the first sentence about it."""
+    for origin in (fragment.origins or ())[:1]:
+        text = inspect.getdoc(type(origin)) or ""
+        if text and not type(origin).__module__.startswith("amaranth."):
+            yield (
+                path,
+                f"{type(origin).__name__}: {' '.join(text.partition(chr(10) * 2)[0].split())}",
+            )
+    for part, name, _ in fragment.subfragments:
+        if name is not None:
+            yield from _purposes(part, (*path, name))
 
 
 class _Emitter(rtlil.ModuleEmitter):

@@ -244,6 +244,7 @@ class ModuleWriter(Writer):
     def _head(self) -> Iterator[str]:
         ports = self.names.ports
         name = self.entities[self.module.name]
+        yield from self.purpose()
         yield f"module {name} (" if ports else f"module {name};"
         ways = [f"{port.direction} wire {_range(port.outer.width)}".rstrip() for port in ports]
         size = max(map(len, ways), default=0)

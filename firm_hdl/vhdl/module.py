@@ -58,6 +58,7 @@ class ModuleWriter(Writer):
 
     def _entity_lines(self) -> Iterator[str]:
         yield f"-- Module {self.module.name} of the Amaranth design."
+        yield from self.purpose()
         yield from (f"-- {line}" for line in self.registers.summary())
         yield ""
         yield "library ieee;"

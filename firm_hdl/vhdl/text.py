@@ -5,6 +5,7 @@ IEEE Std 1076-2008, clause 9.2 (operators and their precedence) and 15.8 (bit st
 
 from __future__ import annotations
 
+import textwrap
 from typing import NamedTuple
 
 __all__ = [
@@ -114,7 +115,9 @@ def wrap(line: str, remark: str = "--") -> list[str]:
     indent = " " * (len(line) - len(line.lstrip()))
     code, mark, comment = line.partition(f"  {remark} ")
     if len(line) > COLUMNS and mark and code.strip():
-        return [f"{indent}{remark} {comment}", *wrap(code, remark)]
+        start = f"{indent}{remark} "
+        comments = textwrap.wrap(comment, COLUMNS, initial_indent=start, subsequent_indent=start)
+        return [*comments, *wrap(code, remark)]
     if not code.strip() or code.lstrip().startswith(remark):
         return [line]
     lines: list[str] = []

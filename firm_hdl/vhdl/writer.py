@@ -5,10 +5,12 @@ A language has a subclass, with its own writers of values, statements, registers
 
 from __future__ import annotations
 
+import textwrap
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
+from firm_hdl.names.attributes import PURPOSE
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Spec, Statement, Value, cut
 from firm_hdl.vhdl.declare import Role, Signal, attributes_of, declare, enumeration, remark_of
 from firm_hdl.vhdl.expr import Declared, Values
@@ -203,6 +205,12 @@ class Writer(ABC):
     def owner(self, wire: str) -> Any:
         """Return the wire whose name another one has taken over, or that wire itself."""
         return self.module.wires[self.graph.name_of.get(wire, wire)]
+
+    def purpose(self) -> Iterator[str]:
+        """Yield comments on what the module is for."""
+        text = str(self.module.attributes.get(PURPOSE, ""))
+        for line in textwrap.wrap(text if text.isascii() and text.isprintable() else "", 96):
+            yield f"{self.mark} {line}"
 
     def remark(self, wire: str) -> str:
         """Write a comment on the sign and the enumeration of a wire; its type has neither."""

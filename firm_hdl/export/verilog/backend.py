@@ -31,7 +31,11 @@ def write(converters: Converters) -> Output:
     for direction in DIRECTIONS:
         module = module_name(name, direction)
         header = converters.header(module, f"the {direction}")
-        files[f"{module}.v"] = convert(converters.circuits[direction], name=module, header=header)
+        files[f"{module}.v"] = convert(
+            converters.circuits[direction],
+            name=module,
+            header=header + converters.steps(direction),
+        )
         section[direction] = {
             "module": module,
             "verilog": f"{module}.v",

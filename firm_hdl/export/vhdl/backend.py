@@ -84,13 +84,13 @@ class _Parts:
         return "".join(comment(self.header, ""))
 
     @search_put_off()
-    def core(self, circuit: Design | RecordTop, name: str) -> Core:
+    def core(self, circuit: Design | RecordTop, name: str, steps: str = "") -> Core:
         made = convert(circuit, name=name)
         package = f"{PACKAGE_NAME}.vhd"
         entities = [text for file, text in made.files.items() if file != package]
         self.design |= {
             package: made.files[package],
-            f"{made.top}.vhd": self.head + "\n".join(entities),
+            f"{made.top}.vhd": "".join([self.head, *comment(steps, ""), "\n".join(entities)]),
         }
         # The outermost entity is the last one.
         return Core(entity=made.top, names=list(made.entities.values())[-1].ports)
@@ -114,7 +114,8 @@ def to_vhdl(converters: Converters) -> Output:
     name, plan = converters.name, converters.plan
     parts = _Parts(base=identifier(name).lower(), header=converters.header(name, "converters"))
     cores = {
-        way: parts.core(converters.circuits[way], f"{parts.base}_{way}_flat") for way in DIRECTIONS
+        way: parts.core(converters.circuits[way], f"{parts.base}_{way}_flat", converters.steps(way))
+        for way in DIRECTIONS
     }
     ports = converters.options.ports
     if ports == "records":

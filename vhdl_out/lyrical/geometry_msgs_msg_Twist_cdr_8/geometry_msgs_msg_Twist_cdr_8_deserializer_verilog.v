@@ -2,6 +2,17 @@
 // lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 // definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 // What each port means: manifest.json.
+// Steps, as `firm-hdl plan --program` prints and explains them:
+// deserializer: start 0, items from lane 0, unit 8, map from lane 0, unit 4
+//   0 linear_x: map of 8; begins linear.x; checks 0=00 1=01; to 1 (+8)
+//   1 linear_x_2: map of 8; linear.x; begins linear.y; to 2 (+8)
+//   2 linear_y: map of 8; linear.y; begins linear.z; to 3 (+8)
+//   3 linear_z: map of 8; linear.z; begins angular.x; to 4 (+8)
+//   4 angular_x: map of 8; angular.x; begins angular.y; to 5 (+12)
+//   5 angular_y: map of 12 in two words; angular.y angular.z; to end (+0)
+//   6 packet_end: end of the packet
+// Buffer: Give each beat a position in the ring; tell how many bytes of the current packet
+// arrived.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   input wire         rst,
   input wire         aclk,
@@ -33,10 +44,10 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   // Combinational signals.
   wire arrives;
   wire [3:0] used;
-  wire [3:0] next_beat;
+  wire [3:0] end_following;
   wire ends_now;
-  wire [6:0] add_3;
-  wire [6:0] newest_0;
+  wire [6:0] end_limit;
+  wire [6:0] newest_limit;
   wire stored;
   wire more;
   wire follows;
@@ -44,9 +55,12 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   wire [10:0] arrival_limit_next;
   wire has_second_next;
   wire [10:0] ends_read_data;
+  wire [3:0] payload_count;
+  wire payload_last;
 
   // Signals that no logic reads, for simulation.
   wire room;
+  wire [3:0] next_beat;
   wire [2:0] ends_write_addr;
   wire [10:0] ends_write_data;
   wire ends_write_en;
@@ -63,19 +77,19 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
 
   assign arrives = packets_valid & packets_ready_q;
   assign used = arrived - freed;
-  assign next_beat = at + 4'd1;
-  assign ends_now = full & payload[68];
-  assign add_3 = {at, 3'd0} + {3'd0, payload[67:64]};
-  assign newest_0 = ends_now ? add_3 : {full ? next_beat : at, 3'd0};
+  assign end_following = at + 4'd1;
+  assign ends_now = full & payload_last;
+  assign end_limit = {at, 3'd0} + {3'd0, payload_count};
+  assign newest_limit = ends_now ? end_limit : {full ? end_following : at, 3'd0};
   assign stored = pushed != popped;
   assign more = stored | ends_now;
   assign follows = arrival_ended_q & ends_now;
   assign or_14 = arrival_next | ~arrival_ended_q;
-  assign arrival_limit_next = has_second ? second : {next_beat, newest_0};
+  assign arrival_limit_next = has_second ? second : {end_following, newest_limit};
   assign has_second_next = has_second ? (~arrival_next | more) : (~arrival_next & follows);
 
   always @(posedge aclk) begin
-    ends[pushed[2:0]] <= {next_beat, add_3};
+    ends[pushed[2:0]] <= {end_following, end_limit};
   end
   assign ends_read_data = ends[popped[2:0]];
 
@@ -106,7 +120,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
         if (stored) begin
           second <= ends_read_data;
         end else begin
-          second <= {next_beat, add_3};
+          second <= {end_following, end_limit};
         end
       end
       has_second <= has_second_next;
@@ -123,6 +137,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
     payload <= packets_payload;
   end
 
+  assign payload_count = payload[67:64];
+  assign payload_last = payload[68];
   assign arrival_beat = {full, at, payload};
 
   assign packets_ready = packets_ready_q;
@@ -131,14 +147,16 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   assign arrival_ended = arrival_ended_q;
 
   assign room = packets_ready_q;
+  assign next_beat = end_following;
   assign ends_write_addr = pushed[2:0];
-  assign ends_write_data = {next_beat, add_3};
+  assign ends_write_data = {end_following, end_limit};
   assign ends_write_en = 1'b1;
   assign ends_read_addr = popped[2:0];
-  assign end_sig = {next_beat, add_3};
-  assign newest = {next_beat, newest_0};
+  assign end_sig = {end_following, end_limit};
+  assign newest = {end_following, newest_limit};
 endmodule
 
+// ByteFlags: One bit for each byte of the packet buffer, and one for each header.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_flags (
   input wire        rst,
   input wire        aclk,
@@ -149,6 +167,11 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_fl
 
   // Combinational signals.
   wire headers_write_data;
+  wire [63:0] beat_data;
+  wire [3:0] beat_count;
+  wire beat_last;
+  wire [3:0] beat_at;
+  wire beat_valid;
 
   // Signals that no logic reads, for simulation.
   wire [2:0] headers_write_addr;
@@ -163,15 +186,21 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_fl
       headers[headers_at] = 1'b0;
   end
 
-  assign headers_write_data = |{(beat[15:8] != 8'd1) & (~beat[68] | (beat[67:64] > 4'd1)),
-      (beat[7:0] != 8'd0) & (~beat[68] | (beat[67:64] > 4'd0))};
+  assign headers_write_data = ((beat_data[7:0] != 8'd0) & (~beat_last | (beat_count > 4'd0))) |
+      ((beat_data[15:8] != 8'd1) & (~beat_last | (beat_count > 4'd1)));
 
   always @(posedge aclk) begin
-    if (beat[73]) begin
-      headers[beat[71:69]] <= headers_write_data;
+    if (beat_valid) begin
+      headers[beat_at[2:0]] <= headers_write_data;
     end
   end
   assign mismatch = headers[header_at[2:0]];
+
+  assign beat_data = beat[63:0];
+  assign beat_count = beat[67:64];
+  assign beat_last = beat[68];
+  assign beat_at = beat[72:69];
+  assign beat_valid = beat[73];
 
   assign headers_write_addr = beat[71:69];
   assign headers_write_en = beat[73];
@@ -179,6 +208,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_fl
   assign headers_read_data = mismatch;
 endmodule
 
+// Sequencer: Run a program over the packets in the buffer: check them, and give orders to the
+// mover.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   input wire         rst,
   input wire         aclk,
@@ -192,6 +223,11 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   output wire [41:0] orders_payload,
   output wire [3:0]  header_at
 );
+  localparam [2:0] STATUS_TRUNCATED = 3'd1;
+  localparam [2:0] STATUS_TRAILING = 3'd2;
+  localparam [2:0] STATUS_LENGTH = 3'd3;
+  localparam [2:0] STATUS_ENCAPSULATION = 3'd4;
+  localparam [2:0] STATUS_STRING = 3'd5;
 
   // Registers.
   reg bad = 1'b0;
@@ -206,15 +242,22 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   reg [6:0] last_at = 7'd7;
   reg words_last = 1'b1;
   reg words_less = 1'b0;
-  reg [6:0] step = 7'd1;
+  reg step_linear_x = 1'b1;  // step 0: map of 8; begins linear.x
+  reg step_linear_x_2 = 1'b0;  // step 1: map of 8; linear.x; begins linear.y
+  reg step_linear_y = 1'b0;  // step 2: map of 8; linear.y; begins linear.z
+  reg step_linear_z = 1'b0;  // step 3: map of 8; linear.z; begins angular.x
+  reg step_angular_x = 1'b0;  // step 4: map of 8; angular.x; begins angular.y
+  reg step_angular_y = 1'b0;  // step 5: map of 12 in two words; angular.y angular.z
+  reg step_packet_end = 1'b0;  // step 6: no bytes
   reg at_end = 1'b0;
   reg [4:0] map_offset = 5'd25;
   reg two_word_map = 1'b0;
   reg [5:0] exit_add = 6'd8;
 
   // Combinational signals.
-  wire mismatch_31;
+  wire mismatch_26;
   wire [6:0] step_end;
+  wire [6:0] not_2;
   wire [6:0] left;
   wire present;
   wire ends_message;
@@ -222,34 +265,37 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   wire mismatch;
   wire cut;
   wire trailing;
+  wire bytes_good;
   wire stops;
   wire drains;
+  wire orders_payload_length_good;
   wire allowed;
   wire issue;
   wire [6:0] map_at;
-  wire [3:0] sub_77;
-  wire [5:0] sub_88;
-  wire [5:0] or_132;
+  wire [3:0] sub_64;
+  wire [5:0] sub_74;
+  wire [5:0] or_119;
   wire [6:0] map_left;
+  wire [2:0] orders_payload_items_next;
+  wire [2:0] orders_payload_map_next;
+  wire [3:0] orders_payload_items_bytes;
+  wire [3:0] orders_payload_map_bytes;
+  // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  wire [2:0] orders_payload_status;
   wire [6:0] exit_sum;
   wire [6:0] early_last;
-  wire step_to_exit;
-  wire and_187;
-  wire and_201;
-  wire and_203;
+  wire to_exit;
+  wire and_189;
+  wire [3:0] map_room_next;
   wire [3:0] items_room_next;
   wire [6:0] first_at_next;
+  wire map_offset_next_3;
+  wire [5:0] orders_payload_map_at;
 
   // Signals that no logic reads, for simulation.
-  wire default_0;
-  wire default_1;
-  wire default_2;
-  wire default_3;
-  wire default_4;
-  wire default_5;
   wire [73:0] arrival_beat;
   wire [6:0] nul_at;
-  wire [6:0] nul_at_23;
+  wire [6:0] nul_at_17;
   wire nonzero;
   wire [6:0] nul_within;
   wire [3:0] oldest;
@@ -266,57 +312,69 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   wire [3:0] items_wanted;
   wire [5:0] exit_amount;
   wire [2:0] to_exit_mask;
+  wire [6:0] exit_last;
   wire [5:0] body_amount;
   wire [2:0] to_body_mask;
+  wire [6:0] body_last;
   wire [6:0] next_last;
-  wire step_to_body;
+  wire to_body;
   wire words_down;
   wire words_keeps;
+  wire words_is_small;
+  wire words_is_2;
+  wire words_is_3;
+  wire words_is_4;
   wire words_pending;
   wire [2:0] words_value;
 
   geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_flags byte_flags (
     .aclk      (aclk),
     .rst       (rst),
-    .mismatch  (mismatch_31),
+    .mismatch  (mismatch_26),
     .beat      (beat),
     .header_at (first_at[6:3])
   );
 
   assign step_end = last_at + 7'd1;
-  assign left = arrival_limit + ~last_at;
+  assign not_2 = ~last_at;
+  assign left = arrival_limit + not_2;
   assign present = ~left[6];
-  assign ends_message = at_end | step[5];
+  assign ends_message = at_end | step_angular_y;
   assign ends_packet = ends_message & arrival_ended;
-  assign mismatch = step[0] & mismatch_31 & (arrival_limit != first_at);
+  assign mismatch = step_linear_x & mismatch_26 & (arrival_limit != first_at);
   assign cut = arrival_ended & ~present;
   assign trailing = present & (|left[5:2]);
+  assign bytes_good = present & ~(step_linear_x & mismatch_26);
   assign stops = mismatch | cut | (ends_message & ~arrival_ended & trailing);
   assign drains = bad & ~new_error & (~at_end | arrival_ended);
-  assign allowed = ~bad & (~ends_message | arrival_ended);
-  assign orders_valid = drains | (allowed & present & ~(step[0] & mismatch_31));
-  assign issue = (drains & orders_ready) | (allowed & orders_ready & present & ~(step[0] &
-      mismatch_31));
+  assign orders_payload_length_good = ~bad;
+  assign allowed = orders_payload_length_good & (~ends_message | arrival_ended);
+  assign orders_valid = drains | (allowed & bytes_good);
+  assign issue = (drains & orders_ready) | (allowed & orders_ready & bytes_good);
   assign arrival_next = (drains & orders_ready & ends_packet) | (allowed & orders_ready &
-      ends_packet & present & ~(step[0] & mismatch_31));
+      ends_packet & bytes_good);
   assign map_at = last_at + {{2{map_offset[4]}}, map_offset};
-  assign sub_77 = map_at[6:3] - {3'd0, two_word_map};
-  assign sub_88 = 6'd1 - {{1{map_offset[4]}}, map_offset};
-  assign or_132 = (arrival_limit[5:0] & ~last_at[5:0]) | (arrival_limit[5:0] &
-      (6'd1 - {{1{map_offset[4]}}, map_offset})) | (~last_at[5:0] & (6'd1 - {{1{map_offset[4]}},
-      map_offset}));
-  assign map_left = (arrival_limit ^ ~last_at ^ {sub_88[5], 6'd1 - {{1{map_offset[4]}},
-      map_offset}}) + {or_132, 1'b0};
+  assign sub_64 = map_at[6:3] - {3'd0, two_word_map};
+  assign sub_74 = 6'd1 - {{1{map_offset[4]}}, map_offset};
+  assign or_119 = (arrival_limit[5:0] & not_2[5:0]) | (arrival_limit[5:0] & sub_74) | (not_2[5:0] &
+      sub_74);
+  assign map_left = (arrival_limit ^ not_2 ^ {sub_74[5], sub_74}) + {or_119, 1'b0};
+  assign orders_payload_items_next = sub_64[2:0] + 3'd1;
+  assign orders_payload_map_next = orders_payload_map_at[5:3] + 3'd1;
+  assign orders_payload_items_bytes = (bad && (items_room < 4'd8)) ? items_room : 4'd8;
+  assign orders_payload_map_bytes = bad ? map_room : 4'd8;
+  assign orders_payload_status = bad ? code : (trailing ? 3'd2 : 3'd0);
   assign exit_sum = last_at + {1'd0, exit_add};
   assign early_last = ends_packet ? ({arrival_following, 3'd0} + 7'd7) : exit_sum;
-  assign step_to_exit = issue & ~ends_packet;
-  assign and_187 = issue & ends_packet;
-  assign and_201 = bad & new_error;
-  assign and_203 = bad & drains & orders_ready;
+  assign to_exit = issue & ~ends_packet;
+  assign and_189 = bad & drains & orders_ready;
+  assign map_room_next = map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]);
   assign items_room_next = two_word_map ? (map_left[6] ? {1'b0, (&map_left[6:3]) ? map_left[2:0] :
-      3'd0} : 4'd8) : (map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]));
+      3'd0} : 4'd8) : map_room_next;
   assign first_at_next = ends_packet ? {arrival_following, 3'd0} : (bad ? (at_end ? arrival_limit :
       first_at) : step_end);
+  assign map_offset_next_3 = step_linear_x | step_linear_x_2 | step_linear_y | step_linear_z |
+      step_angular_x;
 
   always @(posedge aclk) begin
     if (rst) begin
@@ -331,54 +389,52 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
       last_at <= 7'd7;
       words_last <= 1'b1;
       words_less <= 1'b0;
-      step <= 7'd1;
+      step_linear_x <= 1'b1;
+      step_linear_x_2 <= 1'b0;
+      step_linear_y <= 1'b0;
+      step_linear_z <= 1'b0;
+      step_angular_x <= 1'b0;
+      step_angular_y <= 1'b0;
+      step_packet_end <= 1'b0;
       at_end <= 1'b0;
       map_offset <= 5'd25;
       two_word_map <= 1'b0;
       exit_add <= 6'd8;
     end else begin
-      if (and_187) begin
+      if (issue && ends_packet) begin
         bad <= 1'b0;
-      end else if (!bad) begin
+      end else if (orders_payload_length_good) begin
         bad <= stops;
         if (ends_message) begin
-          code <= 3'd2;
+          code <= STATUS_TRAILING;
         end else begin
-          code <= 3'd3;
+          code <= STATUS_LENGTH;
         end
         if (mismatch) begin
-          code <= 3'd4;
+          code <= STATUS_ENCAPSULATION;
         end else if (cut) begin
-          code <= 3'd1;
+          code <= STATUS_TRUNCATED;
         end
       end
-      new_error <= stops & ~bad;
-      if (and_201) begin
-        if ((code == 3'd2) || (code == 3'd5)) begin
+      new_error <= stops & orders_payload_length_good;
+      if (bad && new_error) begin
+        if ((code == STATUS_TRAILING) || (code == STATUS_STRING)) begin
           items_room <= 4'd8;
         end else begin
           items_room <= 4'd0;
         end
-        if (code == 3'd1) begin
+        if (code == STATUS_TRUNCATED) begin
           items_room <= items_room_next;
         end
-        if (code == 3'd2) begin
+        if (code == STATUS_TRAILING) begin
           map_room <= 4'd8;
         end else begin
           map_room <= 4'd0;
         end
-        if (code == 3'd1) begin
-          if (map_left[6]) begin
-            map_room <= 4'd0;
-          end else begin
-            if (map_left >= 7'd8) begin
-              map_room <= 4'd8;
-            end else begin
-              map_room <= map_left[3:0];
-            end
-          end
+        if (code == STATUS_TRUNCATED) begin
+          map_room <= map_room_next;
         end
-      end else if (and_203) begin
+      end else if (and_189) begin
         items_room <= 4'd0;
         map_room <= 4'd0;
       end
@@ -389,17 +445,31 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
         end
         last_at <= early_last;
         if (ends_packet) begin
-          step <= 7'd1;
+          step_linear_x <= 1'b1;
+          step_linear_x_2 <= 1'b0;
+          step_linear_y <= 1'b0;
+          step_linear_z <= 1'b0;
+          step_angular_x <= 1'b0;
+          step_angular_y <= 1'b0;
+          step_packet_end <= 1'b0;
           at_end <= 1'b0;
           map_offset <= 5'd25;
           two_word_map <= 1'b0;
           exit_add <= 6'd8;
         end else begin
-          step <= {step[5:0], 1'b0};
-          at_end <= step[5];
-          map_offset <= {|step[4:0], |step[4:0], step[4], 1'b0, |step[5:0]};
-          two_word_map <= step[4];
-          exit_add <= {2'd0, |step[3:0], step[3], 2'd0};
+          step_linear_x <= 1'b0;
+          step_linear_x_2 <= step_linear_x;
+          step_linear_y <= step_linear_x_2;
+          step_linear_z <= step_linear_y;
+          step_angular_x <= step_linear_z;
+          step_angular_y <= step_angular_x;
+          step_packet_end <= step_angular_y;
+          at_end <= step_angular_y;
+          map_offset <= {{2{map_offset_next_3}}, step_angular_x, 1'b0, step_linear_x |
+              step_linear_x_2 | step_linear_y | step_linear_z | step_angular_x | step_angular_y};
+          two_word_map <= step_angular_x;
+          exit_add <= {2'd0, step_linear_x | step_linear_x_2 | step_linear_y | step_linear_z,
+              step_linear_z, 2'd0};
         end
       end
       if (issue || (bad && at_end)) begin
@@ -411,24 +481,20 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   end
 
   assign header_at = first_at[6:3];
-  assign orders_payload = {bad ? code : (trailing ? 3'd2 : 3'd0), ends_packet, first_at[6:3], 1'b0,
-      ~bad, words_last, 1'b0, bad ? map_room : 4'd8, (bad && (items_room < 4'd8)) ? items_room :
-      4'd8, map_at[5:3] + 3'd1, sub_77[2:0] + 3'd1, map_at[5:0], sub_77[2:0], map_at[2:0], at_end,
-      |step[5:4], |step[3:2], |{step[5], step[3], step[1]}};
+  assign orders_payload_map_at = map_at[5:0];
+  assign orders_payload = {orders_payload_status, ends_packet, first_at[6:3], 1'b0,
+      orders_payload_length_good, words_last, 1'b0, orders_payload_map_bytes,
+      orders_payload_items_bytes, orders_payload_map_next, orders_payload_items_next, map_at[5:0],
+      sub_64[2:0], map_at[2:0], at_end, step_angular_x | step_angular_y, step_linear_y |
+      step_linear_z, step_linear_x_2 | step_linear_z | step_angular_y};
 
-  assign default_0 = step[0];
-  assign default_1 = step[1];
-  assign default_2 = step[2];
-  assign default_3 = step[3];
-  assign default_4 = step[4];
-  assign default_5 = step[5];
   assign arrival_beat = beat;
   assign nul_at = 7'd0;
-  assign nul_at_23 = 7'd0;
+  assign nul_at_17 = 7'd0;
   assign nonzero = 1'b0;
   assign nul_within = arrival_limit;
   assign oldest = first_at[6:3];
-  assign items_at = {sub_77, map_at[2:0]};
+  assign items_at = {sub_64, map_at[2:0]};
   assign next_packet = {arrival_following, 3'd0};
   assign over_rest = 6'd0;
   assign to_exit_low = 7'd0;
@@ -441,16 +507,23 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign items_wanted = 4'd8;
   assign exit_amount = exit_add;
   assign to_exit_mask = 3'd0;
+  assign exit_last = exit_sum;
   assign body_amount = 6'd0;
   assign to_body_mask = 3'd0;
+  assign body_last = last_at;
   assign next_last = early_last;
-  assign step_to_body = 1'b0;
+  assign to_body = 1'b0;
   assign words_down = 1'b0;
   assign words_keeps = 1'b1;
+  assign words_is_small = 1'b1;
+  assign words_is_2 = 1'b0;
+  assign words_is_3 = 1'b0;
+  assign words_is_4 = 1'b0;
   assign words_pending = 1'b0;
   assign words_value = 3'd0;
 endmodule
 
+// OrderQueue: A queue of two orders, so that `i.ready` is a register.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_queue (
   input wire         rst,
   input wire         aclk,
@@ -470,8 +543,12 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_queue (
   reg has_second = 1'b0;
   reg [41:0] second = 42'd0;
 
+  // Combinational signals.
+  wire [3:0] second_first;
+  wire [3:0] o_payload_first;
+
   assign i_ready = ~has_second;
-  assign freed = o_valid_q ? o_payload_q[37:34] : (has_second ? second[37:34] : oldest);
+  assign freed = o_valid_q ? o_payload_first : (has_second ? second_first : oldest);
 
   always @(posedge aclk) begin
     if (rst) begin
@@ -496,15 +573,19 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_queue (
   end
 
   always @(posedge aclk) begin
-    if (!has_second) begin
+    if (i_ready) begin
       second <= i_payload;
     end
   end
+
+  assign second_first = second[37:34];
+  assign o_payload_first = o_payload_q[37:34];
 
   assign o_valid = o_valid_q;
   assign o_payload = o_payload_q;
 endmodule
 
+// Mover: Read two words of the packet buffer per order, and write leaves from their lanes.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   input wire         rst,
   input wire         aclk,
@@ -559,45 +640,57 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   reg [7:0] items_good = 8'd0;
   reg [63:0] map_word = 64'd0;
   reg [7:0] map_good = 8'd0;
-  reg cut_0 = 1'b0;
+  reg begins_linear_x = 1'b0;
   reg [31:0] carried = 32'd0;
-  reg cut_1 = 1'b0;
-  reg cut_2 = 1'b0;
-  reg cut_3 = 1'b0;
-  reg cut_4 = 1'b0;
-  reg active_0 = 1'b0;
-  reg active_1 = 1'b0;
-  reg active_2 = 1'b0;
-  reg active_3 = 1'b0;
-  reg active_4 = 1'b0;
-  reg active_5 = 1'b0;
+  reg begins_linear_x_2 = 1'b0;
+  reg begins_linear_y = 1'b0;
+  reg begins_linear_z = 1'b0;
+  reg begins_angular_x = 1'b0;
+  reg active_linear_x = 1'b0;
+  reg active_linear_y = 1'b0;
+  reg active_linear_z = 1'b0;
+  reg active_angular_x = 1'b0;
+  reg active_angular_y = 1'b0;
+  reg active_angular_z = 1'b0;
   reg ends_now = 1'b0;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   reg [2:0] status_now = 3'd0;
   reg slow = 1'b0;
 
   // Combinational signals.
-  wire blocked_0;
-  wire go_0;
-  wire blocked_1;
-  wire go_1;
-  wire blocked_2;
-  wire go_2;
-  wire blocked_3;
-  wire go_3;
-  wire blocked_4;
-  wire go_4;
-  wire blocked_5;
-  wire go_5;
+  wire full_linear_x;
+  wire full_linear_y;
+  wire full_linear_z;
+  wire full_angular_x;
+  wire full_angular_y;
+  wire full_angular_z;
+  wire status_full;
+  wire has_step;
+  wire chosen_linear_x;
+  wire blocked_linear_x;
+  wire go_linear_x;
+  wire chosen_linear_y;
+  wire blocked_linear_y;
+  wire go_linear_y;
+  wire chosen_linear_z;
+  wire blocked_linear_z;
+  wire go_linear_z;
+  wire chosen_angular_x;
+  wire blocked_angular_x;
+  wire go_angular_x;
+  wire chosen_angular_y;
+  wire blocked_angular_y;
+  wire go_angular_y;
+  wire blocked_angular_z;
+  wire go_angular_z;
   wire ends;
-  wire active_0_next;
-  wire active_1_next;
-  wire active_2_next;
-  wire active_3_next;
-  wire active_4_next;
-  wire active_5_next;
-  wire or_165;
-  wire or_181;
+  wire and_56;
+  wire and_64;
+  wire and_72;
+  wire and_80;
+  wire and_88;
+  wire or_117;
+  wire or_131;
   wire [7:0] lane_0_items_data;
   wire [7:0] lane_0_map_data;
   wire [7:0] lane_1_items_data;
@@ -614,6 +707,21 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire [7:0] lane_6_map_data;
   wire [7:0] lane_7_items_data;
   wire [7:0] lane_7_map_data;
+  wire [63:0] beat_data;
+  wire [3:0] beat_at;
+  wire beat_valid;
+  wire [2:0] orders_payload_step;
+  wire orders_payload_blank;
+  wire [5:0] orders_payload_items_at;
+  wire [5:0] orders_payload_map_at;
+  wire [3:0] orders_payload_items_bytes;
+  wire [3:0] orders_payload_map_bytes;
+  wire orders_payload_last;
+  wire orders_payload_length_good;
+  wire orders_payload_final;
+  wire orders_payload_ends;
+  // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  wire [2:0] orders_payload_status;
 
   // Signals that no logic reads, for simulation.
   wire take;
@@ -657,12 +765,13 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire lane_7_write_en;
   wire [2:0] lane_7_items_addr;
   wire [2:0] lane_7_map_addr;
-  wire [63:0] payload_0;
-  wire [63:0] payload_1;
-  wire [63:0] payload_2;
-  wire [63:0] payload_3;
-  wire [63:0] payload_4;
-  wire [63:0] payload_5;
+  wire [63:0] payload_linear_x;
+  wire [63:0] payload_linear_y;
+  wire [63:0] payload_linear_z;
+  wire [63:0] payload_angular_x;
+  wire [63:0] payload_angular_y;
+  wire [63:0] payload_angular_z;
+  wire chosen_angular_z;
 
   reg [7:0] lane_0 [0:7];
   integer lane_0_at;
@@ -720,109 +829,109 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
       lane_7[lane_7_at] = 8'd0;
   end
 
-  assign blocked_0 = active_0 & message_linear_x_valid_q;
-  assign go_0 = active_0 & ~blocked_0;
-  assign blocked_1 = active_1 & message_linear_y_valid_q;
-  assign go_1 = active_1 & ~blocked_1;
-  assign blocked_2 = active_2 & message_linear_z_valid_q;
-  assign go_2 = active_2 & ~blocked_2;
-  assign blocked_3 = active_3 & message_angular_x_valid_q;
-  assign go_3 = active_3 & ~blocked_3;
-  assign blocked_4 = active_4 & message_angular_y_valid_q;
-  assign go_4 = active_4 & ~blocked_4;
-  assign blocked_5 = active_5 & message_angular_z_valid_q;
-  assign go_5 = active_5 & ~blocked_5 & ~blocked_4;
-  assign ends = orders_valid & orders_payload[38];
+  assign full_linear_x = message_linear_x_valid_q & ~message_linear_x_ready;
+  assign full_linear_y = message_linear_y_valid_q & ~message_linear_y_ready;
+  assign full_linear_z = message_linear_z_valid_q & ~message_linear_z_ready;
+  assign full_angular_x = message_angular_x_valid_q & ~message_angular_x_ready;
+  assign full_angular_y = message_angular_y_valid_q & ~message_angular_y_ready;
+  assign full_angular_z = message_angular_z_valid_q & ~message_angular_z_ready;
+  assign status_full = status_valid_q & ~status_ready;
+  assign has_step = orders_valid & ~orders_payload_blank;
+  assign chosen_linear_x = has_step & (orders_payload_step == 3'd1);
+  assign blocked_linear_x = active_linear_x & message_linear_x_valid_q;
+  assign go_linear_x = active_linear_x & ~blocked_linear_x;
+  assign chosen_linear_y = has_step & (orders_payload_step == 3'd2);
+  assign blocked_linear_y = active_linear_y & message_linear_y_valid_q;
+  assign go_linear_y = active_linear_y & ~blocked_linear_y;
+  assign chosen_linear_z = has_step & (orders_payload_step == 3'd3);
+  assign blocked_linear_z = active_linear_z & message_linear_z_valid_q;
+  assign go_linear_z = active_linear_z & ~blocked_linear_z;
+  assign chosen_angular_x = has_step & (orders_payload_step == 3'd4);
+  assign blocked_angular_x = active_angular_x & message_angular_x_valid_q;
+  assign go_angular_x = active_angular_x & ~blocked_angular_x;
+  assign chosen_angular_y = has_step & (orders_payload_step == 3'd5);
+  assign blocked_angular_y = active_angular_y & message_angular_y_valid_q;
+  assign go_angular_y = active_angular_y & ~blocked_angular_y;
+  assign blocked_angular_z = active_angular_z & message_angular_z_valid_q;
+  assign go_angular_z = active_angular_z & ~blocked_angular_z & ~blocked_angular_y;
+  assign ends = orders_valid & orders_payload_ends;
   assign orders_ready = ~slow;
-  assign active_0_next = orders_ready ? (orders_valid & ~orders_payload[3] &
-      (orders_payload[2:0] == 3'd1)) : (active_0 & ~go_0);
-  assign active_1_next = orders_ready ? (orders_valid & ~orders_payload[3] &
-      (orders_payload[2:0] == 3'd2)) : (active_1 & ~go_1);
-  assign active_2_next = orders_ready ? (orders_valid & ~orders_payload[3] &
-      (orders_payload[2:0] == 3'd3)) : (active_2 & ~go_2);
-  assign active_3_next = orders_ready ? (orders_valid & ~orders_payload[3] &
-      (orders_payload[2:0] == 3'd4)) : (active_3 & ~go_3);
-  assign active_4_next = orders_ready ? (orders_valid & ~orders_payload[3] &
-      (orders_payload[2:0] == 3'd5)) : (active_4 & ~go_4);
-  assign active_5_next = orders_ready ? (orders_valid & ~orders_payload[3] &
-      (orders_payload[2:0] == 3'd5)) : (active_5 & ~go_5);
-  assign or_165 = |{ends & status_valid_q & ~status_ready, orders_valid & ~orders_payload[3] &
-      (orders_payload[2:0] == 3'd5) & message_angular_z_valid_q & ~message_angular_z_ready,
-      orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd5) &
-      message_angular_y_valid_q & ~message_angular_y_ready, orders_valid & ~orders_payload[3] &
-      (orders_payload[2:0] == 3'd4) & message_angular_x_valid_q & ~message_angular_x_ready,
-      orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd3) & message_linear_z_valid_q &
-      ~message_linear_z_ready, orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd2) &
-      message_linear_y_valid_q & ~message_linear_y_ready, orders_valid & ~orders_payload[3] &
-      (orders_payload[2:0] == 3'd1) & message_linear_x_valid_q & ~message_linear_x_ready};
-  assign or_181 = |{ends_now & status_valid_q & ~status_ready, blocked_5 & ~message_angular_z_ready,
-      blocked_4 & ~message_angular_y_ready, blocked_3 & ~message_angular_x_ready, blocked_2 &
-      ~message_linear_z_ready, blocked_1 & ~message_linear_y_ready, blocked_0 &
-      ~message_linear_x_ready};
+  assign and_56 = orders_ready & begins_linear_x;
+  assign and_64 = orders_ready & begins_linear_x_2;
+  assign and_72 = orders_ready & begins_linear_y;
+  assign and_80 = orders_ready & begins_linear_z;
+  assign and_88 = orders_ready & begins_angular_x;
+  assign or_117 = (chosen_linear_x & full_linear_x) | (chosen_linear_y & full_linear_y) |
+      (chosen_linear_z & full_linear_z) | (chosen_angular_x & full_angular_x) | (chosen_angular_y &
+      full_angular_y) | (chosen_angular_y & full_angular_z) | (ends & status_full);
+  assign or_131 = (blocked_linear_x & ~message_linear_x_ready) | (blocked_linear_y &
+      ~message_linear_y_ready) | (blocked_linear_z & ~message_linear_z_ready) | (blocked_angular_x &
+      ~message_angular_x_ready) | (blocked_angular_y & ~message_angular_y_ready) |
+      (blocked_angular_z & ~message_angular_z_ready) | (ends_now & status_full);
 
   always @(posedge aclk) begin
-    if (beat[73]) begin
-      lane_0[beat[71:69]] <= beat[7:0];
+    if (beat_valid) begin
+      lane_0[beat_at[2:0]] <= beat_data[7:0];
     end
   end
-  assign lane_0_items_data = lane_0[orders_payload[9:7]];
-  assign lane_0_map_data = lane_0[orders_payload[15:13]];
+  assign lane_0_items_data = lane_0[orders_payload_items_at[5:3]];
+  assign lane_0_map_data = lane_0[orders_payload_map_at[5:3]];
 
   always @(posedge aclk) begin
-    if (beat[73]) begin
-      lane_1[beat[71:69]] <= beat[15:8];
+    if (beat_valid) begin
+      lane_1[beat_at[2:0]] <= beat_data[15:8];
     end
   end
-  assign lane_1_items_data = lane_1[orders_payload[9:7]];
-  assign lane_1_map_data = lane_1[orders_payload[15:13]];
+  assign lane_1_items_data = lane_1[orders_payload_items_at[5:3]];
+  assign lane_1_map_data = lane_1[orders_payload_map_at[5:3]];
 
   always @(posedge aclk) begin
-    if (beat[73]) begin
-      lane_2[beat[71:69]] <= beat[23:16];
+    if (beat_valid) begin
+      lane_2[beat_at[2:0]] <= beat_data[23:16];
     end
   end
-  assign lane_2_items_data = lane_2[orders_payload[9:7]];
-  assign lane_2_map_data = lane_2[orders_payload[15:13]];
+  assign lane_2_items_data = lane_2[orders_payload_items_at[5:3]];
+  assign lane_2_map_data = lane_2[orders_payload_map_at[5:3]];
 
   always @(posedge aclk) begin
-    if (beat[73]) begin
-      lane_3[beat[71:69]] <= beat[31:24];
+    if (beat_valid) begin
+      lane_3[beat_at[2:0]] <= beat_data[31:24];
     end
   end
-  assign lane_3_items_data = lane_3[orders_payload[9:7]];
-  assign lane_3_map_data = lane_3[orders_payload[15:13]];
+  assign lane_3_items_data = lane_3[orders_payload_items_at[5:3]];
+  assign lane_3_map_data = lane_3[orders_payload_map_at[5:3]];
 
   always @(posedge aclk) begin
-    if (beat[73]) begin
-      lane_4[beat[71:69]] <= beat[39:32];
+    if (beat_valid) begin
+      lane_4[beat_at[2:0]] <= beat_data[39:32];
     end
   end
-  assign lane_4_items_data = lane_4[orders_payload[9:7]];
-  assign lane_4_map_data = lane_4[orders_payload[15:13]];
+  assign lane_4_items_data = lane_4[orders_payload_items_at[5:3]];
+  assign lane_4_map_data = lane_4[orders_payload_map_at[5:3]];
 
   always @(posedge aclk) begin
-    if (beat[73]) begin
-      lane_5[beat[71:69]] <= beat[47:40];
+    if (beat_valid) begin
+      lane_5[beat_at[2:0]] <= beat_data[47:40];
     end
   end
-  assign lane_5_items_data = lane_5[orders_payload[9:7]];
-  assign lane_5_map_data = lane_5[orders_payload[15:13]];
+  assign lane_5_items_data = lane_5[orders_payload_items_at[5:3]];
+  assign lane_5_map_data = lane_5[orders_payload_map_at[5:3]];
 
   always @(posedge aclk) begin
-    if (beat[73]) begin
-      lane_6[beat[71:69]] <= beat[55:48];
+    if (beat_valid) begin
+      lane_6[beat_at[2:0]] <= beat_data[55:48];
     end
   end
-  assign lane_6_items_data = lane_6[orders_payload[9:7]];
-  assign lane_6_map_data = lane_6[orders_payload[15:13]];
+  assign lane_6_items_data = lane_6[orders_payload_items_at[5:3]];
+  assign lane_6_map_data = lane_6[orders_payload_map_at[5:3]];
 
   always @(posedge aclk) begin
-    if (beat[73]) begin
-      lane_7[beat[71:69]] <= beat[63:56];
+    if (beat_valid) begin
+      lane_7[beat_at[2:0]] <= beat_data[63:56];
     end
   end
-  assign lane_7_items_data = lane_7[orders_payload[9:7]];
-  assign lane_7_map_data = lane_7[orders_payload[15:13]];
+  assign lane_7_items_data = lane_7[orders_payload_items_at[5:3]];
+  assign lane_7_map_data = lane_7[orders_payload_map_at[5:3]];
 
   always @(posedge aclk) begin
     if (rst) begin
@@ -836,17 +945,17 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
       length_good <= 1'b0;
       last <= 1'b0;
       final_sig <= 1'b0;
-      cut_0 <= 1'b0;
-      cut_1 <= 1'b0;
-      cut_2 <= 1'b0;
-      cut_3 <= 1'b0;
-      cut_4 <= 1'b0;
-      active_0 <= 1'b0;
-      active_1 <= 1'b0;
-      active_2 <= 1'b0;
-      active_3 <= 1'b0;
-      active_4 <= 1'b0;
-      active_5 <= 1'b0;
+      begins_linear_x <= 1'b0;
+      begins_linear_x_2 <= 1'b0;
+      begins_linear_y <= 1'b0;
+      begins_linear_z <= 1'b0;
+      begins_angular_x <= 1'b0;
+      active_linear_x <= 1'b0;
+      active_linear_y <= 1'b0;
+      active_linear_z <= 1'b0;
+      active_angular_x <= 1'b0;
+      active_angular_y <= 1'b0;
+      active_angular_z <= 1'b0;
       ends_now <= 1'b0;
       status_now <= 3'd0;
       status_payload_q <= 3'd0;
@@ -855,37 +964,37 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
       if (message_linear_x_ready) begin
         message_linear_x_valid_q <= 1'b0;
       end
-      if (go_0) begin
+      if (go_linear_x) begin
         message_linear_x_valid_q <= 1'b1;
       end
       if (message_linear_y_ready) begin
         message_linear_y_valid_q <= 1'b0;
       end
-      if (go_1) begin
+      if (go_linear_y) begin
         message_linear_y_valid_q <= 1'b1;
       end
       if (message_linear_z_ready) begin
         message_linear_z_valid_q <= 1'b0;
       end
-      if (go_2) begin
+      if (go_linear_z) begin
         message_linear_z_valid_q <= 1'b1;
       end
       if (message_angular_x_ready) begin
         message_angular_x_valid_q <= 1'b0;
       end
-      if (go_3) begin
+      if (go_angular_x) begin
         message_angular_x_valid_q <= 1'b1;
       end
       if (message_angular_y_ready) begin
         message_angular_y_valid_q <= 1'b0;
       end
-      if (go_4) begin
+      if (go_angular_y) begin
         message_angular_y_valid_q <= 1'b1;
       end
       if (message_angular_z_ready) begin
         message_angular_z_valid_q <= 1'b0;
       end
-      if (go_5) begin
+      if (go_angular_z) begin
         message_angular_z_valid_q <= 1'b1;
       end
       if (status_ready) begin
@@ -896,27 +1005,51 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
           status_valid_q <= 1'b1;
           status_payload_q <= status_now;
         end
-        length_good <= orders_payload[32];
-        last <= orders_payload[31];
-        final_sig <= orders_payload[33];
-        cut_0 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd0);
-        cut_1 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd1);
-        cut_2 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd2);
-        cut_3 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd3);
-        cut_4 <= orders_valid & ~orders_payload[3] & (orders_payload[2:0] == 3'd4);
+        length_good <= orders_payload_length_good;
+        last <= orders_payload_last;
+        final_sig <= orders_payload_final;
+        begins_linear_x <= orders_valid & ~orders_payload_blank & (orders_payload_step == 3'd0);
+        begins_linear_x_2 <= orders_valid & ~orders_payload_blank & (orders_payload_step == 3'd1);
+        begins_linear_y <= orders_valid & ~orders_payload_blank & (orders_payload_step == 3'd2);
+        begins_linear_z <= orders_valid & ~orders_payload_blank & (orders_payload_step == 3'd3);
+        begins_angular_x <= orders_valid & ~orders_payload_blank & (orders_payload_step == 3'd4);
         ends_now <= ends;
-        status_now <= orders_payload[41:39];
+        status_now <= orders_payload_status;
       end
-      active_0 <= active_0_next;
-      active_1 <= active_1_next;
-      active_2 <= active_2_next;
-      active_3 <= active_3_next;
-      active_4 <= active_4_next;
-      active_5 <= active_5_next;
       if (orders_ready) begin
-        slow <= or_165;
+        active_linear_x <= chosen_linear_x;
       end else begin
-        slow <= or_181;
+        active_linear_x <= active_linear_x & ~go_linear_x;
+      end
+      if (orders_ready) begin
+        active_linear_y <= chosen_linear_y;
+      end else begin
+        active_linear_y <= active_linear_y & ~go_linear_y;
+      end
+      if (orders_ready) begin
+        active_linear_z <= chosen_linear_z;
+      end else begin
+        active_linear_z <= active_linear_z & ~go_linear_z;
+      end
+      if (orders_ready) begin
+        active_angular_x <= chosen_angular_x;
+      end else begin
+        active_angular_x <= active_angular_x & ~go_angular_x;
+      end
+      if (orders_ready) begin
+        active_angular_y <= chosen_angular_y;
+      end else begin
+        active_angular_y <= active_angular_y & ~go_angular_y;
+      end
+      if (orders_ready) begin
+        active_angular_z <= chosen_angular_y;
+      end else begin
+        active_angular_z <= active_angular_z & ~go_angular_z;
+      end
+      if (orders_ready) begin
+        slow <= or_117;
+      end else begin
+        slow <= or_131;
       end
     end
   end
@@ -925,111 +1058,113 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
     if (orders_ready) begin
       items_word <= {lane_7_items_data, lane_6_items_data, lane_5_items_data, lane_4_items_data,
           lane_3_items_data, lane_2_items_data, lane_1_items_data, lane_0_items_data};
-      items_good <= {orders_payload[25:22] > 4'd7, orders_payload[25:22] > 4'd6,
-          orders_payload[25:22] > 4'd5, orders_payload[25:22] > 4'd4, orders_payload[25:22] > 4'd3,
-          orders_payload[25:22] > 4'd2, orders_payload[25:22] > 4'd1, orders_payload[25:22] > 4'd0};
+      items_good <= {orders_payload_items_bytes > 4'd7, orders_payload_items_bytes > 4'd6,
+          orders_payload_items_bytes > 4'd5, orders_payload_items_bytes > 4'd4,
+          orders_payload_items_bytes > 4'd3, orders_payload_items_bytes > 4'd2,
+          orders_payload_items_bytes > 4'd1, orders_payload_items_bytes > 4'd0};
       map_word <= {lane_7_map_data, lane_6_map_data, lane_5_map_data, lane_4_map_data,
           lane_3_map_data, lane_2_map_data, lane_1_map_data, lane_0_map_data};
-      map_good <= {orders_payload[29:26] > 4'd7, orders_payload[29:26] > 4'd6,
-          orders_payload[29:26] > 4'd5, orders_payload[29:26] > 4'd4, orders_payload[29:26] > 4'd3,
-          orders_payload[29:26] > 4'd2, orders_payload[29:26] > 4'd1, orders_payload[29:26] > 4'd0};
+      map_good <= {orders_payload_map_bytes > 4'd7, orders_payload_map_bytes > 4'd6,
+          orders_payload_map_bytes > 4'd5, orders_payload_map_bytes > 4'd4,
+          orders_payload_map_bytes > 4'd3, orders_payload_map_bytes > 4'd2,
+          orders_payload_map_bytes > 4'd1, orders_payload_map_bytes > 4'd0};
     end
-    if (orders_ready && cut_0) begin
+    if (and_56) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (orders_ready && cut_0) begin
+    if (and_56) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (orders_ready && cut_0) begin
+    if (and_56) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (orders_ready && cut_0) begin
+    if (and_56) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (orders_ready && cut_1) begin
+    if (and_64) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (orders_ready && cut_1) begin
+    if (and_64) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (orders_ready && cut_1) begin
+    if (and_64) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (orders_ready && cut_1) begin
+    if (and_64) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (orders_ready && cut_2) begin
+    if (and_72) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (orders_ready && cut_2) begin
+    if (and_72) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (orders_ready && cut_2) begin
+    if (and_72) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (orders_ready && cut_2) begin
+    if (and_72) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (orders_ready && cut_3) begin
+    if (and_80) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (orders_ready && cut_3) begin
+    if (and_80) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (orders_ready && cut_3) begin
+    if (and_80) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (orders_ready && cut_3) begin
+    if (and_80) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (orders_ready && cut_4) begin
+    if (and_88) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (orders_ready && cut_4) begin
+    if (and_88) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (orders_ready && cut_4) begin
+    if (and_88) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (orders_ready && cut_4) begin
+    if (and_88) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (go_0) begin
+    if (go_linear_x) begin
       if (map_good[3]) begin
         message_linear_x_payload_q <= {map_word[31:0], carried};
       end else begin
         message_linear_x_payload_q <= 64'd0;
       end
     end
-    if (go_1) begin
+    if (go_linear_y) begin
       if (map_good[3]) begin
         message_linear_y_payload_q <= {map_word[31:0], carried};
       end else begin
         message_linear_y_payload_q <= 64'd0;
       end
     end
-    if (go_2) begin
+    if (go_linear_z) begin
       if (map_good[3]) begin
         message_linear_z_payload_q <= {map_word[31:0], carried};
       end else begin
         message_linear_z_payload_q <= 64'd0;
       end
     end
-    if (go_3) begin
+    if (go_angular_x) begin
       if (map_good[3]) begin
         message_angular_x_payload_q <= {map_word[31:0], carried};
       end else begin
         message_angular_x_payload_q <= 64'd0;
       end
     end
-    if (go_4) begin
+    if (go_angular_y) begin
       if (items_good[3]) begin
         message_angular_y_payload_q <= {items_word[31:0], carried};
       end else begin
         message_angular_y_payload_q <= 64'd0;
       end
     end
-    if (go_5) begin
+    if (go_angular_z) begin
       if (map_good[3]) begin
         message_angular_z_payload_q <= {map_word[31:0], items_word[63:32]};
       end else begin
@@ -1037,6 +1172,21 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
       end
     end
   end
+
+  assign beat_data = beat[63:0];
+  assign beat_at = beat[72:69];
+  assign beat_valid = beat[73];
+  assign orders_payload_step = orders_payload[2:0];
+  assign orders_payload_blank = orders_payload[3];
+  assign orders_payload_items_at = orders_payload[9:4];
+  assign orders_payload_map_at = orders_payload[15:10];
+  assign orders_payload_items_bytes = orders_payload[25:22];
+  assign orders_payload_map_bytes = orders_payload[29:26];
+  assign orders_payload_last = orders_payload[31];
+  assign orders_payload_length_good = orders_payload[32];
+  assign orders_payload_final = orders_payload[33];
+  assign orders_payload_ends = orders_payload[38];
+  assign orders_payload_status = orders_payload[41:39];
 
   assign message_linear_x_valid = message_linear_x_valid_q;
   assign message_linear_y_valid = message_linear_y_valid_q;
@@ -1094,14 +1244,16 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign lane_7_write_en = beat[73];
   assign lane_7_items_addr = orders_payload[9:7];
   assign lane_7_map_addr = orders_payload[15:13];
-  assign payload_0 = message_linear_x_payload_q;
-  assign payload_1 = message_linear_y_payload_q;
-  assign payload_2 = message_linear_z_payload_q;
-  assign payload_3 = message_angular_x_payload_q;
-  assign payload_4 = message_angular_y_payload_q;
-  assign payload_5 = message_angular_z_payload_q;
+  assign payload_linear_x = message_linear_x_payload_q;
+  assign payload_linear_y = message_linear_y_payload_q;
+  assign payload_linear_z = message_linear_z_payload_q;
+  assign payload_angular_x = message_angular_x_payload_q;
+  assign payload_angular_y = message_angular_y_payload_q;
+  assign payload_angular_z = message_angular_z_payload_q;
+  assign chosen_angular_z = chosen_angular_y;
 endmodule
 
+// Deserializer: Turn packets into messages.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
   input wire         rst,
   input wire         aclk,
@@ -1133,28 +1285,21 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
 );
 
   // Combinational signals.
-  wire [73:0] arrival_beat;
+  wire [73:0] beat;
   wire [6:0] arrival_limit;
   wire [3:0] arrival_following;
   wire arrival_ended;
-  wire i_valid;
-  wire arrival_next;
-  wire [41:0] i_payload;
-  wire [3:0] oldest;
-  wire orders_ready;
-  wire [3:0] freed;
-  wire orders_valid_26;
-  wire [41:0] orders_payload_22;
-  wire o_ready;
-
-  // Signals that no logic reads, for simulation.
-  wire [41:0] orders_payload;
-  wire i_ready;
   wire orders_valid;
+  wire arrival_next;
+  wire [41:0] orders_payload;
+  wire [3:0] oldest;
+  wire i_ready;
+  wire [3:0] freed;
+  wire o_valid;
   wire [41:0] o_payload;
   wire orders_ready_25;
-  wire o_valid;
-  wire [73:0] beat;
+
+  // Signals that no logic reads, for simulation.
   wire stall_newest;
   wire stall_newest_38;
   wire zero_length;
@@ -1167,7 +1312,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
     .arrival_next      (arrival_next),
     .freed             (freed),
     .packets_payload   (packets_payload),
-    .arrival_beat      (arrival_beat),
+    .arrival_beat      (beat),
     .packets_ready     (packets_ready),
     .arrival_limit     (arrival_limit),
     .arrival_following (arrival_following),
@@ -1177,28 +1322,28 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
   geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer sequencer (
     .aclk              (aclk),
     .rst               (rst),
-    .orders_valid      (i_valid),
+    .orders_valid      (orders_valid),
     .arrival_next      (arrival_next),
-    .orders_ready      (orders_ready),
-    .beat              (arrival_beat),
+    .orders_ready      (i_ready),
+    .beat              (beat),
     .arrival_limit     (arrival_limit),
     .arrival_following (arrival_following),
     .arrival_ended     (arrival_ended),
-    .orders_payload    (i_payload),
+    .orders_payload    (orders_payload),
     .header_at         (oldest)
   );
 
   geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_queue queue (
     .aclk      (aclk),
     .rst       (rst),
-    .i_valid   (i_valid),
-    .i_ready   (orders_ready),
+    .i_valid   (orders_valid),
+    .i_ready   (i_ready),
     .freed     (freed),
-    .o_ready   (o_ready),
-    .i_payload (i_payload),
+    .o_ready   (orders_ready_25),
+    .i_payload (orders_payload),
     .oldest    (oldest),
-    .o_valid   (orders_valid_26),
-    .o_payload (orders_payload_22)
+    .o_valid   (o_valid),
+    .o_payload (o_payload)
   );
 
   geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover mover (
@@ -1211,10 +1356,10 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
     .message_angular_z_ready   (message_angular_z_ready),
     .status_ready              (status_ready),
     .rst                       (rst),
-    .orders_ready              (o_ready),
-    .beat                      (arrival_beat),
-    .orders_valid              (orders_valid_26),
-    .orders_payload            (orders_payload_22),
+    .orders_ready              (orders_ready_25),
+    .beat                      (beat),
+    .orders_valid              (o_valid),
+    .orders_payload            (o_payload),
     .message_linear_x_valid    (message_linear_x_valid),
     .message_linear_y_valid    (message_linear_y_valid),
     .message_linear_z_valid    (message_linear_z_valid),
@@ -1231,19 +1376,13 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
     .message_angular_z_payload (message_angular_z_payload)
   );
 
-  assign orders_payload = i_payload;
-  assign i_ready = orders_ready;
-  assign orders_valid = i_valid;
-  assign o_payload = orders_payload_22;
-  assign orders_ready_25 = o_ready;
-  assign o_valid = orders_valid_26;
-  assign beat = arrival_beat;
   assign stall_newest = 1'b0;
   assign stall_newest_38 = 1'b0;
   assign zero_length = 1'b0;
   assign zero_length_40 = 1'b0;
 endmodule
 
+// Top: A converter with AXI4-Stream on its packet side and named ports on its message side.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog (
   input wire         aclk,
   input wire         aresetn,
@@ -1279,10 +1418,11 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog (
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   wire [2:0] status_payload;
   wire rst;
-  wire or_13;
-  wire or_26;
-  wire or_39;
-  wire [3:0] packets_payload_64;
+  wire and_6;
+  wire and_9;
+  wire and_12;
+  wire and_22;
+  wire [3:0] packets_payload_count;
 
   // Signals that no logic reads, for simulation.
   wire packets_valid;
@@ -1320,7 +1460,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog (
     .message_angular_z_ready   (angular_z_ready),
     .status_ready              (m_axis_status_tready),
     .rst                       (rst),
-    .packets_payload           ({s_axis_tlast, packets_payload_64, s_axis_tdata}),
+    .packets_payload           ({s_axis_tlast, packets_payload_count, s_axis_tdata}),
     .packets_ready             (s_axis_tready),
     .message_linear_x_valid    (linear_x_valid),
     .message_linear_y_valid    (linear_y_valid),
@@ -1339,13 +1479,14 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog (
   );
 
   assign rst = ~aresetn;
-  assign or_13 = |{(&s_axis_tkeep[6:0]) & ~s_axis_tkeep[7], (&s_axis_tkeep[4:0]) & ~s_axis_tkeep[5],
-      (&s_axis_tkeep[2:0]) & ~s_axis_tkeep[3], s_axis_tkeep[0] & ~s_axis_tkeep[1]};
-  assign or_26 = |{(&s_axis_tkeep[6:0]) & ~s_axis_tkeep[7], (&s_axis_tkeep[5:0]) & ~s_axis_tkeep[6],
-      (&s_axis_tkeep[2:0]) & ~s_axis_tkeep[3], (&s_axis_tkeep[1:0]) & ~s_axis_tkeep[2]};
-  assign or_39 = |{(&s_axis_tkeep[6:0]) & ~s_axis_tkeep[7], (&s_axis_tkeep[5:0]) & ~s_axis_tkeep[6],
-      (&s_axis_tkeep[4:0]) & ~s_axis_tkeep[5], (&s_axis_tkeep[3:0]) & ~s_axis_tkeep[4]};
-  assign packets_payload_64 = s_axis_tlast ? {&s_axis_tkeep, or_39, or_26, or_13} : 4'd8;
+  assign and_6 = (&s_axis_tkeep[2:0]) & ~s_axis_tkeep[3];
+  assign and_9 = (&s_axis_tkeep[4:0]) & ~s_axis_tkeep[5];
+  assign and_12 = (&s_axis_tkeep[6:0]) & ~s_axis_tkeep[7];
+  assign and_22 = (&s_axis_tkeep[5:0]) & ~s_axis_tkeep[6];
+  assign packets_payload_count = s_axis_tlast ? {&s_axis_tkeep, ((&s_axis_tkeep[3:0]) &
+      ~s_axis_tkeep[4]) | and_9 | and_22 | and_12, ((&s_axis_tkeep[1:0]) & ~s_axis_tkeep[2]) |
+      and_6 | and_22 | and_12, (s_axis_tkeep[0] & ~s_axis_tkeep[1]) | and_6 | and_9 | and_12} :
+      4'd8;
 
   assign m_axis_status_tdata = {5'd0, status_payload};
 
@@ -1371,5 +1512,5 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog (
   assign message_angular_z_payload = angular_z_data;
   assign message_angular_z_valid = angular_z_valid;
   assign message_angular_z_ready = angular_z_ready;
-  assign packets_payload = {s_axis_tlast, packets_payload_64, s_axis_tdata};
+  assign packets_payload = {s_axis_tlast, packets_payload_count, s_axis_tdata};
 endmodule

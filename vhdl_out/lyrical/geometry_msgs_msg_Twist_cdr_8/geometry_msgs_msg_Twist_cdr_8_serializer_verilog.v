@@ -2,6 +2,17 @@
 // lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 // definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 // What each port means: manifest.json.
+// Steps, as `firm-hdl plan --program` prints and explains them:
+// serializer: start 0, items from lane 0, unit 8, map from lane 0, unit 4, at most 3 beats a
+//       state
+//   0 linear_x: map of 8; begins linear.x; map = 00 01 00 00 linear.x:0..3; to 1
+//   1 linear_x_2: map of 8; linear.x; begins linear.y; map = linear.x:4..7 linear.y:0..3; to 2
+//   2 linear_y: map of 8; linear.y; begins linear.z; map = linear.y:4..7 linear.z:0..3; to 3
+//   3 linear_z: map of 8; linear.z; begins angular.x; map = linear.z:4..7 angular.x:0..3; to 4
+//   4 angular_x: map of 8; angular.x; begins angular.y; map = angular.x:4..7 angular.y:0..3; to 5
+//   5 angular_y: map of 12 in two words; angular.y angular.z; items = angular.y:4..7
+//       angular.z:0..3; map = angular.z:4..7; to end
+// Collector: Take the leaves of each state of a program, and put them into two words.
 module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   input wire          rst,
   input wire          aclk,
@@ -24,17 +35,18 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   output wire         message_angular_x_ready,
   output wire         message_angular_y_ready,
   output wire         message_angular_z_ready,
-  output wire [127:0] port_545_0,
-  output wire [32:0]  port_549_0,
+  output wire [127:0] port_537_0,
+  output wire [32:0]  port_541_0,
   output wire         status_valid,
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   output wire [2:0]   status_payload,
   output wire         words_valid,
   input wire          words_ready
 );
+  localparam [2:0] STATUS_OK = 3'd0;
 
   // Registers.
-  reg [32:0] port_549_0_q = 33'd0;
+  reg [32:0] port_541_0_q = 33'd0;
   reg status_valid_q = 1'b0;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   reg [2:0] status_payload_q = 3'd0;
@@ -50,7 +62,12 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   reg begun = 1'b0;
   reg words_last = 1'b1;
   reg words_less = 1'b0;
-  reg [5:0] step = 6'd1;
+  reg step_linear_x = 1'b1;  // step 0: map of 8; begins linear.x
+  reg step_linear_x_2 = 1'b0;  // step 1: map of 8; linear.x; begins linear.y
+  reg step_linear_y = 1'b0;  // step 2: map of 8; linear.y; begins linear.z
+  reg step_linear_z = 1'b0;  // step 3: map of 8; linear.z; begins angular.x
+  reg step_angular_x = 1'b0;  // step 4: map of 8; angular.x; begins angular.y
+  reg step_angular_y = 1'b0;  // step 5: map of 12 in two words; angular.y angular.z
   reg [3:0] map_bytes = 4'd8;
   reg [3:0] items_bytes = 4'd0;
   reg two_word_map = 1'b0;
@@ -58,109 +75,114 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   reg has_nul = 1'b0;
 
   // Combinational signals.
-  wire left_1_0;
-  wire lacks_1_0;
-  wire left_2_0;
-  wire lacks_2_0;
-  wire left_3_0;
-  wire lacks_3_0;
-  wire left_4_0;
-  wire lacks_4_0;
-  wire left_5_0;
-  wire lacks_5_0;
-  wire left_5_1;
-  wire lacks_5_1;
-  wire go_5_1;
+  wire left_linear_x;
+  wire lacks_linear_x;
+  wire left_linear_y;
+  wire lacks_linear_y;
+  wire left_linear_z;
+  wire lacks_linear_z;
+  wire left_angular_x;
+  wire lacks_angular_x;
+  wire left_angular_y;
+  wire lacks_angular_y;
+  wire left_angular_z;
+  wire lacks_angular_z;
+  wire go_angular_z;
   wire free;
   wire or_60;
   wire complete;
   wire [4:0] map_size;
   wire begins;
   wire [3:0] to_map_0;
-  wire step_to_exit;
+  wire to_exit;
   wire served_0_next;
-  wire and_101;
-  wire [31:0] or_129;
+  wire or_120;
+  wire [31:0] or_133;
   wire [31:0] map_0_next;
-  wire [31:0] or_148;
-  wire [5:0] add_155;
+  wire [31:0] or_152;
+  wire [5:0] add_159;
   wire [5:0] to_end;
   wire [2:0] end_mask;
 
   // Signals that no logic reads, for simulation.
-  wire default_0;
-  wire default_1;
-  wire default_2;
-  wire default_3;
-  wire default_4;
-  wire default_5;
+  wire length_zero;
+  wire length_skips;
+  wire length_over;
   wire [160:0] words_payload;
   wire [4:0] to_map;
+  wire length_rest;
+  wire length_at_most_one_pass;
   wire words_loads;
   wire done;
   wire ends;
-  wire go_1_0;
-  wire go_2_0;
-  wire go_3_0;
-  wire go_4_0;
-  wire go_5_0;
+  wire go_linear_x;
+  wire go_linear_y;
+  wire go_linear_z;
+  wire go_angular_x;
+  wire go_angular_y;
   wire [3:0] items_size;
-  wire step_to_body;
+  wire to_body;
   wire words_down;
   wire words_keeps;
+  wire words_is_small;
+  wire words_is_2;
+  wire words_is_3;
+  wire words_is_4;
   wire [2:0] found;  // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   wire words_pending;
   wire [2:0] words_value;
 
-  assign left_1_0 = step[1] & ~served_0;
-  assign lacks_1_0 = left_1_0 & ~message_linear_x_valid;
-  assign message_linear_x_ready = left_1_0 & message_linear_x_valid & free;
-  assign left_2_0 = step[2] & ~served_0;
-  assign lacks_2_0 = left_2_0 & ~message_linear_y_valid;
-  assign message_linear_y_ready = left_2_0 & message_linear_y_valid & free;
-  assign left_3_0 = step[3] & ~served_0;
-  assign lacks_3_0 = left_3_0 & ~message_linear_z_valid;
-  assign message_linear_z_ready = left_3_0 & message_linear_z_valid & free;
-  assign left_4_0 = step[4] & ~served_0;
-  assign lacks_4_0 = left_4_0 & ~message_angular_x_valid;
-  assign message_angular_x_ready = left_4_0 & message_angular_x_valid & free;
-  assign left_5_0 = step[5] & ~served_0;
-  assign lacks_5_0 = left_5_0 & ~message_angular_y_valid;
-  assign message_angular_y_ready = left_5_0 & message_angular_y_valid & free;
-  assign left_5_1 = step[5] & ~served_1;
-  assign lacks_5_1 = left_5_1 & ~message_angular_z_valid;
-  assign go_5_1 = left_5_1 & message_angular_z_valid & free & ~lacks_5_0;
+  assign left_linear_x = step_linear_x_2 & ~served_0;
+  assign lacks_linear_x = left_linear_x & ~message_linear_x_valid;
+  assign message_linear_x_ready = left_linear_x & message_linear_x_valid & free;
+  assign left_linear_y = step_linear_y & ~served_0;
+  assign lacks_linear_y = left_linear_y & ~message_linear_y_valid;
+  assign message_linear_y_ready = left_linear_y & message_linear_y_valid & free;
+  assign left_linear_z = step_linear_z & ~served_0;
+  assign lacks_linear_z = left_linear_z & ~message_linear_z_valid;
+  assign message_linear_z_ready = left_linear_z & message_linear_z_valid & free;
+  assign left_angular_x = step_angular_x & ~served_0;
+  assign lacks_angular_x = left_angular_x & ~message_angular_x_valid;
+  assign message_angular_x_ready = left_angular_x & message_angular_x_valid & free;
+  assign left_angular_y = step_angular_y & ~served_0;
+  assign lacks_angular_y = left_angular_y & ~message_angular_y_valid;
+  assign message_angular_y_ready = left_angular_y & message_angular_y_valid & free;
+  assign left_angular_z = step_angular_y & ~served_1;
+  assign lacks_angular_z = left_angular_z & ~message_angular_z_valid;
+  assign go_angular_z = left_angular_z & message_angular_z_valid & free & ~lacks_angular_y;
   assign free = ~words_valid_q | words_ready;
-  assign or_60 = |{step[4] & ~message_angular_y_valid, step[3] & ~message_angular_x_valid, step[2] &
-      ~message_linear_z_valid, step[1] & ~message_linear_y_valid, step[0] & ~message_linear_x_valid,
-      lacks_5_1, lacks_5_0, lacks_4_0, lacks_3_0, lacks_2_0, lacks_1_0};
-  assign complete = free & ~or_60 & (~step[5] | ~status_valid_q | status_ready);
+  assign or_60 = lacks_linear_x | lacks_linear_y | lacks_linear_z | lacks_angular_x |
+      lacks_angular_y | lacks_angular_z | (step_linear_x & ~message_linear_x_valid) |
+      (step_linear_x_2 & ~message_linear_y_valid) | (step_linear_y & ~message_linear_z_valid) |
+      (step_linear_z & ~message_angular_x_valid) | (step_angular_x & ~message_angular_y_valid);
+  assign complete = free & ~or_60 & (~step_angular_y | ~status_valid_q | status_ready);
   assign map_size = {1'd0, map_bytes} + {1'd0, two_word_map ? 4'd8 : 4'd0};
   assign begins = begun | (|items_bytes) | (|map_bytes);
   assign to_map_0 = two_word_map ? 4'd0 : items_bytes;
-  assign step_to_exit = complete & ~step[5];
-  assign served_0_next = (served_0 | (|{message_angular_y_ready, message_angular_x_ready,
-      message_linear_z_ready, message_linear_y_ready, message_linear_x_ready})) & ~complete;
-  assign and_101 = complete & step[5];
-  assign or_129 = (step[0] ? 32'd256 : 32'd0) | (step[1] ? message_linear_x_payload[63:32] :
-      32'd0) | (step[2] ? message_linear_y_payload[63:32] : 32'd0) | (step[3] ?
-      message_linear_z_payload[63:32] : 32'd0);
-  assign map_0_next = or_129 | (step[4] ? message_angular_x_payload[63:32] : 32'd0) | (step[5] ?
-      message_angular_z_payload[63:32] : 32'd0);
-  assign or_148 = (step[0] ? message_linear_x_payload[31:0] : 32'd0) | (step[1] ?
-      message_linear_y_payload[31:0] : 32'd0) | (step[2] ? message_linear_z_payload[31:0] : 32'd0) |
-      (step[3] ? message_angular_x_payload[31:0] : 32'd0);
-  assign add_155 = {1'd0, 1'b0, to_map_0} + to_end + 6'd7;
+  assign to_exit = complete & ~step_angular_y;
+  assign served_0_next = (served_0 | message_linear_x_ready | message_linear_y_ready |
+      message_linear_z_ready | message_angular_x_ready | message_angular_y_ready) & ~complete;
+  assign or_120 = ((step_linear_x_2 | step_linear_y | step_linear_z | step_angular_x) & served_0) |
+      (step_angular_y & served_1);
+  assign or_133 = (step_linear_x ? 32'd256 : 32'd0) | (step_linear_x_2 ?
+      message_linear_x_payload[63:32] : 32'd0) | (step_linear_y ? message_linear_y_payload[63:32] :
+      32'd0) | (step_linear_z ? message_linear_z_payload[63:32] : 32'd0);
+  assign map_0_next = or_133 | (step_angular_x ? message_angular_x_payload[63:32] : 32'd0) |
+      (step_angular_y ? message_angular_z_payload[63:32] : 32'd0);
+  assign or_152 = (step_linear_x ? message_linear_x_payload[31:0] : 32'd0) | (step_linear_x_2 ?
+      message_linear_y_payload[31:0] : 32'd0) | (step_linear_y ? message_linear_z_payload[31:0] :
+      32'd0) | (step_linear_z ? message_angular_x_payload[31:0] : 32'd0);
+  assign add_159 = {1'd0, 1'b0, to_map_0} + to_end + 6'd7;
 
-  assign to_end = step[5] ? (begins ? ({1'd0, map_size} + 6'd7) : 6'd8) :
+  assign to_end = step_angular_y ? (begins ? ({1'd0, map_size} + 6'd7) : 6'd8) :
       {1'b0, map_size};
 
-  assign end_mask = step[5] ? 3'd7 :
+  assign end_mask = step_angular_y ? 3'd7 :
       3'd0;
 
   always @(posedge aclk) begin
     if (rst) begin
-      port_549_0_q <= 33'd0;
+      port_541_0_q <= 33'd0;
       served_0 <= 1'b0;
       served_1 <= 1'b0;
       error_sig <= 3'd0;
@@ -170,7 +192,12 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
       words_valid_q <= 1'b0;
       words_last <= 1'b1;
       words_less <= 1'b0;
-      step <= 6'd1;
+      step_linear_x <= 1'b1;
+      step_linear_x_2 <= 1'b0;
+      step_linear_y <= 1'b0;
+      step_linear_z <= 1'b0;
+      step_angular_x <= 1'b0;
+      step_angular_y <= 1'b0;
       map_bytes <= 4'd8;
       items_bytes <= 4'd0;
       two_word_map <= 1'b0;
@@ -178,42 +205,53 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
       has_nul <= 1'b0;
     end else begin
       if (free) begin
-        port_549_0_q[13:0] <= {1'b0, to_map_0, two_word_map, map_bytes, items_bytes};
-        port_549_0_q[28:26] <= add_155[5:3];
-        port_549_0_q[25:14] <= {end_mask, to_end, 3'd0};
-        port_549_0_q[30] <= ~begins;
+        port_541_0_q[13:0] <= {1'b0, to_map_0, two_word_map, map_bytes, items_bytes};
+        port_541_0_q[28:26] <= add_159[5:3];
+        port_541_0_q[25:14] <= {end_mask, to_end, 3'd0};
+        port_541_0_q[30] <= ~begins;
         words_valid_q <= complete;
       end
       if (free) begin
-        port_549_0_q[29] <= step[5];
-        port_549_0_q[32:31] <= {error_sig != 3'd0, 1'b0};
+        port_541_0_q[29] <= step_angular_y;
+        port_541_0_q[32:31] <= {error_sig != STATUS_OK, 1'b0};
       end
       served_0 <= served_0_next;
-      served_1 <= (served_1 | go_5_1) & ~complete;
-      if (and_101) begin
-        error_sig <= 3'd0;
+      served_1 <= (served_1 | go_angular_z) & ~complete;
+      if (complete && step_angular_y) begin
+        error_sig <= STATUS_OK;
         status_payload_q <= error_sig;
       end
       if (status_ready) begin
         status_valid_q <= 1'b0;
       end
-      if (and_101) begin
+      if (complete && step_angular_y) begin
         status_valid_q <= 1'b1;
       end
       if (complete) begin
-        begun <= begins & ~step[5];
-        if (step[5]) begin
-          step <= 6'd1;
+        begun <= begins & ~step_angular_y;
+        if (step_angular_y) begin
+          step_linear_x <= 1'b1;
+          step_linear_x_2 <= 1'b0;
+          step_linear_y <= 1'b0;
+          step_linear_z <= 1'b0;
+          step_angular_x <= 1'b0;
+          step_angular_y <= 1'b0;
           map_bytes <= 4'd8;
           items_bytes <= 4'd0;
           two_word_map <= 1'b0;
         end else begin
-          step <= {step[4:0], 1'b0};
-          map_bytes <= {|step[3:0], step[4], 2'd0};
-          items_bytes <= {step[4], 3'd0};
-          two_word_map <= step[4];
+          step_linear_x <= 1'b0;
+          step_linear_x_2 <= step_linear_x;
+          step_linear_y <= step_linear_x_2;
+          step_linear_z <= step_linear_y;
+          step_angular_x <= step_linear_z;
+          step_angular_y <= step_angular_x;
+          map_bytes <= {step_linear_x | step_linear_x_2 | step_linear_y | step_linear_z,
+              step_angular_x, 2'd0};
+          items_bytes <= {step_angular_x, 3'd0};
+          two_word_map <= step_angular_x;
         end
-        if (step[5]) begin
+        if (step_angular_y) begin
           rest <= 1'b0;
           has_nul <= 1'b0;
         end
@@ -224,53 +262,57 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   end
 
   always @(posedge aclk) begin
-    if (free && (!step[5] || !served_0)) begin
+    if (free && (!step_angular_y || !served_0)) begin
       items_0 <= message_angular_y_payload[63:32];
     end
-    if (free && (!step[5] || !served_1)) begin
+    if (free && (!step_angular_y || !served_1)) begin
       items_4 <= message_angular_z_payload[31:0];
     end
-    if (free && !(|{step[5] & served_1, (|step[4:1]) & served_0})) begin
+    if (free && !or_120) begin
       map_0 <= map_0_next;
     end
     if (free) begin
-      map_4 <= or_148 | (step[4] ? message_angular_y_payload[31:0] : 32'd0);
+      map_4 <= or_152 | (step_angular_x ? message_angular_y_payload[31:0] : 32'd0);
     end
   end
 
-  assign port_545_0 = {map_4, map_0, items_4, items_0};
-  assign message_angular_z_ready = go_5_1;
+  assign port_537_0 = {map_4, map_0, items_4, items_0};
+  assign message_angular_z_ready = go_angular_z;
 
-  assign port_549_0 = port_549_0_q;
+  assign port_541_0 = port_541_0_q;
   assign status_valid = status_valid_q;
   assign status_payload = status_payload_q;
   assign words_valid = words_valid_q;
 
-  assign default_0 = step[0];
-  assign default_1 = step[1];
-  assign default_2 = step[2];
-  assign default_3 = step[3];
-  assign default_4 = step[4];
-  assign default_5 = step[5];
-  assign words_payload = {port_549_0_q, map_4, map_0, items_4, items_0};
+  assign length_zero = 1'b0;
+  assign length_skips = 1'b0;
+  assign length_over = 1'b0;
+  assign words_payload = {port_541_0_q, map_4, map_0, items_4, items_0};
   assign to_map = {1'b0, to_map_0};
+  assign length_rest = 1'b0;
+  assign length_at_most_one_pass = 1'b0;
   assign words_loads = 1'b0;
   assign done = 1'b1;
-  assign ends = step[5];
-  assign go_1_0 = message_linear_x_ready;
-  assign go_2_0 = message_linear_y_ready;
-  assign go_3_0 = message_linear_z_ready;
-  assign go_4_0 = message_angular_x_ready;
-  assign go_5_0 = message_angular_y_ready;
+  assign ends = step_angular_y;
+  assign go_linear_x = message_linear_x_ready;
+  assign go_linear_y = message_linear_y_ready;
+  assign go_linear_z = message_linear_z_ready;
+  assign go_angular_x = message_angular_x_ready;
+  assign go_angular_y = message_angular_y_ready;
   assign items_size = items_bytes;
-  assign step_to_body = 1'b0;
+  assign to_body = 1'b0;
   assign words_down = 1'b0;
   assign words_keeps = 1'b1;
+  assign words_is_small = 1'b1;
+  assign words_is_2 = 1'b0;
+  assign words_is_3 = 1'b0;
+  assign words_is_4 = 1'b0;
   assign found = error_sig;
   assign words_pending = 1'b0;
   assign words_value = 3'd0;
 endmodule
 
+// Packer: Write words to a ring of beats, and send the beats that are complete.
 module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   input wire         rst,
   input wire         aclk,
@@ -331,11 +373,20 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   wire reads;
   wire is_last;
   wire and_43;
-  wire [2:0] sub_44;
+  wire and_46;
+  wire and_50;
+  wire and_54;
+  wire and_58;
+  wire and_62;
+  wire and_66;
+  wire and_70;
+  wire and_74;
   wire [4:0] ends_read_data;
   wire [63:0] items_0_read_data;
   wire [31:0] map_0_read_data;
   wire [31:0] map_4_read_data;
+  wire [3:0] ends_read_data_count;
+  wire ends_read_data_error;
 
   // Signals that no logic reads, for simulation.
   wire [160:0] words_payload;
@@ -413,7 +464,14 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign reads = (complete != first) & (~packets_valid_q | packets_ready);
   assign is_last = last[first[2:0]];
   assign and_43 = writes & ~waits;
-  assign sub_44 = complete_next[2:0] - 3'd1;
+  assign and_46 = reads & (first[2:0] == 3'd0);
+  assign and_50 = reads & (first[2:0] == 3'd1);
+  assign and_54 = reads & (first[2:0] == 3'd2);
+  assign and_58 = reads & (first[2:0] == 3'd3);
+  assign and_62 = reads & (first[2:0] == 3'd4);
+  assign and_66 = reads & (first[2:0] == 3'd5);
+  assign and_70 = reads & (first[2:0] == 3'd6);
+  assign and_74 = reads & (first[2:0] == 3'd7);
 
   always @(posedge aclk) begin
     if (ends_write_en) begin
@@ -495,7 +553,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
       if (and_43) begin
         complete <= complete_next;
         if (ends_packet) begin
-          case (sub_44)
+          case (ends_write_addr)
             3'd0: last[0] <= 1'b1;
             3'd1: last[1] <= 1'b1;
             3'd2: last[2] <= 1'b1;
@@ -521,122 +579,122 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
           default: ;
         endcase
       end
-      if (reads && (first[2:0] == 3'd0)) begin
+      if (and_46) begin
         items_0_has[0] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd0)) begin
         items_0_has[0] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd1)) begin
+      if (and_50) begin
         items_0_has[1] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd1)) begin
         items_0_has[1] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd2)) begin
+      if (and_54) begin
         items_0_has[2] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd2)) begin
         items_0_has[2] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd3)) begin
+      if (and_58) begin
         items_0_has[3] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd3)) begin
         items_0_has[3] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd4)) begin
+      if (and_62) begin
         items_0_has[4] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd4)) begin
         items_0_has[4] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd5)) begin
+      if (and_66) begin
         items_0_has[5] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd5)) begin
         items_0_has[5] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd6)) begin
+      if (and_70) begin
         items_0_has[6] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd6)) begin
         items_0_has[6] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd7)) begin
+      if (and_74) begin
         items_0_has[7] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd7)) begin
         items_0_has[7] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd0)) begin
+      if (and_46) begin
         map_0_has[0] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd0)) begin
         map_0_has[0] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd1)) begin
+      if (and_50) begin
         map_0_has[1] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd1)) begin
         map_0_has[1] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd2)) begin
+      if (and_54) begin
         map_0_has[2] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd2)) begin
         map_0_has[2] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd3)) begin
+      if (and_58) begin
         map_0_has[3] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd3)) begin
         map_0_has[3] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd4)) begin
+      if (and_62) begin
         map_0_has[4] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd4)) begin
         map_0_has[4] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd5)) begin
+      if (and_66) begin
         map_0_has[5] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd5)) begin
         map_0_has[5] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd6)) begin
+      if (and_70) begin
         map_0_has[6] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd6)) begin
         map_0_has[6] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd7)) begin
+      if (and_74) begin
         map_0_has[7] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd7)) begin
         map_0_has[7] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd0)) begin
+      if (and_46) begin
         map_4_has[0] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd0)) begin
         map_4_has[0] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd1)) begin
+      if (and_50) begin
         map_4_has[1] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd1)) begin
         map_4_has[1] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd2)) begin
+      if (and_54) begin
         map_4_has[2] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd2)) begin
         map_4_has[2] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd3)) begin
+      if (and_58) begin
         map_4_has[3] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd3)) begin
         map_4_has[3] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd4)) begin
+      if (and_62) begin
         map_4_has[4] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd4)) begin
         map_4_has[4] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd5)) begin
+      if (and_66) begin
         map_4_has[5] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd5)) begin
         map_4_has[5] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd6)) begin
+      if (and_70) begin
         map_4_has[6] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd6)) begin
         map_4_has[6] <= 1'b1;
       end
-      if (reads && (first[2:0] == 3'd7)) begin
+      if (and_74) begin
         map_4_has[7] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd7)) begin
         map_4_has[7] <= 1'b1;
@@ -661,13 +719,16 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
           32'd0) | (map_0_written ? map_0_read_data : 32'd0)};
       packets_payload_q[68] <= is_last;
       if (is_last) begin
-        packets_payload_q[67:64] <= ends_read_data[3:0];
+        packets_payload_q[67:64] <= ends_read_data_count;
       end else begin
         packets_payload_q[67:64] <= 4'd8;
       end
-      error_sig_q <= is_last & ends_read_data[4];
+      error_sig_q <= is_last & ends_read_data_error;
     end
   end
+
+  assign ends_read_data_count = ends_read_data[3:0];
+  assign ends_read_data_error = ends_read_data[4];
 
   assign words_ready = words_ready_q;
   assign packets_valid = packets_valid_q;
@@ -700,6 +761,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign ends_write_data = {failed, last_bytes};
 endmodule
 
+// Serializer: Turn messages into packets.
 module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core (
   input wire         rst,
   input wire         aclk,
@@ -764,8 +826,8 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core (
     .message_angular_x_ready   (message_angular_x_ready),
     .message_angular_y_ready   (message_angular_y_ready),
     .message_angular_z_ready   (message_angular_z_ready),
-    .port_545_0                (words_payload_0),
-    .port_549_0                (words_payload_128),
+    .port_537_0                (words_payload_0),
+    .port_541_0                (words_payload_128),
     .status_valid              (status_valid),
     .status_payload            (status_payload),
     .words_valid               (words_valid),
@@ -790,6 +852,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core (
   assign error_sig = packet_error;
 endmodule
 
+// Top: A converter with AXI4-Stream on its packet side and named ports on its message side.
 module geometry_msgs_msg_Twist_cdr_8_serializer_verilog (
   input wire         aclk,
   input wire         aresetn,
@@ -827,6 +890,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog (
   wire [2:0] status_payload;
   wire [68:0] packets_payload;
   wire rst;
+  wire [3:0] packets_payload_count;
 
   // Signals that no logic reads, for simulation.
   wire packet_error;
@@ -886,11 +950,12 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog (
   assign rst = ~aresetn;
 
   assign m_axis_tdata = packets_payload[63:0];
-  assign m_axis_tkeep = {packets_payload[67:64] > 4'd7, packets_payload[67:64] > 4'd6,
-      packets_payload[67:64] > 4'd5, packets_payload[67:64] > 4'd4, packets_payload[67:64] > 4'd3,
-      packets_payload[67:64] > 4'd2, packets_payload[67:64] > 4'd1, packets_payload[67:64] > 4'd0};
+  assign m_axis_tkeep = {packets_payload_count > 4'd7, packets_payload_count > 4'd6,
+      packets_payload_count > 4'd5, packets_payload_count > 4'd4, packets_payload_count > 4'd3,
+      packets_payload_count > 4'd2, packets_payload_count > 4'd1, packets_payload_count > 4'd0};
   assign m_axis_tlast = packets_payload[68];
   assign m_axis_status_tdata = {5'd0, status_payload};
+  assign packets_payload_count = packets_payload[67:64];
 
   assign packet_error = m_axis_tuser;
   assign packets_valid = m_axis_tvalid;

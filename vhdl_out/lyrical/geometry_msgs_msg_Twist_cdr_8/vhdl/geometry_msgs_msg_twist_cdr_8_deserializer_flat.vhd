@@ -2,7 +2,18 @@
 -- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
+-- Steps, as `firm-hdl plan --program` prints and explains them:
+-- deserializer: start 0, items from lane 0, unit 8, map from lane 0, unit 4
+--   0 linear_x: map of 8; begins linear.x; checks 0=00 1=01; to 1 (+8)
+--   1 linear_x_2: map of 8; linear.x; begins linear.y; to 2 (+8)
+--   2 linear_y: map of 8; linear.y; begins linear.z; to 3 (+8)
+--   3 linear_z: map of 8; linear.z; begins angular.x; to 4 (+8)
+--   4 angular_x: map of 8; angular.x; begins angular.y; to 5 (+12)
+--   5 angular_y: map of 12 in two words; angular.y angular.z; to end (+0)
+--   6 packet_end: end of the packet
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.buffer of the Amaranth design.
+-- Buffer: Give each beat a position in the ring; tell how many bytes of the current packet
+-- arrived.
 -- 11 registers at rising_edge(aclk), synchronous reset rst = '1'.
 -- 1 register at rising_edge(aclk), no reset.
 
@@ -47,10 +58,10 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer 
   -- Combinational signals.
   signal arrives            : std_logic;
   signal used               : unsigned(3 downto 0);
-  signal next_beat          : unsigned(3 downto 0);
+  signal end_following      : unsigned(3 downto 0);
   signal ends_now           : std_logic;
-  signal add_3              : unsigned(6 downto 0);
-  signal newest_0           : unsigned(6 downto 0);
+  signal end_limit          : unsigned(6 downto 0);
+  signal newest_limit       : unsigned(6 downto 0);
   signal stored             : std_logic;
   signal more               : std_logic;
   signal follows            : std_logic;
@@ -58,9 +69,12 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer 
   signal arrival_limit_next : unsigned(10 downto 0);
   signal has_second_next    : std_logic;
   signal ends_read_data     : unsigned(10 downto 0);
+  signal payload_count      : unsigned(3 downto 0);
+  signal payload_last       : std_logic;
 
   -- Signals that no logic reads, for simulation.
   signal room            : std_logic;
+  signal next_beat       : unsigned(3 downto 0);
   signal ends_write_addr : unsigned(2 downto 0);
   signal ends_write_data : unsigned(10 downto 0);
   signal ends_write_en   : std_logic;
@@ -74,22 +88,22 @@ begin
 
   arrives <= packets_valid and packets_ready_q;
   used <= arrived - freed;
-  next_beat <= at + 1;
-  ends_now <= full and payload(68);
-  add_3 <= unsigned'(at & "000") + payload(67 downto 64);
-  newest_0 <= add_3 when ends_now = '1' else mux(full, next_beat, at) & "000";
+  end_following <= at + 1;
+  ends_now <= full and payload_last;
+  end_limit <= unsigned'(at & "000") + payload_count;
+  newest_limit <= end_limit when ends_now = '1' else mux(full, end_following, at) & "000";
   stored <= '1' when pushed /= popped else '0';
   more <= stored or ends_now;
   follows <= arrival_ended_q and ends_now;
   or_14 <= arrival_next or not arrival_ended_q;
-  arrival_limit_next <= second when has_second = '1' else next_beat & newest_0;
+  arrival_limit_next <= second when has_second = '1' else end_following & newest_limit;
   has_second_next <= not arrival_next or more when has_second = '1' else not arrival_next and
       follows;
 
   process (aclk)
   begin
     if rising_edge(aclk) then
-      ends(to_integer(pushed(2 downto 0))) <= next_beat & add_3;
+      ends(to_integer(pushed(2 downto 0))) <= end_following & end_limit;
     end if;
   end process;
 
@@ -124,7 +138,7 @@ begin
           if stored = '1' then
             second <= ends_read_data;
           else
-            second <= next_beat & add_3;
+            second <= end_following & end_limit;
           end if;
         end if;
         has_second <= has_second_next;
@@ -145,6 +159,8 @@ begin
     end if;
   end process;
 
+  payload_count <= payload(67 downto 64);
+  payload_last <= payload(68);
   arrival_beat <= full & at & payload;
 
   packets_ready <= packets_ready_q;
@@ -153,16 +169,18 @@ begin
   arrival_ended <= arrival_ended_q;
 
   room <= packets_ready_q;
+  next_beat <= end_following;
   ends_write_addr <= pushed(2 downto 0);
-  ends_write_data <= next_beat & add_3;
+  ends_write_data <= end_following & end_limit;
   ends_write_en <= '1';
   ends_read_addr <= popped(2 downto 0);
-  end_sig <= next_beat & add_3;
-  newest <= next_beat & newest_0;
+  end_sig <= end_following & end_limit;
+  newest <= end_following & newest_limit;
 
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.sequencer.byte_flags of the Amaranth design.
+-- ByteFlags: One bit for each byte of the packet buffer, and one for each header.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -184,6 +202,11 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
 
   -- Combinational signals.
   signal headers_write_data : std_logic;
+  signal beat_data          : unsigned(63 downto 0);
+  signal beat_count         : unsigned(3 downto 0);
+  signal beat_last          : std_logic;
+  signal beat_at            : unsigned(3 downto 0);
+  signal beat_valid         : std_logic;
 
   -- Signals that no logic reads, for simulation.
   signal headers_write_addr : unsigned(2 downto 0);
@@ -195,20 +218,26 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal headers : headers_array := (others => (others => '0'));
 begin
 
-  headers_write_data <= or unsigned'((to_std_logic(beat(15 downto 8) /= 1) and (not beat(68) or
-      to_std_logic(beat(67 downto 64) > 1))) & (to_std_logic(beat(7 downto 0) /= 0) and
-      (not beat(68) or to_std_logic(beat(67 downto 64) > 0))));
+  headers_write_data <= (to_std_logic(beat_data(7 downto 0) /= 0) and (not beat_last or
+      to_std_logic(beat_count > 0))) or (to_std_logic(beat_data(15 downto 8) /= 1) and
+      (not beat_last or to_std_logic(beat_count > 1)));
 
   process (aclk)
   begin
     if rising_edge(aclk) then
-      if beat(73) = '1' then
-        headers(to_integer(beat(71 downto 69))) <= (0 => headers_write_data);
+      if beat_valid = '1' then
+        headers(to_integer(beat_at(2 downto 0))) <= (0 => headers_write_data);
       end if;
     end if;
   end process;
 
   mismatch <= headers(to_integer(header_at(2 downto 0)))(0);
+
+  beat_data <= beat(63 downto 0);
+  beat_count <= beat(67 downto 64);
+  beat_last <= beat(68);
+  beat_at <= beat(72 downto 69);
+  beat_valid <= beat(73);
 
   headers_write_addr <= beat(71 downto 69);
   headers_write_en <= beat(73);
@@ -218,7 +247,9 @@ begin
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.sequencer of the Amaranth design.
--- 16 registers at rising_edge(aclk), synchronous reset rst = '1'.
+-- Sequencer: Run a program over the packets in the buffer: check them, and give orders to the
+-- mover.
+-- 22 registers at rising_edge(aclk), synchronous reset rst = '1'.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -244,133 +275,163 @@ end entity;
 
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer is
 
+  -- Values of enumerations.
+  constant STATUS_TRUNCATED : unsigned(2 downto 0) := "001";
+  constant STATUS_TRAILING : unsigned(2 downto 0) := "010";
+  constant STATUS_LENGTH : unsigned(2 downto 0) := "011";
+  constant STATUS_ENCAPSULATION : unsigned(2 downto 0) := "100";
+  constant STATUS_STRING : unsigned(2 downto 0) := "101";
+
   -- Registers.
-  signal bad          : std_logic := '0';
+  signal bad             : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal code         : unsigned(2 downto 0) := (others => '0');
-  signal new_error    : std_logic := '0';
-  signal items_room   : unsigned(3 downto 0) := (others => '0');
-  signal map_room     : unsigned(3 downto 0) := (others => '0');
-  signal rest         : std_logic := '0';
-  signal has_nul      : std_logic := '0';
-  signal first_at     : unsigned(6 downto 0) := (others => '0');
-  signal last_at      : unsigned(6 downto 0) := "0000111";
-  signal words_last   : std_logic := '1';
-  signal words_less   : std_logic := '0';
-  signal step         : unsigned(6 downto 0) := "0000001";
-  signal at_end       : std_logic := '0';
-  signal map_offset   : unsigned(4 downto 0) := "11001";
-  signal two_word_map : std_logic := '0';
-  signal exit_add     : unsigned(5 downto 0) := "001000";
+  signal code            : unsigned(2 downto 0) := (others => '0');
+  signal new_error       : std_logic := '0';
+  signal items_room      : unsigned(3 downto 0) := (others => '0');
+  signal map_room        : unsigned(3 downto 0) := (others => '0');
+  signal rest            : std_logic := '0';
+  signal has_nul         : std_logic := '0';
+  signal first_at        : unsigned(6 downto 0) := (others => '0');
+  signal last_at         : unsigned(6 downto 0) := "0000111";
+  signal words_last      : std_logic := '1';
+  signal words_less      : std_logic := '0';
+  signal step_linear_x   : std_logic := '1';  -- step 0: map of 8; begins linear.x
+  signal step_linear_x_2 : std_logic := '0';  -- step 1: map of 8; linear.x; begins linear.y
+  signal step_linear_y   : std_logic := '0';  -- step 2: map of 8; linear.y; begins linear.z
+  signal step_linear_z   : std_logic := '0';  -- step 3: map of 8; linear.z; begins angular.x
+  signal step_angular_x  : std_logic := '0';  -- step 4: map of 8; angular.x; begins angular.y
+  signal step_angular_y  : std_logic := '0';  -- step 5: map of 12 in two words; angular.y angular.z
+  signal step_packet_end : std_logic := '0';  -- step 6: no bytes
+  signal at_end          : std_logic := '0';
+  signal map_offset      : unsigned(4 downto 0) := "11001";
+  signal two_word_map    : std_logic := '0';
+  signal exit_add        : unsigned(5 downto 0) := "001000";
 
   -- Combinational signals.
-  signal mismatch_31     : std_logic;
-  signal step_end        : unsigned(6 downto 0);
-  signal left            : unsigned(6 downto 0);
-  signal present         : std_logic;
-  signal ends_message    : std_logic;
-  signal ends_packet     : std_logic;
-  signal mismatch        : std_logic;
-  signal cut             : std_logic;
-  signal trailing        : std_logic;
-  signal stops           : std_logic;
-  signal drains          : std_logic;
-  signal allowed         : std_logic;
-  signal issue           : std_logic;
-  signal map_at          : unsigned(6 downto 0);
-  signal sub_77          : unsigned(3 downto 0);
-  signal sub_88          : unsigned(5 downto 0);
-  signal or_132          : unsigned(5 downto 0);
-  signal map_left        : unsigned(6 downto 0);
-  signal exit_sum        : unsigned(6 downto 0);
-  signal early_last      : unsigned(6 downto 0);
-  signal step_to_exit    : std_logic;
-  signal and_187         : std_logic;
-  signal and_201         : std_logic;
-  signal and_203         : std_logic;
-  signal items_room_next : unsigned(3 downto 0);
-  signal first_at_next   : unsigned(6 downto 0);
+  signal mismatch_26                : std_logic;
+  signal step_end                   : unsigned(6 downto 0);
+  signal not_2                      : unsigned(6 downto 0);
+  signal left                       : unsigned(6 downto 0);
+  signal present                    : std_logic;
+  signal ends_message               : std_logic;
+  signal ends_packet                : std_logic;
+  signal mismatch                   : std_logic;
+  signal cut                        : std_logic;
+  signal trailing                   : std_logic;
+  signal bytes_good                 : std_logic;
+  signal stops                      : std_logic;
+  signal drains                     : std_logic;
+  signal orders_payload_length_good : std_logic;
+  signal allowed                    : std_logic;
+  signal issue                      : std_logic;
+  signal map_at                     : unsigned(6 downto 0);
+  signal sub_64                     : unsigned(3 downto 0);
+  signal sub_74                     : unsigned(5 downto 0);
+  signal or_119                     : unsigned(5 downto 0);
+  signal map_left                   : unsigned(6 downto 0);
+  signal orders_payload_items_next  : unsigned(2 downto 0);
+  signal orders_payload_map_next    : unsigned(2 downto 0);
+  signal orders_payload_items_bytes : unsigned(3 downto 0);
+  signal orders_payload_map_bytes   : unsigned(3 downto 0);
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal orders_payload_status      : unsigned(2 downto 0);
+  signal exit_sum                   : unsigned(6 downto 0);
+  signal early_last                 : unsigned(6 downto 0);
+  signal to_exit                    : std_logic;
+  signal and_189                    : std_logic;
+  signal map_room_next              : unsigned(3 downto 0);
+  signal items_room_next            : unsigned(3 downto 0);
+  signal first_at_next              : unsigned(6 downto 0);
+  signal map_offset_next_3          : std_logic;
+  signal orders_payload_map_at      : unsigned(5 downto 0);
 
   -- Signals that no logic reads, for simulation.
-  signal default_0     : std_logic;
-  signal default_1     : std_logic;
-  signal default_2     : std_logic;
-  signal default_3     : std_logic;
-  signal default_4     : std_logic;
-  signal default_5     : std_logic;
-  signal arrival_beat  : unsigned(73 downto 0);
-  signal nul_at        : unsigned(6 downto 0);
-  signal nul_at_23     : unsigned(6 downto 0);
-  signal nonzero       : std_logic;
-  signal nul_within    : unsigned(6 downto 0);
-  signal oldest        : unsigned(3 downto 0);
-  signal items_at      : unsigned(6 downto 0);
-  signal next_packet   : unsigned(6 downto 0);
-  signal over_rest     : unsigned(5 downto 0);
-  signal to_exit_low   : unsigned(6 downto 0);
-  signal body_sum      : unsigned(6 downto 0);
-  signal to_body_low   : unsigned(6 downto 0);
-  signal words_loads   : std_logic;
-  signal exits_always  : std_logic;
-  signal done          : std_logic;
-  signal wrong_nul     : std_logic;
-  signal items_wanted  : unsigned(3 downto 0);
-  signal exit_amount   : unsigned(5 downto 0);
-  signal to_exit_mask  : unsigned(2 downto 0);
-  signal body_amount   : unsigned(5 downto 0);
-  signal to_body_mask  : unsigned(2 downto 0);
-  signal next_last     : unsigned(6 downto 0);
-  signal step_to_body  : std_logic;
-  signal words_down    : std_logic;
-  signal words_keeps   : std_logic;
-  signal words_pending : std_logic;
-  signal words_value   : unsigned(2 downto 0);
+  signal arrival_beat   : unsigned(73 downto 0);
+  signal nul_at         : unsigned(6 downto 0);
+  signal nul_at_17      : unsigned(6 downto 0);
+  signal nonzero        : std_logic;
+  signal nul_within     : unsigned(6 downto 0);
+  signal oldest         : unsigned(3 downto 0);
+  signal items_at       : unsigned(6 downto 0);
+  signal next_packet    : unsigned(6 downto 0);
+  signal over_rest      : unsigned(5 downto 0);
+  signal to_exit_low    : unsigned(6 downto 0);
+  signal body_sum       : unsigned(6 downto 0);
+  signal to_body_low    : unsigned(6 downto 0);
+  signal words_loads    : std_logic;
+  signal exits_always   : std_logic;
+  signal done           : std_logic;
+  signal wrong_nul      : std_logic;
+  signal items_wanted   : unsigned(3 downto 0);
+  signal exit_amount    : unsigned(5 downto 0);
+  signal to_exit_mask   : unsigned(2 downto 0);
+  signal exit_last      : unsigned(6 downto 0);
+  signal body_amount    : unsigned(5 downto 0);
+  signal to_body_mask   : unsigned(2 downto 0);
+  signal body_last      : unsigned(6 downto 0);
+  signal next_last      : unsigned(6 downto 0);
+  signal to_body        : std_logic;
+  signal words_down     : std_logic;
+  signal words_keeps    : std_logic;
+  signal words_is_small : std_logic;
+  signal words_is_2     : std_logic;
+  signal words_is_3     : std_logic;
+  signal words_is_4     : std_logic;
+  signal words_pending  : std_logic;
+  signal words_value    : unsigned(2 downto 0);
 begin
 
   byte_flags : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_byte_flags
     port map (
       aclk      => aclk,
       rst       => rst,
-      mismatch  => mismatch_31,
+      mismatch  => mismatch_26,
       beat      => beat,
       header_at => first_at(6 downto 3)
     );
 
   step_end <= last_at + 1;
-  left <= arrival_limit + not last_at;
+  not_2 <= not last_at;
+  left <= arrival_limit + not_2;
   present <= not left(6);
-  ends_message <= at_end or step(5);
+  ends_message <= at_end or step_angular_y;
   ends_packet <= ends_message and arrival_ended;
-  mismatch <= '1' when step(0) = '1' and mismatch_31 = '1' and arrival_limit /= first_at else '0';
+  mismatch <= '1' when step_linear_x = '1' and mismatch_26 = '1' and arrival_limit /= first_at else
+      '0';
   cut <= arrival_ended and not present;
   trailing <= present and (or left(5 downto 2));
+  bytes_good <= present and not (step_linear_x and mismatch_26);
   stops <= mismatch or cut or (ends_message and not arrival_ended and trailing);
   drains <= bad and not new_error and (not at_end or arrival_ended);
-  allowed <= not bad and (not ends_message or arrival_ended);
-  orders_valid <= drains or (allowed and present and not (step(0) and mismatch_31));
-  issue <= (drains and orders_ready) or (allowed and orders_ready and present and not (step(0) and
-      mismatch_31));
+  orders_payload_length_good <= not bad;
+  allowed <= orders_payload_length_good and (not ends_message or arrival_ended);
+  orders_valid <= drains or (allowed and bytes_good);
+  issue <= (drains and orders_ready) or (allowed and orders_ready and bytes_good);
   arrival_next <= (drains and orders_ready and ends_packet) or (allowed and orders_ready and
-      ends_packet and present and not (step(0) and mismatch_31));
+      ends_packet and bytes_good);
   map_at <= last_at + sign_extend(map_offset, 7);
-  sub_77 <= map_at(6 downto 3) - two_word_map;
-  sub_88 <= unsigned'("000001") - sign_extend(map_offset, 6);
-  or_132 <= (arrival_limit(5 downto 0) and not last_at(5 downto 0)) or
-      (arrival_limit(5 downto 0) and unsigned'("000001") - sign_extend(map_offset, 6)) or
-      (not last_at(5 downto 0) and unsigned'("000001") - sign_extend(map_offset, 6));
-  map_left <= (arrival_limit xor not last_at xor unsigned'(sub_88(5) &
-      (unsigned'("000001") - sign_extend(map_offset, 6)))) + unsigned'(or_132 & '0');
+  sub_64 <= map_at(6 downto 3) - two_word_map;
+  sub_74 <= unsigned'("000001") - sign_extend(map_offset, 6);
+  or_119 <= (arrival_limit(5 downto 0) and not_2(5 downto 0)) or (arrival_limit(5 downto 0) and
+      sub_74) or (not_2(5 downto 0) and sub_74);
+  map_left <= (arrival_limit xor not_2 xor sign_extend(sub_74, 7)) + unsigned'(or_119 & '0');
+  orders_payload_items_next <= sub_64(2 downto 0) + 1;
+  orders_payload_map_next <= orders_payload_map_at(5 downto 3) + 1;
+  orders_payload_items_bytes <= items_room when bad = '1' and items_room < 8 else "1000";
+  orders_payload_map_bytes <= map_room when bad = '1' else "1000";
+  orders_payload_status <= code when bad = '1' else mux(trailing, "010", "000");
   exit_sum <= last_at + exit_add;
   early_last <= unsigned'(arrival_following & "000") + 7 when ends_packet = '1' else exit_sum;
-  step_to_exit <= issue and not ends_packet;
-  and_187 <= issue and ends_packet;
-  and_201 <= bad and new_error;
-  and_203 <= bad and drains and orders_ready;
+  to_exit <= issue and not ends_packet;
+  and_189 <= bad and drains and orders_ready;
+  map_room_next <= (others => '0') when map_left(6) = '1' else mux(to_std_logic(map_left >= 8),
+      "1000", map_left(3 downto 0));
   items_room_next <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0),
-      "000"), 4), "1000") when two_word_map = '1' else mux(map_left(6), "0000",
-      mux(to_std_logic(map_left >= 8), "1000", map_left(3 downto 0)));
+      "000"), 4), "1000") when two_word_map = '1' else map_room_next;
   first_at_next <= arrival_following & "000" when ends_packet = '1' else mux(bad, mux(at_end,
       arrival_limit, first_at), step_end);
+  map_offset_next_3 <= step_linear_x or step_linear_x_2 or step_linear_y or step_linear_z or
+      step_angular_x;
 
   p_aclk : process (aclk)
   begin
@@ -387,54 +448,52 @@ begin
         last_at <= "0000111";
         words_last <= '1';
         words_less <= '0';
-        step <= "0000001";
+        step_linear_x <= '1';
+        step_linear_x_2 <= '0';
+        step_linear_y <= '0';
+        step_linear_z <= '0';
+        step_angular_x <= '0';
+        step_angular_y <= '0';
+        step_packet_end <= '0';
         at_end <= '0';
         map_offset <= "11001";
         two_word_map <= '0';
         exit_add <= "001000";
       else
-        if and_187 = '1' then
+        if issue = '1' and ends_packet = '1' then
           bad <= '0';
-        elsif bad = '0' then
+        elsif orders_payload_length_good = '1' then
           bad <= stops;
           if ends_message = '1' then
-            code <= "010";
+            code <= STATUS_TRAILING;
           else
-            code <= "011";
+            code <= STATUS_LENGTH;
           end if;
           if mismatch = '1' then
-            code <= "100";
+            code <= STATUS_ENCAPSULATION;
           elsif cut = '1' then
-            code <= "001";
+            code <= STATUS_TRUNCATED;
           end if;
         end if;
-        new_error <= stops and not bad;
-        if and_201 = '1' then
-          if code = 2 or code = 5 then
+        new_error <= stops and orders_payload_length_good;
+        if bad = '1' and new_error = '1' then
+          if code = STATUS_TRAILING or code = STATUS_STRING then
             items_room <= "1000";
           else
             items_room <= (others => '0');
           end if;
-          if code = 1 then
+          if code = STATUS_TRUNCATED then
             items_room <= items_room_next;
           end if;
-          if code = 2 then
+          if code = STATUS_TRAILING then
             map_room <= "1000";
           else
             map_room <= (others => '0');
           end if;
-          if code = 1 then
-            if map_left(6) = '1' then
-              map_room <= (others => '0');
-            else
-              if map_left >= 8 then
-                map_room <= "1000";
-              else
-                map_room <= map_left(3 downto 0);
-              end if;
-            end if;
+          if code = STATUS_TRUNCATED then
+            map_room <= map_room_next;
           end if;
-        elsif and_203 = '1' then
+        elsif and_189 = '1' then
           items_room <= (others => '0');
           map_room <= (others => '0');
         end if;
@@ -445,18 +504,32 @@ begin
           end if;
           last_at <= early_last;
           if ends_packet = '1' then
-            step <= "0000001";
+            step_linear_x <= '1';
+            step_linear_x_2 <= '0';
+            step_linear_y <= '0';
+            step_linear_z <= '0';
+            step_angular_x <= '0';
+            step_angular_y <= '0';
+            step_packet_end <= '0';
             at_end <= '0';
             map_offset <= "11001";
             two_word_map <= '0';
             exit_add <= "001000";
           else
-            step <= step(5 downto 0) & '0';
-            at_end <= step(5);
-            map_offset <= (or step(4 downto 0)) & (or step(4 downto 0)) & step(4) & '0' &
-                (or step(5 downto 0));
-            two_word_map <= step(4);
-            exit_add <= resize(unsigned'((or step(3 downto 0)) & step(3) & "00"), 6);
+            step_linear_x <= '0';
+            step_linear_x_2 <= step_linear_x;
+            step_linear_y <= step_linear_x_2;
+            step_linear_z <= step_linear_y;
+            step_angular_x <= step_linear_z;
+            step_angular_y <= step_angular_x;
+            step_packet_end <= step_angular_y;
+            at_end <= step_angular_y;
+            map_offset <= repeat_bit(map_offset_next_3, 2) & step_angular_x & '0' &
+                (step_linear_x or step_linear_x_2 or step_linear_y or step_linear_z or
+                step_angular_x or step_angular_y);
+            two_word_map <= step_angular_x;
+            exit_add <= resize(unsigned'((step_linear_x or step_linear_x_2 or step_linear_y or
+                step_linear_z) & step_linear_z & "00"), 6);
           end if;
         end if;
         if issue = '1' or (bad = '1' and at_end = '1') then
@@ -469,26 +542,21 @@ begin
   end process;
 
   header_at <= first_at(6 downto 3);
-  orders_payload <= mux(bad, code, mux(trailing, "010", "000")) & ends_packet &
-      first_at(6 downto 3) & '0' & not bad & words_last & '0' & mux(bad, map_room, "1000") &
-      mux(bad and not to_std_logic(items_room >= 8), items_room, "1000") &
-      (map_at(5 downto 3) + 1) & (sub_77(2 downto 0) + 1) & map_at(5 downto 0) &
-      sub_77(2 downto 0) & map_at(2 downto 0) & at_end & (or step(5 downto 4)) &
-      (or step(3 downto 2)) & (or unsigned'(step(5) & step(3) & step(1)));
+  orders_payload_map_at <= map_at(5 downto 0);
+  orders_payload <= orders_payload_status & ends_packet & first_at(6 downto 3) & '0' &
+      orders_payload_length_good & words_last & '0' & orders_payload_map_bytes &
+      orders_payload_items_bytes & orders_payload_map_next & orders_payload_items_next &
+      map_at(5 downto 0) & sub_64(2 downto 0) & map_at(2 downto 0) & at_end & (step_angular_x or
+      step_angular_y) & (step_linear_y or step_linear_z) & (step_linear_x_2 or step_linear_z or
+      step_angular_y);
 
-  default_0 <= step(0);
-  default_1 <= step(1);
-  default_2 <= step(2);
-  default_3 <= step(3);
-  default_4 <= step(4);
-  default_5 <= step(5);
   arrival_beat <= beat;
   nul_at <= (others => '0');
-  nul_at_23 <= (others => '0');
+  nul_at_17 <= (others => '0');
   nonzero <= '0';
   nul_within <= arrival_limit;
   oldest <= first_at(6 downto 3);
-  items_at <= sub_77 & map_at(2 downto 0);
+  items_at <= sub_64 & map_at(2 downto 0);
   next_packet <= arrival_following & "000";
   over_rest <= (others => '0');
   to_exit_low <= (others => '0');
@@ -501,18 +569,25 @@ begin
   items_wanted <= "1000";
   exit_amount <= exit_add;
   to_exit_mask <= (others => '0');
+  exit_last <= exit_sum;
   body_amount <= (others => '0');
   to_body_mask <= (others => '0');
+  body_last <= last_at;
   next_last <= early_last;
-  step_to_body <= '0';
+  to_body <= '0';
   words_down <= '0';
   words_keeps <= '1';
+  words_is_small <= '1';
+  words_is_2 <= '0';
+  words_is_3 <= '0';
+  words_is_4 <= '0';
   words_pending <= '0';
   words_value <= (others => '0');
 
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.queue of the Amaranth design.
+-- OrderQueue: A queue of two orders, so that `i.ready` is a register.
 -- 3 registers at rising_edge(aclk), synchronous reset rst = '1'.
 -- 1 register at rising_edge(aclk), no reset.
 
@@ -544,11 +619,14 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_queue i
   signal o_payload_q : unsigned(41 downto 0) := (others => '0');
   signal has_second  : std_logic := '0';
   signal second      : unsigned(41 downto 0) := (others => '0');
+
+  -- Combinational signals.
+  signal second_first    : unsigned(3 downto 0);
+  signal o_payload_first : unsigned(3 downto 0);
 begin
 
   i_ready <= not has_second;
-  freed <= o_payload_q(37 downto 34) when o_valid_q = '1' else mux(has_second, second(37 downto 34),
-      oldest);
+  freed <= o_payload_first when o_valid_q = '1' else mux(has_second, second_first, oldest);
 
   p_aclk : process (aclk)
   begin
@@ -578,11 +656,14 @@ begin
   p_aclk_2 : process (aclk)
   begin
     if rising_edge(aclk) then
-      if has_second = '0' then
+      if i_ready = '1' then
         second <= i_payload;
       end if;
     end if;
   end process;
+
+  second_first <= second(37 downto 34);
+  o_payload_first <= o_payload_q(37 downto 34);
 
   o_valid <= o_valid_q;
   o_payload <= o_payload_q;
@@ -590,6 +671,7 @@ begin
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.mover of the Amaranth design.
+-- Mover: Read two words of the packet buffer per order, and write leaves from their lanes.
 -- 25 registers at rising_edge(aclk), synchronous reset rst = '1'.
 -- 11 registers at rising_edge(aclk), no reset.
 
@@ -657,61 +739,88 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal items_good                  : unsigned(7 downto 0) := (others => '0');
   signal map_word                    : unsigned(63 downto 0) := (others => '0');
   signal map_good                    : unsigned(7 downto 0) := (others => '0');
-  signal cut_0                       : std_logic := '0';
+  signal begins_linear_x             : std_logic := '0';
   signal carried                     : unsigned(31 downto 0) := (others => '0');
-  signal cut_1                       : std_logic := '0';
-  signal cut_2                       : std_logic := '0';
-  signal cut_3                       : std_logic := '0';
-  signal cut_4                       : std_logic := '0';
-  signal active_0                    : std_logic := '0';
-  signal active_1                    : std_logic := '0';
-  signal active_2                    : std_logic := '0';
-  signal active_3                    : std_logic := '0';
-  signal active_4                    : std_logic := '0';
-  signal active_5                    : std_logic := '0';
+  signal begins_linear_x_2           : std_logic := '0';
+  signal begins_linear_y             : std_logic := '0';
+  signal begins_linear_z             : std_logic := '0';
+  signal begins_angular_x            : std_logic := '0';
+  signal active_linear_x             : std_logic := '0';
+  signal active_linear_y             : std_logic := '0';
+  signal active_linear_z             : std_logic := '0';
+  signal active_angular_x            : std_logic := '0';
+  signal active_angular_y            : std_logic := '0';
+  signal active_angular_z            : std_logic := '0';
   signal ends_now                    : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal status_now                  : unsigned(2 downto 0) := (others => '0');
   signal slow                        : std_logic := '0';
 
   -- Combinational signals.
-  signal blocked_0         : std_logic;
-  signal go_0              : std_logic;
-  signal blocked_1         : std_logic;
-  signal go_1              : std_logic;
-  signal blocked_2         : std_logic;
-  signal go_2              : std_logic;
-  signal blocked_3         : std_logic;
-  signal go_3              : std_logic;
-  signal blocked_4         : std_logic;
-  signal go_4              : std_logic;
-  signal blocked_5         : std_logic;
-  signal go_5              : std_logic;
-  signal ends              : std_logic;
-  signal active_0_next     : std_logic;
-  signal active_1_next     : std_logic;
-  signal active_2_next     : std_logic;
-  signal active_3_next     : std_logic;
-  signal active_4_next     : std_logic;
-  signal active_5_next     : std_logic;
-  signal or_165            : std_logic;
-  signal or_181            : std_logic;
-  signal lane_0_items_data : unsigned(7 downto 0);
-  signal lane_0_map_data   : unsigned(7 downto 0);
-  signal lane_1_items_data : unsigned(7 downto 0);
-  signal lane_1_map_data   : unsigned(7 downto 0);
-  signal lane_2_items_data : unsigned(7 downto 0);
-  signal lane_2_map_data   : unsigned(7 downto 0);
-  signal lane_3_items_data : unsigned(7 downto 0);
-  signal lane_3_map_data   : unsigned(7 downto 0);
-  signal lane_4_items_data : unsigned(7 downto 0);
-  signal lane_4_map_data   : unsigned(7 downto 0);
-  signal lane_5_items_data : unsigned(7 downto 0);
-  signal lane_5_map_data   : unsigned(7 downto 0);
-  signal lane_6_items_data : unsigned(7 downto 0);
-  signal lane_6_map_data   : unsigned(7 downto 0);
-  signal lane_7_items_data : unsigned(7 downto 0);
-  signal lane_7_map_data   : unsigned(7 downto 0);
+  signal full_linear_x              : std_logic;
+  signal full_linear_y              : std_logic;
+  signal full_linear_z              : std_logic;
+  signal full_angular_x             : std_logic;
+  signal full_angular_y             : std_logic;
+  signal full_angular_z             : std_logic;
+  signal status_full                : std_logic;
+  signal has_step                   : std_logic;
+  signal chosen_linear_x            : std_logic;
+  signal blocked_linear_x           : std_logic;
+  signal go_linear_x                : std_logic;
+  signal chosen_linear_y            : std_logic;
+  signal blocked_linear_y           : std_logic;
+  signal go_linear_y                : std_logic;
+  signal chosen_linear_z            : std_logic;
+  signal blocked_linear_z           : std_logic;
+  signal go_linear_z                : std_logic;
+  signal chosen_angular_x           : std_logic;
+  signal blocked_angular_x          : std_logic;
+  signal go_angular_x               : std_logic;
+  signal chosen_angular_y           : std_logic;
+  signal blocked_angular_y          : std_logic;
+  signal go_angular_y               : std_logic;
+  signal blocked_angular_z          : std_logic;
+  signal go_angular_z               : std_logic;
+  signal ends                       : std_logic;
+  signal and_56                     : std_logic;
+  signal and_64                     : std_logic;
+  signal and_72                     : std_logic;
+  signal and_80                     : std_logic;
+  signal and_88                     : std_logic;
+  signal or_117                     : std_logic;
+  signal or_131                     : std_logic;
+  signal lane_0_items_data          : unsigned(7 downto 0);
+  signal lane_0_map_data            : unsigned(7 downto 0);
+  signal lane_1_items_data          : unsigned(7 downto 0);
+  signal lane_1_map_data            : unsigned(7 downto 0);
+  signal lane_2_items_data          : unsigned(7 downto 0);
+  signal lane_2_map_data            : unsigned(7 downto 0);
+  signal lane_3_items_data          : unsigned(7 downto 0);
+  signal lane_3_map_data            : unsigned(7 downto 0);
+  signal lane_4_items_data          : unsigned(7 downto 0);
+  signal lane_4_map_data            : unsigned(7 downto 0);
+  signal lane_5_items_data          : unsigned(7 downto 0);
+  signal lane_5_map_data            : unsigned(7 downto 0);
+  signal lane_6_items_data          : unsigned(7 downto 0);
+  signal lane_6_map_data            : unsigned(7 downto 0);
+  signal lane_7_items_data          : unsigned(7 downto 0);
+  signal lane_7_map_data            : unsigned(7 downto 0);
+  signal beat_data                  : unsigned(63 downto 0);
+  signal beat_at                    : unsigned(3 downto 0);
+  signal beat_valid                 : std_logic;
+  signal orders_payload_step        : unsigned(2 downto 0);
+  signal orders_payload_blank       : std_logic;
+  signal orders_payload_items_at    : unsigned(5 downto 0);
+  signal orders_payload_map_at      : unsigned(5 downto 0);
+  signal orders_payload_items_bytes : unsigned(3 downto 0);
+  signal orders_payload_map_bytes   : unsigned(3 downto 0);
+  signal orders_payload_last        : std_logic;
+  signal orders_payload_length_good : std_logic;
+  signal orders_payload_final       : std_logic;
+  signal orders_payload_ends        : std_logic;
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal orders_payload_status      : unsigned(2 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal take              : std_logic;
@@ -755,12 +864,13 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal lane_7_write_en   : std_logic;
   signal lane_7_items_addr : unsigned(2 downto 0);
   signal lane_7_map_addr   : unsigned(2 downto 0);
-  signal payload_0         : unsigned(63 downto 0);
-  signal payload_1         : unsigned(63 downto 0);
-  signal payload_2         : unsigned(63 downto 0);
-  signal payload_3         : unsigned(63 downto 0);
-  signal payload_4         : unsigned(63 downto 0);
-  signal payload_5         : unsigned(63 downto 0);
+  signal payload_linear_x  : unsigned(63 downto 0);
+  signal payload_linear_y  : unsigned(63 downto 0);
+  signal payload_linear_z  : unsigned(63 downto 0);
+  signal payload_angular_x : unsigned(63 downto 0);
+  signal payload_angular_y : unsigned(63 downto 0);
+  signal payload_angular_z : unsigned(63 downto 0);
+  signal chosen_angular_z  : std_logic;
 
   type lane_0_array is array (0 to 7) of unsigned(7 downto 0);
   signal lane_0 : lane_0_array := (others => (others => '0'));
@@ -787,159 +897,151 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal lane_7 : lane_7_array := (others => (others => '0'));
 begin
 
-  blocked_0 <= active_0 and message_linear_x_valid_q;
-  go_0 <= active_0 and not blocked_0;
-  blocked_1 <= active_1 and message_linear_y_valid_q;
-  go_1 <= active_1 and not blocked_1;
-  blocked_2 <= active_2 and message_linear_z_valid_q;
-  go_2 <= active_2 and not blocked_2;
-  blocked_3 <= active_3 and message_angular_x_valid_q;
-  go_3 <= active_3 and not blocked_3;
-  blocked_4 <= active_4 and message_angular_y_valid_q;
-  go_4 <= active_4 and not blocked_4;
-  blocked_5 <= active_5 and message_angular_z_valid_q;
-  go_5 <= active_5 and not blocked_5 and not blocked_4;
-  ends <= orders_valid and orders_payload(38);
+  full_linear_x <= message_linear_x_valid_q and not message_linear_x_ready;
+  full_linear_y <= message_linear_y_valid_q and not message_linear_y_ready;
+  full_linear_z <= message_linear_z_valid_q and not message_linear_z_ready;
+  full_angular_x <= message_angular_x_valid_q and not message_angular_x_ready;
+  full_angular_y <= message_angular_y_valid_q and not message_angular_y_ready;
+  full_angular_z <= message_angular_z_valid_q and not message_angular_z_ready;
+  status_full <= status_valid_q and not status_ready;
+  has_step <= orders_valid and not orders_payload_blank;
+  chosen_linear_x <= '1' when has_step = '1' and orders_payload_step = 1 else '0';
+  blocked_linear_x <= active_linear_x and message_linear_x_valid_q;
+  go_linear_x <= active_linear_x and not blocked_linear_x;
+  chosen_linear_y <= '1' when has_step = '1' and orders_payload_step = 2 else '0';
+  blocked_linear_y <= active_linear_y and message_linear_y_valid_q;
+  go_linear_y <= active_linear_y and not blocked_linear_y;
+  chosen_linear_z <= '1' when has_step = '1' and orders_payload_step = 3 else '0';
+  blocked_linear_z <= active_linear_z and message_linear_z_valid_q;
+  go_linear_z <= active_linear_z and not blocked_linear_z;
+  chosen_angular_x <= '1' when has_step = '1' and orders_payload_step = 4 else '0';
+  blocked_angular_x <= active_angular_x and message_angular_x_valid_q;
+  go_angular_x <= active_angular_x and not blocked_angular_x;
+  chosen_angular_y <= '1' when has_step = '1' and orders_payload_step = 5 else '0';
+  blocked_angular_y <= active_angular_y and message_angular_y_valid_q;
+  go_angular_y <= active_angular_y and not blocked_angular_y;
+  blocked_angular_z <= active_angular_z and message_angular_z_valid_q;
+  go_angular_z <= active_angular_z and not blocked_angular_z and not blocked_angular_y;
+  ends <= orders_valid and orders_payload_ends;
   orders_ready <= not slow;
-  active_0_next <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 1) when orders_ready = '1' else active_0 and
-      not go_0;
-  active_1_next <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 2) when orders_ready = '1' else active_1 and
-      not go_1;
-  active_2_next <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 3) when orders_ready = '1' else active_2 and
-      not go_2;
-  active_3_next <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 4) when orders_ready = '1' else active_3 and
-      not go_3;
-  active_4_next <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 5) when orders_ready = '1' else active_4 and
-      not go_4;
-  active_5_next <= orders_valid and not orders_payload(3) and
-      to_std_logic(orders_payload(2 downto 0) = 5) when orders_ready = '1' else active_5 and
-      not go_5;
-  or_165 <= or unsigned'((ends and status_valid_q and not status_ready) & (orders_valid and
-      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 5) and
-      message_angular_z_valid_q and not message_angular_z_ready) & (orders_valid and
-      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 5) and
-      message_angular_y_valid_q and not message_angular_y_ready) & (orders_valid and
-      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 4) and
-      message_angular_x_valid_q and not message_angular_x_ready) & (orders_valid and
-      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 3) and
-      message_linear_z_valid_q and not message_linear_z_ready) & (orders_valid and
-      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 2) and
-      message_linear_y_valid_q and not message_linear_y_ready) & (orders_valid and
-      not orders_payload(3) and to_std_logic(orders_payload(2 downto 0) = 1) and
-      message_linear_x_valid_q and not message_linear_x_ready));
-  or_181 <= or unsigned'((ends_now and status_valid_q and not status_ready) & (blocked_5 and
-      not message_angular_z_ready) & (blocked_4 and not message_angular_y_ready) & (blocked_3 and
-      not message_angular_x_ready) & (blocked_2 and not message_linear_z_ready) & (blocked_1 and
-      not message_linear_y_ready) & (blocked_0 and not message_linear_x_ready));
+  and_56 <= orders_ready and begins_linear_x;
+  and_64 <= orders_ready and begins_linear_x_2;
+  and_72 <= orders_ready and begins_linear_y;
+  and_80 <= orders_ready and begins_linear_z;
+  and_88 <= orders_ready and begins_angular_x;
+  or_117 <= (chosen_linear_x and full_linear_x) or (chosen_linear_y and full_linear_y) or
+      (chosen_linear_z and full_linear_z) or (chosen_angular_x and full_angular_x) or
+      (chosen_angular_y and full_angular_y) or (chosen_angular_y and full_angular_z) or (ends and
+      status_full);
+  or_131 <= (blocked_linear_x and not message_linear_x_ready) or (blocked_linear_y and
+      not message_linear_y_ready) or (blocked_linear_z and not message_linear_z_ready) or
+      (blocked_angular_x and not message_angular_x_ready) or (blocked_angular_y and
+      not message_angular_y_ready) or (blocked_angular_z and not message_angular_z_ready) or
+      (ends_now and status_full);
 
   process (aclk)
   begin
     if rising_edge(aclk) then
-      if beat(73) = '1' then
-        lane_0(to_integer(beat(71 downto 69))) <= beat(7 downto 0);
+      if beat_valid = '1' then
+        lane_0(to_integer(beat_at(2 downto 0))) <= beat_data(7 downto 0);
       end if;
     end if;
   end process;
 
-  lane_0_items_data <= lane_0(to_integer(orders_payload(9 downto 7)));
+  lane_0_items_data <= lane_0(to_integer(orders_payload_items_at(5 downto 3)));
 
-  lane_0_map_data <= lane_0(to_integer(orders_payload(15 downto 13)));
+  lane_0_map_data <= lane_0(to_integer(orders_payload_map_at(5 downto 3)));
 
   process (aclk)
   begin
     if rising_edge(aclk) then
-      if beat(73) = '1' then
-        lane_1(to_integer(beat(71 downto 69))) <= beat(15 downto 8);
+      if beat_valid = '1' then
+        lane_1(to_integer(beat_at(2 downto 0))) <= beat_data(15 downto 8);
       end if;
     end if;
   end process;
 
-  lane_1_items_data <= lane_1(to_integer(orders_payload(9 downto 7)));
+  lane_1_items_data <= lane_1(to_integer(orders_payload_items_at(5 downto 3)));
 
-  lane_1_map_data <= lane_1(to_integer(orders_payload(15 downto 13)));
+  lane_1_map_data <= lane_1(to_integer(orders_payload_map_at(5 downto 3)));
 
   process (aclk)
   begin
     if rising_edge(aclk) then
-      if beat(73) = '1' then
-        lane_2(to_integer(beat(71 downto 69))) <= beat(23 downto 16);
+      if beat_valid = '1' then
+        lane_2(to_integer(beat_at(2 downto 0))) <= beat_data(23 downto 16);
       end if;
     end if;
   end process;
 
-  lane_2_items_data <= lane_2(to_integer(orders_payload(9 downto 7)));
+  lane_2_items_data <= lane_2(to_integer(orders_payload_items_at(5 downto 3)));
 
-  lane_2_map_data <= lane_2(to_integer(orders_payload(15 downto 13)));
+  lane_2_map_data <= lane_2(to_integer(orders_payload_map_at(5 downto 3)));
 
   process (aclk)
   begin
     if rising_edge(aclk) then
-      if beat(73) = '1' then
-        lane_3(to_integer(beat(71 downto 69))) <= beat(31 downto 24);
+      if beat_valid = '1' then
+        lane_3(to_integer(beat_at(2 downto 0))) <= beat_data(31 downto 24);
       end if;
     end if;
   end process;
 
-  lane_3_items_data <= lane_3(to_integer(orders_payload(9 downto 7)));
+  lane_3_items_data <= lane_3(to_integer(orders_payload_items_at(5 downto 3)));
 
-  lane_3_map_data <= lane_3(to_integer(orders_payload(15 downto 13)));
+  lane_3_map_data <= lane_3(to_integer(orders_payload_map_at(5 downto 3)));
 
   process (aclk)
   begin
     if rising_edge(aclk) then
-      if beat(73) = '1' then
-        lane_4(to_integer(beat(71 downto 69))) <= beat(39 downto 32);
+      if beat_valid = '1' then
+        lane_4(to_integer(beat_at(2 downto 0))) <= beat_data(39 downto 32);
       end if;
     end if;
   end process;
 
-  lane_4_items_data <= lane_4(to_integer(orders_payload(9 downto 7)));
+  lane_4_items_data <= lane_4(to_integer(orders_payload_items_at(5 downto 3)));
 
-  lane_4_map_data <= lane_4(to_integer(orders_payload(15 downto 13)));
+  lane_4_map_data <= lane_4(to_integer(orders_payload_map_at(5 downto 3)));
 
   process (aclk)
   begin
     if rising_edge(aclk) then
-      if beat(73) = '1' then
-        lane_5(to_integer(beat(71 downto 69))) <= beat(47 downto 40);
+      if beat_valid = '1' then
+        lane_5(to_integer(beat_at(2 downto 0))) <= beat_data(47 downto 40);
       end if;
     end if;
   end process;
 
-  lane_5_items_data <= lane_5(to_integer(orders_payload(9 downto 7)));
+  lane_5_items_data <= lane_5(to_integer(orders_payload_items_at(5 downto 3)));
 
-  lane_5_map_data <= lane_5(to_integer(orders_payload(15 downto 13)));
+  lane_5_map_data <= lane_5(to_integer(orders_payload_map_at(5 downto 3)));
 
   process (aclk)
   begin
     if rising_edge(aclk) then
-      if beat(73) = '1' then
-        lane_6(to_integer(beat(71 downto 69))) <= beat(55 downto 48);
+      if beat_valid = '1' then
+        lane_6(to_integer(beat_at(2 downto 0))) <= beat_data(55 downto 48);
       end if;
     end if;
   end process;
 
-  lane_6_items_data <= lane_6(to_integer(orders_payload(9 downto 7)));
+  lane_6_items_data <= lane_6(to_integer(orders_payload_items_at(5 downto 3)));
 
-  lane_6_map_data <= lane_6(to_integer(orders_payload(15 downto 13)));
+  lane_6_map_data <= lane_6(to_integer(orders_payload_map_at(5 downto 3)));
 
   process (aclk)
   begin
     if rising_edge(aclk) then
-      if beat(73) = '1' then
-        lane_7(to_integer(beat(71 downto 69))) <= beat(63 downto 56);
+      if beat_valid = '1' then
+        lane_7(to_integer(beat_at(2 downto 0))) <= beat_data(63 downto 56);
       end if;
     end if;
   end process;
 
-  lane_7_items_data <= lane_7(to_integer(orders_payload(9 downto 7)));
+  lane_7_items_data <= lane_7(to_integer(orders_payload_items_at(5 downto 3)));
 
-  lane_7_map_data <= lane_7(to_integer(orders_payload(15 downto 13)));
+  lane_7_map_data <= lane_7(to_integer(orders_payload_map_at(5 downto 3)));
 
   p_aclk : process (aclk)
   begin
@@ -955,17 +1057,17 @@ begin
         length_good <= '0';
         last <= '0';
         final_sig <= '0';
-        cut_0 <= '0';
-        cut_1 <= '0';
-        cut_2 <= '0';
-        cut_3 <= '0';
-        cut_4 <= '0';
-        active_0 <= '0';
-        active_1 <= '0';
-        active_2 <= '0';
-        active_3 <= '0';
-        active_4 <= '0';
-        active_5 <= '0';
+        begins_linear_x <= '0';
+        begins_linear_x_2 <= '0';
+        begins_linear_y <= '0';
+        begins_linear_z <= '0';
+        begins_angular_x <= '0';
+        active_linear_x <= '0';
+        active_linear_y <= '0';
+        active_linear_z <= '0';
+        active_angular_x <= '0';
+        active_angular_y <= '0';
+        active_angular_z <= '0';
         ends_now <= '0';
         status_now <= (others => '0');
         status_payload_q <= (others => '0');
@@ -974,37 +1076,37 @@ begin
         if message_linear_x_ready = '1' then
           message_linear_x_valid_q <= '0';
         end if;
-        if go_0 = '1' then
+        if go_linear_x = '1' then
           message_linear_x_valid_q <= '1';
         end if;
         if message_linear_y_ready = '1' then
           message_linear_y_valid_q <= '0';
         end if;
-        if go_1 = '1' then
+        if go_linear_y = '1' then
           message_linear_y_valid_q <= '1';
         end if;
         if message_linear_z_ready = '1' then
           message_linear_z_valid_q <= '0';
         end if;
-        if go_2 = '1' then
+        if go_linear_z = '1' then
           message_linear_z_valid_q <= '1';
         end if;
         if message_angular_x_ready = '1' then
           message_angular_x_valid_q <= '0';
         end if;
-        if go_3 = '1' then
+        if go_angular_x = '1' then
           message_angular_x_valid_q <= '1';
         end if;
         if message_angular_y_ready = '1' then
           message_angular_y_valid_q <= '0';
         end if;
-        if go_4 = '1' then
+        if go_angular_y = '1' then
           message_angular_y_valid_q <= '1';
         end if;
         if message_angular_z_ready = '1' then
           message_angular_z_valid_q <= '0';
         end if;
-        if go_5 = '1' then
+        if go_angular_z = '1' then
           message_angular_z_valid_q <= '1';
         end if;
         if status_ready = '1' then
@@ -1015,32 +1117,56 @@ begin
             status_valid_q <= '1';
             status_payload_q <= status_now;
           end if;
-          length_good <= orders_payload(32);
-          last <= orders_payload(31);
-          final_sig <= orders_payload(33);
-          cut_0 <= orders_valid and not orders_payload(3) and
-              to_std_logic(orders_payload(2 downto 0) = 0);
-          cut_1 <= orders_valid and not orders_payload(3) and
-              to_std_logic(orders_payload(2 downto 0) = 1);
-          cut_2 <= orders_valid and not orders_payload(3) and
-              to_std_logic(orders_payload(2 downto 0) = 2);
-          cut_3 <= orders_valid and not orders_payload(3) and
-              to_std_logic(orders_payload(2 downto 0) = 3);
-          cut_4 <= orders_valid and not orders_payload(3) and
-              to_std_logic(orders_payload(2 downto 0) = 4);
+          length_good <= orders_payload_length_good;
+          last <= orders_payload_last;
+          final_sig <= orders_payload_final;
+          begins_linear_x <= orders_valid and not orders_payload_blank and
+              to_std_logic(orders_payload_step = 0);
+          begins_linear_x_2 <= orders_valid and not orders_payload_blank and
+              to_std_logic(orders_payload_step = 1);
+          begins_linear_y <= orders_valid and not orders_payload_blank and
+              to_std_logic(orders_payload_step = 2);
+          begins_linear_z <= orders_valid and not orders_payload_blank and
+              to_std_logic(orders_payload_step = 3);
+          begins_angular_x <= orders_valid and not orders_payload_blank and
+              to_std_logic(orders_payload_step = 4);
           ends_now <= ends;
-          status_now <= orders_payload(41 downto 39);
+          status_now <= orders_payload_status;
         end if;
-        active_0 <= active_0_next;
-        active_1 <= active_1_next;
-        active_2 <= active_2_next;
-        active_3 <= active_3_next;
-        active_4 <= active_4_next;
-        active_5 <= active_5_next;
         if orders_ready = '1' then
-          slow <= or_165;
+          active_linear_x <= chosen_linear_x;
         else
-          slow <= or_181;
+          active_linear_x <= active_linear_x and not go_linear_x;
+        end if;
+        if orders_ready = '1' then
+          active_linear_y <= chosen_linear_y;
+        else
+          active_linear_y <= active_linear_y and not go_linear_y;
+        end if;
+        if orders_ready = '1' then
+          active_linear_z <= chosen_linear_z;
+        else
+          active_linear_z <= active_linear_z and not go_linear_z;
+        end if;
+        if orders_ready = '1' then
+          active_angular_x <= chosen_angular_x;
+        else
+          active_angular_x <= active_angular_x and not go_angular_x;
+        end if;
+        if orders_ready = '1' then
+          active_angular_y <= chosen_angular_y;
+        else
+          active_angular_y <= active_angular_y and not go_angular_y;
+        end if;
+        if orders_ready = '1' then
+          active_angular_z <= chosen_angular_y;
+        else
+          active_angular_z <= active_angular_z and not go_angular_z;
+        end if;
+        if orders_ready = '1' then
+          slow <= or_117;
+        else
+          slow <= or_131;
         end if;
       end if;
     end if;
@@ -1053,121 +1179,120 @@ begin
         items_word <= lane_7_items_data & lane_6_items_data & lane_5_items_data &
             lane_4_items_data & lane_3_items_data & lane_2_items_data & lane_1_items_data &
             lane_0_items_data;
-        items_good <= to_std_logic(orders_payload(25 downto 22) > 7) &
-            to_std_logic(orders_payload(25 downto 22) > 6) &
-            to_std_logic(orders_payload(25 downto 22) > 5) &
-            to_std_logic(orders_payload(25 downto 22) > 4) &
-            to_std_logic(orders_payload(25 downto 22) > 3) &
-            to_std_logic(orders_payload(25 downto 22) > 2) &
-            to_std_logic(orders_payload(25 downto 22) > 1) &
-            to_std_logic(orders_payload(25 downto 22) > 0);
+        items_good <= to_std_logic(orders_payload_items_bytes > 7) &
+            to_std_logic(orders_payload_items_bytes > 6) &
+            to_std_logic(orders_payload_items_bytes > 5) &
+            to_std_logic(orders_payload_items_bytes > 4) &
+            to_std_logic(orders_payload_items_bytes > 3) &
+            to_std_logic(orders_payload_items_bytes > 2) &
+            to_std_logic(orders_payload_items_bytes > 1) &
+            to_std_logic(orders_payload_items_bytes > 0);
         map_word <= lane_7_map_data & lane_6_map_data & lane_5_map_data & lane_4_map_data &
             lane_3_map_data & lane_2_map_data & lane_1_map_data & lane_0_map_data;
-        map_good <= to_std_logic(orders_payload(29 downto 26) > 7) &
-            to_std_logic(orders_payload(29 downto 26) > 6) &
-            to_std_logic(orders_payload(29 downto 26) > 5) &
-            to_std_logic(orders_payload(29 downto 26) > 4) &
-            to_std_logic(orders_payload(29 downto 26) > 3) &
-            to_std_logic(orders_payload(29 downto 26) > 2) &
-            to_std_logic(orders_payload(29 downto 26) > 1) &
-            to_std_logic(orders_payload(29 downto 26) > 0);
+        map_good <= to_std_logic(orders_payload_map_bytes > 7) &
+            to_std_logic(orders_payload_map_bytes > 6) &
+            to_std_logic(orders_payload_map_bytes > 5) &
+            to_std_logic(orders_payload_map_bytes > 4) &
+            to_std_logic(orders_payload_map_bytes > 3) &
+            to_std_logic(orders_payload_map_bytes > 2) &
+            to_std_logic(orders_payload_map_bytes > 1) & to_std_logic(orders_payload_map_bytes > 0);
       end if;
-      if orders_ready = '1' and cut_0 = '1' then
+      if and_56 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if orders_ready = '1' and cut_0 = '1' then
+      if and_56 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if orders_ready = '1' and cut_0 = '1' then
+      if and_56 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if orders_ready = '1' and cut_0 = '1' then
+      if and_56 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if orders_ready = '1' and cut_1 = '1' then
+      if and_64 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if orders_ready = '1' and cut_1 = '1' then
+      if and_64 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if orders_ready = '1' and cut_1 = '1' then
+      if and_64 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if orders_ready = '1' and cut_1 = '1' then
+      if and_64 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if orders_ready = '1' and cut_2 = '1' then
+      if and_72 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if orders_ready = '1' and cut_2 = '1' then
+      if and_72 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if orders_ready = '1' and cut_2 = '1' then
+      if and_72 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if orders_ready = '1' and cut_2 = '1' then
+      if and_72 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if orders_ready = '1' and cut_3 = '1' then
+      if and_80 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if orders_ready = '1' and cut_3 = '1' then
+      if and_80 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if orders_ready = '1' and cut_3 = '1' then
+      if and_80 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if orders_ready = '1' and cut_3 = '1' then
+      if and_80 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if orders_ready = '1' and cut_4 = '1' then
+      if and_88 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if orders_ready = '1' and cut_4 = '1' then
+      if and_88 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if orders_ready = '1' and cut_4 = '1' then
+      if and_88 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if orders_ready = '1' and cut_4 = '1' then
+      if and_88 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if go_0 = '1' then
+      if go_linear_x = '1' then
         if map_good(3) = '1' then
           message_linear_x_payload_q <= map_word(31 downto 0) & carried;
         else
           message_linear_x_payload_q <= (others => '0');
         end if;
       end if;
-      if go_1 = '1' then
+      if go_linear_y = '1' then
         if map_good(3) = '1' then
           message_linear_y_payload_q <= map_word(31 downto 0) & carried;
         else
           message_linear_y_payload_q <= (others => '0');
         end if;
       end if;
-      if go_2 = '1' then
+      if go_linear_z = '1' then
         if map_good(3) = '1' then
           message_linear_z_payload_q <= map_word(31 downto 0) & carried;
         else
           message_linear_z_payload_q <= (others => '0');
         end if;
       end if;
-      if go_3 = '1' then
+      if go_angular_x = '1' then
         if map_good(3) = '1' then
           message_angular_x_payload_q <= map_word(31 downto 0) & carried;
         else
           message_angular_x_payload_q <= (others => '0');
         end if;
       end if;
-      if go_4 = '1' then
+      if go_angular_y = '1' then
         if items_good(3) = '1' then
           message_angular_y_payload_q <= items_word(31 downto 0) & carried;
         else
           message_angular_y_payload_q <= (others => '0');
         end if;
       end if;
-      if go_5 = '1' then
+      if go_angular_z = '1' then
         if map_good(3) = '1' then
           message_angular_z_payload_q <= map_word(31 downto 0) & items_word(63 downto 32);
         else
@@ -1176,6 +1301,21 @@ begin
       end if;
     end if;
   end process;
+
+  beat_data <= beat(63 downto 0);
+  beat_at <= beat(72 downto 69);
+  beat_valid <= beat(73);
+  orders_payload_step <= orders_payload(2 downto 0);
+  orders_payload_blank <= orders_payload(3);
+  orders_payload_items_at <= orders_payload(9 downto 4);
+  orders_payload_map_at <= orders_payload(15 downto 10);
+  orders_payload_items_bytes <= orders_payload(25 downto 22);
+  orders_payload_map_bytes <= orders_payload(29 downto 26);
+  orders_payload_last <= orders_payload(31);
+  orders_payload_length_good <= orders_payload(32);
+  orders_payload_final <= orders_payload(33);
+  orders_payload_ends <= orders_payload(38);
+  orders_payload_status <= orders_payload(41 downto 39);
 
   message_linear_x_valid <= message_linear_x_valid_q;
   message_linear_y_valid <= message_linear_y_valid_q;
@@ -1233,16 +1373,18 @@ begin
   lane_7_write_en <= beat(73);
   lane_7_items_addr <= orders_payload(9 downto 7);
   lane_7_map_addr <= orders_payload(15 downto 13);
-  payload_0 <= message_linear_x_payload_q;
-  payload_1 <= message_linear_y_payload_q;
-  payload_2 <= message_linear_z_payload_q;
-  payload_3 <= message_angular_x_payload_q;
-  payload_4 <= message_angular_y_payload_q;
-  payload_5 <= message_angular_z_payload_q;
+  payload_linear_x <= message_linear_x_payload_q;
+  payload_linear_y <= message_linear_y_payload_q;
+  payload_linear_z <= message_linear_z_payload_q;
+  payload_angular_x <= message_angular_x_payload_q;
+  payload_angular_y <= message_angular_y_payload_q;
+  payload_angular_z <= message_angular_z_payload_q;
+  chosen_angular_z <= chosen_angular_y;
 
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core of the Amaranth design.
+-- Deserializer: Turn packets into messages.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -1285,28 +1427,21 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core is
 
   -- Combinational signals.
-  signal arrival_beat      : unsigned(73 downto 0);
+  signal beat              : unsigned(73 downto 0);
   signal arrival_limit     : unsigned(6 downto 0);
   signal arrival_following : unsigned(3 downto 0);
   signal arrival_ended     : std_logic;
-  signal i_valid           : std_logic;
+  signal orders_valid      : std_logic;
   signal arrival_next      : std_logic;
-  signal i_payload         : unsigned(41 downto 0);
+  signal orders_payload    : unsigned(41 downto 0);
   signal oldest            : unsigned(3 downto 0);
-  signal orders_ready      : std_logic;
+  signal i_ready           : std_logic;
   signal freed             : unsigned(3 downto 0);
-  signal orders_valid_26   : std_logic;
-  signal orders_payload_22 : unsigned(41 downto 0);
-  signal o_ready           : std_logic;
+  signal o_valid           : std_logic;
+  signal o_payload         : unsigned(41 downto 0);
+  signal orders_ready_25   : std_logic;
 
   -- Signals that no logic reads, for simulation.
-  signal orders_payload  : unsigned(41 downto 0);
-  signal i_ready         : std_logic;
-  signal orders_valid    : std_logic;
-  signal o_payload       : unsigned(41 downto 0);
-  signal orders_ready_25 : std_logic;
-  signal o_valid         : std_logic;
-  signal beat            : unsigned(73 downto 0);
   signal stall_newest    : std_logic;
   signal stall_newest_38 : std_logic;
   signal zero_length     : std_logic;
@@ -1321,7 +1456,7 @@ begin
       arrival_next      => arrival_next,
       freed             => freed,
       packets_payload   => packets_payload,
-      arrival_beat      => arrival_beat,
+      arrival_beat      => beat,
       packets_ready     => packets_ready,
       arrival_limit     => arrival_limit,
       arrival_following => arrival_following,
@@ -1332,14 +1467,14 @@ begin
     port map (
       aclk              => aclk,
       rst               => rst,
-      orders_valid      => i_valid,
+      orders_valid      => orders_valid,
       arrival_next      => arrival_next,
-      orders_ready      => orders_ready,
-      beat              => arrival_beat,
+      orders_ready      => i_ready,
+      beat              => beat,
       arrival_limit     => arrival_limit,
       arrival_following => arrival_following,
       arrival_ended     => arrival_ended,
-      orders_payload    => i_payload,
+      orders_payload    => orders_payload,
       header_at         => oldest
     );
 
@@ -1347,14 +1482,14 @@ begin
     port map (
       aclk      => aclk,
       rst       => rst,
-      i_valid   => i_valid,
-      i_ready   => orders_ready,
+      i_valid   => orders_valid,
+      i_ready   => i_ready,
       freed     => freed,
-      o_ready   => o_ready,
-      i_payload => i_payload,
+      o_ready   => orders_ready_25,
+      i_payload => orders_payload,
       oldest    => oldest,
-      o_valid   => orders_valid_26,
-      o_payload => orders_payload_22
+      o_valid   => o_valid,
+      o_payload => o_payload
     );
 
   mover : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover
@@ -1368,10 +1503,10 @@ begin
       message_angular_z_ready   => message_angular_z_ready,
       status_ready              => status_ready,
       rst                       => rst,
-      orders_ready              => o_ready,
-      beat                      => arrival_beat,
-      orders_valid              => orders_valid_26,
-      orders_payload            => orders_payload_22,
+      orders_ready              => orders_ready_25,
+      beat                      => beat,
+      orders_valid              => o_valid,
+      orders_payload            => o_payload,
       message_linear_x_valid    => message_linear_x_valid,
       message_linear_y_valid    => message_linear_y_valid,
       message_linear_z_valid    => message_linear_z_valid,
@@ -1388,13 +1523,6 @@ begin
       message_angular_z_payload => message_angular_z_payload
     );
 
-  orders_payload <= i_payload;
-  i_ready <= orders_ready;
-  orders_valid <= i_valid;
-  o_payload <= orders_payload_22;
-  orders_ready_25 <= o_ready;
-  o_valid <= orders_valid_26;
-  beat <= arrival_beat;
   stall_newest <= '0';
   stall_newest_38 <= '0';
   zero_length <= '0';
@@ -1403,6 +1531,7 @@ begin
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer of the Amaranth design.
+-- Top: A converter with AXI4-Stream on its packet side and named ports on its message side.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -1446,19 +1575,20 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat is
 
   -- Combinational signals.
-  signal linear_x_data_i    : unsigned(63 downto 0);
-  signal linear_y_data_i    : unsigned(63 downto 0);
-  signal linear_z_data_i    : unsigned(63 downto 0);
-  signal angular_x_data_i   : unsigned(63 downto 0);
-  signal angular_y_data_i   : unsigned(63 downto 0);
-  signal angular_z_data_i   : unsigned(63 downto 0);
+  signal linear_x_data_i       : unsigned(63 downto 0);
+  signal linear_y_data_i       : unsigned(63 downto 0);
+  signal linear_z_data_i       : unsigned(63 downto 0);
+  signal angular_x_data_i      : unsigned(63 downto 0);
+  signal angular_y_data_i      : unsigned(63 downto 0);
+  signal angular_z_data_i      : unsigned(63 downto 0);
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal status_payload     : unsigned(2 downto 0);
-  signal rst                : std_logic;
-  signal or_13              : std_logic;
-  signal or_26              : std_logic;
-  signal or_39              : std_logic;
-  signal packets_payload_64 : unsigned(3 downto 0);
+  signal status_payload        : unsigned(2 downto 0);
+  signal rst                   : std_logic;
+  signal and_6                 : std_logic;
+  signal and_9                 : std_logic;
+  signal and_12                : std_logic;
+  signal and_22                : std_logic;
+  signal packets_payload_count : unsigned(3 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal packets_valid             : std_logic;
@@ -1499,7 +1629,7 @@ begin
       status_ready                  => m_axis_status_tready,
       rst                           => rst,
       packets_payload(63 downto 0)  => unsigned(s_axis_tdata),
-      packets_payload(67 downto 64) => packets_payload_64,
+      packets_payload(67 downto 64) => packets_payload_count,
       packets_payload(68)           => s_axis_tlast,
       packets_ready                 => s_axis_tready,
       message_linear_x_valid        => linear_x_valid,
@@ -1519,20 +1649,15 @@ begin
     );
 
   rst <= not aresetn;
-  or_13 <= or unsigned'(((and unsigned(s_axis_tkeep(6 downto 0))) and not s_axis_tkeep(7)) &
-      ((and unsigned(s_axis_tkeep(4 downto 0))) and not s_axis_tkeep(5)) &
-      ((and unsigned(s_axis_tkeep(2 downto 0))) and not s_axis_tkeep(3)) & (s_axis_tkeep(0) and
-      not s_axis_tkeep(1)));
-  or_26 <= or unsigned'(((and unsigned(s_axis_tkeep(6 downto 0))) and not s_axis_tkeep(7)) &
-      ((and unsigned(s_axis_tkeep(5 downto 0))) and not s_axis_tkeep(6)) &
-      ((and unsigned(s_axis_tkeep(2 downto 0))) and not s_axis_tkeep(3)) &
-      ((and unsigned(s_axis_tkeep(1 downto 0))) and not s_axis_tkeep(2)));
-  or_39 <= or unsigned'(((and unsigned(s_axis_tkeep(6 downto 0))) and not s_axis_tkeep(7)) &
-      ((and unsigned(s_axis_tkeep(5 downto 0))) and not s_axis_tkeep(6)) &
-      ((and unsigned(s_axis_tkeep(4 downto 0))) and not s_axis_tkeep(5)) &
-      ((and unsigned(s_axis_tkeep(3 downto 0))) and not s_axis_tkeep(4)));
-  packets_payload_64 <= (and unsigned(s_axis_tkeep)) & or_39 & or_26 & or_13 when s_axis_tlast =
-      '1' else "1000";
+  and_6 <= (and unsigned(s_axis_tkeep(2 downto 0))) and not s_axis_tkeep(3);
+  and_9 <= (and unsigned(s_axis_tkeep(4 downto 0))) and not s_axis_tkeep(5);
+  and_12 <= (and unsigned(s_axis_tkeep(6 downto 0))) and not s_axis_tkeep(7);
+  and_22 <= (and unsigned(s_axis_tkeep(5 downto 0))) and not s_axis_tkeep(6);
+  packets_payload_count <= (and unsigned(s_axis_tkeep)) &
+      (((and unsigned(s_axis_tkeep(3 downto 0))) and not s_axis_tkeep(4)) or and_9 or and_22 or
+      and_12) & (((and unsigned(s_axis_tkeep(1 downto 0))) and not s_axis_tkeep(2)) or and_6 or
+      and_22 or and_12) & ((s_axis_tkeep(0) and not s_axis_tkeep(1)) or and_6 or and_9 or
+      and_12) when s_axis_tlast = '1' else "1000";
 
   m_axis_status_tdata <= std_logic_vector(resize(status_payload, 8));
 
@@ -1565,6 +1690,6 @@ begin
   message_angular_z_payload <= angular_z_data_i;
   message_angular_z_valid <= angular_z_valid;
   message_angular_z_ready <= angular_z_ready;
-  packets_payload <= s_axis_tlast & packets_payload_64 & unsigned(s_axis_tdata);
+  packets_payload <= s_axis_tlast & packets_payload_count & unsigned(s_axis_tdata);
 
 end architecture;

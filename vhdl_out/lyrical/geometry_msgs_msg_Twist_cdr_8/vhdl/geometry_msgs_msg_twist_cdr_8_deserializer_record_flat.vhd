@@ -3,6 +3,7 @@
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
 -- Module geometry_msgs_msg_twist_cdr_8_deserializer_record_flat.record of the Amaranth design.
+-- RecordReader: Join the leaves of a message that have a fixed size into one stream of records.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -42,9 +43,8 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_recor
   signal record_payload          : unsigned(383 downto 0);
 begin
 
-  record_valid <= and unsigned'(message_angular_z_valid & message_angular_y_valid &
-      message_angular_x_valid & message_linear_z_valid & message_linear_y_valid &
-      message_linear_x_valid);
+  record_valid <= message_linear_x_valid and message_linear_y_valid and message_linear_z_valid and
+      message_angular_x_valid and message_angular_y_valid and message_angular_z_valid;
   message_linear_x_ready <= record_valid and record_ready;
 
   taken <= message_linear_x_ready;
@@ -60,6 +60,7 @@ begin
 end architecture;
 
 -- Module geometry_msgs_msg_twist_cdr_8_deserializer_record_flat of the Amaranth design.
+-- RecordTop: An instance of a converter, with AXI4-Stream and one vector on its message side.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -88,26 +89,25 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat is
 
   -- Combinational signals.
-  signal message_linear_x_ready    : std_logic;
-  signal rst                       : std_logic;
-  signal message_linear_x_payload  : std_logic_vector(63 downto 0);
-  signal message_linear_x_valid    : std_logic;
-  signal message_linear_y_payload  : std_logic_vector(63 downto 0);
-  signal message_linear_y_valid    : std_logic;
-  signal message_linear_z_payload  : std_logic_vector(63 downto 0);
-  signal message_linear_z_valid    : std_logic;
-  signal message_angular_x_payload : std_logic_vector(63 downto 0);
-  signal message_angular_x_valid   : std_logic;
-  signal message_angular_y_payload : std_logic_vector(63 downto 0);
-  signal message_angular_y_valid   : std_logic;
-  signal message_angular_z_payload : std_logic_vector(63 downto 0);
-  signal message_angular_z_valid   : std_logic;
+  signal message_linear_y_ready   : std_logic;
+  signal rst                      : std_logic;
+  signal record_payload_linear_x  : std_logic_vector(63 downto 0);
+  signal message_linear_x_valid   : std_logic;
+  signal record_payload_linear_y  : std_logic_vector(63 downto 0);
+  signal message_linear_y_valid   : std_logic;
+  signal record_payload_linear_z  : std_logic_vector(63 downto 0);
+  signal message_linear_z_valid   : std_logic;
+  signal record_payload_angular_x : std_logic_vector(63 downto 0);
+  signal message_angular_x_valid  : std_logic;
+  signal record_payload_angular_y : std_logic_vector(63 downto 0);
+  signal message_angular_y_valid  : std_logic;
+  signal record_payload_angular_z : std_logic_vector(63 downto 0);
+  signal message_angular_z_valid  : std_logic;
 
   -- Signals that no logic reads, for simulation.
   signal record_payload          : unsigned(383 downto 0);
   signal record_valid            : std_logic;
   signal record_ready            : std_logic;
-  signal message_linear_y_ready  : std_logic;
   signal message_linear_z_ready  : std_logic;
   signal message_angular_x_ready : std_logic;
   signal message_angular_y_ready : std_logic;
@@ -151,18 +151,18 @@ begin
     port map (
       record_ready              => msg_ready,
       record_valid              => msg_valid,
-      message_linear_x_ready    => message_linear_x_ready,
-      message_linear_x_payload  => unsigned(message_linear_x_payload),
+      message_linear_x_ready    => message_linear_y_ready,
+      message_linear_x_payload  => unsigned(record_payload_linear_x),
       message_linear_x_valid    => message_linear_x_valid,
-      message_linear_y_payload  => unsigned(message_linear_y_payload),
+      message_linear_y_payload  => unsigned(record_payload_linear_y),
       message_linear_y_valid    => message_linear_y_valid,
-      message_linear_z_payload  => unsigned(message_linear_z_payload),
+      message_linear_z_payload  => unsigned(record_payload_linear_z),
       message_linear_z_valid    => message_linear_z_valid,
-      message_angular_x_payload => unsigned(message_angular_x_payload),
+      message_angular_x_payload => unsigned(record_payload_angular_x),
       message_angular_x_valid   => message_angular_x_valid,
-      message_angular_y_payload => unsigned(message_angular_y_payload),
+      message_angular_y_payload => unsigned(record_payload_angular_y),
       message_angular_y_valid   => message_angular_y_valid,
-      message_angular_z_payload => unsigned(message_angular_z_payload),
+      message_angular_z_payload => unsigned(record_payload_angular_z),
       message_angular_z_valid   => message_angular_z_valid
     );
 
@@ -174,25 +174,25 @@ begin
       s_axis_tkeep         => s_axis_tkeep,
       s_axis_tlast         => s_axis_tlast,
       s_axis_tvalid        => s_axis_tvalid,
-      linear_x_ready       => message_linear_x_ready,
-      linear_y_ready       => message_linear_x_ready,
-      linear_z_ready       => message_linear_x_ready,
-      angular_x_ready      => message_linear_x_ready,
-      angular_y_ready      => message_linear_x_ready,
-      angular_z_ready      => message_linear_x_ready,
+      linear_x_ready       => message_linear_y_ready,
+      linear_y_ready       => message_linear_y_ready,
+      linear_z_ready       => message_linear_y_ready,
+      angular_x_ready      => message_linear_y_ready,
+      angular_y_ready      => message_linear_y_ready,
+      angular_z_ready      => message_linear_y_ready,
       m_axis_status_tready => m_axis_status_tready,
       s_axis_tready        => s_axis_tready,
-      linear_x_data        => message_linear_x_payload,
+      linear_x_data        => record_payload_linear_x,
       linear_x_valid       => message_linear_x_valid,
-      linear_y_data        => message_linear_y_payload,
+      linear_y_data        => record_payload_linear_y,
       linear_y_valid       => message_linear_y_valid,
-      linear_z_data        => message_linear_z_payload,
+      linear_z_data        => record_payload_linear_z,
       linear_z_valid       => message_linear_z_valid,
-      angular_x_data       => message_angular_x_payload,
+      angular_x_data       => record_payload_angular_x,
       angular_x_valid      => message_angular_x_valid,
-      angular_y_data       => message_angular_y_payload,
+      angular_y_data       => record_payload_angular_y,
       angular_y_valid      => message_angular_y_valid,
-      angular_z_data       => message_angular_z_payload,
+      angular_z_data       => record_payload_angular_z,
       angular_z_valid      => message_angular_z_valid,
       m_axis_status_tdata  => m_axis_status_tdata,
       m_axis_status_tvalid => m_axis_status_tvalid
@@ -200,20 +200,19 @@ begin
 
   rst <= not aresetn;
 
-  msg_data <= std_logic_vector(unsigned'(unsigned(message_angular_z_payload) &
-      unsigned(message_angular_y_payload) & unsigned(message_angular_x_payload) &
-      unsigned(message_linear_z_payload) & unsigned(message_linear_y_payload) &
-      unsigned(message_linear_x_payload)));
+  msg_data <= std_logic_vector(unsigned'(unsigned(record_payload_angular_z) &
+      unsigned(record_payload_angular_y) & unsigned(record_payload_angular_x) &
+      unsigned(record_payload_linear_z) & unsigned(record_payload_linear_y) &
+      unsigned(record_payload_linear_x)));
 
-  record_payload <= unsigned(message_angular_z_payload) & unsigned(message_angular_y_payload) &
-      unsigned(message_angular_x_payload) & unsigned(message_linear_z_payload) &
-      unsigned(message_linear_y_payload) & unsigned(message_linear_x_payload);
+  record_payload <= unsigned(record_payload_angular_z) & unsigned(record_payload_angular_y) &
+      unsigned(record_payload_angular_x) & unsigned(record_payload_linear_z) &
+      unsigned(record_payload_linear_y) & unsigned(record_payload_linear_x);
   record_valid <= msg_valid;
   record_ready <= msg_ready;
-  message_linear_y_ready <= message_linear_x_ready;
-  message_linear_z_ready <= message_linear_x_ready;
-  message_angular_x_ready <= message_linear_x_ready;
-  message_angular_y_ready <= message_linear_x_ready;
-  message_angular_z_ready <= message_linear_x_ready;
+  message_linear_z_ready <= message_linear_y_ready;
+  message_angular_x_ready <= message_linear_y_ready;
+  message_angular_y_ready <= message_linear_y_ready;
+  message_angular_z_ready <= message_linear_y_ready;
 
 end architecture;

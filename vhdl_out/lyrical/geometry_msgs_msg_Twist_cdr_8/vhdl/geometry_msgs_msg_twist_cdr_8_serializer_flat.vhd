@@ -2,8 +2,19 @@
 -- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
+-- Steps, as `firm-hdl plan --program` prints and explains them:
+-- serializer: start 0, items from lane 0, unit 8, map from lane 0, unit 4, at most 3 beats a
+--       state
+--   0 linear_x: map of 8; begins linear.x; map = 00 01 00 00 linear.x:0..3; to 1
+--   1 linear_x_2: map of 8; linear.x; begins linear.y; map = linear.x:4..7 linear.y:0..3; to 2
+--   2 linear_y: map of 8; linear.y; begins linear.z; map = linear.y:4..7 linear.z:0..3; to 3
+--   3 linear_z: map of 8; linear.z; begins angular.x; map = linear.z:4..7 angular.x:0..3; to 4
+--   4 angular_x: map of 8; angular.x; begins angular.y; map = angular.x:4..7 angular.y:0..3; to 5
+--   5 angular_y: map of 12 in two words; angular.y angular.z; items = angular.y:4..7
+--       angular.z:0..3; map = angular.z:4..7; to end
 -- Module geometry_msgs_msg_Twist_cdr_8_serializer.core.collector of the Amaranth design.
--- 16 registers at rising_edge(aclk), synchronous reset rst = '1'.
+-- Collector: Take the leaves of each state of a program, and put them into two words.
+-- 21 registers at rising_edge(aclk), synchronous reset rst = '1'.
 -- 4 registers at rising_edge(aclk), no reset.
 
 library ieee;
@@ -35,8 +46,8 @@ entity geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector is
     message_angular_x_ready   : out std_logic;
     message_angular_y_ready   : out std_logic;
     message_angular_z_ready   : out std_logic;
-    port_545_0                : out unsigned(127 downto 0);
-    port_549_0                : out unsigned(32 downto 0);
+    port_537_0                : out unsigned(127 downto 0);
+    port_541_0                : out unsigned(32 downto 0);
     status_valid              : out std_logic;
     -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
     status_payload            : out unsigned(2 downto 0);
@@ -47,8 +58,11 @@ end entity;
 
 architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector is
 
+  -- Values of enumerations.
+  constant STATUS_OK : unsigned(2 downto 0) := "000";
+
   -- Registers.
-  signal port_549_0_q     : unsigned(32 downto 0) := (others => '0');
+  signal port_541_0_q     : unsigned(32 downto 0) := (others => '0');
   signal status_valid_q   : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal status_payload_q : unsigned(2 downto 0) := (others => '0');
@@ -64,7 +78,13 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
   signal begun            : std_logic := '0';
   signal words_last       : std_logic := '1';
   signal words_less       : std_logic := '0';
-  signal step             : unsigned(5 downto 0) := "000001";
+  signal step_linear_x    : std_logic := '1';  -- step 0: map of 8; begins linear.x
+  signal step_linear_x_2  : std_logic := '0';  -- step 1: map of 8; linear.x; begins linear.y
+  signal step_linear_y    : std_logic := '0';  -- step 2: map of 8; linear.y; begins linear.z
+  signal step_linear_z    : std_logic := '0';  -- step 3: map of 8; linear.z; begins angular.x
+  signal step_angular_x   : std_logic := '0';  -- step 4: map of 8; angular.x; begins angular.y
+  -- step 5: map of 12 in two words; angular.y angular.z
+  signal step_angular_y   : std_logic := '0';
   signal map_bytes        : unsigned(3 downto 0) := "1000";
   signal items_bytes      : unsigned(3 downto 0) := (others => '0');
   signal two_word_map     : std_logic := '0';
@@ -72,116 +92,122 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
   signal has_nul          : std_logic := '0';
 
   -- Combinational signals.
-  signal left_1_0      : std_logic;
-  signal lacks_1_0     : std_logic;
-  signal left_2_0      : std_logic;
-  signal lacks_2_0     : std_logic;
-  signal left_3_0      : std_logic;
-  signal lacks_3_0     : std_logic;
-  signal left_4_0      : std_logic;
-  signal lacks_4_0     : std_logic;
-  signal left_5_0      : std_logic;
-  signal lacks_5_0     : std_logic;
-  signal left_5_1      : std_logic;
-  signal lacks_5_1     : std_logic;
-  signal go_5_1        : std_logic;
-  signal free          : std_logic;
-  signal or_60         : std_logic;
-  signal complete      : std_logic;
-  signal map_size      : unsigned(4 downto 0);
-  signal begins        : std_logic;
-  signal to_map_0      : unsigned(3 downto 0);
-  signal step_to_exit  : std_logic;
-  signal served_0_next : std_logic;
-  signal and_101       : std_logic;
-  signal or_129        : unsigned(31 downto 0);
-  signal map_0_next    : unsigned(31 downto 0);
-  signal or_148        : unsigned(31 downto 0);
-  signal add_155       : unsigned(5 downto 0);
-  signal to_end        : unsigned(5 downto 0);
-  signal end_mask      : unsigned(2 downto 0);
+  signal left_linear_x   : std_logic;
+  signal lacks_linear_x  : std_logic;
+  signal left_linear_y   : std_logic;
+  signal lacks_linear_y  : std_logic;
+  signal left_linear_z   : std_logic;
+  signal lacks_linear_z  : std_logic;
+  signal left_angular_x  : std_logic;
+  signal lacks_angular_x : std_logic;
+  signal left_angular_y  : std_logic;
+  signal lacks_angular_y : std_logic;
+  signal left_angular_z  : std_logic;
+  signal lacks_angular_z : std_logic;
+  signal go_angular_z    : std_logic;
+  signal free            : std_logic;
+  signal or_60           : std_logic;
+  signal complete        : std_logic;
+  signal map_size        : unsigned(4 downto 0);
+  signal begins          : std_logic;
+  signal to_map_0        : unsigned(3 downto 0);
+  signal to_exit         : std_logic;
+  signal served_0_next   : std_logic;
+  signal or_120          : std_logic;
+  signal or_133          : unsigned(31 downto 0);
+  signal map_0_next      : unsigned(31 downto 0);
+  signal or_152          : unsigned(31 downto 0);
+  signal add_159         : unsigned(5 downto 0);
+  signal to_end          : unsigned(5 downto 0);
+  signal end_mask        : unsigned(2 downto 0);
 
   -- Signals that no logic reads, for simulation.
-  signal default_0     : std_logic;
-  signal default_1     : std_logic;
-  signal default_2     : std_logic;
-  signal default_3     : std_logic;
-  signal default_4     : std_logic;
-  signal default_5     : std_logic;
-  signal words_payload : unsigned(160 downto 0);
-  signal to_map        : unsigned(4 downto 0);
-  signal words_loads   : std_logic;
-  signal done          : std_logic;
-  signal ends          : std_logic;
-  signal go_1_0        : std_logic;
-  signal go_2_0        : std_logic;
-  signal go_3_0        : std_logic;
-  signal go_4_0        : std_logic;
-  signal go_5_0        : std_logic;
-  signal items_size    : unsigned(3 downto 0);
-  signal step_to_body  : std_logic;
-  signal words_down    : std_logic;
-  signal words_keeps   : std_logic;
+  signal length_zero             : std_logic;
+  signal length_skips            : std_logic;
+  signal length_over             : std_logic;
+  signal words_payload           : unsigned(160 downto 0);
+  signal to_map                  : unsigned(4 downto 0);
+  signal length_rest             : std_logic;
+  signal length_at_most_one_pass : std_logic;
+  signal words_loads             : std_logic;
+  signal done                    : std_logic;
+  signal ends                    : std_logic;
+  signal go_linear_x             : std_logic;
+  signal go_linear_y             : std_logic;
+  signal go_linear_z             : std_logic;
+  signal go_angular_x            : std_logic;
+  signal go_angular_y            : std_logic;
+  signal items_size              : unsigned(3 downto 0);
+  signal to_body                 : std_logic;
+  signal words_down              : std_logic;
+  signal words_keeps             : std_logic;
+  signal words_is_small          : std_logic;
+  signal words_is_2              : std_logic;
+  signal words_is_3              : std_logic;
+  signal words_is_4              : std_logic;
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal found         : unsigned(2 downto 0);
-  signal words_pending : std_logic;
-  signal words_value   : unsigned(2 downto 0);
+  signal found                   : unsigned(2 downto 0);
+  signal words_pending           : std_logic;
+  signal words_value             : unsigned(2 downto 0);
 begin
 
-  left_1_0 <= step(1) and not served_0;
-  lacks_1_0 <= left_1_0 and not message_linear_x_valid;
-  message_linear_x_ready <= left_1_0 and message_linear_x_valid and free;
-  left_2_0 <= step(2) and not served_0;
-  lacks_2_0 <= left_2_0 and not message_linear_y_valid;
-  message_linear_y_ready <= left_2_0 and message_linear_y_valid and free;
-  left_3_0 <= step(3) and not served_0;
-  lacks_3_0 <= left_3_0 and not message_linear_z_valid;
-  message_linear_z_ready <= left_3_0 and message_linear_z_valid and free;
-  left_4_0 <= step(4) and not served_0;
-  lacks_4_0 <= left_4_0 and not message_angular_x_valid;
-  message_angular_x_ready <= left_4_0 and message_angular_x_valid and free;
-  left_5_0 <= step(5) and not served_0;
-  lacks_5_0 <= left_5_0 and not message_angular_y_valid;
-  message_angular_y_ready <= left_5_0 and message_angular_y_valid and free;
-  left_5_1 <= step(5) and not served_1;
-  lacks_5_1 <= left_5_1 and not message_angular_z_valid;
-  go_5_1 <= left_5_1 and message_angular_z_valid and free and not lacks_5_0;
+  left_linear_x <= step_linear_x_2 and not served_0;
+  lacks_linear_x <= left_linear_x and not message_linear_x_valid;
+  message_linear_x_ready <= left_linear_x and message_linear_x_valid and free;
+  left_linear_y <= step_linear_y and not served_0;
+  lacks_linear_y <= left_linear_y and not message_linear_y_valid;
+  message_linear_y_ready <= left_linear_y and message_linear_y_valid and free;
+  left_linear_z <= step_linear_z and not served_0;
+  lacks_linear_z <= left_linear_z and not message_linear_z_valid;
+  message_linear_z_ready <= left_linear_z and message_linear_z_valid and free;
+  left_angular_x <= step_angular_x and not served_0;
+  lacks_angular_x <= left_angular_x and not message_angular_x_valid;
+  message_angular_x_ready <= left_angular_x and message_angular_x_valid and free;
+  left_angular_y <= step_angular_y and not served_0;
+  lacks_angular_y <= left_angular_y and not message_angular_y_valid;
+  message_angular_y_ready <= left_angular_y and message_angular_y_valid and free;
+  left_angular_z <= step_angular_y and not served_1;
+  lacks_angular_z <= left_angular_z and not message_angular_z_valid;
+  go_angular_z <= left_angular_z and message_angular_z_valid and free and not lacks_angular_y;
   free <= not words_valid_q or words_ready;
-  or_60 <= or unsigned'((step(4) and not message_angular_y_valid) & (step(3) and
-      not message_angular_x_valid) & (step(2) and not message_linear_z_valid) & (step(1) and
-      not message_linear_y_valid) & (step(0) and not message_linear_x_valid) & lacks_5_1 &
-      lacks_5_0 & lacks_4_0 & lacks_3_0 & lacks_2_0 & lacks_1_0);
-  complete <= free and not or_60 and (not step(5) or not status_valid_q or status_ready);
+  or_60 <= lacks_linear_x or lacks_linear_y or lacks_linear_z or lacks_angular_x or
+      lacks_angular_y or lacks_angular_z or (step_linear_x and not message_linear_x_valid) or
+      (step_linear_x_2 and not message_linear_y_valid) or (step_linear_y and
+      not message_linear_z_valid) or (step_linear_z and not message_angular_x_valid) or
+      (step_angular_x and not message_angular_y_valid);
+  complete <= free and not or_60 and (not step_angular_y or not status_valid_q or status_ready);
   map_size <= resize(map_bytes, 5) + mux(two_word_map, "1000", "0000");
   begins <= begun or (or items_bytes) or (or map_bytes);
   to_map_0 <= (others => '0') when two_word_map = '1' else items_bytes;
-  step_to_exit <= complete and not step(5);
-  served_0_next <= (served_0 or (or unsigned'(message_angular_y_ready & message_angular_x_ready &
-      message_linear_z_ready & message_linear_y_ready & message_linear_x_ready))) and not complete;
-  and_101 <= complete and step(5);
-  or_129 <= mux(step(0), x"00000100", x"00000000") or mux(step(1),
-      message_linear_x_payload(63 downto 32), x"00000000") or mux(step(2),
-      message_linear_y_payload(63 downto 32), x"00000000") or mux(step(3),
+  to_exit <= complete and not step_angular_y;
+  served_0_next <= (served_0 or message_linear_x_ready or message_linear_y_ready or
+      message_linear_z_ready or message_angular_x_ready or message_angular_y_ready) and
+      not complete;
+  or_120 <= ((step_linear_x_2 or step_linear_y or step_linear_z or step_angular_x) and served_0) or
+      (step_angular_y and served_1);
+  or_133 <= mux(step_linear_x, x"00000100", x"00000000") or mux(step_linear_x_2,
+      message_linear_x_payload(63 downto 32), x"00000000") or mux(step_linear_y,
+      message_linear_y_payload(63 downto 32), x"00000000") or mux(step_linear_z,
       message_linear_z_payload(63 downto 32), x"00000000");
-  map_0_next <= or_129 or mux(step(4), message_angular_x_payload(63 downto 32), x"00000000") or
-      mux(step(5), message_angular_z_payload(63 downto 32), x"00000000");
-  or_148 <= mux(step(0), message_linear_x_payload(31 downto 0), x"00000000") or mux(step(1),
-      message_linear_y_payload(31 downto 0), x"00000000") or mux(step(2),
-      message_linear_z_payload(31 downto 0), x"00000000") or mux(step(3),
+  map_0_next <= or_133 or mux(step_angular_x, message_angular_x_payload(63 downto 32),
+      x"00000000") or mux(step_angular_y, message_angular_z_payload(63 downto 32), x"00000000");
+  or_152 <= mux(step_linear_x, message_linear_x_payload(31 downto 0), x"00000000") or
+      mux(step_linear_x_2, message_linear_y_payload(31 downto 0), x"00000000") or mux(step_linear_y,
+      message_linear_z_payload(31 downto 0), x"00000000") or mux(step_linear_z,
       message_angular_x_payload(31 downto 0), x"00000000");
-  add_155 <= resize(to_map_0, 5) + to_end + 7;
+  add_159 <= resize(to_map_0, 5) + to_end + 7;
 
-  to_end <= mux(begins, resize(map_size, 6) + 7, "001000") when step(5) = '1' else
+  to_end <= mux(begins, resize(map_size, 6) + 7, "001000") when step_angular_y = '1' else
             resize(map_size, 6);
 
-  end_mask <= "111" when step(5) = '1' else
+  end_mask <= "111" when step_angular_y = '1' else
               (others => '0');
 
   p_aclk : process (aclk)
   begin
     if rising_edge(aclk) then
       if rst = '1' then
-        port_549_0_q <= (others => '0');
+        port_541_0_q <= (others => '0');
         served_0 <= '0';
         served_1 <= '0';
         error_sig <= (others => '0');
@@ -191,7 +217,12 @@ begin
         words_valid_q <= '0';
         words_last <= '1';
         words_less <= '0';
-        step <= "000001";
+        step_linear_x <= '1';
+        step_linear_x_2 <= '0';
+        step_linear_y <= '0';
+        step_linear_z <= '0';
+        step_angular_x <= '0';
+        step_angular_y <= '0';
         map_bytes <= "1000";
         items_bytes <= (others => '0');
         two_word_map <= '0';
@@ -199,43 +230,54 @@ begin
         has_nul <= '0';
       else
         if free = '1' then
-          port_549_0_q(13 downto 0) <= resize(unsigned'(to_map_0 & two_word_map & map_bytes &
+          port_541_0_q(13 downto 0) <= resize(unsigned'(to_map_0 & two_word_map & map_bytes &
               items_bytes), 14);
-          port_549_0_q(28 downto 26) <= add_155(5 downto 3);
-          port_549_0_q(25 downto 14) <= end_mask & to_end & "000";
-          port_549_0_q(30) <= not begins;
+          port_541_0_q(28 downto 26) <= add_159(5 downto 3);
+          port_541_0_q(25 downto 14) <= end_mask & to_end & "000";
+          port_541_0_q(30) <= not begins;
           words_valid_q <= complete;
         end if;
         if free = '1' then
-          port_549_0_q(29) <= step(5);
-          port_549_0_q(32 downto 31) <= to_std_logic(error_sig /= 0) & '0';
+          port_541_0_q(29) <= step_angular_y;
+          port_541_0_q(32 downto 31) <= to_std_logic(error_sig /= STATUS_OK) & '0';
         end if;
         served_0 <= served_0_next;
-        served_1 <= (served_1 or go_5_1) and not complete;
-        if and_101 = '1' then
-          error_sig <= (others => '0');
+        served_1 <= (served_1 or go_angular_z) and not complete;
+        if complete = '1' and step_angular_y = '1' then
+          error_sig <= STATUS_OK;
           status_payload_q <= error_sig;
         end if;
         if status_ready = '1' then
           status_valid_q <= '0';
         end if;
-        if and_101 = '1' then
+        if complete = '1' and step_angular_y = '1' then
           status_valid_q <= '1';
         end if;
         if complete = '1' then
-          begun <= begins and not step(5);
-          if step(5) = '1' then
-            step <= "000001";
+          begun <= begins and not step_angular_y;
+          if step_angular_y = '1' then
+            step_linear_x <= '1';
+            step_linear_x_2 <= '0';
+            step_linear_y <= '0';
+            step_linear_z <= '0';
+            step_angular_x <= '0';
+            step_angular_y <= '0';
             map_bytes <= "1000";
             items_bytes <= (others => '0');
             two_word_map <= '0';
           else
-            step <= step(4 downto 0) & '0';
-            map_bytes <= (or step(3 downto 0)) & step(4) & "00";
-            items_bytes <= step(4) & "000";
-            two_word_map <= step(4);
+            step_linear_x <= '0';
+            step_linear_x_2 <= step_linear_x;
+            step_linear_y <= step_linear_x_2;
+            step_linear_z <= step_linear_y;
+            step_angular_x <= step_linear_z;
+            step_angular_y <= step_angular_x;
+            map_bytes <= (step_linear_x or step_linear_x_2 or step_linear_y or step_linear_z) &
+                step_angular_x & "00";
+            items_bytes <= step_angular_x & "000";
+            two_word_map <= step_angular_x;
           end if;
-          if step(5) = '1' then
+          if step_angular_y = '1' then
             rest <= '0';
             has_nul <= '0';
           end if;
@@ -249,50 +291,52 @@ begin
   p_aclk_2 : process (aclk)
   begin
     if rising_edge(aclk) then
-      if free = '1' and (step(5) = '0' or served_0 = '0') then
+      if free = '1' and (step_angular_y = '0' or served_0 = '0') then
         items_0 <= message_angular_y_payload(63 downto 32);
       end if;
-      if free = '1' and (step(5) = '0' or served_1 = '0') then
+      if free = '1' and (step_angular_y = '0' or served_1 = '0') then
         items_4 <= message_angular_z_payload(31 downto 0);
       end if;
-      if free = '1' and unsigned'((step(5) and served_1) & ((or step(4 downto 1)) and served_0)) =
-          0 then
+      if free = '1' and or_120 = '0' then
         map_0 <= map_0_next;
       end if;
       if free = '1' then
-        map_4 <= or_148 or mux(step(4), message_angular_y_payload(31 downto 0), x"00000000");
+        map_4 <= or_152 or mux(step_angular_x, message_angular_y_payload(31 downto 0), x"00000000");
       end if;
     end if;
   end process;
 
-  port_545_0 <= map_4 & map_0 & items_4 & items_0;
-  message_angular_z_ready <= go_5_1;
+  port_537_0 <= map_4 & map_0 & items_4 & items_0;
+  message_angular_z_ready <= go_angular_z;
 
-  port_549_0 <= port_549_0_q;
+  port_541_0 <= port_541_0_q;
   status_valid <= status_valid_q;
   status_payload <= status_payload_q;
   words_valid <= words_valid_q;
 
-  default_0 <= step(0);
-  default_1 <= step(1);
-  default_2 <= step(2);
-  default_3 <= step(3);
-  default_4 <= step(4);
-  default_5 <= step(5);
-  words_payload <= port_549_0_q & map_4 & map_0 & items_4 & items_0;
+  length_zero <= '0';
+  length_skips <= '0';
+  length_over <= '0';
+  words_payload <= port_541_0_q & map_4 & map_0 & items_4 & items_0;
   to_map <= resize(to_map_0, 5);
+  length_rest <= '0';
+  length_at_most_one_pass <= '0';
   words_loads <= '0';
   done <= '1';
-  ends <= step(5);
-  go_1_0 <= message_linear_x_ready;
-  go_2_0 <= message_linear_y_ready;
-  go_3_0 <= message_linear_z_ready;
-  go_4_0 <= message_angular_x_ready;
-  go_5_0 <= message_angular_y_ready;
+  ends <= step_angular_y;
+  go_linear_x <= message_linear_x_ready;
+  go_linear_y <= message_linear_y_ready;
+  go_linear_z <= message_linear_z_ready;
+  go_angular_x <= message_angular_x_ready;
+  go_angular_y <= message_angular_y_ready;
   items_size <= items_bytes;
-  step_to_body <= '0';
+  to_body <= '0';
   words_down <= '0';
   words_keeps <= '1';
+  words_is_small <= '1';
+  words_is_2 <= '0';
+  words_is_3 <= '0';
+  words_is_4 <= '0';
   found <= error_sig;
   words_pending <= '0';
   words_value <= (others => '0');
@@ -300,6 +344,7 @@ begin
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_serializer.core.packer of the Amaranth design.
+-- Packer: Write words to a ring of beats, and send the beats that are complete.
 -- 20 registers at rising_edge(aclk), synchronous reset rst = '1'.
 -- 4 registers at rising_edge(aclk), no reset.
 
@@ -353,31 +398,40 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal first              : unsigned(3 downto 0) := (others => '0');
 
   -- Combinational signals.
-  signal takes             : std_logic;
-  signal total             : unsigned(6 downto 0);
-  signal total_6           : unsigned(6 downto 0);
-  signal base              : unsigned(6 downto 0);
-  signal end_sig           : unsigned(6 downto 0);
-  signal map_start_next_3  : unsigned(3 downto 0);
-  signal map_end           : unsigned(6 downto 0);
-  signal newest            : unsigned(3 downto 0);
-  signal room              : unsigned(3 downto 0);
-  signal ends_write_addr   : unsigned(2 downto 0);
-  signal ends_write_en     : std_logic;
-  signal items_used_0      : std_logic;
-  signal items_0_written   : std_logic;
-  signal map_used_0        : std_logic;
-  signal map_0_written     : std_logic;
-  signal map_used_4        : std_logic;
-  signal map_4_written     : std_logic;
-  signal reads             : std_logic;
-  signal is_last           : std_logic;
-  signal and_43            : std_logic;
-  signal sub_44            : unsigned(2 downto 0);
-  signal ends_read_data    : unsigned(4 downto 0);
-  signal items_0_read_data : unsigned(63 downto 0);
-  signal map_0_read_data   : unsigned(31 downto 0);
-  signal map_4_read_data   : unsigned(31 downto 0);
+  signal takes                : std_logic;
+  signal total                : unsigned(6 downto 0);
+  signal total_6              : unsigned(6 downto 0);
+  signal base                 : unsigned(6 downto 0);
+  signal end_sig              : unsigned(6 downto 0);
+  signal map_start_next_3     : unsigned(3 downto 0);
+  signal map_end              : unsigned(6 downto 0);
+  signal newest               : unsigned(3 downto 0);
+  signal room                 : unsigned(3 downto 0);
+  signal ends_write_addr      : unsigned(2 downto 0);
+  signal ends_write_en        : std_logic;
+  signal items_used_0         : std_logic;
+  signal items_0_written      : std_logic;
+  signal map_used_0           : std_logic;
+  signal map_0_written        : std_logic;
+  signal map_used_4           : std_logic;
+  signal map_4_written        : std_logic;
+  signal reads                : std_logic;
+  signal is_last              : std_logic;
+  signal and_43               : std_logic;
+  signal and_46               : std_logic;
+  signal and_50               : std_logic;
+  signal and_54               : std_logic;
+  signal and_58               : std_logic;
+  signal and_62               : std_logic;
+  signal and_66               : std_logic;
+  signal and_70               : std_logic;
+  signal and_74               : std_logic;
+  signal ends_read_data       : unsigned(4 downto 0);
+  signal items_0_read_data    : unsigned(63 downto 0);
+  signal map_0_read_data      : unsigned(31 downto 0);
+  signal map_4_read_data      : unsigned(31 downto 0);
+  signal ends_read_data_count : unsigned(3 downto 0);
+  signal ends_read_data_error : std_logic;
 
   -- Signals that no logic reads, for simulation.
   signal words_payload      : unsigned(160 downto 0);
@@ -440,7 +494,14 @@ begin
   reads <= '1' when complete /= first and (packets_valid_q = '0' or packets_ready = '1') else '0';
   is_last <= lsb(resize(shift_right(last, to_integer(first(2 downto 0))), 1));
   and_43 <= writes and not waits;
-  sub_44 <= complete_next(2 downto 0) - 1;
+  and_46 <= '1' when reads = '1' and first(2 downto 0) = 0 else '0';
+  and_50 <= '1' when reads = '1' and first(2 downto 0) = 1 else '0';
+  and_54 <= '1' when reads = '1' and first(2 downto 0) = 2 else '0';
+  and_58 <= '1' when reads = '1' and first(2 downto 0) = 3 else '0';
+  and_62 <= '1' when reads = '1' and first(2 downto 0) = 4 else '0';
+  and_66 <= '1' when reads = '1' and first(2 downto 0) = 5 else '0';
+  and_70 <= '1' when reads = '1' and first(2 downto 0) = 6 else '0';
+  and_74 <= '1' when reads = '1' and first(2 downto 0) = 7 else '0';
 
   process (aclk)
   begin
@@ -540,7 +601,7 @@ begin
         if and_43 = '1' then
           complete <= complete_next;
           if ends_packet = '1' then
-            case sub_44 is
+            case ends_write_addr is
               when "000" =>
                 last(0) <= '1';
               when "001" =>
@@ -584,122 +645,122 @@ begin
               null;
           end case;
         end if;
-        if reads = '1' and first(2 downto 0) = 0 then
+        if and_46 = '1' then
           items_0_has(0) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 0 then
           items_0_has(0) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 1 then
+        if and_50 = '1' then
           items_0_has(1) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 1 then
           items_0_has(1) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 2 then
+        if and_54 = '1' then
           items_0_has(2) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 2 then
           items_0_has(2) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 3 then
+        if and_58 = '1' then
           items_0_has(3) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 3 then
           items_0_has(3) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 4 then
+        if and_62 = '1' then
           items_0_has(4) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 4 then
           items_0_has(4) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 5 then
+        if and_66 = '1' then
           items_0_has(5) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 5 then
           items_0_has(5) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 6 then
+        if and_70 = '1' then
           items_0_has(6) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 6 then
           items_0_has(6) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 7 then
+        if and_74 = '1' then
           items_0_has(7) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 7 then
           items_0_has(7) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 0 then
+        if and_46 = '1' then
           map_0_has(0) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 0 then
           map_0_has(0) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 1 then
+        if and_50 = '1' then
           map_0_has(1) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 1 then
           map_0_has(1) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 2 then
+        if and_54 = '1' then
           map_0_has(2) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 2 then
           map_0_has(2) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 3 then
+        if and_58 = '1' then
           map_0_has(3) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 3 then
           map_0_has(3) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 4 then
+        if and_62 = '1' then
           map_0_has(4) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 4 then
           map_0_has(4) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 5 then
+        if and_66 = '1' then
           map_0_has(5) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 5 then
           map_0_has(5) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 6 then
+        if and_70 = '1' then
           map_0_has(6) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 6 then
           map_0_has(6) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 7 then
+        if and_74 = '1' then
           map_0_has(7) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 7 then
           map_0_has(7) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 0 then
+        if and_46 = '1' then
           map_4_has(0) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 0 then
           map_4_has(0) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 1 then
+        if and_50 = '1' then
           map_4_has(1) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 1 then
           map_4_has(1) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 2 then
+        if and_54 = '1' then
           map_4_has(2) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 2 then
           map_4_has(2) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 3 then
+        if and_58 = '1' then
           map_4_has(3) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 3 then
           map_4_has(3) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 4 then
+        if and_62 = '1' then
           map_4_has(4) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 4 then
           map_4_has(4) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 5 then
+        if and_66 = '1' then
           map_4_has(5) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 5 then
           map_4_has(5) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 6 then
+        if and_70 = '1' then
           map_4_has(6) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 6 then
           map_4_has(6) <= '1';
         end if;
-        if reads = '1' and first(2 downto 0) = 7 then
+        if and_74 = '1' then
           map_4_has(7) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 7 then
           map_4_has(7) <= '1';
@@ -728,14 +789,17 @@ begin
             map_0_read_data, x"00000000"));
         packets_payload_q(68) <= is_last;
         if is_last = '1' then
-          packets_payload_q(67 downto 64) <= ends_read_data(3 downto 0);
+          packets_payload_q(67 downto 64) <= ends_read_data_count;
         else
           packets_payload_q(67 downto 64) <= "1000";
         end if;
-        error_sig_q <= is_last and ends_read_data(4);
+        error_sig_q <= is_last and ends_read_data_error;
       end if;
     end if;
   end process;
+
+  ends_read_data_count <= ends_read_data(3 downto 0);
+  ends_read_data_error <= ends_read_data(4);
 
   words_ready <= words_ready_q;
   packets_valid <= packets_valid_q;
@@ -770,6 +834,7 @@ begin
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_serializer.core of the Amaranth design.
+-- Serializer: Turn messages into packets.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -847,8 +912,8 @@ begin
       message_angular_x_ready   => message_angular_x_ready,
       message_angular_y_ready   => message_angular_y_ready,
       message_angular_z_ready   => message_angular_z_ready,
-      port_545_0                => words_payload_0,
-      port_549_0                => words_payload_128,
+      port_537_0                => words_payload_0,
+      port_541_0                => words_payload_128,
       status_valid              => status_valid,
       status_payload            => status_payload,
       words_valid               => words_valid,
@@ -876,6 +941,7 @@ begin
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_serializer of the Amaranth design.
+-- Top: A converter with AXI4-Stream on its packet side and named ports on its message side.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -921,9 +987,10 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat is
 
   -- Combinational signals.
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal status_payload  : unsigned(2 downto 0);
-  signal packets_payload : unsigned(68 downto 0);
-  signal rst             : std_logic;
+  signal status_payload        : unsigned(2 downto 0);
+  signal packets_payload       : unsigned(68 downto 0);
+  signal rst                   : std_logic;
+  signal packets_payload_count : unsigned(3 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal packet_error              : std_logic;
@@ -985,16 +1052,14 @@ begin
   rst <= not aresetn;
 
   m_axis_tdata <= std_logic_vector(packets_payload(63 downto 0));
-  m_axis_tkeep <= std_logic_vector(unsigned'(to_std_logic(packets_payload(67 downto 64) > 7) &
-      to_std_logic(packets_payload(67 downto 64) > 6) &
-      to_std_logic(packets_payload(67 downto 64) > 5) &
-      to_std_logic(packets_payload(67 downto 64) > 4) &
-      to_std_logic(packets_payload(67 downto 64) > 3) &
-      to_std_logic(packets_payload(67 downto 64) > 2) &
-      to_std_logic(packets_payload(67 downto 64) > 1) &
-      to_std_logic(packets_payload(67 downto 64) > 0)));
+  m_axis_tkeep <= std_logic_vector(unsigned'(to_std_logic(packets_payload_count > 7) &
+      to_std_logic(packets_payload_count > 6) & to_std_logic(packets_payload_count > 5) &
+      to_std_logic(packets_payload_count > 4) & to_std_logic(packets_payload_count > 3) &
+      to_std_logic(packets_payload_count > 2) & to_std_logic(packets_payload_count > 1) &
+      to_std_logic(packets_payload_count > 0)));
   m_axis_tlast <= packets_payload(68);
   m_axis_status_tdata <= std_logic_vector(resize(status_payload, 8));
+  packets_payload_count <= packets_payload(67 downto 64);
 
   packet_error <= m_axis_tuser;
   packets_valid <= m_axis_tvalid;

@@ -3,6 +3,8 @@
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
 -- Module geometry_msgs_msg_twist_cdr_8_serializer_record_flat.record of the Amaranth design.
+-- RecordWriter: Split a stream of records into leaves of a message: the inverse of
+-- :class:`RecordReader`.
 -- 6 registers at rising_edge(aclk), synchronous reset rst = '1'.
 
 library ieee;
@@ -50,7 +52,13 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record 
   signal index_18 : std_logic := '0';
 
   -- Combinational signals.
-  signal and_43 : std_logic;
+  signal and_43                   : std_logic;
+  signal record_payload_linear_x  : unsigned(63 downto 0);
+  signal record_payload_linear_y  : unsigned(63 downto 0);
+  signal record_payload_linear_z  : unsigned(63 downto 0);
+  signal record_payload_angular_x : unsigned(63 downto 0);
+  signal record_payload_angular_y : unsigned(63 downto 0);
+  signal record_payload_angular_z : unsigned(63 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal record_ready : std_logic;
@@ -62,33 +70,33 @@ begin
   message_angular_x_valid <= record_valid and not index_12;
   message_angular_y_valid <= record_valid and not index_15;
   message_angular_z_valid <= record_valid and not index_18;
-  and_43 <= and unsigned'((index_18 or (to_std_logic(resize(index_18, 1) = 0) and
-      message_angular_z_valid and message_angular_z_ready)) & (index_15 or
-      (to_std_logic(resize(index_15, 1) = 0) and message_angular_y_valid and
-      message_angular_y_ready)) & (index_12 or (to_std_logic(resize(index_12, 1) = 0) and
-      message_angular_x_valid and message_angular_x_ready)) & (index_9 or
+  and_43 <= (index or (to_std_logic(resize(index, 1) = 0) and message_linear_x_valid and
+      message_linear_x_ready)) and (index_6 or (to_std_logic(resize(index_6, 1) = 0) and
+      message_linear_y_valid and message_linear_y_ready)) and (index_9 or
       (to_std_logic(resize(index_9, 1) = 0) and message_linear_z_valid and
-      message_linear_z_ready)) & (index_6 or (to_std_logic(resize(index_6, 1) = 0) and
-      message_linear_y_valid and message_linear_y_ready)) & (index or (to_std_logic(resize(index,
-      1) = 0) and message_linear_x_valid and message_linear_x_ready)));
+      message_linear_z_ready)) and (index_12 or (to_std_logic(resize(index_12, 1) = 0) and
+      message_angular_x_valid and message_angular_x_ready)) and (index_15 or
+      (to_std_logic(resize(index_15, 1) = 0) and message_angular_y_valid and
+      message_angular_y_ready)) and (index_18 or (to_std_logic(resize(index_18, 1) = 0) and
+      message_angular_z_valid and message_angular_z_ready));
   taken <= record_valid and and_43;
 
-  message_linear_x_payload <= record_payload(63 downto 0) when index = '0' else
+  message_linear_x_payload <= record_payload_linear_x when index = '0' else
                               (others => '0');
 
-  message_linear_y_payload <= record_payload(127 downto 64) when index_6 = '0' else
+  message_linear_y_payload <= record_payload_linear_y when index_6 = '0' else
                               (others => '0');
 
-  message_linear_z_payload <= record_payload(191 downto 128) when index_9 = '0' else
+  message_linear_z_payload <= record_payload_linear_z when index_9 = '0' else
                               (others => '0');
 
-  message_angular_x_payload <= record_payload(255 downto 192) when index_12 = '0' else
+  message_angular_x_payload <= record_payload_angular_x when index_12 = '0' else
                                (others => '0');
 
-  message_angular_y_payload <= record_payload(319 downto 256) when index_15 = '0' else
+  message_angular_y_payload <= record_payload_angular_y when index_15 = '0' else
                                (others => '0');
 
-  message_angular_z_payload <= record_payload(383 downto 320) when index_18 = '0' else
+  message_angular_z_payload <= record_payload_angular_z when index_18 = '0' else
                                (others => '0');
 
   p_aclk : process (aclk)
@@ -136,11 +144,19 @@ begin
     end if;
   end process;
 
+  record_payload_linear_x <= record_payload(63 downto 0);
+  record_payload_linear_y <= record_payload(127 downto 64);
+  record_payload_linear_z <= record_payload(191 downto 128);
+  record_payload_angular_x <= record_payload(255 downto 192);
+  record_payload_angular_y <= record_payload(319 downto 256);
+  record_payload_angular_z <= record_payload(383 downto 320);
+
   record_ready <= taken;
 
 end architecture;
 
 -- Module geometry_msgs_msg_twist_cdr_8_serializer_record_flat of the Amaranth design.
+-- RecordTop: An instance of a converter, with AXI4-Stream and one vector on its message side.
 
 library ieee;
 use ieee.std_logic_1164.all;
