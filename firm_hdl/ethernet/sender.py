@@ -102,7 +102,7 @@ class FrameSender(wiring.Component):
     cycles, the datagram is dropped, and the destination counts as absent. An echo reply does not
     wait.
 
-    From a datagram in its slot to its first byte on `frames`: 16 cycles, and those of the lookup.
+    From a datagram in its slot to its first byte on `frames`: 17 cycles, and those of the lookup.
 
     Parameters
     ----------
@@ -227,8 +227,10 @@ class FrameSender(wiring.Component):
         with m.If(self.tick):
             m.d.sync += may_ask.eq(1)
 
-        # The steps of a byte: its place; the template's word, or the payload's byte; the byte.
-        there, from_payload, last = Signal(), Signal(), Signal()
+        # The steps of a byte: its place; what the memories have there; that in registers, because
+        # memories are slow; the byte that it stands for.
+        there, from_payload, last = Signal(2), Signal(2), Signal(2)
+        template_word, stored = Signal(9), Signal(8)
         this_last, in_template = Signal(), Signal()
         goes = Signal()
         m.d.comb += [
@@ -242,7 +244,11 @@ class FrameSender(wiring.Component):
         field = Signal(6)
         is_field = Signal()
         value = Signal(8)
-        m.d.comb += [field.eq(word.data[:6]), is_field.eq(word.data[8]), value.eq(word.data[:8])]
+        m.d.comb += [
+            field.eq(template_word[:6]),
+            is_field.eq(template_word[8]),
+            value.eq(template_word[:8]),
+        ]
         with m.If(is_field):
             m.d.comb += value.eq(header_byte)
             with m.Switch(field):
@@ -256,16 +262,18 @@ class FrameSender(wiring.Component):
                     m.d.comb += value.eq(checksum[:8])
         with m.If(goes):
             m.d.sync += [
-                there.eq(active),
-                from_payload.eq(~in_template),
-                last.eq(this_last),
-                out.valid.eq(there),
-                out.payload.data.eq(Mux(from_payload, payload_byte, value)),
-                out.payload.last.eq(last),
+                there.eq(Cat(active, there)),
+                from_payload.eq(Cat(~in_template, from_payload)),
+                last.eq(Cat(this_last, last)),
+                template_word.eq(word.data),
+                stored.eq(payload_byte),
+                out.valid.eq(there[1]),
+                out.payload.data.eq(Mux(from_payload[1], stored, value)),
+                out.payload.last.eq(last[1]),
             ]
-            with m.If(there & ~from_payload & is_field & (field == _MAC)):
+            with m.If(there[1] & ~from_payload[1] & is_field & (field == _MAC)):
                 m.d.sync += hardware.eq(hardware.rotate_left(8))
-            with m.If(there & ~from_payload & is_field & (field == _ASKED)):
+            with m.If(there[1] & ~from_payload[1] & is_field & (field == _ASKED)):
                 m.d.sync += key.eq(key.rotate_left(8))
             with m.If(active):
                 m.d.sync += active.eq(~this_last)
@@ -274,7 +282,18 @@ class FrameSender(wiring.Component):
                 with m.Else():
                     m.d.sync += [payload_at.eq(payload_at + 1), left.eq(left - 1)]
 
-        m.d.comb += header_at.eq(field)
+        # The bytes of the header that vary are 6 to 11, and of an echo to 15. They are summed up a
+        # cycle after they were read.
+        in_header, adds, place, byte = Signal(), Signal(), Signal(4), Signal(8)
+        m.d.comb += header_at.eq(Mux(in_header, index, field))
+        m.d.sync += [adds.eq(in_header), place.eq(index), byte.eq(header_byte)]
+        with m.If(adds):
+            m.d.sync += total.eq(add_word(total, Mux(place[0], byte, Cat(Const(0, 8), byte))))
+            with m.If(place < 10):
+                m.d.sync += key.eq(Cat(byte, key))
+            with m.Elif(place < 12):
+                m.d.sync += length.eq(Cat(byte, length))
+
         with m.FSM():
             with m.State("IDLE"):
                 m.d.sync += [index.eq(6), has_payload.eq(0), payload_at.eq(0)]
@@ -297,20 +316,12 @@ class FrameSender(wiring.Component):
                 with m.If(kind == ARP_REPLY):
                     begin("answer")
             with m.State("HEADER"):
-                # Bytes 6 to 11, and of an echo to 15, are those of the header that vary.
-                m.d.comb += header_at.eq(index)
-                m.d.sync += [
-                    index.eq(index + 1),
-                    total.eq(
-                        add_word(total, Mux(index[0], header_byte, Cat(Const(0, 8), header_byte)))
-                    ),
-                ]
-                with m.If(index < 10):
-                    m.d.sync += key.eq(Cat(header_byte, key))
-                with m.Elif(index < 12):
-                    m.d.sync += length.eq(Cat(header_byte, length))
+                m.d.comb += in_header.eq(1)
+                m.d.sync += index.eq(index + 1)
                 with m.If(index == Mux(is_reply, 15, 11)):
-                    m.next = "HOP"
+                    m.next = "LAST BYTE"
+            with m.State("LAST BYTE"):
+                m.next = "HOP"
             with m.State("HOP"):
                 m.d.sync += total.eq(add_word(total, Const(0, 16)))
                 m.d.sync += left.eq(length - Mux(is_reply, Mux(kind == ECHO, 24, 20), 28))

@@ -225,7 +225,7 @@ def fragments(size, ident, cut=64, src=HOST):
 
 
 def test_fragments_in_order_become_datagrams_and_others_are_dropped():
-    own = settings(fragment_bytes=4096, tick_bits=11)
+    own = settings(fragment_bytes=4096, tick_bits=9)
     a, b, c = fragments(200, 1), fragments(150, 1, src=OTHER), fragments(90, 2)
     wrong = fragments(100, 3)
     # The checksum of the first fragment's header is that of all.
@@ -237,7 +237,7 @@ def test_fragments_in_order_become_datagrams_and_others_are_dropped():
         *(Pause(400), *wrong),
         *c,
         *(lost[0], lost[2], lost[3]),
-        *(late[0], Pause(5 << 11), *late[1:]),
+        *(late[0], Pause(5 << 9), *late[1:]),
     ]
     seen = run(steps, own, after=800)
     others = [(payload(150), number(OTHER), 5000, 7411)]
