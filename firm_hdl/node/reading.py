@@ -452,7 +452,7 @@ _LIMITS: dict[str, tuple[int, int]] = {
 }
 """Least and most of each option."""
 
-_DISCOVERY_BYTES = 1 << 12
+_DISCOVERY_BYTES = 1 << 13
 """Memory for datagrams of discovery, of which several come at once."""
 
 _PORTS, _PORTS_PER_DOMAIN, _LAST_PORT = 7411, 250, 65_535

@@ -116,16 +116,14 @@ class AnnouncementReader(wiring.Component):
                 with m.If(self.aligned & (self.index == 3)):
                     with m.If(self.pid == wanted):
                         m.d.sync += [has_guid.eq(1), out.entity.eq(self.word)]
-            with m.Case(Pid.PARTICIPANT_LEASE_DURATION):
-                with m.If(first):
-                    m.d.sync += out.lease.eq(
-                        Mux(value > _MOST_LEASE, _MOST_LEASE, Mux(value == 0, 1, value))
-                    )
+            with m.Case(Pid.PARTICIPANT_LEASE_DURATION), m.If(first):
+                m.d.sync += out.lease.eq(
+                    Mux(value > _MOST_LEASE, _MOST_LEASE, Mux(value == 0, 1, value))
+                )
             with m.Case(Pid.DOMAIN_ID):
                 refuse(first & (value != self.link.domain))
-            with m.Case(Pid.RELIABILITY):
-                with m.If(first):
-                    m.d.sync += out.is_reliable.eq(value == 2)
+            with m.Case(Pid.RELIABILITY), m.If(first):
+                m.d.sync += out.is_reliable.eq(value == 2)
             with m.Case(Pid.DURABILITY):
                 refuse(first & (value > 3))
                 with m.If(first):
@@ -168,20 +166,19 @@ class AnnouncementReader(wiring.Component):
         distance, nearest = Signal(32), Signal(32)
         address = swapped(self.word)
         m.d.comb += distance.eq(address ^ own)
-        with m.If(self.aligned & (self.pid == pid)):
-            with m.Switch(self.index):
-                with m.Case(0):
-                    m.d.sync += usable.eq(self.value == _UDP_V4)
-                with m.Case(1):
-                    m.d.sync += port.eq(self.value)
-                    with m.If(self.value[16:] != 0):
-                        m.d.sync += usable.eq(0)
-                with m.Case(5):
-                    is_unicast = (address[28:] < 0xE) & (address != 0)
-                    is_nearer = (locator.port == 0) | (distance < nearest)
-                    with m.If(usable & (port != 0) & is_unicast & is_nearer):
-                        m.d.sync += [
-                            locator.address.eq(address),
-                            locator.port.eq(port),
-                            nearest.eq(distance),
-                        ]
+        with m.If(self.aligned & (self.pid == pid)), m.Switch(self.index):
+            with m.Case(0):
+                m.d.sync += usable.eq(self.value == _UDP_V4)
+            with m.Case(1):
+                m.d.sync += port.eq(self.value)
+                with m.If(self.value[16:] != 0):
+                    m.d.sync += usable.eq(0)
+            with m.Case(5):
+                is_unicast = (address[28:] < 0xE) & (address != 0)
+                is_nearer = (locator.port == 0) | (distance < nearest)
+                with m.If(usable & (port != 0) & is_unicast & is_nearer):
+                    m.d.sync += [
+                        locator.address.eq(address),
+                        locator.port.eq(port),
+                        nearest.eq(distance),
+                    ]

@@ -15,7 +15,7 @@ from firm_hdl.gateware import PacketWidth
 from firm_hdl.gateware.memories import BlockMemory, LutMemory
 from firm_hdl.node.description import Description
 from firm_hdl.node.gateware.streams import LinkSignature
-from firm_hdl.node.rtps.endpoints import Endpoint, ports_of_link
+from firm_hdl.node.rtps.endpoints import Endpoint
 from firm_hdl.node.rtps.events import EventKind, announced_layout, event_layout, raw
 from firm_hdl.node.rtps.history import MOST_SAMPLES, Part
 from firm_hdl.node.rtps.names import digest_of
@@ -194,10 +194,11 @@ class Engine(wiring.Component):
         self._peer, self._peer_row = Signal(range(peers)), Signal(peer_layout())
         self._known, self._accepts = Signal(), Signal()
         self._last, self._gone, self._lower = Signal(32), Signal(32), Signal(32)
-        # A scan of a memory: the address, that of the word, and whether word and register are there.
+        # A scan of a memory: the address, that of the word, and whether word and row are there.
         self._at, self._at_word = Signal(range(rows + 1)), Signal(range(rows + 1))
         self._has_word, self._has_row = Signal(), Signal()
         self._key, self._hit, self._second = Signal(32), Signal(), Signal()
+        self._target = Signal(32)
         self._free, self._has_free = Signal(range(rows)), Signal()
         # Which peers there are, which are matched with us, and which have to be told of us.
         self._live, self._matched, self._due = Signal(peers), Signal(peers), Signal(peers)
@@ -419,13 +420,12 @@ class Engine(wiring.Component):
             with m.Elif(~self._hit | (row.writes != (event.kind == EventKind.ACKNACK))):
                 m.d.comb += self.stray.eq(1)
                 m.next = "DONE"
-            with m.Else():
-                with m.Switch(event.kind):
-                    for each in (EventKind.HEARTBEAT, EventKind.GAP, EventKind.ACKNACK):
-                        with m.Case(each):
-                            m.next = each.name
-                    with m.Default():
-                        m.next = "SAMPLE"
+            with m.Else(), m.Switch(event.kind):
+                for each in (EventKind.HEARTBEAT, EventKind.GAP, EventKind.ACKNACK):
+                    with m.Case(each):
+                        m.next = each.name
+                with m.Default():
+                    m.next = "SAMPLE"
 
         with m.State("STORE_EVENT"):
             m.d.comb += self._rows.writes.eq(1)
@@ -522,57 +522,57 @@ class Engine(wiring.Component):
             with m.If(place == BUILTIN_ROWS - 1):
                 m.next = "DONE"
 
-    # Our readers (8.4.12): what comes of a writer, in order, and what is missing.
+    # Our readers (8.4.12): what comes of a writer, and what is missing. Samples of topics are taken
+    # in order, those of SEDP as they come; `request` has those behind `next` that need not come.
 
     def _listening(self, m: Module) -> None:
         event, row = self.events.payload, self._row
-        number, bits = event.number, self._bits
+        number, target = event.number, self._target
+        is_sedp = self._row_at < self.first_row
         with m.State("HEARTBEAT"):
-            # What the writer no longer has is lost.
-            with m.If(number > row.next):
-                m.d.comb += self.lost.eq(row.synced)
-                m.d.sync += [row.next.eq(number), row.tries.eq(0)]
-                with m.If(number > row.end):
-                    m.d.sync += row.end.eq(number)
-            m.d.sync += row.synced.eq(row.synced | row.reliable)
+            m.d.sync += [target.eq(number), row.synced.eq(row.synced | row.reliable)]
             m.next = "HEARTBEAT_END"
+            with m.If(row.reliable & (number > row.next)):
+                # What the writer no longer has is lost.
+                m.d.comb += self.lost.eq(row.synced)
+                m.next = "ADVANCE"
         with m.State("HEARTBEAT_END"):
             end = Mux(event.last >= row.end, event.last + 1, row.end)
-            m.d.sync += [
-                row.end.eq(Mux(row.reliable, end, row.end)),
-                row.ask.eq(row.ask | (row.reliable & (~event.is_final | (row.next != end)))),
-            ]
+            with m.If(row.reliable):
+                m.d.sync += [
+                    row.end.eq(end),
+                    row.ask.eq(row.ask | ~event.is_final | (row.next != end)),
+                ]
             m.next = "STORE_EVENT"
 
         with m.State("GAP"):
             # 8.3.8.4: from `number` to below `last`, and the bits from `last` on.
-            m.d.sync += bits.eq(0)
-            m.next = "GAP_BITS"
+            m.d.sync += target.eq(event.last)
+            m.next = "STORE_EVENT"
             with m.If(row.reliable & (number <= row.next) & (event.last >= row.next)):
-                m.d.sync += [row.next.eq(event.last), row.tries.eq(0), bits.eq(event.bits)]
-        with m.State("GAP_BITS"):
-            with m.If(bits[31]):
-                m.d.sync += [bits.eq(bits << 1), row.next.eq(row.next + 1)]
-            with m.Else():
-                with m.If(row.next > row.end):
-                    m.d.sync += row.end.eq(row.next)
-                m.next = "STORE_EVENT"
+                m.next = "ADVANCE"
 
         with m.State("SAMPLE"):
-            is_new = number >= row.next
-            takes = Mux(row.reliable, row.synced & (number == row.next), is_new)
+            is_new, ahead = number >= row.next, Signal(32)
             is_fragment = event.kind == EventKind.FRAGMENT
-            m.d.sync += self._accepts.eq(takes)
+            takes, bit = Signal(), Signal(32)
+            m.d.comb += [
+                ahead.eq(number - row.next),
+                bit.eq(Const(1 << 31, 32) >> ahead[:5]),
+                takes.eq(Mux(row.reliable, row.synced & (ahead == 0), is_new)),
+            ]
+            m.d.sync += [self._accepts.eq(takes), target.eq(number + 1)]
             m.next = "SAMPLED"
-            with m.If(takes):
-                m.d.comb += [
-                    self.cut.eq(is_fragment),
-                    self.lost.eq(row.synced & (number != row.next)),
-                ]
-                m.d.sync += [row.next.eq(number + 1), row.tries.eq(0)]
-                with m.If(~row.reliable):
-                    # Of a best-effort writer, the first sample says where its samples begin.
-                    m.d.sync += row.synced.eq(1)
+            with m.If(is_sedp):
+                m.d.comb += takes.eq(is_new & (ahead < 32) & ((row.request & bit) == 0))
+            with m.If(takes & is_sedp):
+                m.d.sync += row.request.eq(row.request | bit)
+                m.next = "SETTLE"
+            with m.Elif(takes):
+                m.d.comb += [self.cut.eq(is_fragment), self.lost.eq(row.synced & (ahead != 0))]
+                # Of a best-effort writer, the first sample says where its samples begin.
+                m.d.sync += row.synced.eq(1)
+                m.next = "ADVANCE"
             with m.Elif(is_new & row.synced):
                 # Something before it is missing. A request for it may be on its way.
                 m.d.sync += row.ask.eq(row.ask | (row.timer == 0))
@@ -581,20 +581,45 @@ class Engine(wiring.Component):
             with m.If((takes | (is_new & row.synced)) & (number >= row.end)):
                 m.d.sync += row.end.eq(number + 1)
 
+        with m.State("ADVANCE"):
+            step, shifted = Signal(32), Signal(32)
+            m.d.comb += [
+                step.eq(target - row.next),
+                shifted.eq(Mux(step < 32, row.request << step[:5], 0)),
+            ]
+            m.d.sync += [
+                row.next.eq(target),
+                row.tries.eq(0),
+                row.request.eq(shifted | Mux(event.kind == EventKind.GAP, event.bits, 0)),
+            ]
+            m.next = "SETTLE"
+        with m.State("SETTLE"):
+            with m.If(row.request[31]):
+                m.d.sync += [row.request.eq(row.request << 1), row.next.eq(row.next + 1)]
+            with m.Else():
+                with m.If(row.next > row.end):
+                    m.d.sync += row.end.eq(row.next)
+                with m.Switch(event.kind):
+                    with m.Case(EventKind.HEARTBEAT):
+                        m.next = "HEARTBEAT_END"
+                    with m.Case(EventKind.GAP):
+                        m.next = "STORE_EVENT"
+                    with m.Default():
+                        m.next = "SAMPLED"
+
         with m.State("SAMPLED"):
             m.d.comb += self._rows.writes.eq(1)
             self._begin_scan(m)
             m.next = "DONE"
-            with m.If(self._accepts):
-                with m.Switch(event.kind):
-                    with m.Case(EventKind.ENDPOINT):
-                        m.d.sync += [self._second.eq(1), self._key.eq(self.announced.entity)]
-                        m.next = "FIND"
-                    with m.Case(EventKind.ENDPOINT_GONE):
-                        m.d.sync += [self._second.eq(1), self._key.eq(event.entity)]
-                        m.next = "FIND"
-                    with m.Case(EventKind.SAMPLE):
-                        m.next = "DELIVER"
+            with m.If(self._accepts), m.Switch(event.kind):
+                with m.Case(EventKind.ENDPOINT):
+                    m.d.sync += [self._second.eq(1), self._key.eq(self.announced.entity)]
+                    m.next = "FIND"
+                with m.Case(EventKind.ENDPOINT_GONE):
+                    m.d.sync += [self._second.eq(1), self._key.eq(event.entity)]
+                    m.next = "FIND"
+                with m.Case(EventKind.SAMPLE):
+                    m.next = "DELIVER"
 
         with m.State("DELIVER"):
             # The tag of a request leads to its identity, which the reply has to name.
@@ -660,11 +685,11 @@ class Engine(wiring.Component):
                 self._gone.eq(Mux(is_graph, 0, self._state.data.gone)),
             ]
             m.next = "DONE"
-            with m.If(event.kind == EventKind.ENDPOINT_GONE):
-                with m.If(self._hit & (self._row_at >= self.first_row)):
-                    m.d.sync += Value.cast(row).eq(0)
-                    m.next = "STORE_EVENT"
-            with m.Elif(~self._hit & announced.is_endpoint & self._is_same & fits):
+            is_gone = event.kind == EventKind.ENDPOINT_GONE
+            with m.If(is_gone & self._hit & (self._row_at >= self.first_row)):
+                m.d.sync += Value.cast(row).eq(0)
+                m.next = "STORE_EVENT"
+            with m.Elif(~is_gone & ~self._hit & announced.is_endpoint & self._is_same & fits):
                 m.d.comb += self.unsent.eq(~self._has_free)
                 with m.If(self._has_free):
                     m.d.sync += self._row_at.eq(self._free)
@@ -817,14 +842,20 @@ class Engine(wiring.Component):
             m.d.sync += [
                 self._number.eq(row.next),
                 self._bits.eq(Mux(is_many, 32, missing)),
-                self._bitmap.eq(~(Const(0xFFFF_FFFF, 32) >> Mux(is_many, 32, missing[:6]))),
+                self._bitmap.eq(
+                    ~row.request & ~(Const(0xFFFF_FFFF, 32) >> Mux(is_many, 32, missing[:6]))
+                ),
                 self._is_final.eq(row.synced),
             ]
             m.next = "NEXT"
             with m.If(row.ask & lacks & (row.tries == _MOST_TRIES)):
                 # Such as a sample that is larger than the memory: it will never come.
                 m.d.comb += self.lost.eq(1)
-                m.d.sync += [row.next.eq(row.next + 1), row.tries.eq(0)]
+                m.d.sync += [
+                    row.next.eq(row.next + 1),
+                    row.request.eq(row.request << 1),
+                    row.tries.eq(0),
+                ]
                 m.next = "STORE"
             with m.Elif(row.ask):
                 m.d.sync += [
@@ -917,12 +948,11 @@ class Engine(wiring.Component):
         with m.State("SEND"):
             m.d.comb += self.starts.eq(1)
             m.next = "SENDING"
-        with m.State("SENDING"):
-            with m.If(self.ends):
-                m.d.sync += self._count.eq(self._count + 1)
-                m.next = "IDLE"
-                with m.If(self._stores):
-                    m.next = "STORE"
+        with m.State("SENDING"), m.If(self.ends):
+            m.d.sync += self._count.eq(self._count + 1)
+            m.next = "IDLE"
+            with m.If(self._stores):
+                m.next = "STORE"
 
     # New samples.
 

@@ -180,22 +180,18 @@ class MessageReader(wiring.Component):
 
             with m.State("HEADER"):
                 m.d.comb += packets.ready.eq(1)
-                with m.If(aligned):
-                    with m.Switch(index):
-                        with m.Case(0):
-                            with m.If(word != int.from_bytes(b"RTPS", "little")):
-                                malformed()
-                        with m.Case(1):
-                            vendor = word[16:]
-                            m.d.sync += is_fast.eq(
-                                (vendor == _FAST_DDS[0]) | (vendor == _FAST_DDS[1])
-                            )
-                            with m.If(word[:8] != 2):
-                                malformed()
-                        with m.Default():
-                            m.d.sync += event.source.eq(Cat(event.source[32:], word))
-                            with m.If(index == 4):
-                                emit(EventKind.SOURCE)
+                with m.If(aligned), m.Switch(index):
+                    with m.Case(0), m.If(word != int.from_bytes(b"RTPS", "little")):
+                        malformed()
+                    with m.Case(1):
+                        vendor = word[16:]
+                        m.d.sync += is_fast.eq((vendor == _FAST_DDS[0]) | (vendor == _FAST_DDS[1]))
+                        with m.If(word[:8] != 2):
+                            malformed()
+                    with m.Default():
+                        m.d.sync += event.source.eq(Cat(event.source[32:], word))
+                        with m.If(index == 4):
+                            emit(EventKind.SOURCE)
 
             with m.State("SUBMESSAGE"):
                 with m.If(rest == 0):
@@ -241,34 +237,32 @@ class MessageReader(wiring.Component):
                 m.d.comb += packets.ready.eq(1)
                 with m.If(aligned):
                     with m.Switch(kind):
-                        with m.Case(InfoDestination.KIND):
-                            with m.Switch(index):
-                                with m.Case(0):
-                                    m.d.sync += event.number.eq(word)
-                                with m.Case(1):
-                                    m.d.sync += event.last.eq(word)
-                                with m.Case(2):
-                                    to = Cat(event.number, event.last, word)
-                                    m.d.sync += is_addressed.eq((to == self.own) | (to == 0))
-                                    m.next = "SKIP"
+                        with m.Case(InfoDestination.KIND), m.Switch(index):
+                            with m.Case(0):
+                                m.d.sync += event.number.eq(word)
+                            with m.Case(1):
+                                m.d.sync += event.last.eq(word)
+                            with m.Case(2):
+                                to = Cat(event.number, event.last, word)
+                                m.d.sync += is_addressed.eq((to == self.own) | (to == 0))
+                                m.next = "SKIP"
                         with m.Case(InfoSource.KIND):
                             with m.If(index >= 2):
                                 m.d.sync += event.source.eq(Cat(event.source[32:], word))
                             with m.If(index == 4):
                                 emit(EventKind.SOURCE)
-                        with m.Case(Data.KIND, DataFrag.KIND):
-                            with m.Switch(index):
-                                with m.Case(0):
-                                    m.d.sync += skip.eq(Mux(is_little, value[16:], value[:16]))
-                                with m.Case(1):
-                                    m.d.sync += event.reader.eq(word)
-                                with m.Case(2):
-                                    m.d.sync += event.writer.eq(word)
-                                with m.Case(3):
-                                    m.d.comb += is_upper.eq(1)
-                                with m.Case(4):
-                                    m.d.sync += event.number.eq(value)
-                                    m.next = "DATA"
+                        with m.Case(Data.KIND, DataFrag.KIND), m.Switch(index):
+                            with m.Case(0):
+                                m.d.sync += skip.eq(Mux(is_little, value[16:], value[:16]))
+                            with m.Case(1):
+                                m.d.sync += event.reader.eq(word)
+                            with m.Case(2):
+                                m.d.sync += event.writer.eq(word)
+                            with m.Case(3):
+                                m.d.comb += is_upper.eq(1)
+                            with m.Case(4):
+                                m.d.sync += event.number.eq(value)
+                                m.next = "DATA"
                         with m.Case(Heartbeat.KIND, AckNack.KIND, Gap.KIND):
                             with m.Switch(index):
                                 with m.Case(0):
@@ -416,9 +410,8 @@ class MessageReader(wiring.Component):
                 with m.If(takes & (left == 1)):
                     m.next = "DRAIN"
 
-            with m.State("DRAIN"):
-                with m.If(self.drained):
-                    restart("SUBMESSAGE")
+            with m.State("DRAIN"), m.If(self.drained):
+                restart("SUBMESSAGE")
 
             with m.State("SKIP"):
                 m.d.comb += packets.ready.eq(left != 0)
