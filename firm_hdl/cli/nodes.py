@@ -63,6 +63,11 @@ def _add_info(command: argparse.ArgumentParser) -> None:
 
 def _add_build(command: argparse.ArgumentParser) -> None:
     command.add_argument("--out", default="node_out", help="folder to write to (%(default)s)")
+    command.add_argument(
+        "--datasheet",
+        action="store_true",
+        help="also write datasheet.html, with topics, ports, pictures, cycles and area",
+    )
     command.add_argument("--force", action="store_true", help="also write a folder that is current")
     command.add_argument(
         "--sim", action="store_true", help="also compile the simulation, for firm-hdl node run"
@@ -205,7 +210,13 @@ def _act(args: argparse.Namespace, description: Description) -> None:
     if args.action == "build":
         from firm_hdl.node.build import build_node
 
-        built = build_node(description, args.out, force=args.force, stimuli=_stimuli)
+        built = build_node(
+            description,
+            args.out,
+            force=args.force,
+            stimuli=_stimuli,
+            datasheet=args.datasheet,
+        )
         print(f"{'current' if built.was_current else 'wrote':8}{built.folder}", flush=True)
         for name in built.kept:
             print(f"kept    {built.folder / name}, which you changed", flush=True)

@@ -48,8 +48,8 @@ _MOST_NAME = 300
 
 _OURS = (
     r"((vhdl|systemverilog)/)?(Makefile|((tb_)?DESIGN\w*|firm_hdl_\w+|\w+_(cdr|ros1)_\d+\w*_pkg|"
-    r"bench_files|files|layout|link|plan|run_ghdl|run_iverilog|stimuli|summary|vivado|vunit_run|"
-    r"waivers)\.(core|f|py|sh|sv|svg|tcl|txt|v|veo|vhd|vlt|yaml))"
+    r"bench_files|datasheet|files|layout|link|plan|run_ghdl|run_iverilog|stimuli|summary|vivado|"
+    r"vunit_run|waivers)\.(core|f|html|py|sh|sv|svg|tcl|txt|v|veo|vhd|vlt|yaml))"
 )
 """Names of the files that firm-hdl writes, and deletes if they are outdated."""
 
