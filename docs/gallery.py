@@ -11,8 +11,9 @@ from pathlib import Path
 
 from firm_hdl import load_message
 from firm_hdl.cli import main as firm_hdl
+from firm_hdl.drawing.document import document
+from firm_hdl.export.datasheet.layout import layout_figure
 from firm_hdl.wire import lay_out
-from firm_hdl.wire.picture import to_svg
 
 __all__ = ["TYPES", "write"]
 
@@ -45,8 +46,8 @@ def write(folder: Path) -> None:
     for distro, names in TYPES.items():
         for name in names:
             picture = name.replace("/", "_") + ".svg"
-            svg = to_svg(lay_out(load_message(name, distro=distro)), name)
-            (out / picture).write_text(svg, encoding="utf-8")
+            figure = layout_figure(lay_out(load_message(name, distro=distro)))
+            (out / picture).write_text(document(figure), encoding="utf-8")
             info = _printed("info", name, "--distro", distro)
             text.append(
                 f"## {name}\n\n```text\n{info}```\n\n![Bytes of {name}](gallery/{picture})\n"

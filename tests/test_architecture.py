@@ -19,6 +19,7 @@ MAY_IMPORT = {
     # Know nothing of messages; could be published alone.
     "terminal": set[str](),
     "errors": {"terminal"},
+    # Figures, and pages with figures.
     "drawing": set[str](),
     "files": set[str](),
     "garbage": set[str](),
@@ -54,8 +55,10 @@ MAY_IMPORT = {
 # What a user's accelerator is made of. `sim`: values of messages become transfers.
 MAY_IMPORT["accelerator"] = {"gateware", "model", "plan", "sim", "wire"}
 MAY_IMPORT["export"] = {
+    # `drawing`, `identity`, `metrics`, `sim`: datasheets show what a type is, and waveforms.
     *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl", "verilog"),
-    *("model", "frontend", "wire", "plan", "timing", "program", "estimates", "gateware"),
+    *("drawing", "identity", "metrics", "model", "frontend", "wire", "plan", "timing", "program"),
+    *("estimates", "gateware", "sim"),
 }
 MAY_IMPORT["node"] = {
     # `terminal`: names of peers are printed. `equivalence`, `jobs`: accelerators in VHDL and
@@ -72,8 +75,8 @@ MAY_IMPORT["covering"] = {
 MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
     "cases",
-    *(MAY_IMPORT["export"] - {"estimates", "garbage", "program", "rtlil", "timing"}),
-    *("arguments", "drawing", "export", "identity", "node", "recordings", "sim", "terminal"),
+    *(MAY_IMPORT["export"] - {"estimates", "garbage", "metrics", "program", "rtlil", "timing"}),
+    *("arguments", "export", "node", "recordings", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
     *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),

@@ -47,6 +47,11 @@ def add_build(command: argparse.ArgumentParser) -> None:
         metavar="EXTRA,...",
         help=f"more files: {', '.join(EXTRAS)}, or all",
     )
+    command.add_argument(
+        "--datasheet",
+        action="store_true",
+        help="also write datasheet.html, with pictures, ports, cycles and area; --with documents",
+    )
     command.add_argument("--force", action="store_true", help="also write folders that are current")
     add_jobs(command)
     command.set_defaults(run=_build)
@@ -96,7 +101,7 @@ def _build(args: argparse.Namespace) -> None:
             bus_bytes=args.bus_bytes,
             max_message_bytes=args.max_message_bytes,
             ports=args.ports,
-            extras=args.extras,
+            extras=args.extras | ({"documents"} if args.datasheet else set()),
         ),
         force=args.force,
         stimuli=packets_of,
@@ -108,7 +113,7 @@ def _build(args: argparse.Namespace) -> None:
     for built in done[:1]:
         script = built.folder / "vhdl" / "run_ghdl.sh"
         run = f"{script} runs a test bench in GHDL; " if script.is_file() else ""
-        print(f"next: {run}--with all adds SystemVerilog, templates, scripts and pictures")
+        print(f"next: {run}--with all adds SystemVerilog, scripts and a datasheet")
 
 
 def add_plan(command: argparse.ArgumentParser) -> None:

@@ -66,6 +66,11 @@ def _add_info(command: argparse.ArgumentParser) -> None:
 
 def _add_build(command: argparse.ArgumentParser) -> None:
     command.add_argument("--out", default="node_out", help="folder to write to (%(default)s)")
+    command.add_argument(
+        "--datasheet",
+        action="store_true",
+        help="also write datasheet.html, with topics, ports, pictures, cycles and area",
+    )
     command.add_argument("--force", action="store_true", help="also write a folder that is current")
     command.add_argument(
         "--sim", action="store_true", help="also compile the simulation, for firm-hdl node run"
@@ -226,7 +231,13 @@ def _act(args: argparse.Namespace, description: Description) -> None:
 
         # What is wrong with it is found at once.
         board = None if args.target is None else read_board(args.target)
-        built = build_node(description, args.out, force=args.force, stimuli=_stimuli)
+        built = build_node(
+            description,
+            args.out,
+            force=args.force,
+            stimuli=_stimuli,
+            datasheet=args.datasheet,
+        )
         print(f"{'current' if built.was_current else 'wrote':8}{built.folder}", flush=True)
         for name in built.kept:
             print(f"kept    {built.folder / name}, which you changed", flush=True)

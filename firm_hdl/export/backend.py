@@ -134,7 +134,10 @@ class Output:
         Texts by path in the type's folder.
     manifest : mapping
         Entries of the manifest about the files, by key.
+    instances : mapping of direction to str
+        An instance of each converter, to be copied into a design.
     """
 
     files: Mapping[str, str]
     manifest: Mapping[str, Any] = field(default_factory=dict)
+    instances: Mapping[Direction, str] = field(default_factory=dict)

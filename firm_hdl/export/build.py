@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from firm_hdl.export import systemverilog, verilog, vhdl
-from firm_hdl.export.backend import BuildError, Converters, Output
+from firm_hdl.export.backend import BuildError, Converters
 from firm_hdl.export.folder import build_folder, check_folder
 from firm_hdl.export.manifest import (
     converter_facts,
@@ -32,10 +32,9 @@ from firm_hdl.frontend import Library, load_all
 from firm_hdl.jobs.executors import ExecutorError, run_each
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
-from firm_hdl.plan import Plan, build_plan, to_yaml
+from firm_hdl.plan import Plan, build_plan
 from firm_hdl.timing import Timing, describe, timing
 from firm_hdl.wire import Wire, lay_out
-from firm_hdl.wire.picture import to_svg
 
 __all__ = ["BuildError", "Built", "build", "check_size", "plan_of"]
 
@@ -244,13 +243,20 @@ def _files(converters: Converters, figures: Timing) -> tuple[dict[str, str], dic
     """Write all files of a folder; return them and the manifest."""
     converters = dataclasses.replace(converters, circuits=converters.make_circuits())
     message, plan, extras = converters.message, converters.plan, converters.options.extras
-    outputs = [verilog.write(converters), vhdl.write(converters)]
+    outputs = {"Verilog": verilog.write(converters), "VHDL": vhdl.write(converters)}
     if "systemverilog" in extras:
-        outputs.append(systemverilog.write(converters))
+        outputs["SystemVerilog"] = systemverilog.write(converters)
+    sections = {
+        **converter_sections(message, plan, figures),
+        **{key: value for output in outputs.values() for key, value in output.manifest.items()},
+    }
     if "documents" in extras:
-        picture = to_svg(lay_out(message, plan.wire), f"{message.name} on {plan.wire}")
-        outputs.append(Output(files={"plan.yaml": to_yaml(plan), "layout.svg": picture}))
-    files = {name: text for output in outputs for name, text in output.files.items()}
-    sections = {key: value for output in outputs for key, value in output.manifest.items()}
-    sections = {**converter_sections(message, plan, figures), **sections}
+        # Not before it is asked for: it simulates.
+        from firm_hdl.export import datasheet
+
+        shown = {"SystemVerilog": systemverilog.write(converters), **outputs}
+        languages = ("VHDL", "Verilog", "SystemVerilog")
+        instances = {language: shown[language].instances for language in languages}
+        outputs["documents"] = datasheet.write(converters, sections, instances)
+    files = {name: text for output in outputs.values() for name, text in output.files.items()}
     return files, manifest_of(converters.inputs, files, sections)

@@ -18,7 +18,7 @@ EXTRAS: tuple[Extra, ...] = get_args(Extra)
 """Files that a build writes only when it is asked for them.
 
 ``systemverilog``: modules with structs. ``tools``: files for FuseSoC, Vivado, make, VUnit and
-Verilator, and instantiation templates. ``documents``: the plan, and a picture of the layout.
+Verilator, and instantiation templates. ``documents``: the datasheet.
 """
 
 

@@ -41,6 +41,7 @@ from firm_hdl.vhdl.convert import convert
 __all__ = ["build_node", "check_units"]
 
 SUMMARY = "summary.txt"
+DATASHEET = "datasheet.html"
 
 _OF_VHDL = ("_tb.vhd", "firm_hdl_bench_pkg.vhd", "bench_files.txt", "run_ghdl.sh")
 _OF_VERILOG = ("_tb.v", "run_iverilog.sh")
@@ -58,6 +59,7 @@ def build_node(
     *,
     force: bool = False,
     stimuli: Stimuli | None = None,
+    datasheet: bool = False,
 ) -> BuiltDesign:
     """Write the design of a node into a folder of its own, ``out/NAME``.
 
@@ -70,6 +72,8 @@ def build_node(
     stimuli : callable or None
         Returns good packets of a type for the test benches. `None`: these send control messages
         only.
+    datasheet : bool
+        Write the datasheet, too.
 
     Raises
     ------
@@ -112,6 +116,7 @@ def build_node(
                 "accelerator_files": {
                     f: digest(t) for f, t in {**own.texts, **own.headers}.items()
                 },
+                **({"datasheet": True} if datasheet else {}),
             },
             circuit,
         ),
@@ -124,7 +129,9 @@ def build_node(
             "reset": "aresetn",
         },
         ports=[asdict(port) for port in ports],
-        make_files=lambda: _files(description, name, circuit, ports, messages, script, own),
+        make_files=lambda: _files(
+            description, name, circuit, ports, messages, script, own, datasheet=datasheet
+        ),
         force=force,
     )
 
@@ -137,6 +144,8 @@ def _files(
     messages: Sequence[MessagePort],
     script: LinkScript | None,
     own: AcceleratorFiles,
+    *,
+    datasheet: bool,
 ) -> dict[str, str]:
     """Write the design and its benches in each language."""
     header = (
@@ -174,6 +183,13 @@ def _files(
     if own.language:
         owners[_ACCELERATOR] = {f"{own.entity}.vhd": ""}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
+    documents: dict[str, str] = {}
+    if datasheet:
+        # Not before it is asked for: it imports much.
+        from firm_hdl.node.datasheet import node_datasheet
+
+        page = node_datasheet(description, name, ports, module=module, vhdl_ports=vhdl_ports)
+        documents[DATASHEET] = page
     return {
         **verilog_file(netlist, name=name, header=header),
         "waivers.vlt": waivers([module]) + _UNDRIVEN.format(file=f"{module}.v"),
@@ -191,6 +207,7 @@ def _files(
             change=own.core,
         ),
         **benches,
+        **documents,
     }
 
 

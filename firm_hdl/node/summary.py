@@ -6,6 +6,7 @@ Nothing is elaborated. Cycles come from plans, areas from converters that were m
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict
 from functools import cache
 from typing import Any, TypeAlias
 
@@ -25,7 +26,7 @@ from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
 from firm_hdl.node.reading import LINK_OPTIONS
 from firm_hdl.timing import Cost, timing
 
-__all__ = ["facts_of", "summary", "warnings_of"]
+__all__ = ["clock_needed", "facts_of", "memory_bytes", "summary", "warnings_of"]
 
 
 _Figures: TypeAlias = tuple[Metrics, Cost, Mapping[str, Estimate]]
@@ -116,9 +117,7 @@ def _store(topic: Topic, direction: Direction, store: Store, figures: _Figures) 
         "max_message_bytes": store.max_message_bytes,
         "cycles": {"bytes": hardest.bytes, "beats": hardest.beats, "cycles": hardest.cycles},
         "clock_hz": None if rate is None else rate * hardest.cycles,
-        "estimate": None
-        if estimate is None
-        else {"part": estimate.part, "lut": estimate.lut, "ff": estimate.ff, "mhz": estimate.mhz},
+        "estimate": None if estimate is None else asdict(estimate),
     }
 
 
@@ -178,14 +177,7 @@ def _rows(facts: dict[str, Any]) -> Iterator[list[str]]:
 def _totals(facts: dict[str, Any]) -> Iterator[str]:
     """Yield sums: memory, area of converters, and bytes on the link."""
     stores = [store for topic in facts["topics"] for store in topic["packets"].values()]
-    memory = sum(store["memory_bytes"] for store in stores) + facts["link"].get("memory_bytes", 0)
-    # A service stores its requests before the gate, too.
-    memory += sum(
-        topic["packets"]["in"]["memory_bytes"]
-        for topic in facts["topics"]
-        if topic["kind"] == "serve"
-    )
-    yield f"memory for packets: {memory} bytes"
+    yield f"memory for packets: {memory_bytes(facts)} bytes"
     found = [store["estimate"] for store in stores if store["estimate"] is not None]
     if found:
         lut, ff = (sum(each[key] for each in found) for key in ("lut", "ff"))
@@ -194,11 +186,27 @@ def _totals(facts: dict[str, Any]) -> Iterator[str]:
             f"converters, after measured ones on {found[0]['part']}: {lut} LUT, {ff} FF, "
             f"{slowest:g} MHz; gates, core and link come on top"
         )
-    clocks = [store["clock_hz"] for store in stores if store["clock_hz"] is not None]
-    if clocks:
-        yield f"clock for all stated rates on one link: {sum(clocks) / 1e6:.3g} MHz"
+    if needed := clock_needed(facts):
+        yield f"clock for all stated rates on one link: {needed / 1e6:.3g} MHz"
     yield f"a message costs {HEADER_BYTES} bytes of header"
     yield "cycles: of the packet that is hardest for its converter, of those that were tried"
+
+
+def memory_bytes(facts: Mapping[str, Any]) -> int:
+    """Return the size of all memories for packets."""
+    memory: int = facts["link"].get("memory_bytes", 0)
+    for topic in facts["topics"]:
+        packets = topic["packets"]
+        memory += sum(store["memory_bytes"] for store in packets.values())
+        # A service stores its requests before the gate, too.
+        memory += packets["in"]["memory_bytes"] if topic["kind"] == "serve" else 0
+    return memory
+
+
+def clock_needed(facts: Mapping[str, Any]) -> float:
+    """Return the clock in Hz that all stated rates need on one link; 0 if none is stated."""
+    stores = (store for topic in facts["topics"] for store in topic["packets"].values())
+    return sum(store["clock_hz"] or 0 for store in stores)
 
 
 def warnings_of(description: Description, facts: dict[str, Any]) -> Iterator[str]:

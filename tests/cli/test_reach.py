@@ -218,7 +218,7 @@ def test_folders_are_told_as_they_are_built_and_described_in_the_end(workdir, mo
     told = TOLD.replace("there", "one")
     assert capsys.readouterr().out == (
         f"wrote   one{os.sep}\n{told}current two{os.sep}\none: figures\ntwo: figures\n"
-        "next: --with all adds SystemVerilog, templates, scripts and pictures\n"
+        "next: --with all adds SystemVerilog, scripts and a datasheet\n"
     )
     message = Library("lyrical", ["src"]).message("p/msg/C")
     assert packets == stimuli(message, build_plan(lay_out(message))) and given == [3]

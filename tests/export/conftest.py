@@ -8,8 +8,8 @@ from amaranth.hdl import Module
 from firm_hdl import Deserializer, Serializer
 from firm_hdl.export.options import EXTRAS
 
-EVERYTHING = frozenset(EXTRAS)
-"""Files for each kind of user."""
+EVERYTHING = frozenset(EXTRAS) - {"documents"}
+"""Files for each kind of tool. Datasheets simulate, which hollow converters do not stand."""
 
 
 def hollow_converters(monkeypatch: pytest.MonkeyPatch) -> None:

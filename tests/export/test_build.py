@@ -6,7 +6,6 @@ import json
 import os
 import subprocess
 import sys
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
@@ -16,8 +15,6 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, Built, build
 from firm_hdl.export.options import Options
 from firm_hdl.frontend import Library
-from firm_hdl.plan import build_plan, to_yaml
-from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.export.conftest import hollow_converters
 from tests.export.test_sample import SAMPLE, files
@@ -84,17 +81,6 @@ def test_vhdl_compiles_in_the_order_of_the_manifest_and_stimuli_are_the_callers(
     hollow_converters(monkeypatch)
     assert not build_one(tmp_path).was_current
     assert not (built.folder / "vhdl" / "stimuli.txt").exists()
-
-
-@pytest.mark.usefixtures("hollow")
-def test_plan_and_picture_are_those_of_the_type(tmp_path):
-    built = build_one(tmp_path, "sensor_msgs/msg/PointCloud2", extras=frozenset({"documents"}))
-    plan = build_plan(lay_out(Library().message("sensor_msgs/msg/PointCloud2")))
-    assert (built.folder / "plan.yaml").read_text() == to_yaml(plan)
-    picture = ElementTree.fromstring((built.folder / "layout.svg").read_text())
-    texts = [element.text for element in picture.iter("{http://www.w3.org/2000/svg}text")]
-    for text in ("fields.item.name.length uint32", "data: length x uint8", "fields: length times"):
-        assert text in texts
 
 
 @pytest.mark.usefixtures("hollow")

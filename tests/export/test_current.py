@@ -40,13 +40,13 @@ def test_other_options_and_definitions_are_built_anew(tmp_path, monkeypatch):
     assert build_one(tmp_path, max_message_bytes=1000).was_current
     assert not build_one(tmp_path, max_message_bytes=1000, ports="flat").was_current
     assert not build_one(tmp_path, max_message_bytes=1000).was_current
-    with_plan = {"max_message_bytes": 1000, "extras": frozenset({"documents"})}
-    built = build_one(tmp_path, **with_plan)
-    assert not built.was_current and build_one(tmp_path, **with_plan).was_current
-    assert (built.folder / "plan.yaml").exists()
+    with_tools = {"max_message_bytes": 1000, "extras": frozenset({"tools"})}
+    built = build_one(tmp_path, **with_tools)
+    assert not built.was_current and build_one(tmp_path, **with_tools).was_current
+    assert (built.folder / "waivers.vlt").exists()
     # What is not asked for any more goes.
     assert not build_one(tmp_path, max_message_bytes=1000).was_current
-    assert not (built.folder / "plan.yaml").exists()
+    assert not (built.folder / "waivers.vlt").exists()
     assert build_one(tmp_path, bus_bytes=4).folder.name == "std_msgs_msg_Bool_cdr_4"
     monkeypatch.setattr(firm_hdl, "__version__", "9.9.9")
     assert not build_one(tmp_path, max_message_bytes=1000).was_current

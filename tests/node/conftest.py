@@ -14,4 +14,4 @@ from tests.node.samples import RELAY, read
 def relay(tmp_path_factory):
     """The folder of `RELAY`; copy it before you change a file."""
     out = tmp_path_factory.mktemp("with space")
-    return build_node(read(RELAY), out, stimuli=stimuli).folder
+    return build_node(read(RELAY), out, stimuli=stimuli, datasheet=True).folder

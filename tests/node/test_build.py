@@ -24,7 +24,9 @@ from firm_hdl.node.messages import NodeMessage
 from firm_hdl.node.summary import facts_of
 from firm_hdl.node.top import NodeTop, node_ports
 from firm_hdl.vhdl.convert import Vhdl
+from tests.export.datasheet.test_page import Page, codes, pictures
 from tests.export.strikes import left_when_outdated
+from tests.export.test_packaging import run
 from tests.node.samples import PACKAGES, RELAY, WHEELS, read
 from tests.node.traffic import frames_of
 from tests.tools import need
@@ -49,6 +51,31 @@ def test_the_manifest_has_what_a_host_needs(relay):
     names = [port["name"] for port in manifest["ports"]]
     assert names[:3] == ["aclk", "aresetn", "s_axis_tdata"] and len(names) == len(set(names))
     assert "subscribe_in_1_data_data" in names and "m_axis_tdest" in names
+
+
+def test_the_datasheet_is_whole_and_its_instances_compile(relay, tmp_path):
+    iverilog, ghdl = need("iverilog", shutil.which("iverilog")), need("ghdl", GHDL)
+    text = (relay / "datasheet.html").read_text()
+    page = Page(text)
+    assert "script" not in page.elements and page.links == []
+    # Pictures of layout and plan of each type.
+    assert len(pictures(text)) == 4
+    manifest = json.loads((relay / "manifest.json").read_text())
+    for port in manifest["ports"]:
+        assert f"<td><code>{port['name']}</code></td>" in text
+    for known in (manifest["fingerprint"], "/alone (subscribe)", "std_msgs/msg/UInt8", "dropped"):
+        assert known in text
+    vhdl, verilog, amaranth = (code for _, code in codes(text))
+    assert "m.submodules" in amaranth
+    (tmp_path / "top.v").write_text(f"module top(input aclk, aresetn);\n{verilog}endmodule\n")
+    command = [iverilog, "-t", "null", "-s", "top", "top.v", f"{relay}/relay_verilog.v"]
+    assert run(command, tmp_path) == (0, "")
+    context, signals, statements = re.split("-- .*:\n", vhdl)[1:]
+    design = "entity top is port (aclk, aresetn : in std_logic); end entity;"
+    body = f"architecture a of top is\n{signals}begin\n{statements}end architecture;\n"
+    (tmp_path / "top.vhd").write_text(f"{context}{design}\n{body}")
+    files = [f"{relay}/vhdl/{name}" for name in (relay / "vhdl" / "files.txt").read_text().split()]
+    assert run([ghdl, "-a", "--std=08", *files, "top.vhd"], tmp_path) == (0, "")
 
 
 def test_the_verilog_compiles_in_both_languages(relay, tmp_path):
@@ -156,7 +183,7 @@ def test_the_command_prints_and_writes(relay, tmp_path, capsys, monkeypatch):
     assert capsys.readouterr().out.startswith("/robot/wheels: jazzy, cdr, 64-bit bus, 100 MHz\n")
     (tmp_path / "relay.yaml").write_text(RELAY)
     out = ["--out", str(relay.parent), "--path", str(PACKAGES)]
-    assert main(["node", "build", "relay.yaml", *out]) == 0
+    assert main(["node", "build", "relay.yaml", "--datasheet", *out]) == 0
     assert capsys.readouterr().out.startswith(f"current {relay}\n/relay: jazzy")
     assert (relay / "relay.core").read_text().startswith("CAPI=2:\n")
     (tmp_path / "bad.yaml").write_text(WHEELS.replace("Twist", "Twits"))

@@ -9,7 +9,7 @@ from firm_hdl.export.remarks import remark
 from firm_hdl.export.systemverilog.package import constants_of, shared_packages
 from firm_hdl.export.systemverilog.structs import package_name
 from firm_hdl.export.systemverilog.types import WORDS, bus_name
-from firm_hdl.export.systemverilog.wrapper import wrapper
+from firm_hdl.export.systemverilog.wrapper import instance, wrapper
 from firm_hdl.export.top import DIRECTIONS, Direction
 from firm_hdl.export.tree import Tree, tree_of
 
@@ -58,6 +58,9 @@ def write(converters: Converters) -> Output:
     return Output(
         files={f"{FOLDER}/{name}": text for name, text in files.items()},
         manifest={"systemverilog": _section(converters, tree, modules, listed)},
+        instances={
+            way: instance(converters.plan, tree, way, name=name) for way, name in modules.items()
+        },
     )
 
 

@@ -11,7 +11,7 @@ from firm_hdl.export.top import Direction, Port, ports_of
 from firm_hdl.export.tree import Node, Tree
 from firm_hdl.plan import Plan
 
-__all__ = ["leaf_actual", "wrapper"]
+__all__ = ["instance", "leaf_actual", "wrapper"]
 
 _STATUS = "m_axis_status"
 
@@ -39,12 +39,50 @@ def wrapper(plan: Plan, tree: Tree, direction: Direction, *, name: str, core: st
     )
 
 
+def instance(plan: Plan, tree: Tree, direction: Direction, *, name: str) -> str:
+    """Write an instance of a module, and the variables that it needs.
+
+    Parameters
+    ----------
+    name : str
+        Name of the module.
+    """
+    lines = _lines(plan, tree, direction)
+    own, base = package_name(tree.package.name), tree.package.base.upper()
+    tied = (
+        f"rdy = {own}::{base}_ALL_READY"
+        if direction == "deserializer"
+        else (f"msg = {own}::{base}_IDLE")
+    )
+    variables = (
+        f"{kind} {port};\n"
+        for _, kind, port, _ in lines
+        if port not in ("aclk", "aresetn", f"{_STATUS}_tready")
+    )
+    # A packet waits until its status is taken.
+    parts = (
+        f"  .{port}(1'b1)" if port == f"{_STATUS}_tready" else f"  .{port}({port})"
+        for _, _, port, _ in lines
+    )
+    joined = ",\n".join(parts)
+    return f"{''.join(variables)}\nalways_comb {tied};\n\n{name} {direction} (\n{joined}\n);\n"
+
+
 def _ports(plan: Plan, tree: Tree, direction: Direction) -> Iterator[str]:
+    lines = _lines(plan, tree, direction)
+    for number, (way, kind, name, meaning) in enumerate(lines):
+        end = "," if number < len(lines) - 1 else ""
+        yield from remark(meaning)
+        yield f"  {way:6} {kind} {name}{end}\n"
+
+
+def _lines(plan: Plan, tree: Tree, direction: Direction) -> list[tuple[str, str, str, str]]:
+    """List the ports: direction, type, name and meaning."""
     own, bus = package_name(tree.package.name), bus_name(plan.bus_bytes)
     reads = direction == "deserializer"
     forward, backward = ("output", "input") if reads else ("input", "output")
     beats = "s_axis" if reads else "m_axis"
-    lines = [
+    return [
         ("input", "logic", "aclk", "Clock; the rising edge is active."),
         ("input", "logic", "aresetn", "Synchronous reset, active low."),
         (backward, f"{bus}::{BEAT}", beats, "Packets."),
@@ -54,10 +92,6 @@ def _ports(plan: Plan, tree: Tree, direction: Direction) -> Iterator[str]:
         ("output", f"{TYPES_NAME}::{STATUS_STREAM}", _STATUS, "Status of each packet."),
         ("input", "logic", f"{_STATUS}_tready", "status: ready."),
     ]
-    for number, (way, kind, name, meaning) in enumerate(lines):
-        end = "," if number < len(lines) - 1 else ""
-        yield from remark(meaning)
-        yield f"  {way:6} {kind} {name}{end}\n"
 
 
 def _body(plan: Plan, tree: Tree, direction: Direction, core: str) -> Iterator[str]:

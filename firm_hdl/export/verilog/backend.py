@@ -7,7 +7,7 @@ from typing import Any
 
 from firm_hdl.export.backend import Converters, Output, module_name
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
-from firm_hdl.export.verilog.template import template
+from firm_hdl.export.verilog.template import instance, template
 from firm_hdl.plan import Plan
 from firm_hdl.verilog import convert
 
@@ -27,7 +27,7 @@ _WAIVED = {
 def write(converters: Converters) -> Output:
     """Write Verilog-2005 that is also SystemVerilog, and the manifest's entry `converters`."""
     name, plan = converters.name, converters.plan
-    files, section = {}, {}
+    files, section, instances = {}, {}, {}
     for direction in DIRECTIONS:
         module = module_name(name, direction)
         header = converters.header(module, f"the {direction}")
@@ -43,14 +43,13 @@ def write(converters: Converters) -> Output:
             "reset": "aresetn",
             "ports": _ports(plan, direction),
         }
+        instances[direction] = instance(converters.message, plan, direction, module=module)
         if "tools" in converters.options.extras:
             section[direction]["template"] = f"{module}.veo"
-            files[f"{module}.veo"] = template(
-                converters.message, plan, direction, module=module, header=header
-            )
+            files[f"{module}.veo"] = template(direction, instances[direction], header=header)
     if "tools" in converters.options.extras:
         files[_WAIVERS] = waivers(module_name(name, each) for each in DIRECTIONS)
-    return Output(files=files, manifest={"converters": section})
+    return Output(files=files, manifest={"converters": section}, instances=instances)
 
 
 def waivers(modules: Iterable[str]) -> str:

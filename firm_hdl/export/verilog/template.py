@@ -10,7 +10,7 @@ from firm_hdl.export.top import Direction, Port, field_of, ports_of
 from firm_hdl.model import Array, Message
 from firm_hdl.plan import Leaf, Plan
 
-__all__ = ["template"]
+__all__ = ["instance", "template"]
 
 _STATUS_READY = "m_axis_status_tready"
 
@@ -26,14 +26,13 @@ _ABOUT: dict[Direction, str] = {
 }
 
 
-def template(
-    message: Message, plan: Plan, direction: Direction, *, module: str, header: str
-) -> str:
-    """Write an instance of a converter's module, and the nets that it needs.
+def template(direction: Direction, instance: str, *, header: str) -> str:
+    """Write a file with an instance.
 
     Parameters
     ----------
-    module : str
+    instance : str
+        As :func:`instance` returns it.
     header : str
         Lines of the comment at the head of the file.
     """
@@ -49,6 +48,12 @@ def template(
         *remark(_ABOUT[direction], ""),
         "\n",
     ]
+    return "".join(text) + instance
+
+
+def instance(message: Message, plan: Plan, direction: Direction, *, module: str) -> str:
+    """Write an instance of a converter's module, and the nets that it needs."""
+    text = []
     ports = ports_of(plan, direction)
     for port in ports:
         if port.leaf is None and port.name not in ("aclk", "aresetn", _STATUS_READY):

@@ -13,7 +13,7 @@ from firm_hdl.export.folder import read_manifest
 from firm_hdl.export.packaging import packaging
 from firm_hdl.export.primitives import TYPES_NAME
 from firm_hdl.export.record_top import RecordTop, why_no_record
-from firm_hdl.export.top import DIRECTIONS, Direction
+from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
 from firm_hdl.export.tree import tree_of
 from firm_hdl.export.vhdl.bench import (
     PARTS,
@@ -29,7 +29,7 @@ from firm_hdl.export.vhdl.bench import (
 )
 from firm_hdl.export.vhdl.constants import comment
 from firm_hdl.export.vhdl.layer import flat_package, user_layer
-from firm_hdl.export.vhdl.wrapper import Core
+from firm_hdl.export.vhdl.wrapper import Core, instance, plain_lines, stream_lines
 from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan
@@ -58,7 +58,9 @@ def write(converters: Converters) -> Output:
     if "tools" in converters.options.extras:
         files |= packaging({"inputs": converters.inputs, **manifest})
     return Output(
-        files={f"{FOLDER}/{name}": text for name, text in files.items()}, manifest=manifest
+        files={f"{FOLDER}/{name}": text for name, text in files.items()},
+        manifest=manifest,
+        instances=made.instances,
     )
 
 
@@ -77,6 +79,7 @@ class _Parts:
     design: dict[str, str] = field(default_factory=dict)
     benches: dict[str, str] = field(default_factory=dict)
     section: dict[str, Any] = field(default_factory=dict)
+    instances: dict[Direction, str] = field(default_factory=dict)
 
     @property
     def head(self) -> str:
@@ -152,7 +155,7 @@ def to_vhdl(converters: Converters) -> Output:
             "stimuli": STIMULI if converters.stimuli else None,
         },
     }
-    return Output(files=files, manifest=section)
+    return Output(files=files, manifest=section, instances=parts.instances)
 
 
 def _add_records(parts: _Parts, converters: Converters, cores: Mapping[Direction, Core]) -> None:
@@ -169,6 +172,11 @@ def _add_records(parts: _Parts, converters: Converters, cores: Mapping[Direction
         header=parts.header,
     )
     parts.design = {**layer.packages, **parts.design, **layer.wrappers}
+    for way, entity in layer.entities.items():
+        base = layer.tree.package.base.upper()
+        tied = f"rdy <= {base}_ALL_READY" if way == "deserializer" else f"msg <= {base}_IDLE"
+        lines = stream_lines(plan, layer.tree, way)
+        parts.instances[way] = instance(way, entity, lines, (TYPES_NAME, layer.package), tied)
     parts.add_bench(stream_view(plan, layer), plan)
     section: dict[str, Any] = {"built": False, "reason": reason}
     if layer.record is not None:
@@ -221,6 +229,9 @@ def _add_flat(parts: _Parts, converters: Converters, cores: Mapping[Direction, C
     package = f"{parts.base}_pkg"
     text, constants = flat_package(message, plan, name=package, cores=cores, header=parts.header)
     parts.design = {f"{package}.vhd": text, **parts.design}
+    for way, core in cores.items():
+        lines = plain_lines(ports_of(plan, way), core.names)
+        parts.instances[way] = instance(way, core.entity, lines, (package,))
     parts.add_bench(flat_view(plan, package, cores), plan)
     parts.section = {
         "package": package,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from firm_hdl.export.primitives import TYPES_NAME, primitive_name
@@ -21,6 +21,7 @@ __all__ = [
     "Line",
     "component",
     "entity_around",
+    "instance",
     "plain_lines",
     "record_lines",
     "record_wrapper",
@@ -38,6 +39,8 @@ LIBRARIES = f"""\
 {IEEE}
 use work.{TYPES_NAME}.all;
 """
+
+_STATUS_READY, _TAKEN = "m_axis_status_tready", "'1'"
 
 Line = tuple[str, str, str]
 """A port: name, direction and type, meaning."""
@@ -112,6 +115,46 @@ def component(entity: str, lines: list[Line]) -> Iterator[str]:
     yield f"\n  component {entity} is\n"
     yield from (f"  {line}" for line in _port_clause(lines, meanings=False))
     yield "  end component;\n"
+
+
+def instance(
+    label: str, entity: str, lines: list[Line], packages: Sequence[str], tied: str = ""
+) -> str:
+    """Write an instance of an entity, and the signals that it needs.
+
+    Parameters
+    ----------
+    label : str
+        The instance's name.
+    lines : list of Line
+        Ports of the entity.
+    packages : sequence of str
+        Packages with the types of the ports.
+    tied : str
+        A statement, without its semicolon, that ties off fields.
+    """
+    width = max(len(name) for name, _, _ in lines)
+    signals = [
+        f"signal {name:{width}} : {kind[4:]};\n"
+        for name, kind, _ in lines
+        if name not in ("aclk", "aresetn", _STATUS_READY)
+    ]
+    # A packet waits until its status is taken.
+    parts = ",\n".join(
+        f"    {name:{width}} => {_TAKEN if name == _STATUS_READY else name}" for name, _, _ in lines
+    )
+    return "".join(
+        [
+            "-- Before the architecture:\n",
+            IEEE,
+            *(f"use work.{package}.all;\n" for package in packages),
+            "\n-- Before its begin:\n",
+            *signals,
+            "\n-- After it:\n",
+            f"{label} : entity work.{entity}\n  port map (\n{parts}\n  );\n",
+            f"{tied};\n" if tied else "",
+        ]
+    )
 
 
 def _port_clause(lines: list[Line], *, meanings: bool = True) -> Iterator[str]:

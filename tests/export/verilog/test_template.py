@@ -12,7 +12,7 @@ from firm_hdl.export.build import build
 from firm_hdl.export.options import Options
 from firm_hdl.export.top import DIRECTIONS, ports_of
 from firm_hdl.export.verilog import module_name
-from firm_hdl.export.verilog.template import template
+from firm_hdl.export.verilog.template import instance, template
 from firm_hdl.model import Message
 from tests.export.conftest import EVERYTHING
 from tests.export.systemverilog.hdl import plan_of, stub
@@ -26,7 +26,8 @@ CONNECTION = re.compile(r"\.(\w+)\(([^()]*)\)")
 
 def template_of(message: Message, direction: str, bus_bytes: int = 8) -> str:
     plan = plan_of(message, bus_bytes)
-    return template(message, plan, direction, module=direction, header="One line.\n")
+    text = instance(message, plan, direction, module=direction)
+    return template(direction, text, header="One line.\n")
 
 
 def wrapped(text: str) -> str:

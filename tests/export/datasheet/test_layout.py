@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ElementTree
-from itertools import pairwise
 
 import pytest
 
+from firm_hdl.export.datasheet.layout import ROW_BYTES, Note, bands, layout_figure
+from firm_hdl.export.datasheet.rows import INDENT, LEFT, WIDTH
+from firm_hdl.export.datasheet.steps import plan_figure
 from firm_hdl.frontend import Library
+from firm_hdl.plan import build_plan
+from firm_hdl.plan.yaml import counted
 from firm_hdl.wire import lay_out
-from firm_hdl.wire.picture import BYTE_WIDTH, INDENT, LEFT, ROW_BYTES, Note, bands, to_svg
 from tests.frontend.workspace import library
 
-SVG = "{http://www.w3.org/2000/svg}"
+BYTE = WIDTH / ROW_BYTES
 
 TEXTS = {
     "p/T": "uint8 a\nuint16 b\nPart[2] parts\nstring<=5 s\nPart[<=3] more\nuint8[] raw\n"
@@ -139,154 +142,84 @@ def test_padding_of_a_known_place_has_a_known_size(tmp_path, text, found):
     assert bands_in_words(bands(layout)) == header + found
 
 
-def rects(picture):
-    """Return the drawn cells: left edge, top, width, and title of each."""
-    found = []
-    for rect in picture.iter(f"{SVG}rect"):
-        title = rect.find(f"{SVG}title")
-        if title is not None:
-            x, y, width = (int(rect.get(name)) for name in ("x", "y", "width"))
-            found.append((x, y, width, title.text))
-    return found
+def shapes(figure, tag):
+    return list(ElementTree.fromstring(str(figure)).iter(tag))
+
+
+def texts_of(figure):
+    return [each.text for each in shapes(figure, "text")]
+
+
+def box(rect):
+    x, y, width, height = (float(rect.get(key)) for key in ("x", "y", "width", "height"))
+    return x, y, x + width, y + height
 
 
 @pytest.mark.parametrize("name", ["sensor_msgs/msg/Imu", "sensor_msgs/msg/PointCloud2"])
 @pytest.mark.parametrize("wire", ["cdr", "ros1"])
 def test_cells_stand_where_their_bytes_are(name, wire):
     layout = lay_out(Library().message(name), wire)
-    picture = ElementTree.fromstring(to_svg(layout, name))
-    drawn = rects(picture)
-    width, height = (float(picture.get(key)) for key in ("width", "height"))
-    assert all(x + w <= width and y < height for x, y, w, _ in drawn)
+    drawn = [
+        (*box(each), each[0].text) for each in shapes(layout_figure(layout), "rect") if len(each)
+    ]
     for band in bands(layout):
         if isinstance(band, Note):
             continue
         left = LEFT + band.depth * INDENT
         for cell in band.cells:
-            text = f"{f'{cell.name} {cell.type}'.strip()}, {cell.bytes} bytes"
-            x, y, w, _ = next(rect for rect in drawn if rect[3] == text)
-            drawn.remove((x, y, w, text))
-            assert (x - left) / BYTE_WIDTH == cell.at % ROW_BYTES
-            row = min(cell.bytes, ROW_BYTES - cell.at % ROW_BYTES)
-            assert w == row * BYTE_WIDTH
-            pieces = [row]
-            rows = -(-(cell.at + cell.bytes) // ROW_BYTES) - cell.at // ROW_BYTES
+            text = f"{f'{cell.name} {cell.type}'.strip()}, {counted(cell.bytes, 'byte')}"
+            end = cell.at + cell.bytes
+            rows = -(-end // ROW_BYTES) - cell.at // ROW_BYTES
             # Of more than four rows, three are drawn.
-            for _ in range(min(rows, 4 if rows <= 4 else 3) - 1):
-                x, y_next, w, _ = next(rect for rect in drawn if rect[3] == text and rect[1] > y)
-                drawn.remove((x, y_next, w, text))
-                assert x == left
-                y = y_next
-                pieces.append(w // BYTE_WIDTH)
-            if rows <= 4:
-                assert sum(pieces) == cell.bytes
-            else:
-                last = (cell.at + cell.bytes) % ROW_BYTES or ROW_BYTES
-                assert pieces[1:] == [ROW_BYTES, last]
+            found = [next(each for each in drawn if each[4] == text)]
+            found += [e for e in drawn if e[4] == text and e is not found[0]][: min(rows, 4) - 1]
+            found = found[: rows if rows <= 4 else 3]
+            for each in found:
+                drawn.remove(each)
+            places = [((x - left) / BYTE, (right - left) / BYTE) for x, _, right, _, _ in found]
+            first, last = cell.at % ROW_BYTES, end % ROW_BYTES or ROW_BYTES
+            assert [place for place, _ in places] == [first, *[0] * (len(found) - 1)]
+            assert [place for _, place in places] == [*[ROW_BYTES] * (len(found) - 1), last]
+            tops = [top for _, top, *_ in found]
+            assert tops == sorted(tops)
     assert drawn == []
-
-
-def texts_of(text):
-    return [each.text for each in ElementTree.fromstring(text).iter(f"{SVG}text")]
 
 
 def test_offsets_count_from_the_start_of_the_packet(tmp_path):
     message = library(tmp_path, {"p/T": "uint64[9] a\nuint8 b\nuint8[] c"}).message("p/T")
-    texts = texts_of(to_svg(lay_out(message, "cdr"), "p/T"))
+    texts = texts_of(layout_figure(lay_out(message, "cdr")))
     rows = [text for text in texts if re.fullmatch(r"\+?\d+", text)]
     # Column heads; the header; then 9 rows of 8 bytes, of which six are left out.
     assert rows == [*(f"+{lane}" for lane in range(8)), "0", "4", "68", "76"]
     assert "... 7 rows" in texts
     # After a part of variable size, offsets start again.
     message = library(tmp_path, {"p/U": "string s\nuint64[2] a"}).message("p/U")
-    texts = texts_of(to_svg(lay_out(message, "ros1"), "p/U"))
+    texts = texts_of(layout_figure(lay_out(message, "ros1")))
     rows = [text for text in texts if re.fullmatch(r"\+?\d+", text)]
     assert rows[8:] == ["0", "+0", "+8"]
 
 
-def test_special_characters_of_a_title_are_escaped(tmp_path):
-    message = library(tmp_path, {"p/T": "uint8 a"}).message("p/T")
-    title = "</text><script>&\"'"
-    assert texts_of(to_svg(lay_out(message), title))[0] == title
-
-
-@pytest.mark.parametrize(
-    ("kind", "fits", "cut"),
-    # A byte has room for 5 characters, two for 11, and a row of eight for 49.
-    [("uint8", 5, 4), ("uint16", 11, 10), ("uint64", 49, 48)],
-)
-def test_names_without_room_are_cut(tmp_path, kind, fits, cut):
-    for more in (0, 1):
-        name = "n" * (fits + more)
-        message = library(tmp_path / str(more), {"p/T": f"{kind} {name}"}).message("p/T")
-        picture = ElementTree.fromstring(to_svg(lay_out(message, "ros1"), "p/T"))
-        cells = [each.text for each in picture.iter(f"{SVG}text") if each.get("class") == "c"]
-        assert cells == [name if not more else "n" * cut + "~"]
-
-
 DEEP = {
     "p/Deep": "T[] a\nuint8 end",
-    "p/T": f"uint64[5] first\nPart[2] parts\nstring {'long_' * 20}name\nuint64 last",
+    "p/T": f"uint64[5] first\nPart[2] parts\nstring {'long_' * 40}name\nuint64 last\n"
+    + "".join(f"float64 x{n}\n" for n in range(300)),
     "p/Part": "uint8 x\nuint64[9] y\nstring z",
 }
 
 
-def boxes_of(picture):
-    """Return left, top, right and bottom of each rectangle but the background."""
-    numbers = (
-        [int(each.get(key)) for key in ("x", "y", "width", "height")]
-        for each in picture.iter(f"{SVG}rect")
-    )
-    _, *boxes = [(x, y, x + width, y + height) for x, y, width, height in numbers]
-    return boxes
-
-
 @pytest.mark.parametrize("wire", ["cdr", "ros1"])
-def test_bands_are_below_each_other_inside_the_picture(tmp_path, wire):
+@pytest.mark.parametrize("kind", ["layout", "plan"])
+def test_rows_are_below_each_other_inside_a_picture_of_bounded_size(tmp_path, wire, kind):
     layout = lay_out(library(tmp_path, DEEP).message("p/Deep"), wire)
-    picture = ElementTree.fromstring(to_svg(layout, "p/Deep"))
-    width, height = (int(picture.get(key)) for key in ("width", "height"))
-    boxes = boxes_of(picture)
-    assert all(x >= 0 and y >= 0 and right <= width for x, y, right, _ in boxes)
-    assert max(bottom for *_, bottom in boxes) <= height
+    figure = layout_figure(layout) if kind == "layout" else plan_figure(build_plan(layout))
+    assert figure.width < 1200 and figure.height < 5000
+    boxes = [box(each) for each in shapes(figure, "rect")]
+    assert all(x >= 0 and y >= 0 for x, y, _, _ in boxes)
+    assert all(right <= figure.width and bottom <= figure.height for _, _, right, bottom in boxes)
     for number, (x, y, right, bottom) in enumerate(boxes):
         for left, top, end, below in boxes[:number]:
-            assert right <= left or end <= x or bottom <= top or below <= y
-    # Texts that start at their left end, such as the names beside a row.
-    ends = [
-        int(each.get("x")) + 6.7 * len(each.text)
-        for each in picture.iter(f"{SVG}text")
-        if each.get("class") is None
-    ]
-    assert width - 20 <= max(ends) <= width
-    # A rail for each loop around a band, from the left.
-    rails = [x for x, _, right, _ in boxes if right - x == 5]
-    depths = [band.depth for band in bands(layout)]
-    assert rails == [6 + 8 * level for depth in depths for level in range(depth)]
-    assert max(depths) == 2
-
-
-def test_a_long_title_and_few_bytes_fit(tmp_path):
-    layout = lay_out(library(tmp_path, {"p/T": "uint8 a"}).message("p/T"))
-    title = "t" * 200
-    picture = ElementTree.fromstring(to_svg(layout, title))
-    assert int(picture.get("width")) >= 8 + 6.7 * len(title)
-
-
-def test_a_box_has_room_for_its_text_and_is_not_smaller_than_a_row(tmp_path):
-    name = "part_" * 12 + "end"
-    layout = lay_out(library(tmp_path, {"p/T": f"string {name}\nuint8[] b"}).message("p/T"), "ros1")
-    picture = ElementTree.fromstring(to_svg(layout, "p/T"))
-    notes = [each.text for each in bands(layout) if isinstance(each, Note)]
-    boxes = {
-        text.text: tuple(int(rect.get(key)) for key in ("x", "y", "width", "height"))
-        for rect, text in pairwise(picture)
-        if text.text in notes
-    }
-    tops = []
-    for text, (x, y, width, height) in boxes.items():
-        assert (x, height) == (LEFT, 22)
-        assert width == max(ROW_BYTES * BYTE_WIDTH, int(6.7 * len(text)) + 16)
-        tops.append(y)
-    assert [*boxes] == notes and len(name) > 50 > len(notes[1]) and tops == sorted(tops)
-    assert int(picture.get("width")) >= LEFT + 8 + 6.7 * len(notes[0])
+            apart = right <= left + 0.11 or end <= x + 0.11
+            assert apart or bottom <= top + 0.11 or below <= y + 0.11
+    for each in shapes(figure, "text"):
+        if each.get("text-anchor") == "start":
+            assert float(each.get("x")) + 6.7 * len(each.text) <= figure.width

@@ -1,0 +1,51 @@
+"""The area of the parts of a node besides its converters, from a few that were measured.
+
+All have a bus of 8 bytes and are mapped for ECP5 by Yosys; nothing is placed. A core has a gate for
+each direction that comes in, and a FIFO for each that goes out. Its area is estimated by the line
+through those of two cores whose packets are all of Twist.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["PartEstimate", "core_estimate", "link_estimate"]
+
+_PART = "ECP5 LFE5U-45F-8"
+_LINKS = {"stream": (497, 681), "uart": (0, 0), "udp": (0, 0)}
+_CORES = {2: (0, 0), 6: (0, 0)}
+"""Look-up tables and flip-flops: of links, and of cores by the number of their packet memories."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PartEstimate:
+    """An estimate of a part.
+
+    Attributes
+    ----------
+    part : str
+        FPGA and speed grade.
+    lut, ff : int
+        Look-up tables and flip-flops.
+    how : str
+        Whether they are measured.
+    """
+
+    part: str
+    lut: int
+    ff: int
+    how: str
+
+
+def link_estimate(kind: str) -> PartEstimate:
+    """Return the area of a link with the memory of the default."""
+    lut, ff = _LINKS[kind]
+    return PartEstimate(part=_PART, lut=lut, ff=ff, how="estimated: with other options")
+
+
+def core_estimate(memories: int) -> PartEstimate:
+    """Return the area of a core with so many packet memories."""
+    (few, less), (many, more) = _CORES.items()
+    share = (memories - few) / (many - few)
+    lut, ff = (round(a + share * (b - a)) for a, b in zip(less, more, strict=True))
+    return PartEstimate(part=_PART, lut=lut, ff=ff, how="estimated: cores of Twists")

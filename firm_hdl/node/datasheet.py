@@ -1,0 +1,169 @@
+"""The datasheet of a node: one page of HTML that loads nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import firm_hdl
+from firm_hdl.estimates import core_estimate, link_estimate
+from firm_hdl.export.datasheet import definitions_of, render, size_text, sums_of
+from firm_hdl.export.datasheet.layout import layout_figure
+from firm_hdl.export.datasheet.steps import plan_figure
+from firm_hdl.export.vhdl.wrapper import instance
+from firm_hdl.node.description import SERVICE_PARTS, Description
+from firm_hdl.node.frame import HEADER
+from firm_hdl.node.summary import clock_needed, facts_of, memory_bytes, warnings_of
+from firm_hdl.node.top import NodePort
+from firm_hdl.wire import lay_out
+
+__all__ = ["node_datasheet"]
+
+
+def node_datasheet(
+    description: Description,
+    name: str,
+    ports: Sequence[NodePort],
+    *,
+    module: str,
+    vhdl_ports: Mapping[str, str],
+) -> str:
+    """Write the datasheet of a node.
+
+    Parameters
+    ----------
+    name, module : str
+        The outermost entity and module.
+    vhdl_ports : mapping of str to str
+        Names of ports in VHDL, where they differ.
+    """
+    facts = facts_of(description)
+    stores = list(_stores(facts))
+    areas = list(_areas(facts, stores))
+    known = [(lut, ff) for _, _, lut, ff, *_ in areas if lut is not None]
+    total = tuple(map(sum, zip(*known, strict=True)))
+    needed = clock_needed(facts)
+    return render(
+        "node.html.j2",
+        Path(__file__).parent,
+        title=f"{description.namespace.rstrip('/')}/{description.node}",
+        lead=f"Node of ROS {description.distro}: wire format {description.wire}, "
+        f"{8 * description.bus_bytes}-bit bus, {description.clock_hz / 1e6:g} MHz, "
+        f"link {description.link.kind}",
+        tiles=[
+            (len(facts["topics"]), "topics and services"),
+            (f"{memory_bytes(facts):,}", "bytes of packet memory"),
+            (f"{total[0]:,} LUT", "estimated, without the accelerator"),
+            (f"{total[1]:,} FF", "estimated, without the accelerator"),
+            *([(f"{needed / 1e6:.3g} MHz", "needed for all stated rates")] if needed else []),
+            (facts["fingerprint"], "fingerprint"),
+        ],
+        made_by=f"firm-hdl {firm_hdl.__version__}",
+        facts=facts,
+        warnings=list(warnings_of(description, facts)),
+        stores=[_row(*each) for each in stores],
+        areas=areas,
+        total=total,
+        header=HEADER,
+        messages=list(_messages(description)),
+        ports=ports,
+        instances={
+            "VHDL": instance("the_node", name, _lines(ports, vhdl_ports), ()),
+            "Verilog and SystemVerilog": _verilog(ports, module),
+            "Amaranth": _AMARANTH,
+        },
+    )
+
+
+_AMARANTH = """\
+from amaranth.hdl import Module
+from firm_hdl.node import Node, read_description
+
+m = Module()
+m.submodules.the_node = the_node = Node(read_description("FILE"))
+"""
+
+
+def _stores(facts: Mapping[str, Any]) -> Iterator[tuple[dict[str, Any], str, dict[str, Any]]]:
+    """Yield each topic with each of its directions, and the packets of that direction."""
+    for topic in facts["topics"]:
+        for direction, store in topic["packets"].items():
+            yield topic, direction, store
+
+
+def _kind(topic: Mapping[str, Any], direction: Any) -> str:
+    kind: str = topic["kind"]
+    return SERVICE_PARTS[direction] if kind == "serve" else kind
+
+
+def _row(topic: Mapping[str, Any], direction: str, store: Mapping[str, Any]) -> tuple[str, ...]:
+    rate, clock = topic["rate_hz"], store["clock_hz"]
+    return (
+        str(topic["id"]),
+        f"{topic['name']} ({_kind(topic, direction)})",
+        store["message"],
+        size_text(store["min_bytes"], store["max_bytes"]),
+        f"{store['max_message_bytes']:,}",
+        f"{store['memory_bytes']:,}",
+        store["when_full"],
+        f"{store['cycles']['cycles']:,}",
+        "" if rate is None else f"{rate:g} Hz",
+        "" if clock is None else f"{clock / 1e6:.3g} MHz",
+    )
+
+
+def _areas(
+    facts: Mapping[str, Any], stores: Sequence[tuple[dict[str, Any], str, dict[str, Any]]]
+) -> Iterator[tuple[str, str, int | None, int | None, str, str]]:
+    """Yield parts: name, device, look-up tables, flip-flops, clock, and how that is known."""
+    for topic, direction, store in stores:
+        what = f"converter of {topic['name']} ({_kind(topic, direction)})"
+        if (found := store["estimate"]) is None:
+            yield what, "", None, None, "", "not measured"
+            continue
+        how = "measured" if found["is_same"] else f"estimated: {found['type']}"
+        yield what, found["part"], found["lut"], found["ff"], f"{found['mhz']:.0f}", how
+    core, link = core_estimate(len(stores)), link_estimate(facts["link"]["kind"])
+    for what, part in (("core: gates, FIFOs, router, arbiter, clock", core), ("link", link)):
+        yield what, part.part, part.lut, part.ff, "", part.how
+    if facts["accelerator"]:
+        yield f"accelerator {facts['accelerator']}", "", None, None, "", "not measured"
+
+
+def _messages(description: Description) -> Iterator[dict[str, Any]]:
+    """Yield what a page shows of each message type."""
+    done = set()
+    for topic in description.topics:
+        for _, store in topic.stores:
+            message = store.message
+            if message.name not in done:
+                done.add(message.name)
+                yield {
+                    "name": message.name,
+                    "types": definitions_of([message]),
+                    "sums": list(sums_of(message)),
+                    "layout": layout_figure(lay_out(message, description.wire)),
+                    "plan": plan_figure(description.plan(store)),
+                }
+
+
+def _lines(ports: Sequence[NodePort], names: Mapping[str, str]) -> list[tuple[str, str, str]]:
+    kinds = (
+        "std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)"
+        for port in ports
+    )
+    return [
+        (names.get(port.name, port.name), f"{port.direction:3} {kind}", port.member)
+        for port, kind in zip(ports, kinds, strict=True)
+    ]
+
+
+def _verilog(ports: Sequence[NodePort], module: str) -> str:
+    wires = (
+        f"wire {f'[{port.width - 1}:0] ' if port.width > 1 else ''}{port.name};\n"
+        for port in ports
+        if port.name not in ("aclk", "aresetn")
+    )
+    joined = ",\n".join(f"  .{port.name}({port.name})" for port in ports)
+    return f"{''.join(wires)}\n{module} the_node (\n{joined}\n);\n"
