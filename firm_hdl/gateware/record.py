@@ -103,7 +103,7 @@ class RecordReader(_Adapter):
     bus_bytes : int
         As for the converter.
     plan : Plan or None
-        The plan of the converter, if it is made already; `wire` and `bus_bytes` have no effect then.
+        The plan of the converter, if it is made already. Then `wire`, `bus_bytes` have no effect.
 
     Members
     -------
