@@ -73,14 +73,6 @@ class Converters:
     stimuli: Sequence[bytes] = ()
     circuits: Mapping[Direction, Design] = field(default_factory=dict)
 
-    def parameters(self) -> dict[str, Any]:
-        """Return the keyword arguments of `Deserializer` and `Serializer`."""
-        return {
-            "wire": self.plan.wire,
-            "bus_bytes": self.plan.bus_bytes,
-            "max_message_bytes": self.plan.max_message_bytes,
-        }
-
     def make_circuits(self) -> dict[Direction, Design]:
         """Make the circuits. Back ends give their outermost modules other names."""
         return {direction: self._circuit(direction) for direction in DIRECTIONS}
@@ -88,7 +80,7 @@ class Converters:
     @search_put_off()
     def _circuit(self, direction: Direction) -> Design:
         converter = Deserializer if direction == "deserializer" else Serializer
-        top = Top(converter(self.message, **self.parameters()))
+        top = Top(converter(self.message, plan=self.plan))
         return netlist_of(rtlil_of(top, name=f"{self.name}_{direction}"))
 
     def header(self, name: str, what: str) -> str:

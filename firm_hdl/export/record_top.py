@@ -114,7 +114,7 @@ class RecordTop(Component):
         if reason:
             raise ValueError(reason)
         adapter = RecordReader if direction == "deserializer" else RecordWriter
-        self.record = adapter(message, wire=plan.wire, bus_bytes=plan.bus_bytes)
+        self.record = adapter(message, plan=plan)
         self.plan, self.direction = plan, direction
         self.entity, self.names = entity, names
         bits = len(Value.cast(self.record.record.payload))

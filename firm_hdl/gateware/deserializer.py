@@ -19,6 +19,7 @@ from firm_hdl.gateware.signatures import (
 from firm_hdl.model import Message
 from firm_hdl.plan import (
     DEFAULT_MAX_MESSAGE_BYTES,
+    Plan,
     build_plan,
 )
 from firm_hdl.program import deserializer_program
@@ -49,6 +50,8 @@ class Deserializer(Component):
         Bytes per beat: 1, 2, 4, 8, 16, 32 or 64.
     max_message_bytes : int
         A length that does not fit into a packet of this many bytes is an error.
+    plan : Plan or None
+        The plan, if it is made already. Then the parameters other than `message` have no effect.
 
     Members
     -------
@@ -70,8 +73,9 @@ class Deserializer(Component):
         wire: Wire | None = None,
         bus_bytes: int = 8,
         max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+        plan: Plan | None = None,
     ):
-        self.plan = build_plan(
+        self.plan = plan or build_plan(
             lay_out(message, wire),
             bus_bytes=bus_bytes,
             max_message_bytes=max_message_bytes,
@@ -79,7 +83,7 @@ class Deserializer(Component):
         self.tree = member_tree(leaf.path for leaf in self.plan.leaves)
         super().__init__(
             {
-                "packets": In(PacketSignature(bus_bytes)),
+                "packets": In(PacketSignature(self.plan.bus_bytes)),
                 "message": Out(MessageSignature(message, plan=self.plan)),
                 "status": Out(StatusSignature),
             }

@@ -20,7 +20,7 @@ from firm_hdl.gateware.members import MemberTree, member_tree
 from firm_hdl.gateware.record_layout import Record, Transfer
 from firm_hdl.gateware.signatures import MessageSignature, signature_of
 from firm_hdl.model import Message
-from firm_hdl.plan import build_plan
+from firm_hdl.plan import Plan, build_plan
 from firm_hdl.wire import Wire, lay_out
 
 __all__ = ["RecordReader", "RecordWriter"]
@@ -37,8 +37,9 @@ class _Adapter(Component):
         wire: Wire | None = None,
         bus_bytes: int = 8,
         fields: Iterable[str] | None = None,
+        plan: Plan | None = None,
     ):
-        self.plan = build_plan(lay_out(message, wire), bus_bytes=bus_bytes)
+        self.plan = plan or build_plan(lay_out(message, wire), bus_bytes=bus_bytes)
         self.tree = member_tree(leaf.path for leaf in self.plan.leaves)
         self._record = Record(message, self.plan, fields)
         inner, outer = (In, Out) if self._reads else (Out, In)
@@ -101,6 +102,8 @@ class RecordReader(_Adapter):
         As for :func:`record_layout`.
     bus_bytes : int
         As for the converter.
+    plan : Plan or None
+        The plan of the converter, if it is made already. Then `wire`, `bus_bytes` have no effect.
 
     Members
     -------
@@ -171,7 +174,7 @@ class RecordWriter(_Adapter):
 
     Parameters
     ----------
-    message, wire, bus_bytes, fields
+    message, wire, bus_bytes, fields, plan
         As for :class:`RecordReader`.
 
     Members

@@ -17,7 +17,7 @@ from firm_hdl.gateware.signatures import (
     leaf_streams,
 )
 from firm_hdl.model import Message
-from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, build_plan
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan
 from firm_hdl.program import serializer_program
 from firm_hdl.wire import Wire, lay_out
 
@@ -44,6 +44,8 @@ class Serializer(Component):
     ----------
     message, wire, bus_bytes, max_message_bytes
         As for :class:`Deserializer`.
+    plan : Plan or None
+        The plan, if it is made already. Then the parameters other than `message` have no effect.
 
     Members
     -------
@@ -67,8 +69,9 @@ class Serializer(Component):
         wire: Wire | None = None,
         bus_bytes: int = 8,
         max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
+        plan: Plan | None = None,
     ):
-        self.plan = build_plan(
+        self.plan = plan or build_plan(
             lay_out(message, wire),
             bus_bytes=bus_bytes,
             max_message_bytes=max_message_bytes,
@@ -77,7 +80,7 @@ class Serializer(Component):
         super().__init__(
             {
                 "message": In(MessageSignature(message, plan=self.plan)),
-                "packets": Out(PacketSignature(bus_bytes)),
+                "packets": Out(PacketSignature(self.plan.bus_bytes)),
                 "packet_error": Out(1),
                 "status": Out(StatusSignature),
             }

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from enum import Enum
+import types
+from collections.abc import MutableMapping
+from typing import Any
 
 from amaranth.hdl import Module, Mux, Signal, Value
-from amaranth.lib import data, stream, wiring
+from amaranth.lib import data, enum, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.positions import Ring
@@ -48,10 +50,9 @@ def order_layout(plan: Plan) -> data.StructLayout:
         The result of the packet that ends.
     """
     ring, bus = Ring(plan), plan.bus_bytes
-    steps = {name: number for number, name in enumerate(state_names(plan))}
     return data.StructLayout(
         {
-            "step": Enum("Step", steps),
+            "step": _step_type(plan),
             "blank": 1,
             "items_at": ring.bits - 1,
             "map_at": ring.bits - 1,
@@ -68,6 +69,18 @@ def order_layout(plan: Plan) -> data.StructLayout:
             "status": Status,
         }
     )
+
+
+def _step_type(plan: Plan) -> type:
+    """Return the enumeration of the steps, so that the circuit's text has names for them."""
+
+    def members(namespace: MutableMapping[str, Any]) -> None:
+        for number, name in enumerate(state_names(plan)):
+            # An enumeration may have no member `mro`.
+            namespace[name.upper()] = number
+
+    shape = range(max(2, len(plan.steps)))
+    return types.new_class("Step", (enum.IntEnum,), {"shape": shape}, members)
 
 
 class OrderQueue(wiring.Component):

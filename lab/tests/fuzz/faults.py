@@ -108,9 +108,9 @@ FAULTS = [
         ),
         (
             "a payload that changes",
-            rf"    if \(go_2\) begin(?=\n      {_ITEMS}_payload)",
+            rf"    if \(go_data_items_rest\) begin(?=\n      {_ITEMS}_payload)",
             rf"    if ({_WAITS}) {_ITEMS}_payload_q[0] <= !{_ITEMS}_payload_q[0];\n"
-            "    else if (go_2) begin",
+            "    else if (go_data_items_rest) begin",
             "a payload changed|a wrong value on data.items",
         ),
         (
@@ -157,8 +157,8 @@ FAULTS = [
         ),
         (
             "a wrong counter",
-            r"counters_q\[95:64\]\} \+ 33'd1",
-            "counters_q[95:64]} + 33'd2",
+            r"counters_trailing\} \+ 33'd1",
+            "counters_trailing} + 33'd2",
             "a wrong counter of TRAILING",
         ),
         (
