@@ -1,4 +1,4 @@
-"""Pictures and figures of popular types, for the page ``reference/types.md``.
+"""Pictures and figures of popular types, for ``reference/types.md``, and waveforms.
 
 The site's build calls `write`. Nothing that it writes is kept in the repository.
 """
@@ -13,6 +13,9 @@ from firm_hdl import load_message
 from firm_hdl.cli import main as firm_hdl
 from firm_hdl.drawing.document import document
 from firm_hdl.export.datasheet.layout import layout_figure
+from firm_hdl.export.datasheet.waves import waves_of
+from firm_hdl.plan import build_plan
+from firm_hdl.sim import Stalls
 from firm_hdl.wire import lay_out
 
 __all__ = ["TYPES", "write"]
@@ -39,9 +42,15 @@ TYPES = {
 
 
 def write(folder: Path) -> None:
-    """Write ``gallery/`` with a picture of each type and a page that shows them all."""
+    """Write ``gallery/``: a picture of each type, a page that shows them all, and waveforms."""
     out = folder / "gallery"
     out.mkdir(exist_ok=True)
+    header = load_message("std_msgs/msg/Header")
+    # The consumer takes `stamp.sec` two cycles late.
+    late = {"message.stamp.sec": Stalls.bits(f"{'0' * 8}1")}
+    for wave in waves_of(header, build_plan(lay_out(header)), stalls=late, columns=16):
+        [(_, figure)] = wave.figures
+        (out / f"{wave.direction}.svg").write_text(document(figure), encoding="utf-8")
     text = []
     for distro, names in TYPES.items():
         for name in names:

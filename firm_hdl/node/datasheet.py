@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import firm_hdl
+from firm_hdl.drawing.svg import Figure
 from firm_hdl.estimates import core_estimate, link_estimate
 from firm_hdl.export.datasheet import definitions_of, render, size_text, sums_of
 from firm_hdl.export.datasheet.layout import layout_figure
+from firm_hdl.export.datasheet.rows import CHARACTER_WIDTH, clipped
 from firm_hdl.export.datasheet.steps import plan_figure
+from firm_hdl.export.datasheet.waves import waves_of
 from firm_hdl.export.vhdl.wrapper import instance
-from firm_hdl.node.description import SERVICE_PARTS, Description
+from firm_hdl.node.description import SERVICE_PARTS, Description, Store
 from firm_hdl.node.frame import HEADER
 from firm_hdl.node.summary import clock_needed, facts_of, memory_bytes, warnings_of
 from firm_hdl.node.top import NodePort
@@ -50,17 +54,17 @@ def node_datasheet(
         title=f"{description.namespace.rstrip('/')}/{description.node}",
         lead=f"Node of ROS {description.distro}: wire format {description.wire}, "
         f"{8 * description.bus_bytes}-bit bus, {description.clock_hz / 1e6:g} MHz, "
-        f"link {description.link.kind}",
+        f"link {description.link.kind}, fingerprint {facts['fingerprint']}",
         tiles=[
             (len(facts["topics"]), "topics and services"),
             (f"{memory_bytes(facts):,}", "bytes of packet memory"),
             (f"{total[0]:,} LUT", "estimated, without the accelerator"),
             (f"{total[1]:,} FF", "estimated, without the accelerator"),
             *([(f"{needed / 1e6:.3g} MHz", "needed for all stated rates")] if needed else []),
-            (facts["fingerprint"], "fingerprint"),
         ],
         made_by=f"firm-hdl {firm_hdl.__version__}",
         facts=facts,
+        blocks=_blocks(facts, stores),
         warnings=list(warnings_of(description, facts)),
         stores=[_row(*each) for each in stores],
         areas=areas,
@@ -90,6 +94,53 @@ def _stores(facts: Mapping[str, Any]) -> Iterator[tuple[dict[str, Any], str, dic
     for topic in facts["topics"]:
         for direction, store in topic["packets"].items():
             yield topic, direction, store
+
+
+_ROW, _MOST_ROWS = 30, 40
+_COLUMNS = {"link": (4, 110), "store": (150, 190), "converter": (380, 250), "user": (670, 230)}
+"""Left edge and width of the columns of the block diagram."""
+
+
+def _blocks(
+    facts: Mapping[str, Any], stores: Sequence[tuple[dict[str, Any], str, dict[str, Any]]]
+) -> Figure:
+    """Draw the way of packets: a row for each direction of a topic, from link to accelerator."""
+    shown = stores[:_MOST_ROWS]
+    bottom = _ROW * (len(shown) + 1)
+    figure = Figure(904, bottom + _ROW + 4, f"Block diagram of {facts['node']}")
+
+    def block(column: str, top: float, height: float, kind: str, text: str, title: str) -> None:
+        left, width = _COLUMNS[column]
+        figure.box(left, top, width, height, f"bytes {kind}", title)
+        most = int((width - 8) / CHARACTER_WIDTH)
+        figure.text(left + width / 2, top + height / 2 + 4, clipped(text, most), "code")
+
+    names = ("medium", "packets in memory", "converters", "accelerator or your ports")
+    for name, (left, width) in zip(names, _COLUMNS.values(), strict=True):
+        figure.text(left + width / 2, 16, name)
+    block("link", _ROW, bottom - 4, "header", f"link {facts['link']['kind']}", "")
+    for number, (topic, direction, store) in enumerate(shown):
+        top, is_in = _ROW * (number + 1) + 3.0, direction == "in"
+        what = f"{'gate' if is_in else 'FIFO'}, {store['memory_bytes']:,} bytes"
+        title = f"{what}, {store['when_full']} when full"
+        block("store", top, _ROW - 6, "data", what, title)
+        converter = f"{'de' if is_in else ''}serializer"
+        text = f"{converter} {store['message'].rpartition('/')[2]}"
+        block("converter", top, _ROW - 6, "field", text, f"{converter} of {store['message']}")
+        block("user", top, _ROW - 6, "loop", topic["name"], facts["accelerator"])
+        for (left, width), (right, _) in pairwise(_COLUMNS.values()):
+            y = top + _ROW / 2 - 3
+            figure.line(left + width, y, right, y, "axis")
+            tip, back = (right, right - 7) if is_in else (left + width, left + width + 7)
+            figure.path([(back, y - 4), (tip, y), (back, y + 4)], "curve c6")
+    more = len(stores) - len(shown)
+    rest = f", and {more} more rows" if more else ""
+    text = f"control: clock, {len(facts['registers'])} registers{rest}"
+    left, width = _COLUMNS["store"][0], 480
+    figure.box(left, bottom + 3, width, _ROW - 6, "bytes padding")
+    figure.text(left + width / 2, bottom + _ROW / 2 + 4, text, "code")
+    figure.line(114, bottom + _ROW / 2, left, bottom + _ROW / 2, "axis")
+    return figure
 
 
 def _kind(topic: Mapping[str, Any], direction: Any) -> str:
@@ -133,19 +184,22 @@ def _areas(
 
 def _messages(description: Description) -> Iterator[dict[str, Any]]:
     """Yield what a page shows of each message type."""
-    done = set()
+    stores: dict[str, dict[str, Store]] = {}
     for topic in description.topics:
-        for _, store in topic.stores:
-            message = store.message
-            if message.name not in done:
-                done.add(message.name)
-                yield {
-                    "name": message.name,
-                    "types": definitions_of([message]),
-                    "sums": list(sums_of(message)),
-                    "layout": layout_figure(lay_out(message, description.wire)),
-                    "plan": plan_figure(description.plan(store)),
-                }
+        for direction, store in topic.stores:
+            way = "deserializer" if direction == "in" else "serializer"
+            stores.setdefault(store.message.name, {}).setdefault(way, store)
+    for name, ways in stores.items():
+        store = next(iter(ways.values()))
+        message, plan = store.message, description.plan(store)
+        yield {
+            "name": name,
+            "types": definitions_of([message]),
+            "sums": list(sums_of(message)),
+            "layout": layout_figure(lay_out(message, description.wire)),
+            "plan": plan_figure(plan),
+            "waves": [wave for wave in waves_of(message, plan) if wave.direction in ways],
+        }
 
 
 def _lines(ports: Sequence[NodePort], names: Mapping[str, str]) -> list[tuple[str, str, str]]:

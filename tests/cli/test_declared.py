@@ -21,7 +21,8 @@ DEFAULTS = {
     "build": (
         ["a/B"],
         {**ORIGINS, **PLAN, "types": ["a/B"], "out": "vhdl_out"}
-        | {"ports": "records", "extras": frozenset(), "force": False, "jobs": None},
+        | {"ports": "records", "extras": frozenset(), "force": False, "jobs": None}
+        | {"datasheet": False},
     ),
     "list": ([], {**ORIGINS, "only_path": False, "as_json": False}),
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
@@ -118,7 +119,7 @@ def test_other_actions_of_a_node_have_these_defaults():
     info = {"action": "info", "file": "n.yaml", "path": []}
     assert parsed("node", "info", "n.yaml") == {**info, "as_json": False, "members": False}
     assert parsed("node", "new", "n.yaml") == {**info, "action": "new", "language": None}
-    build = {**info, "action": "build", "out": "node_out", "force": False}
+    build = {**info, "action": "build", "out": "node_out", "force": False, "datasheet": False}
     assert parsed("node", "build", "n.yaml") == {
         **build,
         "sim": False,

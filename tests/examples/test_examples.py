@@ -252,10 +252,3 @@ def test_tests_that_pages_name_exist():
             assert (ROOT / path).exists(), f"{page.name}: {path}"
             text = (ROOT / path).read_text(encoding="utf-8")
             assert f"def {name}(" in text if name else True, f"{page.name}: {path}::{name}"
-
-
-@pytest.mark.parametrize("figure", ["deserializer", "serializer"])
-def test_waveforms_are_up_to_date(figure):
-    waveform = load(ROOT / "docs" / "figures" / "waveform.py")
-    drawn = (ROOT / "docs" / "figures" / f"{figure}.json5").read_text(encoding="utf-8")
-    assert waveform.source_of(figure) == drawn

@@ -58,8 +58,8 @@ def test_the_datasheet_is_whole_and_its_instances_compile(relay, tmp_path):
     text = (relay / "datasheet.html").read_text()
     page = Page(text)
     assert "script" not in page.elements and page.links == []
-    # Pictures of layout and plan of each type.
-    assert len(pictures(text)) == 4
+    # Blocks, and layout and plan of each type, and a waveform of each of its converters.
+    assert len(pictures(text)) == 1 + 2 * 2 + 3
     manifest = json.loads((relay / "manifest.json").read_text())
     for port in manifest["ports"]:
         assert f"<td><code>{port['name']}</code></td>" in text

@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 
 from firm_hdl.drawing.svg import Figure
 
-__all__ = ["LEFT", "WIDTH", "Cell", "Kind", "Row", "clipped", "draw_rows"]
+__all__ = ["CHARACTER_WIDTH", "LEFT", "WIDTH", "Cell", "Kind", "Row", "clipped", "draw_rows"]
 
 Kind: TypeAlias = Literal["header", "padding", "length", "field", "data", "loop"]
 

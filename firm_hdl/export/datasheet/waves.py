@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 from typing import Any
 
@@ -33,6 +33,7 @@ from firm_hdl.plan import Leaf, Plan
 from firm_hdl.sim.bench import RunOptions
 from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.payloads import decoder_of
+from firm_hdl.sim.stalls import StallPlan
 from firm_hdl.sim.values import to_transfers
 
 __all__ = ["Wave", "sample_value", "waves_of"]
@@ -79,8 +80,23 @@ class Wave:
     figures: tuple[tuple[str, Figure], ...]
 
 
-def waves_of(message: Message, plan: Plan) -> list[Wave]:
-    """Simulate both converters; empty if their shortest packet is long, or has many leaves."""
+def waves_of(
+    message: Message, plan: Plan, *, stalls: StallPlan = None, columns: int = COLUMNS
+) -> list[Wave]:
+    """Simulate both converters.
+
+    Parameters
+    ----------
+    stalls : Stalls, mapping or None
+        Stalls of the streams of the deserializer; see :mod:`firm_hdl.sim.harness`.
+    columns : int
+        Cycles in a figure.
+
+    Returns
+    -------
+    list of Wave
+        Empty if the shortest packet is long, or has many leaves.
+    """
     shortest = metrics_of(message, plan.wire).min_bytes
     if shortest is None or shortest > MOST_BYTES or len(plan.leaves) > MOST_LEAVES:
         return []
@@ -95,14 +111,14 @@ def waves_of(message: Message, plan: Plan) -> list[Wave]:
     sent = _Run(Serializer(message, **parameters), message, plan)
     [packet] = sent.harness.run_messages([transfers], sent.options).packets
     received = _Run(Deserializer(message, **parameters), message, plan)
-    received.harness.run_packets([packet], received.options)
+    received.harness.run_packets([packet], replace(received.options, stalls=stalls))
     runs: dict[Direction, _Run] = {"deserializer": received, "serializer": sent}
     return [
         Wave(
             direction=way,
             packet=packet,
             cycles=len(runs[way].cycles),
-            figures=tuple(_figures(way, message, plan, runs[way].cycles)),
+            figures=tuple(_figures(way, message, plan, runs[way].cycles, columns)),
         )
         for way in DIRECTIONS
     ]
@@ -177,14 +193,14 @@ def _sample(kind: FieldType, items: int, numbers: Iterator[int]) -> Any:
 
 
 def _figures(
-    way: Direction, message: Message, plan: Plan, cycles: Cycles
+    way: Direction, message: Message, plan: Plan, cycles: Cycles, columns: int
 ) -> Iterator[tuple[str, Figure]]:
-    starts = list(range(0, len(cycles), COLUMNS))
+    starts = list(range(0, len(cycles), columns))
     if len(starts) > MOST_FIGURES:
         starts[MOST_FIGURES - 1 : -1] = []
     texts = {str(leaf): _text_of(message, leaf) for leaf in plan.leaves}
     for start in starts:
-        end = min(start + COLUMNS, len(cycles))
+        end = min(start + columns, len(cycles))
         what = f"Cycles {start} to {end - 1}"
         moving = [
             name for name in texts if any(all(cycle[name][:2]) for cycle in cycles[start:end])
@@ -217,7 +233,7 @@ def _figure(
     rows = [*packet_rows, *rows] if way == "deserializer" else [*rows, *packet_rows]
     rows.append(_Stream("m_axis_status", [cycle["status"] for cycle in cycles], _status_text))
     label = f"Waveform of the {way} from cycle {start}"
-    figure = Figure(LEFT + COLUMNS * COLUMN + 8, TOP + ROW * len(rows) + 4, label)
+    figure = Figure(LEFT + len(cycles) * COLUMN + 8, TOP + ROW * len(rows) + 4, label)
     for column in range(len(cycles) + 1):
         at = LEFT + column * COLUMN
         figure.line(at, TOP, at, figure.height - 4, "grid")
