@@ -6,6 +6,13 @@ from firm_hdl.gateware.axi_stream import (
     PacketsToAxiStream,
 )
 from firm_hdl.gateware.deserializer import Deserializer
+from firm_hdl.gateware.interfaces import (
+    MessageInterface,
+    PacketBeat,
+    PacketStream,
+    StatusStream,
+    Stream,
+)
 from firm_hdl.gateware.packets import (
     GateStatus,
     GateStatusSignature,
@@ -28,13 +35,16 @@ __all__ = [
     "Deserializer",
     "GateStatus",
     "GateStatusSignature",
+    "MessageInterface",
     "MessageSignature",
     "PacketArbiter",
+    "PacketBeat",
     "PacketCrossing",
     "PacketFifo",
     "PacketGate",
     "PacketRouter",
     "PacketSignature",
+    "PacketStream",
     "PacketWidth",
     "PacketsToAxiStream",
     "Parser",
@@ -43,5 +53,7 @@ __all__ = [
     "Serializer",
     "Status",
     "StatusSignature",
+    "StatusStream",
+    "Stream",
     "record_layout",
 ]

@@ -7,6 +7,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import MessageInterface, PacketStream, StatusStream
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.mover import Mover
 from firm_hdl.gateware.parse import Buffer, OrderQueue, Sequencer
@@ -54,7 +55,7 @@ class Deserializer(Component):
     -------
     packets : In(PacketSignature(bus_bytes))
     message : Out(MessageSignature(message, bus_bytes))
-    status : Out(StatusSignature)
+    status : Out(StatusSignature())
 
     Attributes
     ----------
@@ -62,6 +63,10 @@ class Deserializer(Component):
     tree : MemberTree
         The members of the message, with their leaves.
     """
+
+    packets: PacketStream
+    message: MessageInterface
+    status: StatusStream
 
     def __init__(
         self,
@@ -81,7 +86,7 @@ class Deserializer(Component):
             {
                 "packets": In(PacketSignature(bus_bytes)),
                 "message": Out(MessageSignature(message, plan=self.plan)),
-                "status": Out(StatusSignature),
+                "status": Out(StatusSignature()),
             }
         )
 
