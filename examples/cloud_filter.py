@@ -17,7 +17,16 @@ from amaranth.lib import data, enum, stream, wiring
 from amaranth.lib.wiring import In, Out, connect, flipped
 from amaranth.sim import Simulator, SimulatorContext
 
-from firm_hdl import Deserializer, PacketFifo, PacketGate, PacketSignature, Serializer, load_message
+from firm_hdl import (
+    Deserializer,
+    MessageInterface,
+    PacketFifo,
+    PacketGate,
+    PacketSignature,
+    Serializer,
+    Stream,
+    load_message,
+)
 from firm_hdl.accelerator import Fork, tie_off
 from firm_hdl.sim import Stalls, encode, receive_packets, send_packets
 
@@ -69,11 +78,11 @@ class CloudFilter(wiring.Component):
         self.send(m, second.message, tx.message, self.count(m, first.message))
         return m
 
-    def keeps(self, items: Any) -> Value:
+    def keeps(self, items: MessageInterface) -> Value:
         """Return whether a point is kept; floats without sign have the order of their bits."""
         return Value.cast(items.payload.data)[:31] <= self.limit_bits
 
-    def count(self, m: Module, cloud: Any) -> Any:
+    def count(self, m: Module, cloud: MessageInterface) -> Stream[Any]:
         """Take a cloud; return the stream of whether it is filtered, and how many points stay."""
         length, items, step = cloud.data.length, cloud.data.items, cloud.point_step
         tie_off(
@@ -81,7 +90,7 @@ class CloudFilter(wiring.Component):
             *(getattr(cloud, f.name) for f in CLOUD.fields if f.name[:5] not in ("data", "point")),
         )
         layout = data.StructLayout({"filtered": 1, "kept": 32})
-        result: Any = stream.Signature(layout).create(path=("result",))
+        result: Stream[Any] = stream.Signature(layout).create(path=("result",))
         kept, total, is_over = Signal(32), Signal(32), Signal()
         # Both are held until the points are over, so that those of the next cloud are not seen.
         known = length.valid & step.valid & ~result.valid
@@ -102,7 +111,9 @@ class CloudFilter(wiring.Component):
             m.d.sync += result.valid.eq(0)
         return result
 
-    def send(self, m: Module, old: Any, new: Any, result: Any) -> None:
+    def send(
+        self, m: Module, old: MessageInterface, new: MessageInterface, result: Stream[Any]
+    ) -> None:
         """Send the cloud again, with the points that are kept, and take the result with its end."""
         part, sent = Signal(Part), Signal(32)
         is_filtered, kept = result.payload.filtered, result.payload.kept

@@ -14,6 +14,7 @@ from amaranth.lib import data, stream
 from amaranth.lib.wiring import FlippedInterface, connect, flipped
 
 from firm_hdl.gateware import MessageSignature, RecordReader, RecordWriter
+from firm_hdl.gateware.interfaces import Stream
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.signatures import PartSignature
 from firm_hdl.model import Array, FieldType, Message, Primitive, Sequence, String, is_fixed_size
@@ -25,7 +26,7 @@ from firm_hdl.wire import lay_out
 __all__ = ["offer_message", "offer_messages", "take_message", "tie_off"]
 
 
-def take_message(m: Module, message: Any, *, fields: Iterable[str] | None = None) -> Any:
+def take_message(m: Module, message: Any, *, fields: Iterable[str] | None = None) -> Stream[Any]:
     """Take messages as one stream, which is valid when all of its fields have come.
 
     Latency 0; `valid` depends combinationally on the leaves' `valid`, and their `ready` on `ready`.
@@ -59,7 +60,8 @@ def take_message(m: Module, message: Any, *, fields: Iterable[str] | None = None
     connect(m, source, reader.message)
     if "rest" in reader.signature.members:
         _take_all(m, reader.rest)
-    return reader.record
+    record: Stream[Any] = reader.record
+    return record
 
 
 def tie_off(m: Module, *messages: Any) -> None:
@@ -91,7 +93,7 @@ def offer_message(
     *,
     fields: Iterable[str] | None = None,
     constants: Mapping[str, object] | None = None,
-) -> Any:
+) -> Stream[Any]:
     """Offer messages as one stream. A transfer of it ends when all leaves were taken.
 
     Latency 0; the leaves' `valid` depends combinationally on `valid`, and `ready` on their `ready`.
@@ -134,7 +136,7 @@ def offer_message(
         fixed, layout = writer.record, writer.record.payload.shape()
         parts.append((fixed.valid, fixed.ready))
         rest = writer.rest if "rest" in writer.signature.members else None
-    offered: Any = stream.Signature(layout).create(path=("offered",))
+    offered: Stream[Any] = stream.Signature(layout).create(path=("offered",))
     if fixed is not None:
         m.d.comb += Value.cast(fixed.payload).eq(Value.cast(offered.payload))
     plan = build_plan(lay_out(kind, signature.wire), bus_bytes=signature.bus_bytes)
@@ -156,7 +158,7 @@ def offer_message(
     return offered
 
 
-def offer_messages(m: Module, **messages: Any) -> Any:
+def offer_messages(m: Module, **messages: Any) -> Stream[Any]:
     """Offer several messages as one stream; the parts are those of :func:`offer_message`.
 
     A transfer ends when all of the messages were taken.
@@ -172,7 +174,7 @@ def offer_messages(m: Module, **messages: Any) -> Any:
     """
     offers = {name: offer_message(m, message) for name, message in messages.items()}
     layout = data.StructLayout({name: each.payload.shape() for name, each in offers.items()})
-    offered: Any = stream.Signature(layout).create(path=("offered",))
+    offered: Stream[Any] = stream.Signature(layout).create(path=("offered",))
     for name, each in offers.items():
         m.d.comb += each.payload.eq(offered.payload[name])
     _together(m, offered, [(each.valid, each.ready) for each in offers.values()])
@@ -223,7 +225,7 @@ def _repeated(m: Module, port: Any, payloads: list[int]) -> tuple[Value, Value]:
     return port.valid, port.ready & is_last
 
 
-def _together(m: Module, offered: Any, parts: list[tuple[Value, Value]]) -> None:
+def _together(m: Module, offered: Stream[Any], parts: list[tuple[Value, Value]]) -> None:
     """Offer all parts with a stream, which is taken when the last of them is."""
     ends: list[Value] = []
     for valid, ready in parts:

@@ -12,6 +12,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.accelerator.convert import Rounding, Step, Values, to_fixed_steps, to_float_steps
 from firm_hdl.accelerator.fixed import Fixed, format_of
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import Stream
 from firm_hdl.gateware.limits import check_integer
 
 __all__ = ["FixedToFloat", "FloatToFixed", "Fork"]
@@ -41,6 +42,9 @@ def _kept(m: Module, port: Any, moves: Value) -> tuple[Signal, Signal]:
 
 class _Pipeline(Component):
     """Steps with a register behind each, which all move at once."""
+
+    i: Stream[Any]
+    o: Stream[Any]
 
     def __init__(self, source: Any, target: Any, steps: Sequence[Step]) -> None:
         self._steps = steps
@@ -89,6 +93,9 @@ class Fork(Component):
     TypeError, ValueError
         If `outputs` is no number from 1 on.
     """
+
+    i: Stream[Any]
+    o: Sequence[Stream[Any]]
 
     def __init__(self, shape: Any, outputs: int):
         check_integer("The number of outputs", outputs)

@@ -6,6 +6,13 @@ from firm_hdl.gateware.axi_stream import (
     PacketsToAxiStream,
 )
 from firm_hdl.gateware.deserializer import Deserializer
+from firm_hdl.gateware.interfaces import (
+    MessageInterface,
+    PacketBeat,
+    PacketStream,
+    StatusStream,
+    Stream,
+)
 from firm_hdl.gateware.message_buffer import MessageBuffer
 from firm_hdl.gateware.packets import (
     GateStatus,
@@ -30,13 +37,16 @@ __all__ = [
     "GateStatus",
     "GateStatusSignature",
     "MessageBuffer",
+    "MessageInterface",
     "MessageSignature",
     "PacketArbiter",
+    "PacketBeat",
     "PacketCrossing",
     "PacketFifo",
     "PacketGate",
     "PacketRouter",
     "PacketSignature",
+    "PacketStream",
     "PacketWidth",
     "PacketsToAxiStream",
     "Parser",
@@ -45,5 +55,7 @@ __all__ = [
     "Serializer",
     "Status",
     "StatusSignature",
+    "StatusStream",
+    "Stream",
     "record_layout",
 ]

@@ -13,6 +13,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import PacketStream
 from firm_hdl.gateware.limits import check_bits
 from firm_hdl.gateware.signatures import PacketSignature
 from firm_hdl.plan import check_bus_bytes
@@ -114,6 +115,9 @@ class _Adapter(Component):
         Of `packets`.
     """
 
+    axis: Any
+    packets: PacketStream
+
     def __init__(self, flow: Any, bus_bytes: int, side_bits: int, dest_bits: int):
         self.bus_bytes, self.side_bits, self.dest_bits = bus_bytes, side_bits, dest_bits
         axis = AxiStreamSignature(bus_bytes, user_bits=side_bits, dest_bits=dest_bits)
@@ -157,6 +161,9 @@ class AxiStreamToPackets(_Adapter):
     ------
     TypeError, ValueError
     """
+
+    side_out: Value
+    dest_out: Value
 
     def __init__(self, bus_bytes: int, *, side_bits: int = 0, dest_bits: int = 0):
         super().__init__(Out, bus_bytes, side_bits, dest_bits)
@@ -205,6 +212,9 @@ class PacketsToAxiStream(_Adapter):
     ------
     TypeError, ValueError
     """
+
+    side_in: Value
+    dest_in: Value
 
     def __init__(self, bus_bytes: int, *, side_bits: int = 0, dest_bits: int = 0):
         super().__init__(In, bus_bytes, side_bits, dest_bits)

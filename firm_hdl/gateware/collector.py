@@ -100,14 +100,14 @@ class Collector(wiring.Component):
     -------
     words : Out(stream.Signature(words_layout(plan)))
         One transfer per state.
-    status : Out(StatusSignature)
+    status : Out(StatusSignature())
         One transfer per packet; `OK`, `LENGTH` or `ITEMS`.
     """
 
     def __init__(self, program: SerializerProgram, leaves: Mapping[int, stream.Interface]):
         self.program, self.leaves = program, leaves
         words = stream.Signature(words_layout(program.plan))
-        super().__init__({"words": Out(words), "status": Out(StatusSignature)})
+        super().__init__({"words": Out(words), "status": Out(StatusSignature())})
 
     def elaborate(self, platform: object) -> Module:
         m = Module()

@@ -7,6 +7,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import MessageInterface, PacketStream, StatusStream
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.mover import Mover
 from firm_hdl.gateware.parse import Buffer, OrderQueue, Sequencer
@@ -57,7 +58,7 @@ class Deserializer(Component):
     -------
     packets : In(PacketSignature(bus_bytes))
     message : Out(MessageSignature(message, bus_bytes))
-    status : Out(StatusSignature)
+    status : Out(StatusSignature())
 
     Attributes
     ----------
@@ -65,6 +66,10 @@ class Deserializer(Component):
     tree : MemberTree
         The members of the message, with their leaves.
     """
+
+    packets: PacketStream
+    message: MessageInterface
+    status: StatusStream
 
     def __init__(
         self,
@@ -85,7 +90,7 @@ class Deserializer(Component):
             {
                 "packets": In(PacketSignature(self.plan.bus_bytes)),
                 "message": Out(MessageSignature(message, plan=self.plan)),
-                "status": Out(StatusSignature),
+                "status": Out(StatusSignature()),
             }
         )
 

@@ -76,7 +76,7 @@ class Mover(wiring.Component):
     beat : In(beat_layout(plan))
         The beat that is written to the packet buffer in this cycle.
     orders : In(stream.Signature(order_layout(plan)))
-    status : Out(StatusSignature)
+    status : Out(StatusSignature())
     """
 
     def __init__(self, program: DeserializerProgram, leaves: Mapping[int, stream.Interface]):
@@ -85,7 +85,7 @@ class Mover(wiring.Component):
             {
                 "beat": In(beat_layout(program.plan)),
                 "orders": In(stream.Signature(order_layout(program.plan))),
-                "status": Out(StatusSignature),
+                "status": Out(StatusSignature()),
             }
         )
 

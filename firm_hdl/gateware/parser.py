@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import PacketStream, StatusStream
 from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import Buffer, Checker, verdict_layout
 from firm_hdl.gateware.positions import Ring, beat_layout
@@ -83,7 +86,7 @@ class Parser(Component):
     Members
     -------
     packets : In(PacketSignature(bus_bytes))
-    status : Out(StatusSignature)
+    status : Out(StatusSignature())
     sizes : Out(sizes_layout())
         Sizes of the packet of `status`; valid with `status`.
 
@@ -92,6 +95,10 @@ class Parser(Component):
     plan : Plan
         The plan of the message's outline: arrays of bytes stand for the fields between lengths.
     """
+
+    packets: PacketStream
+    status: StatusStream
+    sizes: Any
 
     def __init__(
         self,
@@ -108,7 +115,7 @@ class Parser(Component):
         super().__init__(
             {
                 "packets": In(PacketSignature(plan.bus_bytes)),
-                "status": Out(StatusSignature),
+                "status": Out(StatusSignature()),
                 "sizes": Out(sizes_layout()),
             }
         )

@@ -8,13 +8,14 @@ leaf until it is taken. An array of several transfers is collected in registers.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from amaranth.hdl import Cat, Module, Signal, Value
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import MessageInterface, Stream
 from firm_hdl.gateware.limits import MAX_CELL_BITS
 from firm_hdl.gateware.members import MemberTree, member_tree
 from firm_hdl.gateware.record_layout import Record, Transfer
@@ -27,6 +28,10 @@ __all__ = ["RecordReader", "RecordWriter"]
 
 
 class _Adapter(Component):
+    message: MessageInterface
+    record: Stream[Any]
+    rest: MessageInterface
+
     _reads: ClassVar[bool]
     """Whether the record is an output."""
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module
+from amaranth.hdl import Module, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.collector import Collector
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import MessageInterface, PacketStream, StatusStream
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.gateware.packer import Packer
 from firm_hdl.gateware.signatures import (
@@ -53,7 +54,7 @@ class Serializer(Component):
     packets : Out(PacketSignature(bus_bytes))
     packet_error : Out(1)
         Set with the last beat of a packet whose status is not `OK`.
-    status : Out(StatusSignature)
+    status : Out(StatusSignature())
 
     Attributes
     ----------
@@ -61,6 +62,11 @@ class Serializer(Component):
     tree : MemberTree
         The members of the message, with their leaves.
     """
+
+    message: MessageInterface
+    packets: PacketStream
+    packet_error: Value
+    status: StatusStream
 
     def __init__(
         self,
@@ -82,7 +88,7 @@ class Serializer(Component):
                 "message": In(MessageSignature(message, plan=self.plan)),
                 "packets": Out(PacketSignature(self.plan.bus_bytes)),
                 "packet_error": Out(1),
-                "status": Out(StatusSignature),
+                "status": Out(StatusSignature()),
             }
         )
 

@@ -4,6 +4,9 @@ The packet side carries serialized messages, the message side one stream per lea
 of `amaranth.lib.stream`, whose rules hold: a transfer happens when `valid` and `ready` are both
 high; `valid` does not wait for `ready`; once `valid` is high, it and the payload stay unchanged
 until the transfer.
+
+A signature is called, with its parameters or without: ``PacketSignature(8)``,
+``MessageSignature(twist)``, ``StatusSignature()``.
 """
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ from collections.abc import Sequence
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from amaranth.hdl import Module, Shape, signed, unsigned
+from amaranth.hdl import Module, Shape, ShapeLike, signed, unsigned
 from amaranth.lib import data, enum, stream, wiring
 from amaranth.lib.wiring import Out
 
@@ -24,6 +27,7 @@ from firm_hdl.wire import Wire, lay_out
 
 __all__ = [
     "LATENCY_CYCLES",
+    "FixedStreamSignature",
     "MessageSignature",
     "PacketSignature",
     "PartSignature",
@@ -71,8 +75,26 @@ class Status(enum.Enum, shape=3):  # type: ignore[call-arg]
     ITEMS = 6
 
 
-StatusSignature = stream.Signature(Status)
-"""One transfer per packet."""
+class FixedStreamSignature(wiring.Signature):
+    """The signature of a stream that needs no parameters; it is called like all others.
+
+    ``StatusSignature()`` is a signature of Amaranth. ``StatusSignature`` alone can be used in its
+    place, as in designs that were written when it could not be called.
+    """
+
+    def __init__(self, shape: ShapeLike):
+        self._stream = stream.Signature(shape)
+        super().__init__(self._stream.members)
+
+    def __call__(self) -> stream.Signature:
+        return self._stream
+
+    def create(self, *, path: Any = None, src_loc_at: int = 0) -> Any:
+        return self._stream.create(path=path, src_loc_at=1 + src_loc_at)
+
+
+StatusSignature = FixedStreamSignature(Status)
+"""``StatusSignature()`` is the stream of statuses: one transfer per packet."""
 
 
 def packet_layout(bus_bytes: int) -> data.StructLayout:

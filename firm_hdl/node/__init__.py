@@ -9,7 +9,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from firm_hdl.node.description import Description, Link, Qos, Store, Topic
+from firm_hdl.node.description import Description, Link, Store, Topic, TopicQos
 from firm_hdl.node.reading import read_description, read_description_text
 
 if TYPE_CHECKING:
@@ -23,10 +23,14 @@ __all__ = [
     "Qos",
     "Store",
     "Topic",
+    "TopicQos",
     "accelerator_signature",
     "read_description",
     "read_description_text",
 ]
+
+Qos = TopicQos
+"""The old name of :class:`TopicQos`; `firm_hdl.rtps` has another `Qos`."""
 
 # Import lazily: Amaranth takes seconds to import, and a host does not need it.
 _HOME = {"Node": "node", "accelerator_signature": "accelerator"}

@@ -33,7 +33,7 @@ from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_core, bench
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.copies import AcceleratorFiles, accelerator_files
 from firm_hdl.node.node import Node
-from firm_hdl.node.records import MessagePort, message_ports, record_files, struct_files
+from firm_hdl.node.records import RecordPort, message_ports, record_files, struct_files
 from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodePort, NodeTop, node_ports
 from firm_hdl.vhdl.convert import convert
@@ -92,7 +92,7 @@ def build_node(
     except ValueError as error:
         raise UserError(str(error)) from None
     has_accelerator = node.accelerator is not None
-    messages: Sequence[MessagePort] = ()
+    messages: Sequence[RecordPort] = ()
     reason = "The accelerator takes all messages" if has_accelerator else ""
     if not has_accelerator:
         try:
@@ -141,7 +141,7 @@ def _files(
     name: str,
     circuit: str,
     ports: Sequence[NodePort],
-    messages: Sequence[MessagePort],
+    messages: Sequence[RecordPort],
     script: LinkScript | None,
     own: AcceleratorFiles,
     *,
@@ -211,7 +211,7 @@ def _files(
     }
 
 
-def _records(name: str, messages: Sequence[MessagePort], reason: str) -> dict[str, Any]:
+def _records(name: str, messages: Sequence[RecordPort], reason: str) -> dict[str, Any]:
     """Describe the message ports with records and structs, or why there are none."""
     if not messages:
         return {"built": False, "reason": reason}
@@ -224,7 +224,7 @@ def _records(name: str, messages: Sequence[MessagePort], reason: str) -> dict[st
     }
 
 
-def _record(port: MessagePort) -> dict[str, Any]:
+def _record(port: RecordPort) -> dict[str, Any]:
     tree, structs = port.tree(), port.tree(WORDS)
     return {
         "name": port.name,

@@ -29,9 +29,9 @@ __all__ = [
     "IoPins",
     "Kind",
     "Link",
-    "Qos",
     "Store",
     "Topic",
+    "TopicQos",
 ]
 
 Kind: TypeAlias = Literal["subscribe", "publish", "serve"]
@@ -64,7 +64,7 @@ header of IPv4 (RFC 791) and 8 for that of UDP (RFC 768)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Qos:
+class TopicQos:
     """The quality of service that the host asks ROS for. The hardware does not depend on it.
 
     Attributes
@@ -124,7 +124,7 @@ class Topic:
         SHA-256 of the definitions, as `Library.definition_hash` gives it.
     stores : tuple of pairs of Direction and Store
         `in` of a subscription, `out` of a publication, both of a service.
-    qos : Qos
+    qos : TopicQos
     rate_hz : float or None
         Messages per second that the user expects, for the summary.
     span : Span or None
@@ -139,7 +139,7 @@ class Topic:
     type: str
     definition_hash: str
     stores: tuple[tuple[Direction, Store], ...]
-    qos: Qos = Qos()
+    qos: TopicQos = TopicQos()
     rate_hz: float | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
 

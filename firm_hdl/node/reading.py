@@ -32,9 +32,9 @@ from firm_hdl.node.description import (
     IoPins,
     Kind,
     Link,
-    Qos,
     Store,
     Topic,
+    TopicQos,
 )
 from firm_hdl.node.marked_yaml import Entry, Marked, parse
 from firm_hdl.node.names import (
@@ -791,7 +791,7 @@ class TopicReader:
             self.marked.note(problem)
         return None if wrong else found
 
-    def _qos(self, options: dict[str, Entry]) -> Qos:
+    def _qos(self, options: dict[str, Entry]) -> TopicQos:
         given: dict[str, Any] = {}
         for name, choices in _QOS.items():
             if name not in options:
@@ -801,7 +801,7 @@ class TopicReader:
             given[name] = options[name].choice(choices, choices[0])
         if "depth" in options:
             given["depth"] = options["depth"].integer(10, 1, 1 << 20)
-        return Qos(**given)
+        return TopicQos(**given)
 
     def _store(
         self, message: Message, direction: Direction, kind: Kind, options: dict[str, Entry]

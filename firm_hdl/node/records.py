@@ -29,11 +29,11 @@ from firm_hdl.node.description import SERVICE_PARTS, Description, Store
 from firm_hdl.node.top import NodePort
 from firm_hdl.plan import Plan
 
-__all__ = ["MessagePort", "message_ports", "record_files", "struct_files"]
+__all__ = ["RecordPort", "message_ports", "record_files", "struct_files"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MessagePort:
+class RecordPort:
     """A message at the top level of a node.
 
     Attributes
@@ -63,7 +63,7 @@ class MessagePort:
         return tree_of(self.message, self.plan, reserved)
 
 
-def message_ports(description: Description, ports: Sequence[NodePort]) -> list[MessagePort]:
+def message_ports(description: Description, ports: Sequence[NodePort]) -> list[RecordPort]:
     """List the messages that come out of a node, and go into it.
 
     Parameters
@@ -91,7 +91,7 @@ def message_ports(description: Description, ports: Sequence[NodePort]) -> list[M
             if port.leaf is not None
         }
         messages.append(
-            MessagePort(
+            RecordPort(
                 name=names[path],
                 ready=names[(*path, "rdy")],
                 member=member,
@@ -105,7 +105,7 @@ def message_ports(description: Description, ports: Sequence[NodePort]) -> list[M
     return messages
 
 
-def other_ports(ports: Sequence[NodePort], messages: Sequence[MessagePort]) -> list[NodePort]:
+def other_ports(ports: Sequence[NodePort], messages: Sequence[RecordPort]) -> list[NodePort]:
     """Return the ports of a node that belong to no message."""
     own = {name for each in messages for name in each.ports}
     return [port for port in ports if port.name not in own]
@@ -120,7 +120,7 @@ def _found(description: Description) -> Iterator[tuple[str, Direction, Store]]:
             yield member, "deserializer" if way == "in" else "serializer", store
 
 
-def _check_packages(messages: Sequence[MessagePort]) -> None:
+def _check_packages(messages: Sequence[RecordPort]) -> None:
     """Refuse types whose names differ only where packages of VHDL do not."""
     owners: dict[str, str] = {}
     for each in messages:
@@ -136,7 +136,7 @@ def _check_packages(messages: Sequence[MessagePort]) -> None:
 def record_files(
     name: str,
     ports: Sequence[NodePort],
-    messages: Sequence[MessagePort],
+    messages: Sequence[RecordPort],
     *,
     vhdl_ports: Mapping[str, str],
     header: str,
@@ -192,7 +192,7 @@ def _line(port: NodePort) -> Line:
     return port.name, f"{port.direction:3} {kind}", f"{port.member}."
 
 
-def _lines(port: MessagePort, package: str) -> list[Line]:
+def _lines(port: RecordPort, package: str) -> list[Line]:
     root = port.tree().root
     forwards, backwards = ("out", "in ") if port.direction == "deserializer" else ("in ", "out")
     # Two types of a node may have the same name, in packages of their own.
@@ -206,7 +206,7 @@ def struct_files(
     name: str,
     module: str,
     ports: Sequence[NodePort],
-    messages: Sequence[MessagePort],
+    messages: Sequence[RecordPort],
     *,
     header: str,
 ) -> dict[str, str]:
@@ -245,7 +245,7 @@ def struct_files(
     return files
 
 
-def _ports(ports: Sequence[NodePort], messages: Sequence[MessagePort]) -> Iterator[str]:
+def _ports(ports: Sequence[NodePort], messages: Sequence[RecordPort]) -> Iterator[str]:
     ways = {"in": "input", "out": "output"}
     lines: list[tuple[str, str, str, str]] = []
     for port in other_ports(ports, messages):
@@ -267,7 +267,7 @@ def _ports(ports: Sequence[NodePort], messages: Sequence[MessagePort]) -> Iterat
         yield f"  {way:6} {kind} {name}{end}\n"
 
 
-def _core(module: str, ports: Sequence[NodePort], messages: Sequence[MessagePort]) -> Iterator[str]:
+def _core(module: str, ports: Sequence[NodePort], messages: Sequence[RecordPort]) -> Iterator[str]:
     actuals = {port.name: port.name for port in ports}
     for each in messages:
         nodes = {node.leaf: node for node in each.tree(WORDS).root.leaves()}

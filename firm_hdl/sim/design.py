@@ -21,6 +21,7 @@ from amaranth.sim._pyclock import PyClockProcess
 
 from firm_hdl.errors import UserError
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import Stream
 
 __all__ = [
     "ClockDomainError",
@@ -48,7 +49,7 @@ class ClockDomainError(UserError):
 
 def check_domain(
     ctx: SimulatorContext,
-    ports: Mapping[str, stream.Interface],
+    ports: Mapping[str, Stream[Any]],
     domain: Domain,
     *,
     sends: bool | None = None,
@@ -187,7 +188,7 @@ class Logic:
             for signal in driven:
                 self.drivers.setdefault(id(signal), []).append((domain, read))
 
-    def domains_of(self, port: stream.Interface) -> set[ClockDomain]:
+    def domains_of(self, port: Stream[Any]) -> set[ClockDomain]:
         """Return the domains of the registers that drive a stream, or else of its readers."""
         signals = [port.valid, port.ready]
         found = self._before(signals)[0]

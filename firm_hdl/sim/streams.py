@@ -16,9 +16,9 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from amaranth.hdl import Value
-from amaranth.lib import stream
 from amaranth.sim import SimulatorContext
 
+from firm_hdl.gateware.interfaces import Stream
 from firm_hdl.gateware.limits import check_integer
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.sim.bench import DeadlineError
@@ -42,7 +42,7 @@ SEND_DEADLINE = 10_000
 
 async def send(
     ctx: SimulatorContext,
-    port: stream.Interface,
+    port: Stream[Any],
     payloads: Iterable[Any],
     *,
     stalls: Stalls = Stalls.none,
@@ -104,7 +104,7 @@ async def send(
 
 async def receive(
     ctx: SimulatorContext,
-    port: stream.Interface,
+    port: Stream[Any],
     count: int,
     *,
     stalls: Stalls = Stalls.none,
@@ -147,7 +147,7 @@ async def receive(
 
 async def send_packets(
     ctx: SimulatorContext,
-    port: stream.Interface,
+    port: Stream[Any],
     packets: Iterable[bytes],
     *,
     stalls: Stalls = Stalls.none,
@@ -165,7 +165,7 @@ async def send_packets(
 
 async def receive_packets(
     ctx: SimulatorContext,
-    port: stream.Interface,
+    port: Stream[Any],
     count: int,
     *,
     stalls: Stalls = Stalls.none,
@@ -204,7 +204,7 @@ async def receive_packets(
 
 async def receive_statuses(
     ctx: SimulatorContext,
-    port: stream.Interface,
+    port: Stream[Any],
     count: int,
     *,
     stalls: Stalls = Stalls.none,
@@ -224,7 +224,7 @@ async def receive_statuses(
 
 async def _receive(
     ctx: SimulatorContext,
-    port: stream.Interface,
+    port: Stream[Any],
     payload: Any,
     take: Callable[[Any], object],
     expected: Callable[[], str],

@@ -17,9 +17,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from amaranth.hdl import Cat, Shape, Value
-from amaranth.lib import data, stream
+from amaranth.lib import data
 from amaranth.sim import SimulatorContext
 
+from firm_hdl.gateware.interfaces import Stream
 from firm_hdl.sim.design import Domain, check_domain
 
 __all__ = [
@@ -148,7 +149,7 @@ def check_packet_stream(port: Any, name: str) -> int:
 
 
 def watch(
-    streams: Mapping[str, stream.Interface], *, domain: Domain = "sync"
+    streams: Mapping[str, Stream[Any]], *, domain: Domain = "sync"
 ) -> Callable[[SimulatorContext], Awaitable[None]]:
     """Return a testbench that checks streams while the simulation runs.
 

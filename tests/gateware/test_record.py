@@ -52,8 +52,8 @@ class Loop(wiring.Component):
             {
                 "i": In(PacketSignature(width)),
                 "o": Out(PacketSignature(width)),
-                "rx_status": Out(StatusSignature),
-                "tx_status": Out(StatusSignature),
+                "rx_status": Out(StatusSignature()),
+                "tx_status": Out(StatusSignature()),
             }
         )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +11,7 @@ from amaranth.lib import data
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import PacketStream
 from firm_hdl.gateware.limits import check_bits, check_integer
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.positions import any_of
@@ -74,6 +76,12 @@ class PacketArbiter(Component):
     side_out : Out(side_bits)
         Only with `side_bits`. What came beside the beat; valid with it.
     """
+
+    packets_in: Sequence[PacketStream]
+    sides_in: Sequence[Value]
+    packets_out: PacketStream
+    source: Value
+    side_out: Value
 
     def __init__(self, bus_bytes: int, inputs: int, *, side_bits: int = 0):
         check_integer("Number of inputs", inputs)

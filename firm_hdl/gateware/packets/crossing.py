@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Module
+from amaranth.hdl import Module, Value
 from amaranth.lib.fifo import AsyncFIFO
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import PacketStream
 from firm_hdl.gateware.limits import check_integer
 from firm_hdl.gateware.packets.sides import beat_in, beat_layout, beat_out, side_members
 from firm_hdl.gateware.signatures import PacketSignature
@@ -49,6 +50,11 @@ class PacketCrossing(Component):
     side_out : Out(side_bits)
         Only with `side_bits`. What came beside the beat; valid with it.
     """
+
+    packets_in: PacketStream
+    packets_out: PacketStream
+    side_in: Value
+    side_out: Value
 
     def __init__(
         self,

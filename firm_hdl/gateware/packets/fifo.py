@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from amaranth.hdl import Module, Signal, Value
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import PacketStream
 from firm_hdl.gateware.memories import BlockMemory, LutMemory
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.memory import MemoryShape, Outcome, WhenFull, check_policy
@@ -77,6 +80,16 @@ class PacketFifo(Component):
         Packets by outcome, each with 32 bits; a counter stops at its largest value. Counted 2
         cycles after `ended`.
     """
+
+    packets_in: PacketStream
+    packets_out: PacketStream
+    side_in: Value
+    side_out: Value
+    abort: Value
+    size: Value
+    ended: Value
+    outcome: Value
+    counters: Any
 
     def __init__(
         self,

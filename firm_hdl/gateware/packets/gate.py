@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from amaranth.hdl import Module, Mux, Signal, Value
 from amaranth.lib import data, stream, wiring
 from amaranth.lib.fifo import SyncFIFO, SyncFIFOBuffered
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import PacketStream, StatusStream
 from firm_hdl.gateware.packets.block_fifo import BlockFifo
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.fifo import PacketFifo
@@ -88,7 +91,7 @@ class PacketGate(Component):
         Only with `side_bits`. What came beside the beat; valid with it.
     size : Out(range(memory_bytes + 1))
         Bytes of the packet on `packets_out`, from its first beat to its last one.
-    status : Out(GateStatusSignature)
+    status : Out(GateStatusSignature())
         One transfer per packet.
     counters : Out(counters_layout("passed", "truncated", ..., "full", "large", "overrun"))
         Packets by status, each with 32 bits; a counter stops at its largest value. A packet is
@@ -105,6 +108,14 @@ class PacketGate(Component):
     TypeError, ValueError
         If a parameter is not what it has to be, or the memory has no room for any packet.
     """
+
+    packets_in: PacketStream
+    packets_out: PacketStream
+    side_in: Value
+    side_out: Value
+    size: Value
+    status: StatusStream
+    counters: Any
 
     def __init__(
         self,
@@ -134,7 +145,7 @@ class PacketGate(Component):
                 "packets_in": In(PacketSignature(bus_bytes)),
                 "packets_out": Out(PacketSignature(bus_bytes)),
                 "size": Out(range(memory_bytes + 1)),
-                "status": Out(GateStatusSignature),
+                "status": Out(GateStatusSignature()),
                 "counters": Out(counters_layout(*COUNTED, "overrun")),
                 **sides,
             }

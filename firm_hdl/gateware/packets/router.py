@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Module, Mux, Signal
+from collections.abc import Sequence
+from typing import Any
+
+from amaranth.hdl import Cat, Module, Mux, Signal, Value
 from amaranth.lib import data
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import PacketStream
 from firm_hdl.gateware.limits import check_bits, check_integer
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.gateware.packets.sides import side_members
@@ -54,6 +58,13 @@ class PacketRouter(Component):
         Packets that were sent to an output, and those that were dropped, each with 32 bits; a
         counter stops at its largest value. Counted 2 cycles after the last beat was taken.
     """
+
+    packets_in: PacketStream
+    side_in: Value
+    topic: Value
+    packets_out: Sequence[PacketStream]
+    side_out: Value
+    counters: Any
 
     def __init__(self, bus_bytes: int, topics: int, *, topic_bits: int = 16, side_bits: int = 0):
         check_integer("Number of topics", topics)

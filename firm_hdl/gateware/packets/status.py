@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from amaranth.lib import enum, stream
+from amaranth.lib import enum
+
+from firm_hdl.gateware.signatures import FixedStreamSignature
 
 __all__ = ["GateStatus", "GateStatusSignature"]
 
@@ -39,5 +41,5 @@ class GateStatus(enum.Enum, shape=4):  # type: ignore[call-arg]
     OVERRUN = 10
 
 
-GateStatusSignature = stream.Signature(GateStatus)
-"""One transfer per packet."""
+GateStatusSignature = FixedStreamSignature(GateStatus)
+"""``GateStatusSignature()`` is the stream of a gate's statuses: one transfer per packet."""

@@ -6,6 +6,7 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
+from firm_hdl.gateware.interfaces import PacketStream
 from firm_hdl.gateware.packets.sides import beat_layout, put_in, put_out, side_members
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.gateware.signatures import PacketSignature
@@ -42,6 +43,11 @@ class PacketWidth(Component):
         Only with `side_bits`; valid with the beat. What came beside the wide beat, or beside the
         narrow one that completed the wide beat.
     """
+
+    packets_in: PacketStream
+    packets_out: PacketStream
+    side_in: Value
+    side_out: Value
 
     def __init__(self, in_bytes: int, out_bytes: int, *, side_bits: int = 0):
         self.in_bytes, self.out_bytes, self.side_bits = in_bytes, out_bytes, side_bits

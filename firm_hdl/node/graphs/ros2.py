@@ -12,11 +12,10 @@ from importlib import import_module
 from typing import Any
 
 from firm_hdl.errors import UserError
-from firm_hdl.node.description import Description, Qos, Topic
+from firm_hdl.node.description import Description, Topic, TopicQos
 from firm_hdl.node.graphs.graph import Graph, GraphError, OnMessage, domain_of
 from firm_hdl.node.graphs.mismatch import OwnEndpoint, own_endpoints
-from firm_hdl.rtps import Durability, Reliability
-from firm_hdl.rtps import Qos as Policies
+from firm_hdl.rtps import Durability, Qos, Reliability
 from firm_hdl.rtps.qos import INFINITE
 
 __all__ = ["RclpyGraph", "has_rclpy"]
@@ -124,7 +123,7 @@ class RclpyGraph(Graph):
         def ask(request: Any, header: Any) -> None:
             on_message(topic, bytes(serialize(request)), header)
 
-        qos = _qos(Qos(depth=_QUEUED))
+        qos = _qos(TopicQos(depth=_QUEUED))
         service = self._node.create_service(found, topic.name, keep, qos_profile=qos)
         # The executor calls this with what the callback returned. The response comes later, and in
         # no thread of the executor, which must not wait for it.
@@ -220,7 +219,7 @@ def _class_of(topic: Topic) -> Any:
         ) from None
 
 
-def _qos(qos: Qos) -> Any:
+def _qos(qos: TopicQos) -> Any:
     rclpy: Any = import_module("rclpy.qos")
     return rclpy.QoSProfile(
         history=rclpy.HistoryPolicy[qos.history.upper()],
@@ -244,7 +243,7 @@ def _mismatch(own: OwnEndpoint, peer: Any, writes: bool) -> str | None:
     )
 
 
-def _policies(profile: Any) -> Policies:
+def _policies(profile: Any) -> Qos:
     """Return what is known of the policies of an endpoint that rclpy has found."""
     given: dict[str, Any] = {}
     for name, kind in (("reliability", Reliability), ("durability", Durability)):
@@ -254,4 +253,4 @@ def _policies(profile: Any) -> Policies:
     ends = {name: getattr(profile, name).nanoseconds / 1e9 for name in _DURATIONS}
     deadline, lease = (INFINITE if ends[each] > _LONGEST else ends[each] for each in _DURATIONS)
     is_manual = profile.liveliness.name == "MANUAL_BY_TOPIC"
-    return Policies(**given, deadline=deadline, lease=lease, liveliness=2 * is_manual)
+    return Qos(**given, deadline=deadline, lease=lease, liveliness=2 * is_manual)
