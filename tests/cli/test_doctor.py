@@ -81,7 +81,6 @@ def completed(*words):
 
 def test_bash_completes_commands_options_and_types():
     assert completed("firm-hdl", "bu") == ["build"]
-    assert completed("firm-hdl", "node", "run", "--gr") == ["--graph"]
     words = completed("firm-hdl", "build", "--with", "systemverilog,")
     assert "systemverilog,all" in words
     types = completed("firm-hdl", "info", "--distro", "noetic", "sensor_msgs/Im")

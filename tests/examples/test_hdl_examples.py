@@ -160,6 +160,7 @@ def test_clouds_with_headers_of_scans_are_good_ones_alone(example_copies):
     fails(example_copies, "vhdl_two_types", "FAIL packet")
 
 
+@pytest.mark.thorough
 def test_naive_filter_lets_damaged_scans_pass(tmp_path, capsys):
     text = (EXAMPLES / "range_filter.py").read_text()
     safe, naive = "held.verdict.payload.eq(good)", "held.verdict.payload.eq(1)"
