@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from firm_hdl.node.bitstream.families import Family
     from firm_hdl.verify.simulators.programs import TextSimulator
 
-__all__ = ["add_doctor"]
+__all__ = ["add_doctor", "documentation"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +61,7 @@ def _doctor(args: argparse.Namespace) -> None:
     import firm_hdl
 
     versions = {"firm_hdl": firm_hdl.__version__, "python": platform.python_version()}
-    pages = _documentation()
+    pages = documentation()
     args.document |= {**versions, "prefix": sys.prefix, "documentation": pages, "items": []}
     if not args.as_json:
         print(f"firm-hdl {versions['firm_hdl']}, Python {versions['python']} in {sys.prefix}")
@@ -81,7 +81,7 @@ def _doctor(args: argparse.Namespace) -> None:
             print(indent(item.how, " " * 7))
 
 
-def _documentation() -> str | None:
+def documentation() -> str | None:
     """Return the first page of the documentation: in the installed package, or in a checkout."""
     import firm_hdl
 

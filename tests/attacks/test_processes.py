@@ -164,6 +164,7 @@ def test_exploding_types_are_refused_with_count_and_limit_in_little_memory(tmp_p
         assert kib < 200 * 1024, command
 
 
+@pytest.mark.thorough
 def test_used_memory_shows_in_the_measurement(tmp_path):
     place = make_files(tmp_path / "in", {"p/msg/A.msg": "int8 x\n"})
     ((*_, much),) = explode(place, "--path", "p/A", ["plan"], "hog = b'x' * (200 << 20)\n")

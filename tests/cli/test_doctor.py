@@ -83,7 +83,6 @@ def completed(*words):
 
 def test_bash_completes_commands_options_and_types():
     assert completed("firm-hdl", "bu") == ["build"]
-    assert completed("firm-hdl", "node", "run", "--gr") == ["--graph"]
     board = completed("firm-hdl", "node", "build", "n.yaml", "--board", "ulx3s-1")
     assert board == ["ulx3s-12f"]
     words = completed("firm-hdl", "build", "--with", "systemverilog,")

@@ -47,6 +47,7 @@ def test_random_memories_are_proved_equal(seed: int, tools: Tools) -> None:
     assert proof.result == "equal", proof
 
 
+@pytest.mark.thorough
 def test_memories_of_inner_modules_are_proved_equal(tools: Tools) -> None:
     text, vhdl = _full_design(deep=True)
     proof = prove(text, vhdl, tools=tools)
@@ -188,6 +189,7 @@ def test_a_change_of_the_rtlil_is_found(what: str, tools: Tools) -> None:
     assert proof.result == "unequal", what
 
 
+@pytest.mark.thorough
 def test_two_writes_of_one_word_happen_in_order(tools: Tools) -> None:
     text = rtlil_of(TWO)
     vhdl = convert(text, name="stores")

@@ -160,6 +160,7 @@ def test_clouds_with_headers_of_scans_are_good_ones_alone(example_copies):
     fails(example_copies, "vhdl_two_types", "FAIL packet")
 
 
+@pytest.mark.thorough
 def test_a_filter_that_looks_at_the_next_encoding_changes_wrong_pixels(tmp_path, capsys):
     text = (EXAMPLES / "image_filter.py").read_text()
     for leaf in ("length", "items"):

@@ -66,9 +66,8 @@ def test_every_system_has_a_record_of_each_type_that_can_be_read_back(tmp_path):
         assert bool(record.seconds.simulation) == (record.test.system == "ts3")
         assert bool(record.shape) == (record.test.system != "ts1") == (not record.verdicts)
         assert from_json(Record, to_json(record)) == record
-    commands = {record.test.system: record.command for record in records}
-    for command in commands.values():
-        assert main([*command.split()[1:], "--jobs", "1"]) == 0
+    # `test_request` runs their commands.
+    assert all(record.command.startswith("firm-hdl verify ") for record in records)
 
 
 def test_definition_that_no_oracle_reads_is_not_judged_for_a_reason(tmp_path, capsys):

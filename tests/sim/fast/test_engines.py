@@ -64,7 +64,7 @@ def stalls(request: pytest.FixtureRequest) -> StallPlan:
     return plan
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_both_engines_transfer_the_same_in_the_same_cycles(start, stalls):
     seen = observe(start("verilator", stalls))
     assert seen == in_amaranth(stalls)
