@@ -492,7 +492,7 @@ def read_link(marked: Marked, entry: Entry, clock_hz: float) -> Link:
     if "ethernet" in known:
         given["ethernet"] = known["ethernet"].choice(ETHERNETS, "stream")
     if given.get("ethernet", "stream") != "stream":
-        given |= _read_ethernet(given["ethernet"], known, clock_hz)
+        given |= _read_ethernet(given, known, clock_hz)
     elif "ethernet" not in known or given["ethernet"] == known["ethernet"].value.value:
         for name in ("mac", "gateway") if kind == "rtps" else ("mac", "address", "gateway"):
             if name in known:
@@ -508,17 +508,19 @@ _LEAST_MII_HZ = 25e6
 _GIGABIT_HZ = 125e6
 
 
-def _read_ethernet(kind: str, known: dict[str, Entry], clock_hz: float) -> dict[str, str]:
+def _read_ethernet(
+    options: dict[str, Any], known: dict[str, Entry], clock_hz: float
+) -> dict[str, str]:
     """Read the addresses of a link with pins, and check what its hardware asks for."""
-    place = known["ethernet"]
+    kind, place = options["ethernet"], known["ethernet"]
     if kind == "mii" and clock_hz < _LEAST_MII_HZ:
         place.error("an MII needs a 'clock_mhz' of 25 at least")
     elif kind != "mii" and clock_hz != _GIGABIT_HZ:
         place.error(
-            f"a byte per cycle is 1 Gbit/s with a 'clock_mhz' of 125, not {clock_hz / 1e6:g}"
+            f"1 Gbit/s is a byte per cycle with a 'clock_mhz' of 125, not {clock_hz / 1e6:g}"
         )
     for name, most in (("data_bytes", 1), ("datagram_bytes", DATAGRAM_BYTES)):
-        if name in known and known[name].integer(most, 1) > most:
+        if options.get(name, most) > most:
             known[name].error(f"'{name}' is at most {most} with 'ethernet: {kind}'")
     given = {}
     for name, problem in (("mac", _mac_problem), ("address", _interface_problem)):
@@ -633,9 +635,7 @@ def _interface_problem(text: str) -> str:
     if wrong := _address_problem(address):
         return wrong
     if not slash or not re.fullmatch("[0-9]{1,2}", prefix) or not 1 <= int(prefix) <= 31:
-        return (
-            f"'{text}' does not say how many bits are those of the network, from 1 to 31, {example}"
-        )
+        return f"'{text}' does not say how many bits are the network's, from 1 to 31, {example}"
     own = IPv4Interface(text)
     edges = (own.network.network_address, own.network.broadcast_address)
     if int(prefix) < 31 and own.ip in edges:

@@ -383,6 +383,61 @@ def test_a_host_of_a_link():
             described(text % port)
 
 
+PINS = {
+    "ethernet": "gmii",
+    "mac": "'02:00:00:00:00:01'",
+    "address": "192.168.1.50/24",
+    "gateway": "192.168.1.1",
+}
+
+
+def ethernet(mhz=125, **options):
+    """Return a description whose link has pins, with other options, or without those of `None`."""
+    given = {name: value for name, value in {**PINS, **options}.items() if value is not None}
+    text = ", ".join(f"{name}: {value}" for name, value in given.items())
+    return f"node: n\nclock_mhz: {mhz}\nlink: {{kind: udp, {text}}}\n{SUBSCRIBED}"
+
+
+def test_a_link_with_the_pins_of_a_phy():
+    link = described(ethernet()).link
+    assert (link.ethernet, link.mac) == ("gmii", "02:00:00:00:00:01")
+    assert (link.address, link.gateway) == ("192.168.1.50/24", "192.168.1.1")
+    assert link.has_ethernet
+    assert described(ethernet(mhz=25, ethernet="mii", gateway=None)).link.gateway == ""
+    none = dict.fromkeys(("mac", "address", "gateway"))
+    assert not described(ethernet(mhz=100, ethernet="stream", **none)).link.has_ethernet
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"ethernet": "rgmi"}, "3:29: error: 'ethernet' must be 'stream', 'gmii', 'rgmii' or"),
+        ({"ethernet": "stream"}, "'mac' counts only beside an 'ethernet' with pins"),
+        ({"ethernet": None}, "'gateway' counts only beside an 'ethernet' with pins"),
+        ({"mhz": 100}, "3:29: error: 1 Gbit/s is a byte per cycle with a 'clock_mhz' of 125"),
+        ({"mhz": 24, "ethernet": "mii"}, "an MII needs a 'clock_mhz' of 25 at least"),
+        ({"mac": None}, "3:19: error: 'ethernet: gmii' needs 'mac', such as"),
+        ({"address": None}, "3:19: error: 'ethernet: gmii' needs 'address', such as"),
+        ({"mac": "10:20:30:40:50:59"}, "'mac' must be text, not a"),
+        ({"mac": "'02:00:00:00:01'"}, "'02:00:00:00:01' is no address of Ethernet"),
+        ({"mac": "'03:00:00:00:00:01'"}, "is the address of a group"),
+        ({"mac": "'00:00:00:00:00:00'"}, "is no address that a machine can have"),
+        ({"address": "192.168.1.50"}, "does not say how many bits are the network's"),
+        ({"address": "192.168.1.50/32"}, "does not say how many bits are the network's"),
+        ({"address": "192.168.1/24"}, "'192.168.1' is not an IPv4 address"),
+        ({"address": "192.168.1.255/24"}, "is the address of the whole network 192.168.1.0/24"),
+        ({"address": "239.1.1.1/24"}, "no address that a machine on Ethernet can have"),
+        ({"gateway": "10.0.0.1"}, "'10.0.0.1' is no other machine of 192.168.1.0/24"),
+        ({"gateway": "192.168.1.50"}, "'192.168.1.50' is no other machine"),
+        ({"data_bytes": 4}, "'data_bytes' is at most 1 with 'ethernet: gmii'"),
+        ({"datagram_bytes": 1488}, "'datagram_bytes' is at most 1472 with 'ethernet: gmii'"),
+    ],
+)
+def test_mistakes_of_a_link_with_pins(options, message):
+    found = error_of(ethernet(**options))
+    assert message in found, found
+
+
 @pytest.mark.parametrize(("most", "key"), [(255, "node"), (245, "namespace"), (247, "topic")])
 def test_lengths_of_names(most, key):
     """Those of rmw: 255 of a node, 245 of a namespace, 247 of a complete topic."""

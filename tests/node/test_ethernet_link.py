@@ -1,0 +1,94 @@
+"""The link with an Ethernet of its own: messages at the pins of a GMII, and its counters."""
+
+from __future__ import annotations
+
+import pytest
+from amaranth.sim import Simulator
+
+from firm_hdl.node import Link
+from firm_hdl.node.links import EthernetLink
+from firm_hdl.sim.payloads import packet_beats
+from tests.ethernet.bench import PREAMBLE, checked
+from tests.node.traffic import frames_of, link_beats, some
+
+scapy = pytest.importorskip("scapy.all")
+
+LINK = Link(
+    kind="udp",
+    memory_bytes=512,
+    packets=8,
+    ethernet="gmii",
+    mac="02:00:00:00:00:01",
+    address="10.0.0.50/8",
+)
+BUS = 8
+
+
+def frame(data, *, port=LINK.port):
+    """Return a datagram from the host as bytes at the pins."""
+    packet = scapy.Ether(dst=LINK.mac, src="02:00:00:00:00:02")
+    packet /= scapy.IP(src="10.0.0.7", dst="10.0.0.50") / scapy.UDP(sport=99, dport=port) / data
+    whole = bytes(packet)
+    return PREAMBLE + checked(whole + bytes(max(0, 60 - len(whole))))
+
+
+def test_messages_pass_the_pins_both_ways_and_what_is_lost_is_counted():
+    link = EthernetLink(BUS, LINK)
+    down, up = some(2, 1), some(1, 2)
+    answer = scapy.Ether(dst=LINK.mac, src="02:00:00:00:00:02") / scapy.ARP(
+        op=2, hwsrc="02:00:00:00:00:02", psrc="10.0.0.7", pdst="10.0.0.50"
+    )
+    wires = [frame(data) for data in frames_of(down)]
+    wires.insert(1, wires[0][:-1] + b"?")
+    wires += [frame(b"x", port=1), PREAMBLE + checked(bytes(answer) + bytes(18))]
+    pins, received = link.gmii, link.received
+    beats, sent, counters = [], bytearray(), {}
+
+    async def wire(ctx):
+        # The clock of the PHY is half a cycle behind.
+        await ctx.delay(4e-9)
+        data = b"".join(b"\0" * 20 + each for each in wires) + b"\0" * 3
+        gaps = [n for each in wires for n in (*[0] * 20, *[1] * len(each))] + [0] * 3
+        for byte, valid in zip(data, gaps, strict=True):
+            ctx.set(pins.rxd, byte)
+            ctx.set(pins.rx_dv, valid)
+            await ctx.delay(4e-9)
+            ctx.set(pins.rx_clk, 1)
+            await ctx.delay(4e-9)
+            ctx.set(pins.rx_clk, 0)
+        for beat in link_beats(up, BUS):
+            ctx.set(link.sent.payload.as_value(), beat)
+            ctx.set(link.sent.valid, 1)
+            await ctx.tick().until(link.sent.ready)
+        ctx.set(link.sent.valid, 0)
+        await ctx.tick().repeat(350)
+        for name in link.counters.shape().members:
+            counters[name] = ctx.get(link.counters[name])
+
+    async def watch(ctx):
+        ctx.set(received.ready, 1)
+        while True:
+            values = (received.valid, received.payload, pins.tx_en, pins.txd)
+            _, _, valid, payload, enable, byte = await ctx.tick().sample(*values)
+            if valid:
+                beats.append((payload.topic, payload.tag, payload.length, payload.beat.as_bits()))
+            if enable:
+                sent.append(byte)
+
+    simulator = Simulator(link)
+    simulator.add_clock(8e-9)
+    simulator.add_testbench(wire)
+    simulator.add_testbench(watch, background=True)
+    simulator.run()
+    want = [
+        (each.topic, each.tag, len(each.packet), beat)
+        for each in down
+        for beat in packet_beats(each.packet, BUS)
+    ]
+    assert [beat[:3] for beat in beats] == [beat[:3] for beat in want]
+    packet = scapy.Ether(bytes(sent[8:-4]))
+    assert (packet.dst, packet[scapy.IP].dst) == ("02:00:00:00:00:02", "10.0.0.7")
+    assert (packet[scapy.UDP].sport, packet[scapy.UDP].dport) == (LINK.port, 99)
+    assert bytes(packet[scapy.UDP].payload)[: packet[scapy.UDP].len - 8] == frames_of(up)[0]
+    found = {name: count for name, count in counters.items() if count}
+    assert found == {"passed": 2, "ethernet_damaged": 1, "ethernet_port": 1}
