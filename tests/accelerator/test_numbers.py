@@ -83,7 +83,7 @@ def rounded(raw, shape, width):
     return (raw < 0) << (width - 1) | ((exponent + bias - 1) << mantissa) + significand
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("width", [32, 64])
 @pytest.mark.parametrize("shape", SHAPES, ids=str)
 def test_conversions_are_those_of_exact_numbers(shape, width):

@@ -23,6 +23,7 @@ def own(folder: Path, text: str, distro: str = "lyrical", name: str = "Own") -> 
     return load_message(f"own_msgs/{name}", distro=distro, paths=[folder])
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("distro", ["noetic", "foxy", "lyrical"])
 def test_structure_is_that_of_the_distribution(distro):
     library = Library(distro)

@@ -29,7 +29,7 @@ def _full_design(deep: bool = False) -> tuple[str, Vhdl]:
 
 
 @pytest.mark.parametrize("name", DESIGNS)
-@pytest.mark.sampled(8)
+@pytest.mark.sampled(16)
 def test_memories_are_proved_equal(name: str, tools: Tools) -> None:
     proof = prove(rtlil_of(DESIGNS[name]), convert(rtlil_of(DESIGNS[name])), tools=tools)
     assert proof.result == "equal", proof
@@ -136,7 +136,7 @@ VHDL_TWINS = {
 
 
 @pytest.mark.parametrize("what", [*VHDL_TWINS][:: by_depth(7, 1)])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_a_change_of_the_vhdl_is_found(what: str, tools: Tools) -> None:
     text, vhdl = _full_design()
     old, new = VHDL_TWINS[what]

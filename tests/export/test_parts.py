@@ -61,7 +61,7 @@ def verilator_finds(folder, file, top):
     return run([verilator, "--lint-only", "-Wall", *waivers, "--top-module", top, file], folder)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 def test_the_verilog_compiles_in_both_languages(built, tmp_path):
     iverilog = need("iverilog", shutil.which("iverilog"))
     file = built / f"{built.name}_verilog.v"

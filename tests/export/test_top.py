@@ -111,7 +111,7 @@ def axi_loopback(type_: str, packets: list[bytes], *, distro: str, bus_bytes: in
 
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 4, 8], [1, 4, 8, 64]))
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_packets_come_back(bus_bytes):
     message = load_message("std_msgs/msg/Header")
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
@@ -129,6 +129,7 @@ def test_empty_packets_have_no_tkeep():
     assert axi_loopback("std_msgs/Empty", packets, distro="noetic", bus_bytes=4) == packets
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("bus_bytes", [1, 4, 16])
 def test_tuser_marks_the_last_beat_of_a_packet_that_is_to_be_dropped(bus_bytes):
     top = Top(Serializer(load_message("std_msgs/msg/String"), bus_bytes=bus_bytes))

@@ -81,6 +81,7 @@ def test_the_last_transfer_of_an_array_in_elements(kind, size, bus_bytes):
     assert compare(message, packets, bus_bytes) == ["OK"] * 4
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4])
 def test_padding_is_right_after_a_message_with_an_error(bus_bytes):
     """On narrow buses, padding depends on where in 8 bytes the packet before has ended."""
@@ -111,6 +112,7 @@ def test_padding_is_right_after_a_message_with_an_error(bus_bytes):
     assert [status.name for status in seen.statuses] == [status for _, status in want]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("bus_bytes", [1, 8])
 def test_the_first_error_in_wire_order_is_the_status(bus_bytes):
     """The items of one field and the length of the next one may be taken in one step."""

@@ -189,6 +189,7 @@ def test_a_parser_with_a_larger_budget_is_found():
     assert decode(plan, numbers(100, 80, 301)).status == "LENGTH"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("lengths", [(60, 299), (60, 300), (30, 0, 60, 359)])
 def test_recovery_takes_the_cycles_of_the_interpreter_and_at_most_the_bound(lengths):
     rx = reader(8)

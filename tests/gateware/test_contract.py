@@ -115,7 +115,7 @@ def test_leaves_become_valid_in_wire_order():
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 2, 4, 8])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_a_producer_may_offer_one_leaf_after_the_other(bus_bytes):
     dut = Serializer(POINT, bus_bytes=bus_bytes)
     result = []
@@ -240,7 +240,7 @@ def converters(bus_bytes, *fields):
 
 
 @pytest.mark.parametrize("slack", range(6))
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 def test_cdr_packets_may_be_padded_by_up_to_three_bytes(slack):
     packet = b"\0\1\0\0\5\0\0\0"
     for bus_bytes in by_depth((1, 8, 16), (1, 2, 4, 8, 16)):
@@ -252,7 +252,7 @@ def test_cdr_packets_may_be_padded_by_up_to_three_bytes(slack):
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 2, 4, 8]))
 @pytest.mark.parametrize("slack", range(5))
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(10)
 def test_padding_may_come_long_after_the_message(bus_bytes, slack):
     # The step that ends the message does not see where the packet ends, and its own end is where no
     # step starts.
@@ -273,7 +273,7 @@ def test_padding_may_come_long_after_the_message(bus_bytes, slack):
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 8, 32])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_a_message_of_many_empty_ones_is_an_empty_packet(bus_bytes):
     empty = make("ros1", {}, "E")
     nested = make("ros1", {"e": empty}, "N")

@@ -98,7 +98,7 @@ def case_of(converter, case, bus_bytes):
 
 @every_bus
 @every_type
-@pytest.mark.sampled(12)
+@pytest.mark.sampled(24)
 def test_deserializer(case, bus_bytes):
     rx, packet = case_of(Deserializer, case, bus_bytes)
     harness = Harness(rx, None)
@@ -172,7 +172,7 @@ def offered_one_by_one(tx, packets):
 
 @every_bus
 @every_type
-@pytest.mark.sampled(12)
+@pytest.mark.sampled(24)
 def test_serializer(case, bus_bytes):
     tx, packet = case_of(Serializer, case, bus_bytes)
     plan = tx.plan

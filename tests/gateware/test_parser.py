@@ -92,6 +92,7 @@ def run(parser, packets, **options):
     return seen
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("bus_bytes", by_depth((1, 8, 64), BUS_WIDTHS))
 def test_a_wrong_header_is_found_when_its_packet_has_filled_the_ring(bus_bytes):
     # The end of the third packet waits for a status to be taken. Meanwhile, the fourth one fills
@@ -113,6 +114,7 @@ def agree(plan, packets, seen):
             assert len(packet) - trailing == len(encode(plan, whole)[0])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 @few
 @given(
@@ -200,7 +202,7 @@ ROS_TYPES = [
         for bus in SOME_WIDTHS
     ],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 def test_damaged_packets_of_ros_types(name, distro, bus_bytes):
     message = load_message(name, distro=distro)
     plan, packets = random_packets(message, bus_bytes, by_depth(2 if bus_bytes == 1 else 4, 16))
@@ -223,7 +225,7 @@ BAD = {
 
 
 @pytest.mark.parametrize(("bus_bytes", "more"), [(1, 0), (2, 0), (4, 0), (8, 0), (64, 1)])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 def test_latency_is_exact(bus_bytes, more):
     packets = [bytes.fromhex(GOOD)] * 3
     seen = run(header_parser(bus_bytes), packets, stalls={"packets": GAP})
@@ -234,7 +236,7 @@ def test_latency_is_exact(bus_bytes, more):
 
 @pytest.mark.parametrize("bus_bytes", SOME_WIDTHS)
 @pytest.mark.parametrize(("text", "status"), BAD.values(), ids=BAD)
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 def test_error_delays_its_status_by_a_few_cycles_and_no_other(text, status, bus_bytes):
     good, bad = bytes.fromhex(GOOD), bytes.fromhex(text)
     packets = [bad, good, bad, bad, good]
@@ -247,6 +249,7 @@ def test_error_delays_its_status_by_a_few_cycles_and_no_other(text, status, bus_
     assert late[1] == late[4] == LATENCY + (bus_bytes == 64)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("bus_bytes", by_depth((1, 8), BUS_WIDTHS))
 def test_a_packet_that_claims_nearly_a_million_elements_costs_its_own_beats(bus_bytes):
     name = "diagnostic_msgs/msg/DiagnosticArray"
@@ -269,7 +272,7 @@ def test_a_packet_that_claims_nearly_a_million_elements_costs_its_own_beats(bus_
 
 @pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
 @pytest.mark.parametrize("kind", ["uint8", "float64"])
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(15)
 def test_a_beat_per_cycle_through_long_arrays(kind, bus_bytes):
     fields = (Field(name="data", type=Sequence(element=PRIMITIVES["ros1"][kind])),)
     message = Message(name="p/Long", dialect="ros1", fields=fields)

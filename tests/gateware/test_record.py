@@ -192,7 +192,7 @@ def test_messages_without_a_record_are_refused(message, fields, error):
 
 
 @pytest.mark.parametrize("bits", [64, 130, 200])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_arrays_are_collected_in_registers_that_amaranth_can_elaborate(monkeypatch, bits):
     monkeypatch.setattr(record, "MAX_CELL_BITS", bits)
     message = make("ros1", {"rows": (make("ros1", {"row": "uint8[9]"}, "Row"), "[5]")})

@@ -218,7 +218,7 @@ RUN = make("ros1", {"b": "uint8[21]"})
     ],
 )
 @pytest.mark.parametrize("bus_bytes", [1, 4])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_counters_start_again(message, good, transfers, bus_bytes):
     right = transfers(bus_bytes)
     reader = Bench(Deserializer(message, bus_bytes=bus_bytes), good)

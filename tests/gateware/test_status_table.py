@@ -198,7 +198,7 @@ PLACES = {
 
 @pytest.mark.parametrize("dialect", PLACES)
 @every_bus
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_items_that_are_not_whole_are_zero_whatever_is_in_their_lanes(bus_bytes, dialect):
     text, (x, a, b) = PLACES[dialect]
     whole = packet(text)

@@ -64,7 +64,7 @@ def fixed_types():
 
 
 @pytest.mark.parametrize("message", list(fixed_types())[:: by_depth(16, 1)])
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 def test_types_of_fixed_size_run_at_line_rate(message):
     packets = fixed_packets(message, PACKETS)
     found = packet_of(build_plan(lay_out(message), bus_bytes=8), packets[0])
@@ -168,7 +168,7 @@ LARGE = [("rosgraph_msgs/Log", "noetic"), ("sensor_msgs/msg/JointState", "lyrica
         pytest.param(*VARIED[2], 64, marks=pytest.mark.thorough),
     ],
 )
-@pytest.mark.sampled(8)
+@pytest.mark.sampled(16)
 def test_each_packet_takes_the_cycles_of_the_plan(name, distro, bus_bytes):
     message = load_message(name, distro=distro)
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
@@ -188,7 +188,7 @@ EMPTY = make("ros1", {}, "Empty")
         {"e": EMPTY},
     ],
 )
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 def test_packets_with_few_bytes_take_the_cycles_of_the_plan(fields, bus_bytes):
     message = make("ros1", fields)
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)

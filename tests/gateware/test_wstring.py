@@ -82,6 +82,7 @@ def test_a_wide_string_over_its_bound_is_empty_and_ends_it(bus_bytes):
     assert back.packets == [good, packet("00000000 00"), good]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("bus_bytes", WIDTHS)
 def test_a_wide_string_over_its_bound_is_sent_as_promised_and_marked(bus_bytes):
     lanes = max(1, bus_bytes // 4)

@@ -54,6 +54,7 @@ def new(name, store):
     return values
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("distro", ["humble", "lyrical"])
 def test_example_is_the_yaml_of_a_new_message(distro):
     store, ours = get_typestore(DISTROS[distro].store), Library(distro)

@@ -137,6 +137,7 @@ def has_wide(message: Message) -> bool:
     return any(getattr(k, "wide", False) or str(k) == "wchar" for k in kinds_in(message))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("distro", ROS2)
 def test_hashes_of_embedded_types_are_those_of_rosbags(distro):
     store, ours = get_typestore(DISTROS[distro].store), Library(distro)

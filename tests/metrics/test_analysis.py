@@ -60,6 +60,7 @@ def counts_in_layout(message, wire):
     return counts
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 @pytest.mark.parametrize("distro", ["noetic", "lyrical"])
 def test_leaves_and_places_are_those_of_the_layout(distro, wire):

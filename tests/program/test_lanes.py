@@ -65,6 +65,7 @@ def visited(plan, packet):
         yield visit.step, (visit.end - taken) % plan.bus_bytes
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("bus_bytes", [2, 8, 16])
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 @pytest.mark.parametrize("after", ["uint8", "uint64", "uint8[33]"])

@@ -61,6 +61,7 @@ def test_bench_does_not_pass_with_a_silent_ghdl(fake, capsys, status):
     assert "lyrical     0 of    1 benches pass (8-byte bus)\n" in output
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("simulator", "names", "status"),
     [

@@ -32,7 +32,7 @@ def verilog_of(type_: str, direction: str, bus_bytes: int = 8, distro: str = "ly
         ("std_msgs/Empty", "noetic"),
     ],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_every_port_is_there_with_its_width(type_, distro, direction):
     text = verilog_of(type_, direction, distro=distro)
     module = text[text.index(f"module {direction} (") :]

@@ -57,7 +57,7 @@ def sent(kind, count, number, bus_bytes):
         for is_its_own in [bus == (8, 1)[number % 2]]
     ],
 )
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 def test_the_last_length_is_that_of_its_message_however_long_status_waits(kind, bus_bytes):
     dialect, fields = LAST[kind]
     tx = Serializer(make(dialect, {"x": "uint8", **fields}), bus_bytes=bus_bytes)

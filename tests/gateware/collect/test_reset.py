@@ -10,6 +10,7 @@ from tests.gateware.test_reset import RIGHT, Bench, after_reset_of_writer, lette
 from tests.strategies import make
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("bus_bytes", [1, 2])
 def test_padding_is_that_of_a_first_packet(bus_bytes):
     """On a narrow bus, padding depends on where in 8 bytes the packet before has ended."""

@@ -146,7 +146,7 @@ def test_first_error_of_a_step_is_reported(bus_bytes):
 # An error in the last word of a message, or in its only one.
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 @some_buses
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_error_in_the_last_word_of_a_message_marks_it(bus_bytes, wire):
     tx = Serializer(make("ros2", {"s": "string<=2"}), wire=wire, bus_bytes=bus_bytes)
     noise = random.Random(bus_bytes)
@@ -173,7 +173,7 @@ def test_error_in_the_last_word_of_a_message_marks_it(bus_bytes, wire):
 # Lengths that `max_message_bytes` has room for; the shortest message has 9 bytes.
 @pytest.mark.parametrize(("count", "status"), [(7, "OK"), (8, "LENGTH"), (9, "LENGTH")])
 @some_buses
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 def test_limit_of_a_serializer_is_exact(bus_bytes, count, status):
     message = make("ros1", {"s": "string", "t": "string", "z": "uint8"})
     tx = Serializer(message, bus_bytes=bus_bytes, max_message_bytes=16)

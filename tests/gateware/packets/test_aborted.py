@@ -13,6 +13,7 @@ from tests.strategies import make
 BEATS = 3
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("bus_bytes", [1, 8])
 def test_a_packet_that_lost_its_last_beat_is_dropped(monkeypatch, bus_bytes):
     """Any bytes are a message here, and the beat that stands for the lost one is full."""

@@ -75,7 +75,7 @@ def some(count, bus_bytes, seed, sizes=(1, 2, 5)):
 
 @pytest.mark.parametrize("bus_bytes", [1, 8, 64])
 @pytest.mark.parametrize("inputs", [1, 2, 3, 8])
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(12)
 def test_packets_stay_whole_under_any_stall(bus_bytes, inputs):
     plan = build_plan(lay_out(TYPE), bus_bytes=bus_bytes)
     sent = [random_packets(plan, 2, seed) + some(9, bus_bytes, seed) for seed in range(inputs)]

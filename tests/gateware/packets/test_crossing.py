@@ -76,7 +76,7 @@ CLOCKS = [(1, 1, 0.3), (1, 1.01, 0), (1, 3.7, 0.1), (5.3, 1, 0.4), (1, 2, 0)]
 
 @pytest.mark.parametrize(("write", "read", "phase"), CLOCKS)
 @pytest.mark.parametrize("bus_bytes", [1, 8, 64])
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(8)
 def test_packets_are_the_same_in_the_other_domain(bus_bytes, write, read, phase):
     for stall in (0, 0.4):
         crossing = PacketCrossing(bus_bytes, 8)
@@ -84,7 +84,7 @@ def test_packets_are_the_same_in_the_other_domain(bus_bytes, write, read, phase)
 
 
 @pytest.mark.parametrize("ratio", [1, 1.1, 1.9])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_a_beat_per_cycle_of_the_slower_clock(ratio):
     packets = [bytes(800), bytes(8), bytes(720)]
     times = run(PacketCrossing(8), packets, read=ratio, phase=0.3)

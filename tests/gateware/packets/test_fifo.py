@@ -89,7 +89,7 @@ def ros_packets(name, bus_bytes, count):
 
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
 @pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(14)
 def test_packets_of_ros_leave_whole_and_in_order_under_any_stall(bus_bytes, when_full):
     # On a narrow bus, each packet takes many cycles.
     count = min(30, 5 + 3 * bus_bytes)
@@ -146,7 +146,7 @@ def test_aborted_packets_cost_their_beats_and_no_more():
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 64], [1, 2, 8, 64]))
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_a_packet_as_large_as_the_memory_passes_and_a_larger_one_does_not(bus_bytes, when_full):
     whole = bytes(range(64)) * bus_bytes
     fifo = PacketFifo(bus_bytes, 64 * bus_bytes, 4, when_full=when_full)

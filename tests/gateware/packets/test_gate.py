@@ -55,7 +55,7 @@ TYPES = [
         for is_left in [small == (bus == 8) or each[0] == "sensor_msgs/Imu"]
     ],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_only_good_packets_pass_whole_and_in_order_under_any_stall(name, distro, bus_bytes):
     message = load_message(name, distro=distro)
     most = 10_000
@@ -96,7 +96,7 @@ def test_bad_packets_of_each_kind_between_good_ones(bus_bytes, when_full):
         assert run.taken == list(range(run.taken[0], run.taken[0] + len(run.taken)))
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("bus_bytes", "more"),
     by_depth([(1, 0), (8, 0), (64, 1)], [(1, 0), (2, 0), (4, 0), (8, 0), (64, 1)]),
@@ -155,7 +155,7 @@ def test_a_packet_that_claims_nearly_a_million_elements_costs_its_beats_and_a_fe
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 8, 64]))
 @pytest.mark.parametrize("when_full", ["wait", "drop"])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_a_packet_as_large_as_the_memory_passes_and_a_larger_one_does_not(bus_bytes, when_full):
     fields = (Field(name="data", type=Sequence(element=PRIMITIVES["ros1"]["uint8"])),)
     message = Message(name="p/Long", dialect="ros1", fields=fields)

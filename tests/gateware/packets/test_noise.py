@@ -74,6 +74,7 @@ def test_there_is_noise_beside_a_low_valid_alone():
     simulator.run()
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("bus_bytes", [1, 4])
 def test_a_deserializer_reads_nothing_between_transfers(bus_bytes):
     rx = with_noise(Deserializer, TEXTS, bus_bytes=bus_bytes)
@@ -84,6 +85,7 @@ def test_a_deserializer_reads_nothing_between_transfers(bus_bytes):
     assert carried == join_transfers(each.streams for each in decoded)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("bus_bytes", [1, 4])
 def test_a_serializer_takes_nothing_between_transfers(bus_bytes):
     tx = with_noise(Serializer, TEXTS, bus_bytes=bus_bytes)

@@ -145,7 +145,7 @@ class Bench:
         self.counted = ctx.get(self.counters)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("name", PARTS)
 def test_a_part_is_after_a_reset_as_it_was_at_first(name, monkeypatch):
     # Few beats wait for the parser of a gate that drops packets.

@@ -49,7 +49,7 @@ def run(router, packets, topics, stalls=None, **options):
 
 @pytest.mark.parametrize("bus_bytes", [1, 8, 64])
 @pytest.mark.parametrize("outputs", [1, 2, 5])
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 def test_each_packet_goes_to_its_topic_under_any_stall(bus_bytes, outputs):
     rng = random.Random(outputs)
     packets = some(40, bus_bytes, outputs)

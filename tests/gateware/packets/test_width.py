@@ -41,7 +41,7 @@ def of_all_sizes(most):
 
 
 @pytest.mark.parametrize(("in_bytes", "out_bytes"), PAIRS)
-@pytest.mark.sampled(12)
+@pytest.mark.sampled(30)
 def test_packets_are_the_same_under_any_stall(in_bytes, out_bytes):
     plan = build_plan(lay_out(TYPE), bus_bytes=in_bytes)
     packets = random_packets(plan, 1)

@@ -27,7 +27,7 @@ def packet(text, end, size, items):
 
 @pytest.mark.parametrize("between", BETWEEN)
 @every_bus
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 def test_a_missing_nul_is_reported_and_not_the_claim_after_it(bus_bytes, between):
     fields, size = BETWEEN[between]
     element = make("ros2", {"s": "string", **fields, "q": "uint8[]"}, "Element")

@@ -19,7 +19,7 @@ def with_length(text: bytes) -> str:
 
 @pytest.mark.parametrize("bus_bytes", by_depth([1, 8], [1, 4, 8]))
 @pytest.mark.parametrize("end", ["", "uint8"])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_all_characters_before_the_wrong_byte_transfer(bus_bytes, end):
     last = "07" if end else ""
     fields = {"s": "string"} | ({"z": end} if end else {})

@@ -20,7 +20,7 @@ PADDED = make("ros2", {"a": "uint8[<=9]", "d": "uint64"}, "Padded")
 
 # One or two bytes are the rest of the run, behind the length; three bytes begin with a word.
 @pytest.mark.parametrize(("bus_bytes", "items"), [(1, b"\5"), (2, b"\5\6"), (2, b"\5\6\7")])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_padding_is_that_of_a_first_packet(bus_bytes, items):
     number = bytes((8, 7, 6, 5, 4, 3, 2, 1))
     good = bytes((0, 1, 0, 0, len(items), 0, 0, 0)) + items.ljust(4, b"\0") + number

@@ -57,7 +57,7 @@ def packet_of(types, counts):
     return b"\0\1\0\0" + body
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("kind", TWINS)
 def test_a_length_is_decoded_for_its_own_sequence(kind):
     for text in TWINS[kind]:

@@ -57,6 +57,7 @@ def test_an_empty_packet_has_the_empty_messages_that_it_is_made_of():
     assert transfers_with_pauses(message, [b"", b""], 1) == [[0, 0], [3, 1], [3, 1]]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("bus_bytes", [2, 8])
 def test_what_came_before_the_end_of_a_packet_is_kept_until_it_is_taken(bus_bytes):
     """The leaves of each packet are still there when the errors of the next ones are found."""

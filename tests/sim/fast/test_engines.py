@@ -97,7 +97,7 @@ def test_transfers_are_those_of_the_design(start, engine, stalls):
 
 
 @pytest.mark.parametrize("clocks", [None, {"sync": 10, "video": 37}, {"video": 3, "sync": 2}])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_packets_cross_to_another_clock(start, clocks):
     seen = []
     for engine in ENGINES:

@@ -59,7 +59,7 @@ def section(key):
     return rest.partition("\n### ")[0].partition("\n## ")[0]
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("key", EXAMPLES)
 def test_divergence_is_known_by_its_key_and_shown(ask_example, key):
     finding, keys = ask_example(EXAMPLES[key])

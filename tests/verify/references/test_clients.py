@@ -53,7 +53,7 @@ def message_of(make_message):
     return get
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("name", "wire"), SPOKEN)
 def test_value_becomes_the_known_bytes_and_back(library_here, message_of, name, wire):
     library = library_here(name)

@@ -160,6 +160,7 @@ def test_a_changed_line_is_found(of_verilog, monkeypatch, change):
     assert all(failure.startswith(of_verilog.title) for failure in result.failures)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("of_verilog", ["iverilog", "verilator"], indirect=True)
 def test_verilog_that_is_refused_is_a_failure(of_verilog, monkeypatch):
     change_line(monkeypatch, "_serializer", "endmodule", "endmodul")

@@ -55,6 +55,7 @@ def test_other_libraries_write_the_packets_of_rosbags(distro, name, by):
     assert (found.by, found.failures) == (by, ())
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("answer", [b"\0\1\0\0\7", Refusal("no")])
 def test_a_library_that_disagrees_is_a_failure_with_both_names(monkeypatch, answer):
     codec = client("fastcdr").open(Library("lyrical").message("std_msgs/msg/Bool"), "cdr")

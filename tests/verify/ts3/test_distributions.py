@@ -23,7 +23,7 @@ SIMULATED = by_depth(24, 1)
 
 
 @pytest.mark.parametrize("index", range(len(TASKS)), ids=[task.name for task in TASKS])
-@pytest.mark.sampled(24)
+@pytest.mark.sampled(45)
 def test_every_type_passes(index):
     task = TASKS[index]
     options = Options(

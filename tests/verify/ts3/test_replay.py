@@ -101,7 +101,7 @@ def test_types_that_a_recording_lacks_come_from_a_distribution_and_a_folder(caps
 
 
 @pytest.mark.parametrize("form", FORMATS)
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 def test_recordings_pass(capsys, tmp_path, form):
     messages = robot(form, 4)
     # rosbags reads compressed recordings; one circuit is enough to check that they are read.
@@ -170,6 +170,7 @@ def test_oracle_that_reads_another_byte_disagrees(monkeypatch, tmp_path):
     assert any(each.startswith("hardware: packet 0 of 1 differs") for each in result.failures)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("packet", "kind"),
     [
