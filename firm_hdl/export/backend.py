@@ -20,12 +20,9 @@ from firm_hdl.garbage import search_put_off
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
-from firm_hdl.program import deserializer_program, program_lines, serializer_program
+from firm_hdl.program import MANY_STATES, deserializer_program, program_lines, serializer_program
 from firm_hdl.rtlil import netlist_of, rtlil_of
 from firm_hdl.rtlil.ir import Design
-
-MOST_STEPS = 64
-"""Most steps that the head of a file lists."""
 
 __all__ = ["BuildError", "Converters", "Output", "module_name"]
 
@@ -108,7 +105,7 @@ class Converters:
         """Write the steps of a converter, one per line, for a comment at the head of its file."""
         make = deserializer_program if direction == "deserializer" else serializer_program
         program = make(self.plan)
-        if len(program.states) > MOST_STEPS:
+        if len(program.states) > MANY_STATES:
             return f"{len(program.states)} steps: `firm-hdl plan --program` prints them.\n"
         lines = ["Steps, as `firm-hdl plan --program` prints and explains them:"]
         for line in program_lines(program):

@@ -113,7 +113,7 @@ class Flow(Generic[AnyState]):
                 f"step_{each.name}",
                 1,
                 [int(number == each.number) for number in numbers],
-                attrs={REMARK: state_remark(program.plan, each)},
+                attrs={REMARK: state_remark(program, each)},
             )
             for each in program.states
         ]

@@ -25,10 +25,11 @@ from firm_hdl.program.serializer import (
     serializer_program,
 )
 from firm_hdl.program.state import AnyState, Part, Program, State, Transfer
-from firm_hdl.program.table import program_lines, state_remark
+from firm_hdl.program.table import MANY_STATES, program_lines, state_remark
 
 __all__ = [
     "LENGTH_BITS",
+    "MANY_STATES",
     "AnyState",
     "DeserializerProgram",
     "DeserializerState",

@@ -21,7 +21,10 @@ from firm_hdl.program.serializer import (
 )
 from firm_hdl.program.state import AnyState, Program, State, Transfer
 
-__all__ = ["program_lines", "program_text", "state_remark"]
+__all__ = ["MANY_STATES", "program_lines", "program_text", "state_remark"]
+
+MANY_STATES = 64
+"""Most states that comments in a circuit's text describe in full."""
 
 LEGEND = """\
 # One line a state: its number and name, what it takes, and where it leads. "map" and "items" are
@@ -57,10 +60,11 @@ def _line(state: State, texts: Iterator[str]) -> str:
     return f"  {state.number} {state.name}: {'; '.join(texts)}"
 
 
-def state_remark(plan: Plan, state: State) -> str:
-    """Return what a state takes: the comment beside its signal, in at most 200 characters."""
-    takes = "; ".join(_common(plan, state)) or "no bytes"
-    return shorten(f"step {state.number}: {takes}", 200, placeholder=" ...")
+def state_remark(program: Program[AnyState], state: AnyState) -> str:
+    """Return what a state takes: the comment beside its signal, short if there are many states."""
+    takes = "; ".join(_common(program.plan, state)) or "no bytes"
+    width = 200 if len(program.states) <= MANY_STATES else 60
+    return shorten(f"step {state.number}: {takes}", width, placeholder=" ...")
 
 
 def _head(program: Program[AnyState]) -> str:

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from firm_hdl.rtlil.evaluate import constant, evaluate
+from firm_hdl.rtlil.fields import with_fields
 from firm_hdl.rtlil.ir import (
     Assign,
     Bits,
@@ -41,7 +42,7 @@ _OUTPUTS = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA", "$tribuf": "Y"}
 
 
 def netlist_of(text: str) -> Design:
-    """Read RTLIL as Amaranth prints it, and simplify it.
+    """Read RTLIL as Amaranth prints it, simplify it, and read fields of structures by name.
 
     Raises
     ------
@@ -51,7 +52,8 @@ def netlist_of(text: str) -> Design:
     design = parse(text)
     if not design.modules:
         raise ValueError("The design is empty: it has no module with anything in it")
-    return Design(modules={module.name: simplified(module) for module in design.modules.values()})
+    modules = (with_fields(simplified(module)) for module in design.modules.values())
+    return Design(modules={module.name: module for module in modules})
 
 
 def simplified(module: Module) -> Module:

@@ -64,4 +64,4 @@ def convert(
         ).text()
         for module in netlist.bottom_up()
     )
-    return comment + "\n".join(texts)
+    return "\n".join([*([comment] if comment else []), *texts])

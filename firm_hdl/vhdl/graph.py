@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
+from firm_hdl.rtlil.fields import base_of_field
 from firm_hdl.rtlil.ir import Assign, Cell, Module, Process, Slice, Spec, spec_width
-from firm_hdl.vhdl.fields import base_of_field, with_fields
 from firm_hdl.vhdl.uses import INLINE, Use, output, statement_uses, uses_of
 
 __all__ = ["Connection", "Graph", "graph_of", "only", "target_of"]
@@ -141,7 +141,6 @@ def graph_of(
         Whether the language can write the operator in an expression, given the bits of its result
         that are read.
     """
-    module = with_fields(module)
     graph = Graph(
         module=module,
         modules=modules,

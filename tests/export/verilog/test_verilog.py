@@ -50,7 +50,7 @@ def test_every_port_is_there_with_its_width(type_, distro, direction):
 def test_text_does_not_depend_on_the_machine(direction):
     # A plan of one step has signals without bits.
     text = verilog_of("std_msgs/msg/Empty", direction)
-    assert text.startswith("// One line.\n//\n// Another.\nmodule ")
+    assert text.startswith("// One line.\n//\n// Another.\n\n// Buffer: ")
     assert "src =" not in text
     assert str(Path(firm_hdl.__file__).parent) not in text
     assert "[-1:0]" not in text
