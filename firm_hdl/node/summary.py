@@ -16,6 +16,7 @@ from firm_hdl.node.control import IDENTITY, registers
 from firm_hdl.node.description import SERVICE_PARTS, Description, Direction, Store, Topic
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
 from firm_hdl.node.reading import LINK_OPTIONS
+from firm_hdl.node.rtps.endpoints import ports_of_link
 from firm_hdl.timing import Cost, timing
 
 __all__ = ["facts_of", "summary", "warnings_of"]
@@ -49,7 +50,11 @@ def facts_of(description: Description) -> dict[str, Any]:
         "bus_bytes": description.bus_bytes,
         "clock_hz": description.clock_hz,
         "fingerprint": f"{description.fingerprint:016x}",
-        "link": {"kind": link.kind, **{name: getattr(link, name) for name in options}},
+        "link": {
+            "kind": link.kind,
+            **{name: getattr(link, name) for name in options},
+            **(ports_of_link(description)._asdict() if link.kind == "rtps" else {}),
+        },
         "frame": {
             "version": VERSION,
             "header": [{"name": each.name, "bytes": each.bytes} for each in HEADER],
@@ -123,11 +128,15 @@ def _head(description: Description, facts: dict[str, Any]) -> Iterator[str]:
     )
     link = dict(facts["link"])
     kind = link.pop("kind")
-    options = ", ".join(f"{key} {value}" for key, value in link.items() if value != "")
+    options = ", ".join(f"{key} {_listed(value)}" for key, value in link.items() if value)
     yield f"link {kind}{': ' if options else ''}{options}"
     yield f"fingerprint {facts['fingerprint']}, {len(facts['registers']) - len(IDENTITY)} counters"
     if description.accelerator:
         yield f"accelerator {description.accelerator}"
+
+
+def _listed(value: Any) -> str:
+    return " ".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
 def _table(facts: dict[str, Any]) -> Iterator[str]:
@@ -170,6 +179,13 @@ def _totals(facts: dict[str, Any]) -> Iterator[str]:
         for topic in facts["topics"]
         if topic["kind"] == "serve"
     )
+    if facts["link"]["kind"] == "rtps":
+        # Samples are kept for readers that miss them.
+        memory += sum(
+            topic["packets"]["out"]["memory_bytes"]
+            for topic in facts["topics"]
+            if "out" in topic["packets"]
+        )
     yield f"memory for packets: {memory} bytes"
     found = [store["estimate"] for store in stores if store["estimate"] is not None]
     if found:
@@ -182,7 +198,10 @@ def _totals(facts: dict[str, Any]) -> Iterator[str]:
     clocks = [store["clock_hz"] for store in stores if store["clock_hz"] is not None]
     if clocks:
         yield f"clock for all stated rates on one link: {sum(clocks) / 1e6:.3g} MHz"
-    yield f"a message costs {HEADER_BYTES} bytes of header"
+    if facts["link"]["kind"] == "rtps":
+        yield "a message costs 92 bytes of headers per reader, and a response 152"
+    else:
+        yield f"a message costs {HEADER_BYTES} bytes of header"
     yield "cycles: of the packet that is hardest for its converter, of those that were tried"
 
 
