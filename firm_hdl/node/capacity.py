@@ -14,7 +14,7 @@ __all__ = ["bytes_on_link", "link_bytes_per_second", "most_bytes", "rate_problem
 _WAYS: dict[Direction, str] = {"in": "to the node", "out": "from the node"}
 _MOST_NAMED = 8
 _MOST_FRAGMENTS = 1 << 16
-# Bytes of an RTPS datagram besides the payload: what a node sends, with inline QoS; what peers send.
+# Bytes of an RTPS datagram besides the payload: of a reply, with padding; of what peers send.
 _RTPS_SENT, _RTPS_RECEIVED = 155, 256
 
 

@@ -87,8 +87,8 @@ def link_script(
     Returns
     -------
     LinkScript or None
-        `None` for a link that takes too long to simulate, as a bit of a UART is many cycles; and for
-        a participant of ROS 2, which has no frames.
+        `None` for a link that takes too long to simulate: a bit of a UART is many cycles; and for a
+        participant of ROS 2, which has no frames.
     """
     if description.link.kind in ("uart", "rtps"):
         return None

@@ -115,9 +115,8 @@ class AnnouncementReader(wiring.Component):
                 for place in range(3):
                     at = self.aligned & (self.index == place)
                     refuse(at & (self.word != self.source.word_select(place, 32)))
-                with m.If(self.aligned & (self.index == 3)):
-                    with m.If(self.pid == wanted):
-                        m.d.sync += [has_guid.eq(1), out.entity.eq(self.word)]
+                with m.If(self.aligned & (self.index == 3) & (self.pid == wanted)):
+                    m.d.sync += [has_guid.eq(1), out.entity.eq(self.word)]
             with m.Case(Pid.PARTICIPANT_LEASE_DURATION), m.If(first):
                 m.d.sync += out.lease.eq(
                     Mux(value > _MOST_LEASE, _MOST_LEASE, Mux(value == 0, 1, value))

@@ -6,12 +6,15 @@ peers, and what takes longer, are in ``tests/live/test_participant.py``.
 
 from __future__ import annotations
 
+import pytest
+
 from firm_hdl.rtps import Qos
 from firm_hdl.rtps.events import Arrived
 from firm_hdl.rtps.ros import graph, names
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import is_builtin, user_reader, user_writer
 from firm_hdl.rtps.wire.submessages import AckNack, Data, Heartbeat, InfoDestination
+from tests.depth import by_depth
 from tests.node.rtps.wires import Wires, core_of, description_of
 
 STRING = names.type_name("std_msgs/msg/String")
@@ -35,9 +38,10 @@ class Once:
         return True
 
 
-def test_discovery_and_samples_both_ways_with_losses():
+@pytest.mark.parametrize("has_losses", by_depth([False], [False, True]))
+def test_discovery_and_samples_both_ways(has_losses):
     core, loses = core_of(1), Once()
-    wires = Wires(description_of(), core, loses=loses)
+    wires = Wires(description_of(), core, loses=loses if has_losses else lambda *_: False)
     reader = core.add_reader("rt/said", STRING, Qos(), b"", 0.0)
     nodes = core.add_reader(graph.TOPIC, graph.TYPE, graph.QOS, b"", 0.0)
     writer = core.add_writer("rt/heard", STRING, Qos(depth=0), b"", 0.0)
@@ -72,4 +76,5 @@ def test_discovery_and_samples_both_ways_with_losses():
     assert [(each.namespace, each.name) for each in info.nodes] == [("/fpga", "echo")]
     assert wires.received == [(1, 1 + n, each) for n, each in enumerate(MESSAGES)]
     assert came(reader.guid) == [each + bytes(-len(each) % 4) for each in MESSAGES]
-    assert loses.lost == {False, True} and wires.counters["malformed"] == 1
+    assert loses.lost == ({False, True} if has_losses else set())
+    assert wires.counters["malformed"] == 1
