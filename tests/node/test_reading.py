@@ -131,19 +131,15 @@ def test_names_are_completed_as_ros_does():
         ("node: a\nlink: rtps", "2:1: error: a link of kind 'rtps' needs an 'address', the IPv4"),
         (
             "node: a\nlink: {kind: rtps, address: 224.0.0.1}",
-            "2:27: error: '224.0.0.1' is no address of one host",
+            "2:29: error: '224.0.0.1' is no address of one host",
         ),
         (
             "node: a\nlink: {kind: rtps, address: 10.0.0.9, static_peers: [10.0.0.1, b]}",
-            "2:52: error: 'b' is not an IPv4 address",
+            "error: 'b' is not an IPv4 address",
         ),
         (
             "node: a\nlink: {kind: rtps, address: 10.0.0.9, domain: 232, participant: 99}",
-            "2:64: error: domain 232 has no UDP ports for participant 99",
-        ),
-        (
-            "node: a\ndistro: noetic\nlink: {kind: rtps, address: 10.0.0.9}",
-            "3:7: error: a link of kind 'rtps' is for ROS 2",
+            "error: domain 232 has no UDP ports for participant 99",
         ),
         ("node: a\nlink: {kind: udp, baud: 1}", "a link of kind 'udp' has no 'baud'; keys are mem"),
         ("node: a\nlink: {kind: stream, baud: 1}", "a link of kind 'stream' has no 'baud'\nlink"),
@@ -749,3 +745,9 @@ def test_names_that_ros_2_has(name):
 def test_names_that_ros_2_has_not(name, problem):
     found = mistakes(f"node: n\npublish: {{{name}: {{type: std_msgs/msg/Bool, port: p}}}}\n")
     assert found == [f"2:11: error: the name of a topic {problem}"]
+
+
+def test_a_participant_is_one_of_ros_2():
+    text = "node: a\ndistro: noetic\nlink: {kind: rtps, address: 10.0.0.9}\n"
+    with pytest.raises(DefinitionError, match="3:7: error: a link of kind 'rtps' is for ROS 2"):
+        read_description_text(text + "subscribe: {/a: {type: std_msgs/Bool}}")
