@@ -14,11 +14,16 @@ __all__ = ["bytes_on_link", "link_bytes_per_second", "most_bytes", "rate_problem
 _WAYS: dict[Direction, str] = {"in": "to the node", "out": "from the node"}
 _MOST_NAMED = 8
 _MOST_FRAGMENTS = 1 << 16
+# Bytes of an RTPS datagram besides the payload: of a reply, with padding; of what peers send.
+_RTPS_SENT, _RTPS_RECEIVED = 155, 256
 
 
 def most_bytes(description: Description, direction: Direction, store: Store) -> int:
     """Return the size of the largest message that has room in all memories on its way."""
     link, most = description.link, store.memory_bytes
+    if link.kind == "rtps":
+        room = link.memory_bytes - _RTPS_RECEIVED
+        return min(most, room if direction == "in" else link.datagram_bytes - _RTPS_SENT)
     if direction == "in" and link.kind != "stream":
         most = min(most, link.memory_bytes - HEADER_BYTES)
     if link.kind == "udp":
@@ -29,6 +34,8 @@ def most_bytes(description: Description, direction: Direction, store: Store) -> 
 def bytes_on_link(description: Description, packet_bytes: int) -> int:
     """Return how many bytes a message takes on the link, at least."""
     link = description.link
+    if link.kind == "rtps":
+        return packet_bytes + _RTPS_SENT
     if link.kind == "uart":
         # A byte of COBS, and a byte 0 before and after.
         return HEADER_BYTES + packet_bytes + CRC_BYTES + 3
@@ -42,13 +49,14 @@ def link_bytes_per_second(description: Description) -> float:
     if link.kind == "uart":
         # A byte has a start bit and a stop bit.
         return link.baud / 10
-    return description.clock_hz * (link.data_bytes if link.kind == "udp" else description.bus_bytes)
+    words = link.kind in ("udp", "rtps")
+    return description.clock_hz * (link.data_bytes if words else description.bus_bytes)
 
 
 def rate_problems(description: Description) -> Iterator[str]:
     """Yield a line for each direction whose stated rates the link cannot carry."""
     link, carries = description.link, link_bytes_per_second(description)
-    cycle = f"{link.data_bytes if link.kind == 'udp' else description.bus_bytes} bytes per cycle"
+    cycle = f"{carries / description.clock_hz:g} bytes per cycle"
     why = f"{link.baud} baud" if link.kind == "uart" else cycle
     for direction, way in _WAYS.items():
         least, most, names = 0.0, 0.0, []

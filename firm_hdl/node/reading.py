@@ -673,6 +673,9 @@ USUAL_MEMORY_BYTES = 1 << 14
 
 USUAL_PACKETS = 16
 
+_SAMPLES_BYTES = 1 << 11
+"""Least memory of a topic whose link is a participant, unless the description names one."""
+
 MOST_MEMORY_BYTES = 1 << 26
 
 # Names that Amaranth or Python keep for themselves; see `firm_hdl.gateware.members`.
@@ -809,6 +812,9 @@ class TopicReader:
         figures = self._metrics_of(message)
         least, most = figures.min_bytes or 0, figures.max_bytes
         memory = _memory_bytes(least, most, self.bus_bytes)
+        if self.link.kind == "rtps":
+            # Several samples come in one datagram, and several are kept for those who miss them.
+            memory = max(memory, _SAMPLES_BYTES)
         if "memory_bytes" in options:
             entry = options["memory_bytes"]
             memory = entry.integer(memory, 2 * self.bus_bytes, MOST_MEMORY_BYTES)

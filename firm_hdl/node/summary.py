@@ -24,6 +24,7 @@ from firm_hdl.node.description import (
 )
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
 from firm_hdl.node.reading import LINK_OPTIONS
+from firm_hdl.node.rtps.endpoints import ports_of_link
 from firm_hdl.timing import Cost, timing
 
 __all__ = ["clock_needed", "facts_of", "memory_bytes", "summary", "warnings_of"]
@@ -56,7 +57,11 @@ def facts_of(description: Description) -> dict[str, Any]:
         "bus_bytes": description.bus_bytes,
         "clock_hz": description.clock_hz,
         "fingerprint": f"{description.fingerprint:016x}",
-        "link": {"kind": link.kind, **_link(link)},
+        "link": {
+            "kind": link.kind,
+            **_link(link),
+            **(ports_of_link(description)._asdict() if link.kind == "rtps" else {}),
+        },
         "frame": {
             "version": VERSION,
             "header": [{"name": each.name, "bytes": each.bytes} for each in HEADER],
@@ -74,7 +79,7 @@ def _link(link: Link) -> dict[str, Any]:
     """Return the options of a link; those of Ethernet only if it has one."""
     options = {name: getattr(link, name) for name in LINK_OPTIONS[link.kind]}
     if not link.has_ethernet:
-        for name in ("ethernet", "mac", "address", "gateway"):
+        for name in ("ethernet", "mac", "gateway", *(("address",) if link.kind == "udp" else ())):
             options.pop(name, None)
     return options
 
@@ -137,11 +142,15 @@ def _head(description: Description, facts: dict[str, Any]) -> Iterator[str]:
     )
     link = dict(facts["link"])
     kind = link.pop("kind")
-    options = ", ".join(f"{key} {value}" for key, value in link.items() if value != "")
+    options = ", ".join(f"{key} {_listed(value)}" for key, value in link.items() if value)
     yield f"link {kind}{': ' if options else ''}{options}"
     yield f"fingerprint {facts['fingerprint']}, {len(facts['registers']) - len(IDENTITY)} counters"
     if description.accelerator:
         yield f"accelerator {description.accelerator}"
+
+
+def _listed(value: Any) -> str:
+    return " ".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
 def _table(facts: dict[str, Any]) -> Iterator[str]:
@@ -188,7 +197,10 @@ def _totals(facts: dict[str, Any]) -> Iterator[str]:
         )
     if needed := clock_needed(facts):
         yield f"clock for all stated rates on one link: {needed / 1e6:.3g} MHz"
-    yield f"a message costs {HEADER_BYTES} bytes of header"
+    if facts["link"]["kind"] == "rtps":
+        yield "a message costs 92 bytes of headers per reader, and a response 152"
+    else:
+        yield f"a message costs {HEADER_BYTES} bytes of header"
     yield "cycles: of the packet that is hardest for its converter, of those that were tried"
 
 
@@ -200,6 +212,9 @@ def memory_bytes(facts: Mapping[str, Any]) -> int:
         memory += sum(store["memory_bytes"] for store in packets.values())
         # A service stores its requests before the gate, too.
         memory += packets["in"]["memory_bytes"] if topic["kind"] == "serve" else 0
+        if facts["link"]["kind"] == "rtps" and "out" in packets:
+            # Samples are kept for readers that miss them.
+            memory += packets["out"]["memory_bytes"]
     return memory
 
 

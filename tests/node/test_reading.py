@@ -126,8 +126,21 @@ def test_names_are_completed_as_ros_does():
         ("node: a\nnode: b", "2:1: error: 'node' is already in line 1"),
         ("node: a\ndistro: humbel", "did you mean 'humble'?"),
         ("node: a\nclock_mhz: 0", "2:12: error: 'clock_mhz' must be from 1 to 1000, not 0"),
-        ("node: a\nlink: tcp", "2:7: error: 'link' must be 'stream', 'udp' or 'uart', not 'tcp'"),
-        ("node: a\nlink: {baud: 1}", "2:1: error: 'link' needs a 'kind': stream, udp, uart"),
+        ("node: a\nlink: tcp", "'link' must be 'stream', 'udp', 'uart' or 'rtps', not 'tcp'"),
+        ("node: a\nlink: {baud: 1}", "2:1: error: 'link' needs a 'kind': stream, udp, uart, rtps"),
+        ("node: a\nlink: rtps", "2:1: error: a link of kind 'rtps' needs an 'address', the IPv4"),
+        (
+            "node: a\nlink: {kind: rtps, address: 224.0.0.1}",
+            "2:29: error: '224.0.0.1' is no address of one host",
+        ),
+        (
+            "node: a\nlink: {kind: rtps, address: 10.0.0.9, static_peers: [10.0.0.1, b]}",
+            "error: 'b' is not an IPv4 address",
+        ),
+        (
+            "node: a\nlink: {kind: rtps, address: 10.0.0.9, domain: 232, participant: 99}",
+            "error: domain 232 has no UDP ports for participant 99",
+        ),
         ("node: a\nlink: {kind: udp, baud: 1}", "a link of kind 'udp' has no 'baud'; keys are mem"),
         ("node: a\nlink: {kind: stream, baud: 1}", "a link of kind 'stream' has no 'baud'\nlink"),
         ("node: a\nlink: {kind: udp, host_port: 1}", "'host_port' counts only beside a 'host'"),
@@ -787,3 +800,9 @@ def test_names_that_ros_2_has(name):
 def test_names_that_ros_2_has_not(name, problem):
     found = mistakes(f"node: n\npublish: {{{name}: {{type: std_msgs/msg/Bool, port: p}}}}\n")
     assert found == [f"2:11: error: the name of a topic {problem}"]
+
+
+def test_a_participant_is_one_of_ros_2():
+    text = "node: a\ndistro: noetic\nlink: {kind: rtps, address: 10.0.0.9}\n"
+    with pytest.raises(DefinitionError, match="3:7: error: a link of kind 'rtps' is for ROS 2"):
+        read_description_text(text + "subscribe: {/a: {type: std_msgs/Bool}}")

@@ -23,6 +23,7 @@ namespace {
 
 constexpr uint32_t kGroup = 0xEFFF0001;
 constexpr int kSlice = 1024;
+constexpr size_t kMostWaiting = 64;
 
 struct Datagram {
   uint32_t address;
@@ -82,12 +83,14 @@ int main(int argc, char** argv) {
         static uint8_t buffer[1 << 16];
         sockaddr_in from{};
         socklen_t length = sizeof from;
-        ssize_t size = recvfrom(sockets[i].fd, buffer, sizeof buffer, 0,
-                                reinterpret_cast<sockaddr*>(&from), &length);
-        if (size <= 0) continue;
-        to_node.push_back({ntohl(from.sin_addr.s_addr), ntohs(from.sin_port), ports[i],
-                           {buffer, buffer + size}});
-        idle = 0;
+        while (to_node.size() < kMostWaiting) {
+          ssize_t size = recvfrom(sockets[i].fd, buffer, sizeof buffer, 0,
+                                  reinterpret_cast<sockaddr*>(&from), &length);
+          if (size <= 0) break;
+          to_node.push_back({ntohl(from.sin_addr.s_addr), ntohs(from.sin_port), ports[i],
+                             {buffer, buffer + size}});
+          idle = 0;
+        }
       }
     }
     if (rests && to_node.empty()) continue;

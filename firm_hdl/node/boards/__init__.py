@@ -24,6 +24,7 @@ BOARD_FORMS = "sim, udp://HOST[:PORT], tcp://HOST:PORT, serial:///dev/DEVICE[?ba
 _BOARDS = {
     "udp": "which goes with --board udp://HOST",
     "uart": "which goes with --board serial:///dev/DEVICE or tcp://HOST:PORT",
+    "rtps": "with which the node is in the graph by itself: no host runs it",
     "stream": "which goes with --board sim, or a board of your own in Python",
 }
 """The boards of each kind of link."""

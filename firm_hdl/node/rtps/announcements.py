@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ipaddress import IPv4Address
 
-from amaranth.hdl import Module, Mux, Signal
+from amaranth.hdl import Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -100,8 +100,10 @@ class AnnouncementReader(wiring.Component):
                 m.d.sync += refused.eq(1)
 
         self._names(m, out)
-        self._locator(m, Pid.METATRAFFIC_UNICAST_LOCATOR, out.discovery)
-        self._locator(m, Pid.DEFAULT_UNICAST_LOCATOR, out.user)
+        pid = self.pid
+        is_user = (pid == Pid.DEFAULT_UNICAST_LOCATOR) | (pid == Pid.UNICAST_LOCATOR)
+        self._locator(m, pid == Pid.METATRAFFIC_UNICAST_LOCATOR, out.discovery)
+        self._locator(m, is_user, out.user)
         first = self.aligned & (self.index == 0)
         second = self.aligned & (self.index == 1)
         with m.Switch(self.pid):
@@ -113,9 +115,8 @@ class AnnouncementReader(wiring.Component):
                 for place in range(3):
                     at = self.aligned & (self.index == place)
                     refuse(at & (self.word != self.source.word_select(place, 32)))
-                with m.If(self.aligned & (self.index == 3)):
-                    with m.If(self.pid == wanted):
-                        m.d.sync += [has_guid.eq(1), out.entity.eq(self.word)]
+                with m.If(self.aligned & (self.index == 3) & (self.pid == wanted)):
+                    m.d.sync += [has_guid.eq(1), out.entity.eq(self.word)]
             with m.Case(Pid.PARTICIPANT_LEASE_DURATION), m.If(first):
                 m.d.sync += out.lease.eq(
                     Mux(value > _MOST_LEASE, _MOST_LEASE, Mux(value == 0, 1, value))
@@ -159,14 +160,14 @@ class AnnouncementReader(wiring.Component):
         with m.If(is_type):
             m.d.sync += out.type.eq(digest.digest)
 
-    def _locator(self, m: Module, pid: int, locator: object) -> None:
+    def _locator(self, m: Module, is_of_kind: Value, locator: object) -> None:
         """Take the nearest of the locators of a kind (9.3.2): UDP over IPv4, and unicast."""
         own = int(IPv4Address(self.link.ip))
         port, usable = Signal(16), Signal()
         distance, nearest = Signal(32), Signal(32)
         address = swapped(self.word)
         m.d.comb += distance.eq(address ^ own)
-        with m.If(self.aligned & (self.pid == pid)), m.Switch(self.index):
+        with m.If(self.aligned & is_of_kind), m.Switch(self.index):
             with m.Case(0):
                 m.d.sync += usable.eq(self.value == _UDP_V4)
             with m.Case(1):

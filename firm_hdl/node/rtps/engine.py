@@ -714,6 +714,7 @@ class Engine(wiring.Component):
                 row.end.eq(Mux(is_writer, 1, first)),
                 row.first.eq(first),
                 row.ask.eq(reliable & self._is_reliable),
+                row.user.eq(announced.user),
                 self._matched.bit_select(self._peer, 1).eq(1),
             ]
             m.next = "STORE_EVENT"
@@ -928,8 +929,9 @@ class Engine(wiring.Component):
             m.next = "WAY"
         with m.State("WAY"):
             is_user = self._stores & (self._row_at >= self.first_row)
+            own_way = Mux(row.user.port == 0, peer_row.user.as_value(), row.user.as_value())
             m.d.sync += Cat(self._address, self._port).eq(
-                Mux(is_user, peer_row.user.as_value(), peer_row.discovery.as_value())
+                Mux(is_user, own_way, peer_row.discovery.as_value())
             )
             is_greeting = self._stores & (job == Job.ACKNACK) & ~row.synced
             with m.If(is_greeting & (peer_row.prefix[:16] == _FAST_DDS)):

@@ -89,7 +89,7 @@ def announced_layout() -> data.StructLayout:
     is_participant, is_endpoint : unsigned(1)
         Whether it is one that can be used.
     discovery, user : structures of `address` and `port`
-        Locators of the participant. A port 0 means none.
+        Locators of the participant; `user` that of the endpoint. A port 0 means none.
     lease : unsigned(7)
         Lease of the participant, from 1 to 100 seconds.
     entity : unsigned(32)

@@ -58,7 +58,10 @@ def row_layout(peers: int, endpoints: int) -> data.StructLayout:
         Ticks to the next one that nothing else causes.
     tries : unsigned(4)
         How often one was sent since the last progress.
+    user : structure of `address` and `port`
+        Where it wants to be sent to; port 0 means where its participant says.
     """
+    locator = data.StructLayout({"address": 32, "port": 16})
     return data.StructLayout(
         {
             "valid": 1,
@@ -76,6 +79,7 @@ def row_layout(peers: int, endpoints: int) -> data.StructLayout:
             "ask": 1,
             "timer": 4,
             "tries": 4,
+            "user": locator,
         }
     )
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from amaranth.sim import Simulator
 
-from firm_hdl.node.description import Description, Link
+from firm_hdl.node.description import Description
 from firm_hdl.node.links import RtpsLink
 from firm_hdl.node.reading import read_description_text
 from firm_hdl.rtps.core import Core
@@ -40,9 +40,7 @@ def description_of(heard: str = "", said: str = "", **link: object) -> Descripti
     text = TEXT.format(address=BOARD, heard=heard, said=said)
     description = read_description_text(text)
     link = {"memory_bytes": 4096, "peers": 2, "matches": 6, **link}
-    return replace(
-        description, clock_hz=CLOCK_HZ, link=replace(description.link, **link)
-    )
+    return replace(description, clock_hz=CLOCK_HZ, link=replace(description.link, **link))
 
 
 def core_of(number: int, **options: object) -> Core:
@@ -85,14 +83,14 @@ class Wires:
         self.sent: list[tuple[Address, bytes]] = []
         self.received: list[tuple[int, int, bytes]] = []
         self.to_send: deque[tuple[int, int, bytes]] = deque()
-        self.to_link: deque[tuple[bytes, str, int]] = deque()
+        self.to_link: deque[tuple[bytes, int]] = deque()
         self.events = {core: [] for core in cores}
         self.now = 0.0
         self.counters: dict[str, int] = {}
 
-    def put(self, datagram: bytes, host: str = "10.0.0.1", port: int = 7410) -> None:
+    def put(self, datagram: bytes, port: int = 7410) -> None:
         """Send a datagram to the link."""
-        self.to_link.append((datagram, host, port))
+        self.to_link.append((datagram, port))
 
     def run(self, script) -> None:
         """Simulate while `script`, a generator, goes on; it yields once per some cycles."""
@@ -136,14 +134,17 @@ class Wires:
                 packet, packet_at = self.to_send.popleft(), 0
                 self._feed(ctx, sent, packet, packet_at)
             took, feeds, has_tx, has_message = (
-                ctx.get(each)
-                for each in (rx.ready, sent.ready, tx.valid, received.valid)
+                ctx.get(each) for each in (rx.ready, sent.ready, tx.valid, received.valid)
             )
             if has_tx:
                 datagram.append(ctx.get(tx.payload.data))
                 if ctx.get(tx.payload.last):
                     assert ctx.get(tx.payload.length) == len(datagram)
-                    self._deliver(ctx.get(tx.payload.ip_address), ctx.get(tx.payload.dst_port), bytes(datagram))
+                    self._deliver(
+                        ctx.get(tx.payload.ip_address),
+                        ctx.get(tx.payload.dst_port),
+                        bytes(datagram),
+                    )
                     datagram.clear()
             if has_message:
                 message.append(ctx.get(received.payload.beat.data[0]))
@@ -171,7 +172,7 @@ class Wires:
 
     @staticmethod
     def _offer(ctx, rx, coming, at) -> None:
-        data, host, port = coming
+        data, port = coming
         ctx.set(rx.payload.data, data[at])
         ctx.set(rx.payload.last, at + 1 == len(data))
         if at == 0:
@@ -208,7 +209,7 @@ class Wires:
             while core.outbox:
                 address, datagram = core.pop()
                 if address.host in (BOARD, GROUP.host) and not self.loses(True, datagram):
-                    self.put(datagram, core.settings.host, address.port)
+                    self.put(datagram, address.port)
                 if address.host == GROUP.host:
                     for other in self.cores:
                         if other is not core:

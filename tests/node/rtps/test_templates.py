@@ -1,0 +1,110 @@
+"""Templates, played by the circuit, against what the host's participant writes."""
+
+from __future__ import annotations
+
+from amaranth.sim import Simulator
+
+from firm_hdl.node.rtps.endpoints import own_of
+from firm_hdl.node.rtps.templates import FIELDS, HEAD_BYTES, Job, templates_of
+from firm_hdl.node.rtps.transmitter import Transmitter
+from firm_hdl.rtps.wire import message
+from firm_hdl.rtps.wire.guid import SPDP_READER, SPDP_WRITER, Guid, SampleIdentity
+from firm_hdl.rtps.wire.parameters import ParameterList, identity
+from firm_hdl.rtps.wire.submessages import Data, Gap, Heartbeat, InfoDestination, NumberSet
+from tests.node.rtps.wires import description_of
+
+OWN, PEER = bytes(range(0x10, 0x1C)), bytes(range(0x20, 0x2C))
+RELATED = Guid(PEER, 0x1404)
+PAYLOAD = b"\0\1\0\0five!"
+READER, WRITER = 0x0000_1404, 0x0000_0203
+FIELD_VALUES = {
+    "own": OWN,
+    "peer": PEER,
+    "reader": READER.to_bytes(4, "big"),
+    "writer": WRITER.to_bytes(4, "big"),
+    "number": (9).to_bytes(4, "little"),
+    "first": (2).to_bytes(4, "little"),
+    "last": (9).to_bytes(4, "little"),
+    "count": (0x01020304).to_bytes(4, "little"),
+    "bits": bytes(4),
+    "bitmap": bytes(4),
+    "size": (HEAD_BYTES[Job.REPLY] + 12).to_bytes(2, "little"),
+    "flags": b"\1\0",
+    "related": bytes(RELATED),
+    "related_number": (7).to_bytes(4, "little"),
+}
+
+
+def played(templates, job):
+    """Return a datagram of the circuit."""
+    transmitter = Transmitter(templates, 16, 7410)
+    order, out = transmitter.order, transmitter.datagrams
+    got = bytearray()
+
+    async def bench(ctx):
+        for name in FIELDS:
+            ctx.set(order.fields[name], int.from_bytes(FIELD_VALUES[name], "little"))
+        ctx.set(order.start, templates.starts[job])
+        # The payload lies across the end of the memory.
+        ctx.set(order.mask, 15)
+        ctx.set(order.at, 10)
+        ctx.set(order.payload_bytes, len(PAYLOAD))
+        ctx.set(transmitter.starts, 1)
+        await ctx.tick()
+        ctx.set(transmitter.starts, 0)
+        cycles = 0
+        while True:
+            cycles += 1
+            ctx.set(out.ready, cycles % 3 != 0)
+            if ctx.get(transmitter.reads):
+                place = (ctx.get(transmitter.read_at) - 10) % 16
+                byte = PAYLOAD[place] if place < len(PAYLOAD) else 0xEE
+            if ctx.get(out.valid) and cycles % 3 != 0:
+                got.append(ctx.get(out.payload.data))
+                if ctx.get(out.payload.last):
+                    return
+            was_read = ctx.get(transmitter.reads)
+            await ctx.tick()
+            if was_read:
+                ctx.set(transmitter.byte, byte)
+
+    simulator = Simulator(transmitter)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(bench)
+    simulator.run()
+    return bytes(got)
+
+
+def test_the_circuit_writes_what_the_host_does():
+    description = description_of()
+    templates, own = templates_of(description), own_of(description, OWN)
+    ends = {"reader": READER, "writer": WRITER}
+    heartbeat = Heartbeat(**ends, first=2, last=9, count=0x01020304)
+    inline = ParameterList(tuple(identity(SampleIdentity(RELATED, 7))))
+    padded = PAYLOAD + bytes(-len(PAYLOAD) % 4)
+    reply = Data(**ends, sequence_number=9, payload=padded, inline=inline)
+    announcement = Data(
+        reader=SPDP_READER,
+        writer=SPDP_WRITER,
+        sequence_number=1,
+        payload=own.participant.encode(),
+    )
+    gap = Gap(**ends, start=2, numbers=NumberSet(9))
+    to = InfoDestination(PEER)
+    for job, wanted in (
+        (Job.ANNOUNCE, (announcement,)),
+        (Job.HEARTBEAT, (to, heartbeat)),
+        (Job.GAP, (to, gap)),
+        (Job.REPLY, (to, reply, heartbeat)),
+    ):
+        assert played(templates, job) == message.write(OWN, wanted), job
+
+
+def test_endpoints_and_the_graph_are_announced_in_the_order_of_topics():
+    description = description_of()
+    templates, own = templates_of(description), own_of(description, OWN)
+    topics = [each.data.topic for each in (*own.writers, *own.readers)]
+    assert topics == ["ros_discovery_info", "rt/said", "rt/heard"]
+    for number, each in enumerate((*own.writers, *own.readers)):
+        assert each.data.encode() in played(templates, templates.writers + number)
+    assert own.graph in played(templates, templates.graph)
