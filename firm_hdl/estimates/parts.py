@@ -1,8 +1,8 @@
 """The area of the parts of a node besides its converters, from a few that were measured.
 
-All have a bus of 8 bytes and are mapped for ECP5 by Yosys; nothing is placed. A core has a gate for
-each direction that comes in, and a FIFO for each that goes out. Its area is estimated by the line
-through those of two cores whose packets are all of Twist.
+All have a bus of 8 bytes and are mapped for ECP5 by Yosys; ``lab/bench/parts`` has them. A core has
+a gate for each direction that comes in, and a FIFO for each that goes out. Its area is estimated by
+the line through those of two cores, with two and with eight topics.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 __all__ = ["PartEstimate", "core_estimate", "link_estimate"]
 
 _PART = "ECP5 LFE5U-45F-8"
-_LINKS = {"stream": (497, 681), "uart": (0, 0), "udp": (0, 0)}
-_CORES = {2: (0, 0), 6: (0, 0)}
+_LINKS = {"stream": (497, 681), "uart": (1878, 1910), "udp": (1687, 2048)}
+_CORES = {2: (1879, 2932), 8: (5550, 7917)}
 """Look-up tables and flip-flops: of links, and of cores by the number of their packet memories."""
 
 
@@ -40,7 +40,7 @@ class PartEstimate:
 def link_estimate(kind: str) -> PartEstimate:
     """Return the area of a link with the memory of the default."""
     lut, ff = _LINKS[kind]
-    return PartEstimate(part=_PART, lut=lut, ff=ff, how="estimated: with other options")
+    return PartEstimate(part=_PART, lut=lut, ff=ff, how="estimated: the link with its defaults")
 
 
 def core_estimate(memories: int) -> PartEstimate:
@@ -48,4 +48,4 @@ def core_estimate(memories: int) -> PartEstimate:
     (few, less), (many, more) = _CORES.items()
     share = (memories - few) / (many - few)
     lut, ff = (round(a + share * (b - a)) for a, b in zip(less, more, strict=True))
-    return PartEstimate(part=_PART, lut=lut, ff=ff, how="estimated: cores of Twists")
+    return PartEstimate(part=_PART, lut=lut, ff=ff, how="estimated: cores of 2 and of 8 topics")

@@ -19,8 +19,10 @@ from firm_hdl.gateware.packets import (
 from firm_hdl.gateware.packets.memory import WhenFull
 from firm_hdl.gateware.parser import Parser
 from firm_hdl.model import Message
-from firm_hdl.node import read_description_text
+from firm_hdl.node import Description, read_description_text
+from firm_hdl.node.description import LINKS
 from firm_hdl.node.gateware import NodeCore
+from firm_hdl.node.links import link_of
 
 __all__ = ["EIGHT_TOPICS", "PARTS", "Part"]
 
@@ -66,9 +68,30 @@ class Part:
     make: Callable[[], Elaboratable]
 
 
-def _core() -> NodeCore:
-    library = open_library("lyrical", (), ())
-    return NodeCore(read_description_text(EIGHT_TOPICS, library=library))
+TWO_TOPICS = """\
+node: two
+subscribe:
+  a: {type: geometry_msgs/msg/Twist, memory_bytes: 4096}
+publish:
+  b: {type: geometry_msgs/msg/Twist, memory_bytes: 4096}
+"""
+"""The description for a small core and for the links, as `firm_hdl.estimates.parts` has them."""
+
+
+def _described(text: str) -> Description:
+    return read_description_text(text, library=open_library("lyrical", (), ()))
+
+
+def _core(text: str) -> NodeCore:
+    return NodeCore(_described(text))
+
+
+def _link(kind: str) -> Part:
+    return Part(
+        name=f"link `{kind}`",
+        parameters="the defaults",
+        make=lambda: link_of(_described(f"{TWO_TOPICS}link: {{kind: {kind}}}\n")),
+    )
 
 
 def _message(name: str) -> Message:
@@ -146,7 +169,13 @@ PARTS = (
     Part(
         name="`NodeCore`",
         parameters='4 subscriptions, `"drop"`; 4 publications, `"wait"`',
-        make=_core,
+        make=lambda: _core(EIGHT_TOPICS),
     ),
+    Part(
+        name="`NodeCore`",
+        parameters="a subscription and a publication",
+        make=lambda: _core(TWO_TOPICS),
+    ),
+    *map(_link, LINKS),
 )
 """The parts, in the order of the page."""

@@ -1,0 +1,12 @@
+"""Areas of the parts of a node."""
+
+from __future__ import annotations
+
+from firm_hdl.estimates import core_estimate, link_estimate
+from firm_hdl.node.description import LINKS
+
+
+def test_the_measured_cores_are_those_of_the_line_and_every_link_has_an_area():
+    found = [(core.lut, core.ff) for core in map(core_estimate, (2, 5, 8))]
+    assert found == [(1879, 2932), (3714, 5424), (5550, 7917)]
+    assert all(link_estimate(kind).lut > 400 for kind in LINKS)
