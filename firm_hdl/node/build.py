@@ -7,11 +7,11 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import PurePath
-from typing import Any
 
 import firm_hdl
 from firm_hdl import rtlil
 from firm_hdl.errors import DefinitionError, Diagnostic, UserError
+from firm_hdl.export.component import ComponentPort
 from firm_hdl.export.design import (
     BuiltDesign,
     core_file,
@@ -23,8 +23,13 @@ from firm_hdl.export.design import (
     write_design,
 )
 from firm_hdl.export.manifest import digest
-from firm_hdl.export.systemverilog.structs import package_name
-from firm_hdl.export.systemverilog.types import WORDS
+from firm_hdl.export.message_ports import (
+    RecordPort,
+    message_ports,
+    record_facts,
+    record_files,
+    struct_files,
+)
 from firm_hdl.export.verilog.backend import waivers
 from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
@@ -33,9 +38,9 @@ from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_core, bench
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.copies import AcceleratorFiles, accelerator_files
 from firm_hdl.node.node import Node
-from firm_hdl.node.records import RecordPort, message_ports, record_files, struct_files
+from firm_hdl.node.records import found_messages
 from firm_hdl.node.summary import facts_of, summary
-from firm_hdl.node.top import NodePort, NodeTop, node_ports
+from firm_hdl.node.top import NodeTop, node_ports
 from firm_hdl.vhdl.convert import convert
 
 __all__ = ["build_node", "check_units"]
@@ -96,7 +101,7 @@ def build_node(
     reason = "The accelerator takes all messages" if has_accelerator else ""
     if not has_accelerator:
         try:
-            messages = message_ports(description, ports)
+            messages = message_ports(list(found_messages(description)), ports)
         except UserError as error:
             # The plain ports are there all the same.
             reason = str(error)
@@ -122,7 +127,7 @@ def build_node(
         ),
         facts={
             **facts,
-            "records": _records(name, messages, reason),
+            "records": record_facts(name, messages, reason),
             "accelerator_files": own.facts(),
             "bench": None if script is None else _bench(name, own.language),
             "clock": "aclk",
@@ -140,7 +145,7 @@ def _files(
     description: Description,
     name: str,
     circuit: str,
-    ports: Sequence[NodePort],
+    ports: Sequence[ComponentPort],
     messages: Sequence[RecordPort],
     script: LinkScript | None,
     own: AcceleratorFiles,
@@ -158,8 +163,10 @@ def _files(
     records: dict[str, str] = {}
     structs: dict[str, str] = {}
     if messages:
-        records = record_files(name, ports, messages, vhdl_ports=vhdl_ports, header=header)
-        structs = struct_files(name, module, ports, messages, header=header)
+        records = record_files(
+            name, ports, messages, kind="node", vhdl_ports=vhdl_ports, header=header
+        )
+        structs = struct_files(name, module, ports, messages, kind="node", header=header)
     is_vhdl = own.language == "vhdl"
     inside = {file.removeprefix("vhdl/"): text for file, text in own.texts.items()}
     vhdl = {**(inside if is_vhdl else {}), **node.files, **records}
@@ -208,35 +215,6 @@ def _files(
         ),
         **benches,
         **documents,
-    }
-
-
-def _records(name: str, messages: Sequence[RecordPort], reason: str) -> dict[str, Any]:
-    """Describe the message ports with records and structs, or why there are none."""
-    if not messages:
-        return {"built": False, "reason": reason}
-    return {
-        "built": True,
-        "entity": f"{name}_records",
-        "module": f"{name}_sv",
-        "sv_files": "systemverilog/files.f",
-        "ports": [_record(each) for each in messages],
-    }
-
-
-def _record(port: RecordPort) -> dict[str, Any]:
-    tree, structs = port.tree(), port.tree(WORDS)
-    return {
-        "name": port.name,
-        "ready": port.ready,
-        "member": port.member,
-        "message": port.message.name,
-        "package": tree.package.name,
-        "message_type": tree.root.type,
-        "ready_type": tree.root.ready_type,
-        "sv_package": package_name(structs.package.name),
-        "sv_message_type": structs.root.type,
-        "sv_ready_type": structs.root.ready_type,
     }
 
 

@@ -13,10 +13,11 @@ import pytest
 
 from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.errors import UserError
+from firm_hdl.export.message_ports import message_ports, other_ports
 from firm_hdl.node import Node, read_description_text
 from firm_hdl.node.benches import bench_files, link_script
 from firm_hdl.node.build import build_node
-from firm_hdl.node.records import message_ports, other_ports
+from firm_hdl.node.records import found_messages
 from firm_hdl.node.top import node_ports
 from tests.depth import by_depth
 from tests.node.samples import RELAY, read
@@ -46,7 +47,7 @@ def test_types_with_one_package_of_vhdl_are_refused(tmp_path):
     text = "node: n\nsubscribe:\n  /a: {type: a_b/C}\n  /b: {type: a/b_C}\ndistro: noetic\n"
     description = read_description_text(text, paths=[tmp_path])
     with pytest.raises(UserError, match="a/b_C and a_b/C would have one package of VHDL, 'a_"):
-        message_ports(description, node_ports(Node(description)))
+        message_ports(list(found_messages(description)), node_ports(Node(description)))
 
 
 def test_the_manifest_names_what_is_in_the_files(relay):
@@ -79,7 +80,7 @@ def looped(language, folder):
     """Write a design around the node with records: `looped`, whose messages go back."""
     description = description_of()
     ports = node_ports(Node(description))
-    others = other_ports(ports, message_ports(description, ports))
+    others = other_ports(ports, message_ports(list(found_messages(description)), ports))
     records = json.loads((folder / "manifest.json").read_text())["records"]["ports"]
     texts = {"vhdl": vhdl_text, "verilog": verilog_text}
     script = link_script(description, stimuli, has_accelerator=False)

@@ -14,12 +14,12 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from firm_hdl.export.component import ComponentPort
 from firm_hdl.export.fusesoc import STALLS, copied, fileset, simulation
 from firm_hdl.export.templates import text_of
 from firm_hdl.node.benches.script import FRAMES, LinkScript
 from firm_hdl.node.description import Description, Topic
 from firm_hdl.node.frame import HEADER_BYTES
-from firm_hdl.node.top import NodePort
 
 __all__ = ["bench_core", "bench_files"]
 
@@ -41,7 +41,7 @@ class _Channel:
 def bench_files(
     description: Description,
     name: str,
-    ports: Sequence[NodePort],
+    ports: Sequence[ComponentPort],
     script: LinkScript,
     *,
     module: str,
@@ -56,7 +56,7 @@ def bench_files(
     ----------
     name : str
         Name of the entity; the benches are ``NAME_tb``.
-    ports : sequence of NodePort
+    ports : sequence of ComponentPort
         All ports of the top level.
     script : LinkScript
     module : str
@@ -100,7 +100,7 @@ def bench_files(
 
 
 def _values(
-    description: Description, ports: Sequence[NodePort], script: LinkScript
+    description: Description, ports: Sequence[ComponentPort], script: LinkScript
 ) -> dict[str, Any]:
     """Return what both languages have to know."""
     channels = [each for loop in script.loops for each in _channels(ports, loop)]
@@ -147,7 +147,7 @@ def _address(text: str) -> int:
     return number
 
 
-def _channels(ports: Sequence[NodePort], loop: tuple[Topic, Topic]) -> list[_Channel]:
+def _channels(ports: Sequence[ComponentPort], loop: tuple[Topic, Topic]) -> list[_Channel]:
     """Return the streams of a subscription with those of its publication."""
     came, goes = (f"{topic.kind}.{topic.port}." for topic in loop)
     names = {port.member: port.name for port in ports}

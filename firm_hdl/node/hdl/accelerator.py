@@ -9,13 +9,13 @@ from typing import Any
 from amaranth.hdl import ClockSignal, Instance, Module, ResetSignal
 from amaranth.lib import wiring
 
+from firm_hdl.export.component import parts_of
 from firm_hdl.node.accelerator import accelerator_signature
 from firm_hdl.node.description import Description, Hdl
 from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
 from firm_hdl.node.hdl.sources import read_sources
 from firm_hdl.node.hdl.verilog import checked_verilog, preprocessed
 from firm_hdl.node.hdl.vhdl import checked_vhdl, verilog_of_vhdl
-from firm_hdl.node.top import parts_of
 
 __all__ = ["HdlAccelerator"]
 
@@ -85,7 +85,7 @@ class HdlAccelerator(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        values = {".".join(path): value for path, value in parts_of(self)}
+        values = {".".join(part.path): part.value for part in parts_of(self)}
         connections: dict[str, Any] = {
             "i_aclk": ClockSignal(),
             "i_aresetn": ~ResetSignal(allow_reset_less=True),
