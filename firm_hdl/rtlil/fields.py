@@ -52,7 +52,7 @@ class _Fields:
             if base not in module.wires or not isinstance(source, Slice):
                 continue
             # Bits of another signal with a name have a name already.
-            is_own = base == source.wire or source.wire.startswith("$")
+            is_own = base == source.wire or source.wire.startswith(("$", "port$"))
             if is_own and source.width < module.wires[source.wire].width:
                 self.fields[source.wire].append(_Field(to.wire, source.low, source.width))
         for fields in self.fields.values():

@@ -43,6 +43,7 @@ class Counter(wiring.Component):
 
 COUNTER = """\
 -- Module counter of the Amaranth design.
+-- Counter: Count while enabled.
 -- 2 registers at rising_edge(clk), synchronous reset rst = '1'.
 
 library ieee;

@@ -171,7 +171,7 @@ class Walk:
         m.submodules.byte_flags = flags = ByteFlags(self.program)
         wrong_nul, header, cut = (
             Signal(name="wrong_nul"),
-            Signal(name="mismatch"),
+            Signal(name="header_error"),
             Signal(name="cut"),
         )
         trailing, within = Signal(name="trailing"), ring.position("nul_within")

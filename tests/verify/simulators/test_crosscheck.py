@@ -76,8 +76,8 @@ def change_line(monkeypatch, file: str, pattern: str, text: str) -> None:
         # initially, and after a reset.
         (
             "deserializer_flat_core_sequencer.vhd",
-            r"(?<=if )mismatch = '1'",
-            "mismatch = '0'",
+            r"(?<=if )header_error = '1'",
+            "header_error = '0'",
             "instead of",
         ),
         (

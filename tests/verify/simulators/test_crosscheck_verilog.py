@@ -92,7 +92,12 @@ STATUS = r"(?<=assign m_axis_status_tdata = )\{.*\}"
 
 CHANGES = {
     # A condition, an operator, a limit that costs nothing but cycles.
-    "condition": ("_deserializer", r"(?<=assign mismatch = )step\[0\]", "~step[0]", "instead of"),
+    "condition": (
+        "_deserializer",
+        r"(?<=assign header_error = )(step_\w+)",
+        r"~\1",
+        "instead of",
+    ),
     "operator": ("_serializer", r"(?<=assign total = at )\+", "-", "of the serializer is"),
     "limit": (
         "_deserializer",
