@@ -102,7 +102,7 @@ class FrameSender(wiring.Component):
     cycles, the datagram is dropped, and the destination counts as absent. An echo reply does not
     wait.
 
-    From a datagram in its slot to its first byte on `frames`: 17 cycles, and those of the lookup.
+    From a datagram in its slot to its first byte on `frames`: 18 cycles, and those of the lookup.
 
     Parameters
     ----------
@@ -228,9 +228,10 @@ class FrameSender(wiring.Component):
             m.d.sync += may_ask.eq(1)
 
         # The steps of a byte: its place; what the memories have there; that in registers, because
-        # memories are slow; the byte that it stands for.
-        there, from_payload, last = Signal(2), Signal(2), Signal(2)
-        template_word, stored = Signal(9), Signal(8)
+        # memories are slow; a field's byte of the header, likewise; the byte that it stands for.
+        there, from_payload, last = Signal(3), Signal(3), Signal(3)
+        looked_up, template_word, from_header = Signal(9), Signal(9), Signal(8)
+        stored = Signal(16)
         this_last, in_template = Signal(), Signal()
         goes = Signal()
         m.d.comb += [
@@ -250,7 +251,7 @@ class FrameSender(wiring.Component):
             value.eq(template_word[:8]),
         ]
         with m.If(is_field):
-            m.d.comb += value.eq(header_byte)
+            m.d.comb += value.eq(from_header)
             with m.Switch(field):
                 with m.Case(_MAC):
                     m.d.comb += value.eq(hardware[40:])
@@ -265,15 +266,17 @@ class FrameSender(wiring.Component):
                 there.eq(Cat(active, there)),
                 from_payload.eq(Cat(~in_template, from_payload)),
                 last.eq(Cat(this_last, last)),
-                template_word.eq(word.data),
-                stored.eq(payload_byte),
-                out.valid.eq(there[1]),
-                out.payload.data.eq(Mux(from_payload[1], stored, value)),
-                out.payload.last.eq(last[1]),
+                looked_up.eq(word.data),
+                template_word.eq(looked_up),
+                from_header.eq(header_byte),
+                stored.eq(Cat(payload_byte, stored)),
+                out.valid.eq(there[2]),
+                out.payload.data.eq(Mux(from_payload[2], stored[8:], value)),
+                out.payload.last.eq(last[2]),
             ]
-            with m.If(there[1] & ~from_payload[1] & is_field & (field == _MAC)):
+            with m.If(there[2] & ~from_payload[2] & is_field & (field == _MAC)):
                 m.d.sync += hardware.eq(hardware.rotate_left(8))
-            with m.If(there[1] & ~from_payload[1] & is_field & (field == _ASKED)):
+            with m.If(there[2] & ~from_payload[2] & is_field & (field == _ASKED)):
                 m.d.sync += key.eq(key.rotate_left(8))
             with m.If(active):
                 m.d.sync += active.eq(~this_last)
@@ -285,7 +288,7 @@ class FrameSender(wiring.Component):
         # The bytes of the header that vary are 6 to 11, and of an echo to 15. They are summed up a
         # cycle after they were read.
         in_header, adds, place, byte = Signal(), Signal(), Signal(4), Signal(8)
-        m.d.comb += header_at.eq(Mux(in_header, index, field))
+        m.d.comb += header_at.eq(Mux(in_header, index, looked_up[:5]))
         m.d.sync += [adds.eq(in_header), place.eq(index), byte.eq(header_byte)]
         with m.If(adds):
             m.d.sync += total.eq(add_word(total, Mux(place[0], byte, Cat(Const(0, 8), byte))))

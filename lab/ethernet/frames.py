@@ -340,8 +340,11 @@ class Judge:
         if not offset:
             self._open[source] = (ident, to, body)
         elif source in self._open:
-            known, first_to, before = self._open.pop(source)
-            if known == ident and len(before) == offset:
+            known, first_to, before = self._open[source]
+            if known != ident:
+                return "fragment"
+            del self._open[source]
+            if len(before) == offset:
                 self._open[source] = (ident, first_to, before + body)
                 if not more and len(before) >= 8 and not wrong_udp(source, to, before + body):
                     self.trains.add(line_of(source, before + body))

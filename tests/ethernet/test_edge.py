@@ -9,6 +9,7 @@ import pytest
 logging.getLogger("scapy").setLevel(logging.ERROR)
 scapy = pytest.importorskip("scapy.all")
 
+from tests.depth import by_depth  # noqa: E402
 from tests.ethernet.bench import (  # noqa: E402
     GROUP,
     GROUP_MAC,
@@ -156,16 +157,18 @@ BAD = [
 
 def test_bad_frames_leave_no_trace_but_a_count():
     """After each of them comes a good one, as soon as Ethernet allows."""
+    # Half of them are enough: `python -m lab.ethernet fuzz` tries hundreds of thousands.
+    bad = by_depth(BAD[::2], BAD)
     steps, want = [], []
-    for count, (_, frame) in enumerate(BAD):
+    for count, (_, frame) in enumerate(bad):
         steps += [frame, wire(udp(count + 1))]
         want += come(count + 1)
     seen = run(steps, gap=12)
     assert seen.datagrams == want
     assert seen.frames == []
     for name in seen.drops:
-        assert seen.drops[name] == sum(name == reason for reason, _ in BAD), name
-    assert sum(seen.drops.values()) == len(BAD)
+        assert seen.drops[name] == sum(name == reason for reason, _ in bad), name
+    assert sum(seen.drops.values()) == len(bad)
 
 
 def test_good_frames_of_all_forms_pass_with_stalls_everywhere():
@@ -216,7 +219,7 @@ def test_addresses_are_asked_for_and_forgotten():
     assert seen.drops == {"unresolved": 2}
 
 
-def fragments(size, ident, cut=64, src=HOST):
+def fragments(size, ident, cut=24, src=HOST):
     """Return the frames of a datagram in fragments."""
     whole = ip(id=ident, src=src)[IP] / UDP(sport=5000, dport=7411) / Raw(payload(size))
     return [
@@ -225,23 +228,61 @@ def fragments(size, ident, cut=64, src=HOST):
 
 
 def test_fragments_in_order_become_datagrams_and_others_are_dropped():
-    own = settings(fragment_bytes=4096, tick_bits=9)
-    a, b, c = fragments(200, 1), fragments(150, 1, src=OTHER), fragments(90, 2)
-    wrong = fragments(100, 3)
-    # The checksum of the first fragment's header is that of all.
-    wrong[1] = changed(Ether(wrong[1][8:-4]), 40)
-    small = [wire(udp(size)) for size in (5, 6)]
-    lost, late = fragments(200, 4), fragments(180, 5)
+    own = settings(fragment_bytes=4096, tick_bits=8)
+    a, b, c = fragments(60, 1), fragments(30, 1, src=OTHER), fragments(41, 2)
+    wrong, lost, late = fragments(20, 3), fragments(60, 4), fragments(33, 5)
+    # The checksum is that of all fragments.
+    wrong[1] = changed(Ether(wrong[1][8:-4]), 35)
     steps = [
-        *(a[0], b[0], small[0], a[1], b[1], a[2], small[1], a[3], b[2]),
-        *(Pause(400), *wrong),
-        *c,
-        *(lost[0], lost[2], lost[3]),
-        *(late[0], Pause(5 << 9), *late[1:]),
+        *(a[0], b[0], wire(udp(5)), a[1], b[1], a[2], Pause(120)),
+        *(*wrong, *c, lost[0], lost[2]),
+        *(late[0], Pause(5 << 8), late[1]),
     ]
-    seen = run(steps, own, after=800)
-    others = [(payload(150), number(OTHER), 5000, 7411)]
-    assert sorted(seen.datagrams) == sorted([*come(200, 5, 6, 90), *others])
-    # Of the wrong one, the last; of the lost one, two; of the late one, itself and its rest.
-    assert seen.drops == {"fragment": 1 + 2 + 1 + len(late) - 1}
+    seen = run(steps, own, after=150)
+    assert sorted(seen.datagrams) == sorted(
+        [*come(5, 60, 41), (payload(30), number(OTHER), 5000, 7411)]
+    )
+    # The end of the wrong one and of the lost one; the late one, and what came of it later.
+    assert seen.drops == {"fragment": 4}
     assert seen.frames == []
+
+
+def test_an_echo_in_fragments_is_answered_in_fragments():
+    whole = (ip(id=9) / ICMP(id=7) / Raw(payload(50)))[IP]
+    parts = scapy.fragment(IP(bytes(whole)), fragsize=24)
+    steps = [wire(arp(op=2, to=MAC)), *(wire(Ether(dst=MAC, src=HOST_MAC) / p) for p in parts)]
+    # What continues nothing is not answered.
+    steps.append(steps[-1])
+    seen = run(steps, after=500)
+    answers = [Ether(frame)[IP] for frame in seen.frames]
+    assert [(p.frag, p.flags.MF) for p in answers] == [(p.frag, p.flags.MF) for p in parts]
+    body = b"".join(bytes(p.payload)[: p.len - 20] for p in answers)
+    assert body[:2] == b"\0\0" and body[4:] == bytes(whole.payload)[4:]
+    assert scapy.checksum(body) == 0
+    assert seen.drops == {"other": 1}
+
+
+def test_groups_are_joined_and_queries_answered():
+    igmp = pytest.importorskip("scapy.contrib.igmp").IGMP
+
+    def query(group):
+        whole = ip(dst="224.0.0.1", to="01:00:5e:00:00:01", ttl=1, options=[ALERT])
+        return wire(whole / igmp(type=0x11, mrcode=1, gaddr=group))
+
+    own = settings(groups=(number(GROUP),), tick_bits=8)
+    group = wire(udp(3, dst=GROUP, to=GROUP_MAC))
+    seen = run([Pause(380), query("0.0.0.0"), Pause(380), query("239.1.1.1"), group], own)
+    for frame in seen.frames:
+        packet = Ether(frame)
+        assert (packet.dst, packet[IP].dst, packet[IP].src) == (GROUP_MAC, GROUP, NODE)
+        assert (packet[IP].ttl, packet[IP].proto) == (1, 2)
+        header, report = bytes(packet[IP])[:24], bytes(packet[IP])[24:32]
+        assert header[20:] == bytes.fromhex("94040000") and scapy.checksum(header) == 0
+        assert report[:1] + report[4:] == b"\x16" + bytes([239, 255, 0, 1])
+        assert scapy.checksum(report) == 0
+    assert len(seen.frames) == 2
+    assert seen.datagrams == come(3)
+    assert seen.drops == {"other": 1}
+
+
+ALERT = scapy.IPOption_Router_Alert()
