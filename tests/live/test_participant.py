@@ -20,7 +20,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "nodes" / "rtps"
 RELEASES = pytest.mark.parametrize("release", ["jazzy", "kilted"])
 
 NODE = f"""\
-node: loop
+node: mirror
 namespace: /fpga
 distro: jazzy
 paths: {PACKAGES}
@@ -45,10 +45,10 @@ def program(tmp_path_factory):
     need("Verilator", shutil.which("verilator"))
     folder = tmp_path_factory.mktemp("participant") / "rtps"
     shutil.copytree(EXAMPLE, folder, ignore=shutil.ignore_patterns("work"))
-    (folder / "loop.yaml").write_text(NODE)
+    (folder / "mirror.yaml").write_text(NODE)
     paths = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
     made = subprocess.run(
-        ["make", "FILE=loop.yaml", "NAME=loop"],
+        ["make", "FILE=mirror.yaml", "NAME=mirror"],
         cwd=folder,
         env={**os.environ, "PATH": paths, "PYTHONPATH": str(Path(__file__).parents[2])},
         capture_output=True,
@@ -95,10 +95,10 @@ def test_messages_come_back_in_order(release, start):
 @RELEASES
 def test_the_node_is_in_the_graph_with_its_topics_and_services(release, start):
     start()
-    wanted = {"node": "loop", "namespace": "/fpga", "publishers": 2, "topics": ["/text_out"]}
+    wanted = {"node": "mirror", "namespace": "/fpga", "publishers": 2, "topics": ["/text_out"]}
     with Peer(release, "graph", own="watcher", **wanted) as peer:
         result = peer.result()
-    assert ["loop", "/fpga"] in result["nodes"] and result["owners"] == [["loop", "/fpga"]]
+    assert ["mirror", "/fpga"] in result["nodes"] and result["owners"] == [["mirror", "/fpga"]]
     assert [name for name, _ in result["publishers"]] == ["/imu_out", "/text_out"]
     assert [name for name, _ in result["subscriptions"]] == ["/imu_in", "/text_in"]
     assert [name for name, _ in result["services"]] == ["/mode"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ipaddress import IPv4Address
+from typing import Any
 
 from amaranth.hdl import Module, Mux, Signal, Value
 from amaranth.lib import wiring
@@ -145,7 +146,7 @@ class AnnouncementReader(wiring.Component):
                 refuse(second & (self.word[:16] != 0) & ~has_second)
         return m
 
-    def _names(self, m: Module, out: object) -> None:
+    def _names(self, m: Module, out: Any) -> None:
         """Digest the names of the topic and of the type."""
         m.submodules.digest = digest = NameDigest()
         is_topic, is_type = self.pid == Pid.TOPIC_NAME, self.pid == Pid.TYPE_NAME
@@ -160,7 +161,7 @@ class AnnouncementReader(wiring.Component):
         with m.If(is_type):
             m.d.sync += out.type.eq(digest.digest)
 
-    def _locator(self, m: Module, is_of_kind: Value, locator: object) -> None:
+    def _locator(self, m: Module, is_of_kind: Value, locator: Any) -> None:
         """Take the nearest of the locators of a kind (9.3.2): UDP over IPv4, and unicast."""
         own = int(IPv4Address(self.link.ip))
         port, usable = Signal(16), Signal()

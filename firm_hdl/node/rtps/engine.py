@@ -421,9 +421,9 @@ class Engine(wiring.Component):
                 m.d.comb += self.stray.eq(1)
                 m.next = "DONE"
             with m.Else(), m.Switch(event.kind):
-                for each in (EventKind.HEARTBEAT, EventKind.GAP, EventKind.ACKNACK):
-                    with m.Case(each):
-                        m.next = each.name
+                for name in ("HEARTBEAT", "GAP", "ACKNACK"):
+                    with m.Case(EventKind[name]):
+                        m.next = name
                 with m.Default():
                     m.next = "SAMPLE"
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
@@ -160,7 +162,7 @@ class MessageReader(wiring.Component):
             m.d.comb += self.malformed.eq(1)
             m.next = "DROP"
 
-        def emit(what: EventKind) -> None:
+        def emit(what: Any) -> None:
             m.d.sync += event.kind.eq(what)
             m.next = "EVENT"
 
