@@ -23,7 +23,11 @@ RESET_SECONDS = 20e-6
 after it."""
 
 LINKS = ("uart", "rgmii")
+
 """Links with pins of their own: names of a board's groups, and how names of ports begin."""
+
+NONCE = "nonce"
+"""A port of a participant of ROS 2 without pins: at 0, the time of the first datagram counts."""
 
 _RGMII_HZ = 125e6
 
@@ -120,7 +124,16 @@ def board_top(
     header = f"{description.node} on {board.title}: clock, reset and pins, made by firm-hdl"
     clock_hz = board.clock_hz if pll is None else pll.hz
     return BoardTop(
-        verilog=_verilog(header, module, board, constants, pll, clock_hz, found),
+        verilog=_verilog(
+            header,
+            module,
+            board,
+            constants,
+            pll,
+            clock_hz,
+            found,
+            {port["name"]: port["width"] for port in ports if port["name"] == NONCE},
+        ),
         constraints=board.family.constrain(
             list(_sites(board, constants, found)),
             {"clk": board.clock_hz, **({"rgmii_rxc": _RGMII_HZ} if is_rgmii else {})},
@@ -159,6 +172,8 @@ def _link(
         return []
     found = []
     for port in of_link:
+        if port["name"] == NONCE:
+            continue
         width = port["width"]
         names = [f"{port['name']}{bit if width > 1 else ''}" for bit in range(width)]
         names = [name.replace("_", ".", 1) for name in names]
@@ -278,12 +293,14 @@ def _verilog(
     pll: Pll | None,
     clock_hz: float,
     ports: Sequence[_Port],
+    zeros: Mapping[str, int],
 ) -> str:
     declared = ["input wire clk"]
     if board.reset:
         declared.append("input wire reset")
     declared += [f"output wire constant_{pin.site}" for pin, _ in constants]
     inside, connected = [], [".aclk(aclk)", ".aresetn(aresetn)"]
+    connected += [f".{name}({width}'d0)" for name, width in zeros.items()]
     for pin, level in constants:
         inside.append(f"  assign constant_{pin.site} = 1'b{int(level)};\n")
     for port in ports:

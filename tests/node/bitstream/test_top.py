@@ -177,6 +177,8 @@ def test_an_rgmii_has_its_pins_its_clock_and_no_reset():
         {"name": f"rgmii_{name}", "direction": way, "width": width, "member": f"link.rgmii.{name}"}
         for name, way, width in (("rxc", "in", 1), ("rxd", "in", 4), ("txd", "out", 4))
     ]
+    # That of a participant of ROS 2, which has no pins.
+    ports.append({"name": "nonce", "direction": "in", "width": 32, "member": "link.nonce"})
     wanted = description("pins: {}\n", {"clock_mhz: 5": "clock_mhz: 125"})
     top = board_top(wanted, ports, "pins_verilog", read_board("ecpix5-45f"))
     for line in (
@@ -188,3 +190,4 @@ def test_an_rgmii_has_its_pins_its_clock_and_no_reset():
         assert line in top.constraints
     assert "assign constant_C13 = 1'b1;\n" in top.verilog
     assert "output wire [3:0] rgmii_txd" in top.verilog
+    assert ".nonce(32'd0)" in top.verilog
