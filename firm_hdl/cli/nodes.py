@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from firm_hdl.arguments import add_engine, add_json, add_path, number_between, seconds
 from firm_hdl.model import Message
@@ -64,6 +64,24 @@ def _add_info(command: argparse.ArgumentParser) -> None:
     add_json(command)
 
 
+class _Board(argparse.Action):
+    """Keep the board that is named; `list` prints all, and needs no description."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        if values == "list":
+            from firm_hdl.node.bitstream import board_list
+
+            print("\n".join(board_list()))
+            parser.exit()
+        setattr(namespace, self.dest, values)
+
+
 def _add_build(command: argparse.ArgumentParser) -> None:
     command.add_argument("--out", default="node_out", help="folder to write to (%(default)s)")
     command.add_argument(
@@ -80,6 +98,7 @@ def _add_build(command: argparse.ArgumentParser) -> None:
         "--board",
         # `--board` of other actions is how a board is reached.
         dest="target",
+        action=_Board,
         metavar="BOARD",
         help="also make the bitstream of a board: its name, or a file in YAML; list prints all",
     )
@@ -156,11 +175,6 @@ def _node(args: argparse.Namespace) -> None:
     from firm_hdl.errors import DefinitionError
     from firm_hdl.node import read_description
 
-    if args.action == "build" and args.target == "list":
-        from firm_hdl.node.bitstream import board_list
-
-        print("\n".join(board_list()))
-        return
     description = read_description(args.file, paths=args.path)
     try:
         if args.action == "info" and description.accelerator:
