@@ -62,7 +62,7 @@ def test_text_is_that_of_build(of_verilog, tmp_path):
     (built,) = build([BOOL], tmp_path / "out", options=BuildOptions(ports="flat"))
     for file in files:
         text = (built.folder / file).read_text()
-        without_header = re.sub(r"\A(//.*\n)+", "", text)
+        without_header = re.sub(r"\A(//.*\n)+\n", "", text)
         assert without_header == (tmp_path / file).read_text() != text
     assert len(files) == 2
 
