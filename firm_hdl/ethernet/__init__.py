@@ -4,4 +4,6 @@ One component per protocol, a byte per cycle; a vendor's cells only in an RGMII.
 messages. The whole is :class:`firm_hdl.ethernet.edge.EthernetEdge`.
 """
 
-__all__: list[str] = []
+from __future__ import annotations
+
+__all__ = ["arp", "datagrams", "drops", "edge", "fragments", "mac", "phy", "sender", "udp"]

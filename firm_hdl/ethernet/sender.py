@@ -213,7 +213,8 @@ class FrameSender(wiring.Component):
         length = Signal(11)
         # A datagram whose destination was asked for waits for an answer, until the time is over.
         asked, retries, timer = Signal(), Signal(), Signal(range(self.wait + 1))
-        may_ask = Signal()
+        # What may be asked for often, by echo requests of a stranger, is asked for once a tick.
+        may_ask = Signal(init=1)
         ip = (self.address >> 16, self.address & 0xFFFF)
         udp_start = _sum(0x4500, _DO_NOT_CUT, _TTL << 8 | UDP, *ip)
         icmp_start = _sum(0x4500, _TTL << 8 | ICMP, *ip)
@@ -344,7 +345,9 @@ class FrameSender(wiring.Component):
                     m.next = "START"
                     with m.If(~self.found):
                         m.next = "ASK"
-                        with m.If(asked & ~is_reply):
+                        with m.If(is_reply & ~may_ask):
+                            m.next = "DROP"
+                        with m.Elif(asked & ~is_reply):
                             m.next = "RETRY"
                     with m.Elif(self.gone):
                         m.next = "DROP"

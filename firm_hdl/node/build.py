@@ -57,6 +57,11 @@ _UNDRIVEN = """
 lint_off -rule UNDRIVEN -file "*{file}"
 """
 
+_OTHER_CLOCK = """
+// The reset of the node is a synchronous one there, and ends late in the clock domain of the PHY.
+lint_off -rule SYNCASYNCNET -file "*{file}"
+"""
+
 
 def build_node(
     description: Description,
@@ -157,6 +162,7 @@ def _files(
         f"{name}: a node of ROS {description.distro}, made by firm-hdl {firm_hdl.__version__}\n"
     )
     module = verilog_module(name)
+    lint = _UNDRIVEN + (_OTHER_CLOCK if description.link.ethernet == "mii" else "")
     netlist = rtlil.netlist_of(circuit)
     node = convert(netlist, name=name, header=header)
     vhdl_ports = node.entities[name].ports
@@ -199,7 +205,7 @@ def _files(
         documents[DATASHEET] = page
     return {
         **verilog_file(netlist, name=name, header=header),
-        "waivers.vlt": waivers([module]) + _UNDRIVEN.format(file=f"{module}.v"),
+        "waivers.vlt": waivers([module]) + lint.format(file=f"{module}.v"),
         **{f"systemverilog/{file}": text for file, text in structs.items()},
         **({} if is_vhdl else own.texts),
         **own.headers,

@@ -29,7 +29,7 @@ def fuzz(program: Path, seed: int, count: int) -> list[str]:
             records.write(sent.record())
             judge.judge(sent)
         records.seek(0)
-        command = [program, "frames", str(seed)]
+        command = [str(program), "frames", str(seed)]
         done = subprocess.run(command, stdin=records, capture_output=True, text=True, check=True)
     lines = done.stdout.splitlines()
     bad = [line for line in lines if line.startswith("bad")]

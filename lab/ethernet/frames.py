@@ -168,8 +168,7 @@ class _Traffic:
         elif way == 11:
             wire = wire + on_wire(frame)
         elif way == 12:
-            frame = bytes(data)
-            wire = PREAMBLE + frame + zlib.crc32(frame).to_bytes(4, "little")
+            wire = PREAMBLE + data + zlib.crc32(data).to_bytes(4, "little")
         elif way == 13:
             wire = bytes([0x55] * rnd.randrange(30)) + wire
         elif way == 14:
@@ -200,9 +199,9 @@ class _Traffic:
         elif way == 3:
             rnd.shuffle(frames)
         elif way == 4:
-            frame = bytearray(frames[place])
-            frame[rnd.randrange(34, len(frame))] ^= 1
-            frames[place] = bytes(frame)
+            damaged = bytearray(frames[place])
+            damaged[rnd.randrange(34, len(damaged))] ^= 1
+            frames[place] = bytes(damaged)
         for frame in frames:
             gap = rnd.randrange(30) + len(frame) // 6
             yield Sent(gap, on_wire(frame))
