@@ -203,7 +203,7 @@ def _members(
                     value=Value.cast(value),
                     init=member.init,
                 )
-            elif isinstance(member.signature, stream.Signature):
+            elif isinstance(value.signature, stream.Signature):
                 # The signature of a member has its flow: that of an input is flipped.
                 is_input = isinstance(member.signature, wiring.FlippedSignature)
                 yield _stream(".".join(where), value, is_input=is_input)

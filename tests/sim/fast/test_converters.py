@@ -68,11 +68,7 @@ class Loop(wiring.Component):
         self.message, self.bus_bytes = message, bus_bytes
         packets = PacketSignature(bus_bytes)
         super().__init__(
-            {
-                "packets_in": In(packets),
-                "packets_out": Out(packets),
-                "status": Out(StatusSignature()),
-            }
+            {"packets_in": In(packets), "packets_out": Out(packets), "status": Out(StatusSignature)}
         )
 
     def elaborate(self, platform):
