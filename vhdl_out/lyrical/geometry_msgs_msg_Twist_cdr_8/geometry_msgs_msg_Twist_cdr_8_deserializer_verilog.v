@@ -11,6 +11,7 @@
 //   4 angular_x: map of 8; angular.x; begins angular.y; to 5 (+12)
 //   5 angular_y: map of 12 in two words; angular.y angular.z; to end (+0)
 //   6 packet_end: end of the packet
+
 // Buffer: Give each beat a position in the ring; tell how many bytes of the current packet
 // arrived.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
@@ -255,14 +256,14 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   reg [5:0] exit_add = 6'd8;
 
   // Combinational signals.
-  wire mismatch_26;
+  wire mismatch;
   wire [6:0] step_end;
   wire [6:0] not_2;
   wire [6:0] left;
   wire present;
   wire ends_message;
   wire ends_packet;
-  wire mismatch;
+  wire header_error;
   wire cut;
   wire trailing;
   wire bytes_good;
@@ -330,7 +331,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_flags byte_flags (
     .aclk      (aclk),
     .rst       (rst),
-    .mismatch  (mismatch_26),
+    .mismatch  (mismatch),
     .beat      (beat),
     .header_at (first_at[6:3])
   );
@@ -341,11 +342,11 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign present = ~left[6];
   assign ends_message = at_end | step_angular_y;
   assign ends_packet = ends_message & arrival_ended;
-  assign mismatch = step_linear_x & mismatch_26 & (arrival_limit != first_at);
+  assign header_error = step_linear_x & mismatch & (arrival_limit != first_at);
   assign cut = arrival_ended & ~present;
   assign trailing = present & (|left[5:2]);
-  assign bytes_good = present & ~(step_linear_x & mismatch_26);
-  assign stops = mismatch | cut | (ends_message & ~arrival_ended & trailing);
+  assign bytes_good = present & ~(step_linear_x & mismatch);
+  assign stops = header_error | cut | (ends_message & ~arrival_ended & trailing);
   assign drains = bad & ~new_error & (~at_end | arrival_ended);
   assign orders_payload_length_good = ~bad;
   assign allowed = orders_payload_length_good & (~ends_message | arrival_ended);
@@ -410,7 +411,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
         end else begin
           code <= STATUS_LENGTH;
         end
-        if (mismatch) begin
+        if (header_error) begin
           code <= STATUS_ENCAPSULATION;
         end else if (cut) begin
           code <= STATUS_TRUNCATED;
@@ -616,6 +617,12 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   output wire [63:0] message_angular_y_payload,
   output wire [63:0] message_angular_z_payload
 );
+  localparam [2:0] STEP_LINEAR_X = 3'd0;
+  localparam [2:0] STEP_LINEAR_X_2 = 3'd1;
+  localparam [2:0] STEP_LINEAR_Y = 3'd2;
+  localparam [2:0] STEP_LINEAR_Z = 3'd3;
+  localparam [2:0] STEP_ANGULAR_X = 3'd4;
+  localparam [2:0] STEP_ANGULAR_Y = 3'd5;
 
   // Registers.
   reg message_linear_x_valid_q = 1'b0;
@@ -710,6 +717,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire [63:0] beat_data;
   wire [3:0] beat_at;
   wire beat_valid;
+  // 0 LINEAR_X, 1 LINEAR_X_2, 2 LINEAR_Y, 3 LINEAR_Z, 4 ANGULAR_X, 5 ANGULAR_Y
   wire [2:0] orders_payload_step;
   wire orders_payload_blank;
   wire [5:0] orders_payload_items_at;
@@ -837,19 +845,19 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign full_angular_z = message_angular_z_valid_q & ~message_angular_z_ready;
   assign status_full = status_valid_q & ~status_ready;
   assign has_step = orders_valid & ~orders_payload_blank;
-  assign chosen_linear_x = has_step & (orders_payload_step == 3'd1);
+  assign chosen_linear_x = has_step & (orders_payload_step == STEP_LINEAR_X_2);
   assign blocked_linear_x = active_linear_x & message_linear_x_valid_q;
   assign go_linear_x = active_linear_x & ~blocked_linear_x;
-  assign chosen_linear_y = has_step & (orders_payload_step == 3'd2);
+  assign chosen_linear_y = has_step & (orders_payload_step == STEP_LINEAR_Y);
   assign blocked_linear_y = active_linear_y & message_linear_y_valid_q;
   assign go_linear_y = active_linear_y & ~blocked_linear_y;
-  assign chosen_linear_z = has_step & (orders_payload_step == 3'd3);
+  assign chosen_linear_z = has_step & (orders_payload_step == STEP_LINEAR_Z);
   assign blocked_linear_z = active_linear_z & message_linear_z_valid_q;
   assign go_linear_z = active_linear_z & ~blocked_linear_z;
-  assign chosen_angular_x = has_step & (orders_payload_step == 3'd4);
+  assign chosen_angular_x = has_step & (orders_payload_step == STEP_ANGULAR_X);
   assign blocked_angular_x = active_angular_x & message_angular_x_valid_q;
   assign go_angular_x = active_angular_x & ~blocked_angular_x;
-  assign chosen_angular_y = has_step & (orders_payload_step == 3'd5);
+  assign chosen_angular_y = has_step & (orders_payload_step == STEP_ANGULAR_Y);
   assign blocked_angular_y = active_angular_y & message_angular_y_valid_q;
   assign go_angular_y = active_angular_y & ~blocked_angular_y;
   assign blocked_angular_z = active_angular_z & message_angular_z_valid_q;
@@ -1008,11 +1016,16 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
         length_good <= orders_payload_length_good;
         last <= orders_payload_last;
         final_sig <= orders_payload_final;
-        begins_linear_x <= orders_valid & ~orders_payload_blank & (orders_payload_step == 3'd0);
-        begins_linear_x_2 <= orders_valid & ~orders_payload_blank & (orders_payload_step == 3'd1);
-        begins_linear_y <= orders_valid & ~orders_payload_blank & (orders_payload_step == 3'd2);
-        begins_linear_z <= orders_valid & ~orders_payload_blank & (orders_payload_step == 3'd3);
-        begins_angular_x <= orders_valid & ~orders_payload_blank & (orders_payload_step == 3'd4);
+        begins_linear_x <= orders_valid & ~orders_payload_blank &
+            (orders_payload_step == STEP_LINEAR_X);
+        begins_linear_x_2 <= orders_valid & ~orders_payload_blank &
+            (orders_payload_step == STEP_LINEAR_X_2);
+        begins_linear_y <= orders_valid & ~orders_payload_blank &
+            (orders_payload_step == STEP_LINEAR_Y);
+        begins_linear_z <= orders_valid & ~orders_payload_blank &
+            (orders_payload_step == STEP_LINEAR_Z);
+        begins_angular_x <= orders_valid & ~orders_payload_blank &
+            (orders_payload_step == STEP_ANGULAR_X);
         ends_now <= ends;
         status_now <= orders_payload_status;
       end

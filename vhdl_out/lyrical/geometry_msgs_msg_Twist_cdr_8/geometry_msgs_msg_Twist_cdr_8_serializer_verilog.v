@@ -12,6 +12,7 @@
 //   4 angular_x: map of 8; angular.x; begins angular.y; map = angular.x:4..7 angular.y:0..3; to 5
 //   5 angular_y: map of 12 in two words; angular.y angular.z; items = angular.y:4..7
 //       angular.z:0..3; map = angular.z:4..7; to end
+
 // Collector: Take the leaves of each state of a program, and put them into two words.
 module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   input wire          rst,
@@ -385,6 +386,20 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   wire [63:0] items_0_read_data;
   wire [31:0] map_0_read_data;
   wire [31:0] map_4_read_data;
+  wire [63:0] words_payload_items;
+  wire [63:0] words_payload_map;
+  wire [3:0] words_payload_items_bytes;
+  wire [3:0] words_payload_map_bytes;
+  wire words_payload_two_word_map;
+  wire [4:0] words_payload_to_map;
+  wire [2:0] words_payload_map_mask;
+  wire [5:0] words_payload_to_end;
+  wire [2:0] words_payload_end_mask;
+  wire [2:0] words_payload_max_beats;
+  wire words_payload_last;
+  wire words_payload_empty;
+  wire words_payload_waits;
+  wire words_payload_error;
   wire [3:0] ends_read_data_count;
   wire ends_read_data_error;
 
@@ -443,15 +458,14 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   end
 
   assign takes = words_valid & words_ready_q;
-  assign total = at + {2'd0, words_payload_128[13:9]};
-  assign total_6 = base + {1'd0, words_payload_128[22:17]};
-  assign base = (total & ~{4'd0, words_payload_128[16:14]}) | {4'd0, words_payload_128[16:14] &
-      3'd4};
-  assign end_sig = (total_6 & ~{4'd0, words_payload_128[25:23]}) | {4'd0, words_payload_128[25:23] &
-      (words_payload_128[29] ? 3'd0 : 3'd4)};
-  assign map_start_next_3 = base[6:3] + {3'd0, words_payload_128[8]};
-  assign map_end = {map_start_next_3, base[2:0]} + {3'd0, words_payload_128[7:4]};
-  assign newest = at[6:3] + {1'd0, takes ? words_payload_128[28:26] : 3'd0};
+  assign total = at + {2'd0, words_payload_to_map};
+  assign total_6 = base + {1'd0, words_payload_to_end};
+  assign base = (total & ~{4'd0, words_payload_map_mask}) | {4'd0, words_payload_map_mask & 3'd4};
+  assign end_sig = (total_6 & ~{4'd0, words_payload_end_mask}) | {4'd0, words_payload_end_mask &
+      (words_payload_last ? 3'd0 : 3'd4)};
+  assign map_start_next_3 = base[6:3] + {3'd0, words_payload_two_word_map};
+  assign map_end = {map_start_next_3, base[2:0]} + {3'd0, words_payload_map_bytes};
+  assign newest = at[6:3] + {1'd0, takes ? words_payload_max_beats : 3'd0};
   assign room = bound - newest;
   assign ends_write_addr = complete_next[2:0] - 3'd1;
   assign ends_write_en = writes & ends_packet;
@@ -526,20 +540,20 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
     end else begin
       writes <= takes;
       if (takes) begin
-        if (words_payload_128[8]) begin
+        if (words_payload_two_word_map) begin
           items_start <= base;
         end else begin
           items_start <= at;
         end
-        items_size <= words_payload_128[3:0];
+        items_size <= words_payload_items_bytes;
         map_start <= {map_start_next_3, base[2:0]};
-        map_size <= words_payload_128[7:4];
+        map_size <= words_payload_map_bytes;
         at <= end_sig;
         complete_next <= end_sig[6:3];
-        ends_packet <= words_payload_128[29];
-        failed <= words_payload_128[32];
-        waits <= words_payload_128[31];
-        if (words_payload_128[30]) begin
+        ends_packet <= words_payload_last;
+        failed <= words_payload_error;
+        waits <= words_payload_waits;
+        if (words_payload_empty) begin
           last_bytes <= 4'd0;
         end else begin
           last_bytes <= {1'd0, map_end[2:0] - 3'd1} + 4'd1;
@@ -710,8 +724,8 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
 
   always @(posedge aclk) begin
     if (takes) begin
-      items_0_write_data <= words_payload_0[63:0];
-      map_placed <= words_payload_0[127:64];
+      items_0_write_data <= words_payload_items;
+      map_placed <= words_payload_map;
     end
     if (reads) begin
       packets_payload_q[63:0] <= {(items_0_written ? items_0_read_data[63:32] : 32'd0) |
@@ -727,6 +741,20 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
     end
   end
 
+  assign words_payload_items = words_payload_0[63:0];
+  assign words_payload_map = words_payload_0[127:64];
+  assign words_payload_items_bytes = words_payload_128[3:0];
+  assign words_payload_map_bytes = words_payload_128[7:4];
+  assign words_payload_two_word_map = words_payload_128[8];
+  assign words_payload_to_map = words_payload_128[13:9];
+  assign words_payload_map_mask = words_payload_128[16:14];
+  assign words_payload_to_end = words_payload_128[22:17];
+  assign words_payload_end_mask = words_payload_128[25:23];
+  assign words_payload_max_beats = words_payload_128[28:26];
+  assign words_payload_last = words_payload_128[29];
+  assign words_payload_empty = words_payload_128[30];
+  assign words_payload_waits = words_payload_128[31];
+  assign words_payload_error = words_payload_128[32];
   assign ends_read_data_count = ends_read_data[3:0];
   assign ends_read_data_error = ends_read_data[4];
 

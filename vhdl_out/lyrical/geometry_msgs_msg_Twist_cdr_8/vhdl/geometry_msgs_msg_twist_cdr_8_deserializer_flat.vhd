@@ -308,14 +308,14 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal exit_add        : unsigned(5 downto 0) := "001000";
 
   -- Combinational signals.
-  signal mismatch_26                : std_logic;
+  signal mismatch                   : std_logic;
   signal step_end                   : unsigned(6 downto 0);
   signal not_2                      : unsigned(6 downto 0);
   signal left                       : unsigned(6 downto 0);
   signal present                    : std_logic;
   signal ends_message               : std_logic;
   signal ends_packet                : std_logic;
-  signal mismatch                   : std_logic;
+  signal header_error               : std_logic;
   signal cut                        : std_logic;
   signal trailing                   : std_logic;
   signal bytes_good                 : std_logic;
@@ -385,7 +385,7 @@ begin
     port map (
       aclk      => aclk,
       rst       => rst,
-      mismatch  => mismatch_26,
+      mismatch  => mismatch,
       beat      => beat,
       header_at => first_at(6 downto 3)
     );
@@ -396,12 +396,12 @@ begin
   present <= not left(6);
   ends_message <= at_end or step_angular_y;
   ends_packet <= ends_message and arrival_ended;
-  mismatch <= '1' when step_linear_x = '1' and mismatch_26 = '1' and arrival_limit /= first_at else
+  header_error <= '1' when step_linear_x = '1' and mismatch = '1' and arrival_limit /= first_at else
       '0';
   cut <= arrival_ended and not present;
   trailing <= present and (or left(5 downto 2));
-  bytes_good <= present and not (step_linear_x and mismatch_26);
-  stops <= mismatch or cut or (ends_message and not arrival_ended and trailing);
+  bytes_good <= present and not (step_linear_x and mismatch);
+  stops <= header_error or cut or (ends_message and not arrival_ended and trailing);
   drains <= bad and not new_error and (not at_end or arrival_ended);
   orders_payload_length_good <= not bad;
   allowed <= orders_payload_length_good and (not ends_message or arrival_ended);
@@ -469,7 +469,7 @@ begin
           else
             code <= STATUS_LENGTH;
           end if;
-          if mismatch = '1' then
+          if header_error = '1' then
             code <= STATUS_ENCAPSULATION;
           elsif cut = '1' then
             code <= STATUS_TRUNCATED;
@@ -716,6 +716,14 @@ end entity;
 
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover is
 
+  -- Values of enumerations.
+  constant STEP_LINEAR_X : unsigned(2 downto 0) := "000";
+  constant STEP_LINEAR_X_2 : unsigned(2 downto 0) := "001";
+  constant STEP_LINEAR_Y : unsigned(2 downto 0) := "010";
+  constant STEP_LINEAR_Z : unsigned(2 downto 0) := "011";
+  constant STEP_ANGULAR_X : unsigned(2 downto 0) := "100";
+  constant STEP_ANGULAR_Y : unsigned(2 downto 0) := "101";
+
   -- Registers.
   signal message_linear_x_valid_q    : std_logic := '0';
   signal message_linear_y_valid_q    : std_logic := '0';
@@ -809,6 +817,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal beat_data                  : unsigned(63 downto 0);
   signal beat_at                    : unsigned(3 downto 0);
   signal beat_valid                 : std_logic;
+  -- 0 LINEAR_X, 1 LINEAR_X_2, 2 LINEAR_Y, 3 LINEAR_Z, 4 ANGULAR_X, 5 ANGULAR_Y
   signal orders_payload_step        : unsigned(2 downto 0);
   signal orders_payload_blank       : std_logic;
   signal orders_payload_items_at    : unsigned(5 downto 0);
@@ -905,19 +914,19 @@ begin
   full_angular_z <= message_angular_z_valid_q and not message_angular_z_ready;
   status_full <= status_valid_q and not status_ready;
   has_step <= orders_valid and not orders_payload_blank;
-  chosen_linear_x <= '1' when has_step = '1' and orders_payload_step = 1 else '0';
+  chosen_linear_x <= '1' when has_step = '1' and orders_payload_step = STEP_LINEAR_X_2 else '0';
   blocked_linear_x <= active_linear_x and message_linear_x_valid_q;
   go_linear_x <= active_linear_x and not blocked_linear_x;
-  chosen_linear_y <= '1' when has_step = '1' and orders_payload_step = 2 else '0';
+  chosen_linear_y <= '1' when has_step = '1' and orders_payload_step = STEP_LINEAR_Y else '0';
   blocked_linear_y <= active_linear_y and message_linear_y_valid_q;
   go_linear_y <= active_linear_y and not blocked_linear_y;
-  chosen_linear_z <= '1' when has_step = '1' and orders_payload_step = 3 else '0';
+  chosen_linear_z <= '1' when has_step = '1' and orders_payload_step = STEP_LINEAR_Z else '0';
   blocked_linear_z <= active_linear_z and message_linear_z_valid_q;
   go_linear_z <= active_linear_z and not blocked_linear_z;
-  chosen_angular_x <= '1' when has_step = '1' and orders_payload_step = 4 else '0';
+  chosen_angular_x <= '1' when has_step = '1' and orders_payload_step = STEP_ANGULAR_X else '0';
   blocked_angular_x <= active_angular_x and message_angular_x_valid_q;
   go_angular_x <= active_angular_x and not blocked_angular_x;
-  chosen_angular_y <= '1' when has_step = '1' and orders_payload_step = 5 else '0';
+  chosen_angular_y <= '1' when has_step = '1' and orders_payload_step = STEP_ANGULAR_Y else '0';
   blocked_angular_y <= active_angular_y and message_angular_y_valid_q;
   go_angular_y <= active_angular_y and not blocked_angular_y;
   blocked_angular_z <= active_angular_z and message_angular_z_valid_q;
@@ -1121,15 +1130,15 @@ begin
           last <= orders_payload_last;
           final_sig <= orders_payload_final;
           begins_linear_x <= orders_valid and not orders_payload_blank and
-              to_std_logic(orders_payload_step = 0);
+              to_std_logic(orders_payload_step = STEP_LINEAR_X);
           begins_linear_x_2 <= orders_valid and not orders_payload_blank and
-              to_std_logic(orders_payload_step = 1);
+              to_std_logic(orders_payload_step = STEP_LINEAR_X_2);
           begins_linear_y <= orders_valid and not orders_payload_blank and
-              to_std_logic(orders_payload_step = 2);
+              to_std_logic(orders_payload_step = STEP_LINEAR_Y);
           begins_linear_z <= orders_valid and not orders_payload_blank and
-              to_std_logic(orders_payload_step = 3);
+              to_std_logic(orders_payload_step = STEP_LINEAR_Z);
           begins_angular_x <= orders_valid and not orders_payload_blank and
-              to_std_logic(orders_payload_step = 4);
+              to_std_logic(orders_payload_step = STEP_ANGULAR_X);
           ends_now <= ends;
           status_now <= orders_payload_status;
         end if;

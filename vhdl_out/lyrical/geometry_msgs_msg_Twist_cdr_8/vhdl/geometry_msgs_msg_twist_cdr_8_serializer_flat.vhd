@@ -398,40 +398,54 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal first              : unsigned(3 downto 0) := (others => '0');
 
   -- Combinational signals.
-  signal takes                : std_logic;
-  signal total                : unsigned(6 downto 0);
-  signal total_6              : unsigned(6 downto 0);
-  signal base                 : unsigned(6 downto 0);
-  signal end_sig              : unsigned(6 downto 0);
-  signal map_start_next_3     : unsigned(3 downto 0);
-  signal map_end              : unsigned(6 downto 0);
-  signal newest               : unsigned(3 downto 0);
-  signal room                 : unsigned(3 downto 0);
-  signal ends_write_addr      : unsigned(2 downto 0);
-  signal ends_write_en        : std_logic;
-  signal items_used_0         : std_logic;
-  signal items_0_written      : std_logic;
-  signal map_used_0           : std_logic;
-  signal map_0_written        : std_logic;
-  signal map_used_4           : std_logic;
-  signal map_4_written        : std_logic;
-  signal reads                : std_logic;
-  signal is_last              : std_logic;
-  signal and_43               : std_logic;
-  signal and_46               : std_logic;
-  signal and_50               : std_logic;
-  signal and_54               : std_logic;
-  signal and_58               : std_logic;
-  signal and_62               : std_logic;
-  signal and_66               : std_logic;
-  signal and_70               : std_logic;
-  signal and_74               : std_logic;
-  signal ends_read_data       : unsigned(4 downto 0);
-  signal items_0_read_data    : unsigned(63 downto 0);
-  signal map_0_read_data      : unsigned(31 downto 0);
-  signal map_4_read_data      : unsigned(31 downto 0);
-  signal ends_read_data_count : unsigned(3 downto 0);
-  signal ends_read_data_error : std_logic;
+  signal takes                      : std_logic;
+  signal total                      : unsigned(6 downto 0);
+  signal total_6                    : unsigned(6 downto 0);
+  signal base                       : unsigned(6 downto 0);
+  signal end_sig                    : unsigned(6 downto 0);
+  signal map_start_next_3           : unsigned(3 downto 0);
+  signal map_end                    : unsigned(6 downto 0);
+  signal newest                     : unsigned(3 downto 0);
+  signal room                       : unsigned(3 downto 0);
+  signal ends_write_addr            : unsigned(2 downto 0);
+  signal ends_write_en              : std_logic;
+  signal items_used_0               : std_logic;
+  signal items_0_written            : std_logic;
+  signal map_used_0                 : std_logic;
+  signal map_0_written              : std_logic;
+  signal map_used_4                 : std_logic;
+  signal map_4_written              : std_logic;
+  signal reads                      : std_logic;
+  signal is_last                    : std_logic;
+  signal and_43                     : std_logic;
+  signal and_46                     : std_logic;
+  signal and_50                     : std_logic;
+  signal and_54                     : std_logic;
+  signal and_58                     : std_logic;
+  signal and_62                     : std_logic;
+  signal and_66                     : std_logic;
+  signal and_70                     : std_logic;
+  signal and_74                     : std_logic;
+  signal ends_read_data             : unsigned(4 downto 0);
+  signal items_0_read_data          : unsigned(63 downto 0);
+  signal map_0_read_data            : unsigned(31 downto 0);
+  signal map_4_read_data            : unsigned(31 downto 0);
+  signal words_payload_items        : unsigned(63 downto 0);
+  signal words_payload_map          : unsigned(63 downto 0);
+  signal words_payload_items_bytes  : unsigned(3 downto 0);
+  signal words_payload_map_bytes    : unsigned(3 downto 0);
+  signal words_payload_two_word_map : std_logic;
+  signal words_payload_to_map       : unsigned(4 downto 0);
+  signal words_payload_map_mask     : unsigned(2 downto 0);
+  signal words_payload_to_end       : unsigned(5 downto 0);
+  signal words_payload_end_mask     : unsigned(2 downto 0);
+  signal words_payload_max_beats    : unsigned(2 downto 0);
+  signal words_payload_last         : std_logic;
+  signal words_payload_empty        : std_logic;
+  signal words_payload_waits        : std_logic;
+  signal words_payload_error        : std_logic;
+  signal ends_read_data_count       : unsigned(3 downto 0);
+  signal ends_read_data_error       : std_logic;
 
   -- Signals that no logic reads, for simulation.
   signal words_payload      : unsigned(160 downto 0);
@@ -473,15 +487,15 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
 begin
 
   takes <= words_valid and words_ready_q;
-  total <= at + words_payload_128(13 downto 9);
-  total_6 <= base + words_payload_128(22 downto 17);
-  base <= (total and not resize(words_payload_128(16 downto 14), 7)) or
-      resize(words_payload_128(16 downto 14) and "100", 7);
-  end_sig <= (total_6 and not resize(words_payload_128(25 downto 23), 7)) or
-      resize(words_payload_128(25 downto 23) and mux(words_payload_128(29), "000", "100"), 7);
-  map_start_next_3 <= base(6 downto 3) + words_payload_128(8);
-  map_end <= unsigned'(map_start_next_3 & base(2 downto 0)) + words_payload_128(7 downto 4);
-  newest <= at(6 downto 3) + mux(takes, words_payload_128(28 downto 26), "000");
+  total <= at + words_payload_to_map;
+  total_6 <= base + words_payload_to_end;
+  base <= (total and not resize(words_payload_map_mask, 7)) or resize(words_payload_map_mask and
+      "100", 7);
+  end_sig <= (total_6 and not resize(words_payload_end_mask, 7)) or
+      resize(words_payload_end_mask and mux(words_payload_last, "000", "100"), 7);
+  map_start_next_3 <= base(6 downto 3) + words_payload_two_word_map;
+  map_end <= unsigned'(map_start_next_3 & base(2 downto 0)) + words_payload_map_bytes;
+  newest <= at(6 downto 3) + mux(takes, words_payload_max_beats, "000");
   room <= bound - newest;
   ends_write_addr <= complete_next(2 downto 0) - 1;
   ends_write_en <= writes and ends_packet;
@@ -574,20 +588,20 @@ begin
       else
         writes <= takes;
         if takes = '1' then
-          if words_payload_128(8) = '1' then
+          if words_payload_two_word_map = '1' then
             items_start <= base;
           else
             items_start <= at;
           end if;
-          items_size <= words_payload_128(3 downto 0);
+          items_size <= words_payload_items_bytes;
           map_start <= map_start_next_3 & base(2 downto 0);
-          map_size <= words_payload_128(7 downto 4);
+          map_size <= words_payload_map_bytes;
           at <= end_sig;
           complete_next <= end_sig(6 downto 3);
-          ends_packet <= words_payload_128(29);
-          failed <= words_payload_128(32);
-          waits <= words_payload_128(31);
-          if words_payload_128(30) = '1' then
+          ends_packet <= words_payload_last;
+          failed <= words_payload_error;
+          waits <= words_payload_waits;
+          if words_payload_empty = '1' then
             last_bytes <= (others => '0');
           else
             last_bytes <= resize(map_end(2 downto 0) - 1, 4) + 1;
@@ -779,8 +793,8 @@ begin
   begin
     if rising_edge(aclk) then
       if takes = '1' then
-        items_0_write_data <= words_payload_0(63 downto 0);
-        map_placed <= words_payload_0(127 downto 64);
+        items_0_write_data <= words_payload_items;
+        map_placed <= words_payload_map;
       end if;
       if reads = '1' then
         packets_payload_q(63 downto 0) <= (mux(items_0_written, items_0_read_data(63 downto 32),
@@ -798,6 +812,20 @@ begin
     end if;
   end process;
 
+  words_payload_items <= words_payload_0(63 downto 0);
+  words_payload_map <= words_payload_0(127 downto 64);
+  words_payload_items_bytes <= words_payload_128(3 downto 0);
+  words_payload_map_bytes <= words_payload_128(7 downto 4);
+  words_payload_two_word_map <= words_payload_128(8);
+  words_payload_to_map <= words_payload_128(13 downto 9);
+  words_payload_map_mask <= words_payload_128(16 downto 14);
+  words_payload_to_end <= words_payload_128(22 downto 17);
+  words_payload_end_mask <= words_payload_128(25 downto 23);
+  words_payload_max_beats <= words_payload_128(28 downto 26);
+  words_payload_last <= words_payload_128(29);
+  words_payload_empty <= words_payload_128(30);
+  words_payload_waits <= words_payload_128(31);
+  words_payload_error <= words_payload_128(32);
   ends_read_data_count <= ends_read_data(3 downto 0);
   ends_read_data_error <= ends_read_data(4);
 
