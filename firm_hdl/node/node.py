@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from amaranth.hdl import Module, Value
+from amaranth.hdl import Cat, Module, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import Out
 
@@ -21,6 +21,7 @@ from firm_hdl.node.gateware.converters import NodeConverters, message_groups
 from firm_hdl.node.gateware.core import node_counters_layout
 from firm_hdl.node.gateware.streams import passes
 from firm_hdl.node.links import link_of, medium_of
+from firm_hdl.node.rtps.idle import TopicIdle
 
 __all__ = ["Node"]
 
@@ -99,6 +100,9 @@ class Node(Component):
             self.counters.eq(core.counters),
         ]
         _bring_out(m, self.link, link)
+        if description.link.kind == "rtps":
+            came = [topic for topic in description.topics if topic.has("in")]
+            m.d.comb += link.idle.eq(Cat(TopicIdle.of(m, topic, core) for topic in came))
         groups = list(message_groups(description))
         for name in groups:
             wiring.connect(m, getattr(core, name), getattr(converters.packets, name))

@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 import os
+import random
 import shutil
+import socket
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 
 import pytest
 
+from firm_hdl.rtps import Guid, Qos
+from firm_hdl.rtps.discovery import EndpointData, ParticipantData
+from firm_hdl.rtps.wire import message
+from firm_hdl.rtps.wire.guid import PUBLICATIONS_WRITER, SPDP_WRITER, SUBSCRIPTIONS_WRITER
+from firm_hdl.rtps.wire.locators import Address
+from firm_hdl.rtps.wire.submessages import Data
 from tests.live.nodes import PACKAGES
 from tests.live.peer import Peer
 from tests.tools import need
@@ -29,7 +39,7 @@ bus_bytes: 2
 link: {{kind: rtps, address: 127.0.0.1, participant: 50}}
 accelerator: tests.live.nodes:Loop
 subscribe:
-  /text_in: {{type: std_msgs/msg/String, memory_bytes: 2048}}
+  /text_in: {{type: std_msgs/msg/String, memory_bytes: 256}}
   /imu_in: {{type: sensor_msgs/msg/Imu, memory_bytes: 8192}}
 publish:
   /text_out: {{type: std_msgs/msg/String, memory_bytes: 2048}}
@@ -79,6 +89,37 @@ def start(program):
         process.communicate()
 
 
+def flood(seconds, seed=1):
+    """Send invented participants and endpoints, damaged or not, and bytes that are no datagrams."""
+    rng, end, prefixes = random.Random(seed), time.monotonic() + seconds, [bytes(12)]
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+        while time.monotonic() < end:
+            prefix = rng.choice(prefixes)
+            if rng.random() < 0.4:
+                prefix = b"\x01\x0f" + rng.randbytes(10)
+                prefixes = [*prefixes[-30:], prefix]
+                nowhere = (Address("127.0.0.1", 9),)
+                peer = ParticipantData(prefix=prefix, discovery=nowhere, user=nowhere, lease=1e6)
+                payload, writer, number = peer.encode(), SPDP_WRITER, 1
+            else:
+                endpoint = EndpointData(
+                    guid=Guid(prefix, rng.choice((0x303, 0x404))),
+                    topic=rng.choice(("rt/text_in", "rt/text_out")),
+                    type_name="std_msgs::msg::dds_::String_",
+                    qos=Qos(),
+                )
+                writer = rng.choice((PUBLICATIONS_WRITER, SUBSCRIPTIONS_WRITER))
+                payload, number = endpoint.encode(), rng.randrange(1, 4)
+            sample = Data(reader=0, writer=writer, sequence_number=number, payload=payload)
+            datagram = bytearray(message.write(prefix, [sample]))
+            if rng.random() < 0.3:
+                datagram[rng.randrange(len(datagram))] ^= 1 << rng.randrange(8)
+            if rng.random() < 0.2:
+                del datagram[rng.randrange(1, len(datagram)) :]
+            out.sendto(datagram, ("127.0.0.1", rng.choice((7510, 7511))))
+            time.sleep(0.03)
+
+
 @RELEASES
 def test_messages_come_back_in_order(release, start):
     start()
@@ -90,6 +131,16 @@ def test_messages_come_back_in_order(release, start):
     with Peer(release, "trip", topics=topics) as peer:
         assert peer.next(90) == {"begins": True}
         assert peer.result(300)["numbers"] == [list(range(300))] * 2
+
+
+def test_a_burst_waits_for_the_accelerator(start):
+    start()
+    # More than the memory of the topic, sent at once; the writer keeps all until they are there.
+    topic = {"type": "string", "to": "/text_in", "back": "/text_out"}
+    options = {"count": 200, "period": 0, "depth": 1000, "linger": 30}
+    with Peer("kilted", "trip", topics=[{**topic, **options}]) as peer:
+        assert peer.next(90) == {"begins": True}
+        assert peer.result(300)["numbers"] == [list(range(200))]
 
 
 @RELEASES
@@ -114,6 +165,23 @@ def test_four_clients_of_a_service_at_once(release, start):
         for each in clients:
             each.kill()
     assert answers == [[[bool(n & 1), "ok"] for n in range(50)]] * 4
+
+
+def test_a_flood_of_invented_peers_neither_disturbs_nor_keeps_out(start):
+    start()
+    topic = {"type": "string", "to": "/text_in", "back": "/text_out"}
+    options = {"count": 50, "period": 0.1, "depth": 100}
+    attack = threading.Thread(target=flood, args=(20,))
+    attack.start()
+    try:
+        for _ in range(2):
+            # The first one meets the flood, the second one what it has left behind.
+            with Peer("kilted", "trip", topics=[{**topic, **options}]) as peer:
+                assert peer.next(90) == {"begins": True}
+                assert peer.result(120)["numbers"] == [list(range(50))]
+            attack.join()
+    finally:
+        attack.join()
 
 
 def test_a_board_that_starts_again_is_found_again(start):

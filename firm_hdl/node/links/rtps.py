@@ -41,6 +41,8 @@ class RtpsLink(wiring.Component):
     sent : In(LinkSignature(bus_bytes))
     counters : Out(link_counters_layout())
     datagrams_in, datagrams_out : In and Out(DatagramSignature(1))
+    idle : In(number of subscriptions and services)
+        The topic has passed on, or dropped, all that came; see :class:`.TopicIdle`.
     nonce : In(32)
         Makes the GUID prefix of each start another one; see :class:`.Engine`. It has to be stable
         from the end of the reset on.
@@ -54,6 +56,7 @@ class RtpsLink(wiring.Component):
                 "received": Out(LinkSignature(bus)),
                 "sent": In(LinkSignature(bus)),
                 "counters": Out(link_counters_layout()),
+                "idle": In(max(1, sum(topic.has("in") for topic in description.topics))),
                 **self.medium(),
             }
         )
@@ -102,6 +105,7 @@ class RtpsLink(wiring.Component):
             reader.wants.eq(engine.wants),
             engine.came.eq(fifo.packets_out.valid),
             engine.nonce.eq(self.nonce),
+            engine.idle.eq(self.idle),
             *passes(self.sent, engine.sent),
             transmitter.order.eq(engine.order),
             transmitter.starts.eq(engine.starts),

@@ -57,6 +57,8 @@ _PATIENCE = 4
 _REQUESTS = 32
 # How GUID prefixes of Fast DDS begin, which answers a first ACKNACK at once if its base is 0.
 _FAST_DDS = 0x0F01
+# How often a sample is tried whose topic has not passed on the one before.
+_MOST_PATIENCE = 255
 _READER_BIT = 2
 _STATIC_PARTICIPANTS = 4
 _LITTLE, _FINAL = 1, 2
@@ -69,8 +71,9 @@ class Engine(wiring.Component):
     table of matched endpoints, whose state says what is due. So each datagram that is sent, and
     each event, takes a bounded number of cycles, and nothing waits for a peer.
 
-    A place for a peer is free after its lease; without a free one, a peer that has had no matched
-    endpoint for 3 seconds gives way. One that has is never displaced.
+    A place for a peer is free after its lease. Without a free one, a stranger gives way, 3 seconds
+    after it came: a peer without a matched endpoint, or that has acknowledged nothing. So
+    names that somebody invents do not keep others out, and those who answer are never displaced.
 
     Parameters
     ----------
@@ -86,6 +89,9 @@ class Engine(wiring.Component):
     events, announced, knows, wants : as of a `MessageReader`
     topic, tag : Out(16), Out(32)
         Of the payload that is wanted.
+    idle : In(len(readers))
+        The topic of a reader has passed on all that came. A sample waits for that, but not long:
+        then a reliable one is asked for again, and any other one goes to its topic all the same.
     sent : In(LinkSignature(bus_bytes))
         Messages of publications and services.
     nonce : In(32)
@@ -127,6 +133,7 @@ class Engine(wiring.Component):
                 "wants": Out(1),
                 "topic": Out(16),
                 "tag": Out(32),
+                "idle": In(max(1, len(readers))),
                 "sent": In(LinkSignature(description.bus_bytes)),
                 "nonce": In(32),
                 "came": In(1),
@@ -198,10 +205,11 @@ class Engine(wiring.Component):
         self._at, self._at_word = Signal(range(rows + 1)), Signal(range(rows + 1))
         self._has_word, self._has_row = Signal(), Signal()
         self._key, self._hit, self._second = Signal(32), Signal(), Signal()
-        self._target = Signal(32)
+        self._target, self._patience = Signal(32), Signal(range(_MOST_PATIENCE + 1))
         self._free, self._has_free = Signal(range(rows)), Signal()
-        # Which peers there are, which are matched with us, and which have to be told of us.
+        # Which peers there are; which are matched, have acknowledged a sample, have to be told.
         self._live, self._matched, self._due = Signal(peers), Signal(peers), Signal(peers)
+        self._answers = Signal(peers)
         self._left = Array(Signal(7, name=f"left_{n}") for n in range(peers))
         self._young = Array(Signal(2, name=f"young_{n}") for n in range(peers))
         self._dying = Array(Signal(2, name=f"dying_{n}") for n in range(peers))
@@ -305,6 +313,7 @@ class Engine(wiring.Component):
         m.d.sync += [
             self._live.bit_select(peer, 1).eq(0),
             self._matched.bit_select(peer, 1).eq(0),
+            self._answers.bit_select(peer, 1).eq(0),
             self._due.bit_select(peer, 1).eq(0),
             self._dying[peer].eq(2),
         ]
@@ -432,6 +441,7 @@ class Engine(wiring.Component):
             m.next = "DONE"
         with m.State("DONE"):
             m.d.comb += self.events.ready.eq(1)
+            m.d.sync += self._patience.eq(_MOST_PATIENCE)
             m.next = "IDLE"
 
     def _scan(self, m: Module, memory: BlockMemory) -> None:
@@ -465,7 +475,8 @@ class Engine(wiring.Component):
 
         with m.State("PLACE"):
             is_free = Cat(~self._live[n] & (self._dying[n] == 0) for n in range(self.peers))
-            strangers = self._live & ~self._matched & Cat(each == 0 for each in self._young)
+            known = self._matched & self._answers
+            strangers = self._live & ~known & Cat(each == 0 for each in self._young)
             m.next = "PLACED"
             with m.If(~announced.is_participant):
                 m.next = "DONE"
@@ -555,17 +566,25 @@ class Engine(wiring.Component):
         with m.State("SAMPLE"):
             is_new, ahead = number >= row.next, Signal(32)
             is_fragment = event.kind == EventKind.FRAGMENT
-            takes, bit = Signal(), Signal(32)
+            takes, bit, is_busy = Signal(), Signal(32), Signal()
+            user = (row.local - _FIXED_READERS)[: len(row.local)]
             m.d.comb += [
                 ahead.eq(number - row.next),
                 bit.eq(Const(1 << 31, 32) >> ahead[:5]),
                 takes.eq(Mux(row.reliable, row.synced & (ahead == 0), is_new)),
+                is_busy.eq(~is_sedp & ~is_fragment & ~self.idle.bit_select(user, 1)),
             ]
             m.d.sync += [self._accepts.eq(takes), target.eq(number + 1)]
             m.next = "SAMPLED"
             with m.If(is_sedp):
                 m.d.comb += takes.eq(is_new & (ahead < 32) & ((row.request & bit) == 0))
-            with m.If(takes & is_sedp):
+            with m.If(takes & is_busy & (self._patience != 0)):
+                # The event is taken again after something else was done.
+                m.d.sync += self._patience.eq(self._patience - 1)
+                m.next = "IDLE"
+            with m.Elif(takes & is_busy & row.reliable):
+                m.d.sync += [self._accepts.eq(0), row.ask.eq(row.ask | (row.timer == 0))]
+            with m.Elif(takes & is_sedp):
                 m.d.sync += row.request.eq(row.request | bit)
                 m.next = "SETTLE"
             with m.Elif(takes):
@@ -729,6 +748,8 @@ class Engine(wiring.Component):
                 row.tries.eq(0),
                 row.ask.eq(row.ask | (~event.is_final & (event.bits == 0))),
             ]
+            with m.If(event.number > 1):
+                m.d.sync += self._answers.bit_select(self._peer, 1).eq(1)
             m.next = "STORE_EVENT"
 
     # The rows in turn, and what is due for each.

@@ -117,6 +117,7 @@ class Wires:
         ctx.set(tx.ready, 1)
         ctx.set(received.ready, 1)
         ctx.set(link.nonce, 1)
+        ctx.set(link.idle, 1)
         datagram, message, packet = bytearray(), bytearray(), None
         coming, at, packet_at, cycles = None, 0, 0, 0
         while True:
