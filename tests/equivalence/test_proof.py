@@ -17,7 +17,7 @@ from amaranth.hdl import Array, Cat, Elaboratable, Module, Mux, Signal, Value, s
 
 from firm_hdl import load_message
 from firm_hdl.equivalence import ProofError, Tools, prove
-from firm_hdl.equivalence.converters import converter_vhdl, prove_converter
+from firm_hdl.equivalence.converters import converter_vhdl
 from firm_hdl.export.build import build
 from firm_hdl.export.top import DIRECTIONS, Direction
 from firm_hdl.vhdl.convert import Vhdl, convert
@@ -151,25 +151,6 @@ def test_random_designs_are_proved_equal(
     design = _WithoutMemory(seed, size=3)
     proof = prove(design, name="dut", ports=design.ports, tools=tools)
     assert proof.result == "equal", proof
-
-
-@pytest.mark.parametrize("direction", DIRECTIONS)
-@pytest.mark.parametrize(
-    ("name", "distro"),
-    # An empty message needs hardly any logic: constant registers are removed.
-    [
-        pytest.param("std_msgs/msg/Header", "lyrical", marks=pytest.mark.thorough),
-        pytest.param("std_msgs/Int16MultiArray", "noetic", marks=pytest.mark.thorough),
-        ("std_msgs/Empty", "noetic"),
-    ],
-)
-@pytest.mark.thorough
-def test_converters_are_proved_equal(
-    name: str, distro: str, direction: Direction, tools: Tools
-) -> None:
-    proof = prove_converter(load_message(name, distro=distro), direction)
-    assert proof.result == "equal", proof
-    assert proof.registers > 100
 
 
 @pytest.mark.parametrize(
