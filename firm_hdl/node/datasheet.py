@@ -10,6 +10,7 @@ from typing import Any
 import firm_hdl
 from firm_hdl.drawing.svg import Figure
 from firm_hdl.estimates import core_estimate, link_estimate
+from firm_hdl.export.component import ComponentPort
 from firm_hdl.export.datasheet import definitions_of, render, size_text, sums_of
 from firm_hdl.export.datasheet.layout import layout_figure
 from firm_hdl.export.datasheet.rows import CHARACTER_WIDTH, clipped
@@ -19,7 +20,6 @@ from firm_hdl.export.vhdl.wrapper import instance
 from firm_hdl.node.description import SERVICE_PARTS, Description, Store
 from firm_hdl.node.frame import HEADER
 from firm_hdl.node.summary import clock_needed, facts_of, memory_bytes, warnings_of
-from firm_hdl.node.top import NodePort
 from firm_hdl.wire import lay_out
 
 __all__ = ["node_datasheet"]
@@ -28,7 +28,7 @@ __all__ = ["node_datasheet"]
 def node_datasheet(
     description: Description,
     name: str,
-    ports: Sequence[NodePort],
+    ports: Sequence[ComponentPort],
     *,
     module: str,
     vhdl_ports: Mapping[str, str],
@@ -202,7 +202,7 @@ def _messages(description: Description) -> Iterator[dict[str, Any]]:
         }
 
 
-def _lines(ports: Sequence[NodePort], names: Mapping[str, str]) -> list[tuple[str, str, str]]:
+def _lines(ports: Sequence[ComponentPort], names: Mapping[str, str]) -> list[tuple[str, str, str]]:
     kinds = (
         "std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)"
         for port in ports
@@ -213,7 +213,7 @@ def _lines(ports: Sequence[NodePort], names: Mapping[str, str]) -> list[tuple[st
     ]
 
 
-def _verilog(ports: Sequence[NodePort], module: str) -> str:
+def _verilog(ports: Sequence[ComponentPort], module: str) -> str:
     wires = (
         f"wire {f'[{port.width - 1}:0] ' if port.width > 1 else ''}{port.name};\n"
         for port in ports
