@@ -341,7 +341,10 @@ class FrameSender(wiring.Component):
             with m.State("LOOK"):
                 m.d.comb += self.look.eq(1)
                 with m.If(self.done):
-                    m.d.sync += [hardware.eq(self.mac), asks_after.eq(self.stale & may_ask)]
+                    m.d.sync += [
+                        hardware.eq(self.mac),
+                        asks_after.eq(self.found & self.stale & may_ask),
+                    ]
                     m.next = "START"
                     with m.If(~self.found):
                         m.next = "ASK"
