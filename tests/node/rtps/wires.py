@@ -19,8 +19,8 @@ __all__ = ["BOARD", "CLOCK_HZ", "Wires", "core_of", "description_of"]
 
 BOARD = "10.0.0.50"
 GROUP = Address("239.255.0.1", 7400)
-CLOCK_HZ = 10_000.0
-"""A slow clock: a tick of the link has 500 cycles, and a second 10,000."""
+CLOCK_HZ = 60_000.0
+"""A slow clock: a tick of the link has 3,000 cycles, and a second 60,000."""
 
 TEXT = """
 node: echo
