@@ -430,9 +430,12 @@ class Engine(wiring.Component):
                 m.d.comb += self.stray.eq(1)
                 m.next = "DONE"
             with m.Else(), m.Switch(event.kind):
-                for name in ("HEARTBEAT", "GAP", "ACKNACK"):
-                    with m.Case(EventKind[name]):
-                        m.next = name
+                with m.Case(EventKind.HEARTBEAT):
+                    m.next = "HEARTBEAT"
+                with m.Case(EventKind.GAP):
+                    m.next = "GAP"
+                with m.Case(EventKind.ACKNACK):
+                    m.next = "ACKNACK"
                 with m.Default():
                     m.next = "SAMPLE"
 
