@@ -28,8 +28,8 @@ class Reassembler(wiring.Component):
     first fragment ends what came before. A fragment that is not the next one ends its datagram, as
     does a silence of 3 ticks.
 
-    A fragment is written as it comes, and counts when its frame has ended well. So the state after
-    a fragment has a checksum that goes on with the next one.
+    A fragment is written as it comes, and counts when its frame has ended well. So a first one goes
+    where nothing is, and the state after a fragment has a checksum that goes on with the next one.
 
     A byte per cycle. A datagram can be read 8 cycles after the `end` of its last fragment.
 
@@ -101,7 +101,7 @@ class Reassembler(wiring.Component):
         busy = Cat(part.busy for part in parts)
 
         # Which part a fragment belongs to, as its header passes: the source is known at byte 15.
-        first, slot, chosen, gives_up = Signal(), Signal(), Signal(), Signal()
+        first, slot, chosen, gives_up = Signal(), Signal(), Signal(), Signal(2)
         limit = Signal(range(self.memory_bytes // 8 + 1))
         at = Signal(17)
         fits = Signal()
@@ -116,15 +116,15 @@ class Reassembler(wiring.Component):
             with m.Case(17):
                 with m.If(first):
                     m.d.sync += [
-                        slot.eq(~(same[0] | (~busy[0] & ~same[1]))),
-                        chosen.eq(same.any() | ~busy.all()),
-                        gives_up.eq(0),
+                        slot.eq(busy[0]),
+                        chosen.eq(~busy.all()),
+                        gives_up.eq(same),
                     ]
                 with m.Else():
                     m.d.sync += [
                         slot.eq(hits[1]),
                         chosen.eq((hits & follows).any()),
-                        gives_up.eq((hits & ~follows).any()),
+                        gives_up.eq(hits & ~follows),
                     ]
             with m.Case(18):
                 other = Mux(slot, parts[0].next, parts[1].next) + 1
@@ -185,7 +185,9 @@ class Reassembler(wiring.Component):
             good = chosen & fits & Mux(header.more, more, last)
             m.d.sync += self.dropped.eq(~good)
             for k, part in enumerate(parts):
-                with m.If((chosen | gives_up) & (slot == k)):
+                with m.If(gives_up[k]):
+                    m.d.sync += part.busy.eq(0)
+                with m.If(chosen & (slot == k)):
                     m.d.sync += [
                         part.busy.eq(good),
                         part.age.eq(0),

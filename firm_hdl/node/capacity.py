@@ -13,6 +13,7 @@ __all__ = ["bytes_on_link", "link_bytes_per_second", "most_bytes", "rate_problem
 
 _WAYS: dict[Direction, str] = {"in": "to the node", "out": "from the node"}
 _MOST_NAMED = 8
+_MII_BYTES_PER_SECOND = 12.5e6
 _MOST_FRAGMENTS = 1 << 16
 # Bytes of an RTPS datagram besides the payload: of a reply, with padding; of what peers send.
 _RTPS_SENT, _RTPS_RECEIVED = 155, 256
@@ -49,6 +50,8 @@ def link_bytes_per_second(description: Description) -> float:
     if link.kind == "uart":
         # A byte has a start bit and a stop bit.
         return link.baud / 10
+    if link.ethernet == "mii":
+        return _MII_BYTES_PER_SECOND
     words = link.kind in ("udp", "rtps")
     return description.clock_hz * (link.data_bytes if words else description.bus_bytes)
 
@@ -58,6 +61,8 @@ def rate_problems(description: Description) -> Iterator[str]:
     link, carries = description.link, link_bytes_per_second(description)
     cycle = f"{carries / description.clock_hz:g} bytes per cycle"
     why = f"{link.baud} baud" if link.kind == "uart" else cycle
+    if link.ethernet == "mii":
+        why = "100 Mbit/s"
     for direction, way in _WAYS.items():
         least, most, names = 0.0, 0.0, []
         for topic in description.topics:

@@ -120,7 +120,7 @@ def options(count):
 
 # Places in a frame: Ethernet has 14 bytes, IPv4 20, UDP 8.
 BAD = [
-    ("damaged", wire(udp(30))[:-1] + b"?"),
+    ("damaged", wire(udp(30))[:-1] + bytes([wire(udp(30))[-1] ^ 1])),
     ("damaged", [(byte, place == 30) for place, byte in enumerate(wire(udp(30)))]),
     ("damaged", b"\x55" * 6 + b"\x54" + wire(udp(30))[7:]),
     ("damaged", b"\x55" * 9),
@@ -231,11 +231,14 @@ def test_fragments_in_order_become_datagrams_and_others_are_dropped():
     own = settings(fragment_bytes=4096, tick_bits=8)
     a, b, c = fragments(60, 1), fragments(30, 1, src=OTHER), fragments(41, 2)
     wrong, lost, late = fragments(20, 3), fragments(60, 4), fragments(33, 5)
+    damaged = fragments(90, 6)[0]
+    damaged = damaged[:-1] + bytes([damaged[-1] ^ 1])
     # The checksum is that of all fragments.
     wrong[1] = changed(Ether(wrong[1][8:-4]), 35)
     steps = [
-        *(a[0], b[0], wire(udp(5)), a[1], b[1], a[2], Pause(120)),
-        *(*wrong, *c, lost[0], lost[2]),
+        *(a[0], damaged, b[0], wire(udp(5)), a[1], damaged, b[1], a[2], Pause(120)),
+        # A new datagram takes the place of one that was not finished.
+        *(*wrong, lost[0], lost[1], *c, lost[0], lost[2]),
         *(late[0], Pause(5 << 8), late[1]),
     ]
     seen = run(steps, own, after=150)
@@ -243,7 +246,7 @@ def test_fragments_in_order_become_datagrams_and_others_are_dropped():
         [*come(5, 60, 41), (payload(30), number(OTHER), 5000, 7411)]
     )
     # The end of the wrong one and of the lost one; the late one, and what came of it later.
-    assert seen.drops == {"fragment": 4}
+    assert seen.drops == {"fragment": 4, "damaged": 2}
     assert seen.frames == []
 
 

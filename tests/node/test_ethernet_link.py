@@ -39,7 +39,7 @@ def test_messages_pass_the_pins_both_ways_and_what_is_lost_is_counted():
         op=2, hwsrc="02:00:00:00:00:02", psrc="10.0.0.7", pdst="10.0.0.50"
     )
     wires = [frame(data) for data in frames_of(down)]
-    wires.insert(1, wires[0][:-1] + b"?")
+    wires.insert(1, wires[0][:-1] + bytes([wires[0][-1] ^ 1]))
     wires += [frame(b"x", port=1), PREAMBLE + checked(bytes(answer) + bytes(18))]
     pins, received = link.gmii, link.received
     beats, sent, counters = [], bytearray(), {}
