@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["PartEstimate", "core_estimate", "link_estimate"]
+__all__ = ["PartEstimate", "core_estimate", "ethernet_estimate", "link_estimate"]
 
 _PART = "ECP5 LFE5U-45F-8"
 _LINKS = {"stream": (497, 681), "uart": (1878, 1910), "udp": (1687, 2048)}
+_ETHERNET = (2977, 1518)
 _CORES = {2: (1879, 2932), 8: (5550, 7917)}
-"""Look-up tables and flip-flops: of links, and of cores by the number of their packet memories."""
+"""Look-up tables and flip-flops: of links, of the layers between UDP and a PHY with 8 ports, and of
+cores by the number of their packet memories."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,10 +39,18 @@ class PartEstimate:
     how: str
 
 
-def link_estimate(kind: str) -> PartEstimate:
-    """Return the area of a link with the memory of the default."""
+def link_estimate(kind: str) -> PartEstimate | None:
+    """Return the area of a link with the memory of the default; `None` if none was measured."""
+    if kind not in _LINKS:
+        return None
     lut, ff = _LINKS[kind]
     return PartEstimate(part=_PART, lut=lut, ff=ff, how="estimated: the link with its defaults")
+
+
+def ethernet_estimate() -> PartEstimate:
+    """Return the area of the layers between UDP and a PHY."""
+    lut, ff = _ETHERNET
+    return PartEstimate(part=_PART, lut=lut, ff=ff, how="estimated: with 8 ports")
 
 
 def core_estimate(memories: int) -> PartEstimate:

@@ -9,7 +9,7 @@ from typing import Any
 
 import firm_hdl
 from firm_hdl.drawing.svg import Figure
-from firm_hdl.estimates import core_estimate, link_estimate
+from firm_hdl.estimates import core_estimate, ethernet_estimate, link_estimate
 from firm_hdl.export.component import ComponentPort
 from firm_hdl.export.datasheet import definitions_of, render, size_text, sums_of
 from firm_hdl.export.datasheet.layout import layout_figure
@@ -175,11 +175,19 @@ def _areas(
             continue
         how = "measured" if found["is_same"] else f"estimated: {found['type']}"
         yield what, found["part"], found["lut"], found["ff"], f"{found['mhz']:.0f}", how
-    core, link = core_estimate(len(stores)), link_estimate(facts["link"]["kind"])
-    for what, part in (("core: gates, FIFOs, router, arbiter, clock", core), ("link", link)):
-        yield what, part.part, part.lut, part.ff, "", part.how
+    parts = {
+        "core: gates, FIFOs, router, arbiter, clock": core_estimate(len(stores)),
+        "link": link_estimate(facts["link"]["kind"]),
+    }
+    if "ethernet" in facts["link"]:
+        parts["Ethernet: MAC to UDP"] = ethernet_estimate()
     if facts["accelerator"]:
-        yield f"accelerator {facts['accelerator']}", "", None, None, "", "not measured"
+        parts[f"accelerator {facts['accelerator']}"] = None
+    for what, part in parts.items():
+        if part is None:
+            yield what, "", None, None, "", "not measured"
+        else:
+            yield what, part.part, part.lut, part.ff, "", part.how
 
 
 def _messages(description: Description) -> Iterator[dict[str, Any]]:

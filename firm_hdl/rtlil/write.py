@@ -68,9 +68,10 @@ def rtlil_of(design: Any, *, name: str, ports: Any = None, platform: Any = None)
     return convert_fragment(fragment, ports, name=name)
 
 
-def convert_fragment(fragment: Fragment, ports: Any, *, name: str) -> str:
+def convert_fragment(fragment: Fragment | _ir.Design, ports: Any, *, name: str) -> str:
     """Return an elaborated design as RTLIL. Parameters are those of `amaranth.back.rtlil`."""
-    purposes = dict(_purposes(fragment, (name,)))
+    top = fragment.fragment if isinstance(fragment, _ir.Design) else fragment
+    purposes = dict(_purposes(top, (name,)))
     netlist = _ir.build_netlist(fragment, ports=ports, name=name)
     empty = rtlil.EmptyModuleChecker(netlist)
     design, names = rtlil.Design(emit_src=False), rtlil._ast.SignalDict()

@@ -120,7 +120,7 @@ def test_a_part_is_built_with_its_options_and_told(tmp_path, monkeypatch, capsys
     words = ["--in-bytes", "1", "--out-bytes", "2", "--out", "x", "--name", "mine", "--force"]
     assert main(["part", "width", *words]) == 0
     assert capsys.readouterr().out == f"current there{os.sep}\n{TOLD}"
-    options = {"message": None, "in_bytes": 1, "out_bytes": 2}
+    options = {"message": None, "in_bytes": 1, "out_bytes": 2, "side_bits": 0}
     assert asked == [
         (("width", {**options, "name": None}), "parts_out", False),
         (("width", {**options, "name": "mine"}), "x", True),
@@ -145,7 +145,7 @@ def test_a_gate_gets_the_message_that_its_folders_define(workdir, monkeypatch):
     words += ["--max-message-bytes", "77", "--memory-bytes", "512", "--packets", "9"]
     assert main(["part", "gate", "p/A", *words, "--when-full", "drop"]) == 1
     given = {"wire": "ros1", "bus_bytes": 4, "max_message_bytes": 77}
-    given |= {"memory_bytes": 512, "packets": 9, "when_full": "drop"}
+    given |= {"memory_bytes": 512, "packets": 9, "when_full": "drop", "side_bits": 0}
     assert asked == [("gate", "p/msg/A", given)]
 
 

@@ -5,23 +5,31 @@ from __future__ import annotations
 import pytest
 from amaranth.sim import Simulator
 
-from firm_hdl.node import Link
+from firm_hdl.node import Node, read_description_text
 from firm_hdl.node.links import EthernetLink
+from firm_hdl.node.top import NodeTop, node_ports
+from firm_hdl.rtlil import rtlil_of
 from firm_hdl.sim.payloads import packet_beats
 from tests.ethernet.bench import PREAMBLE, checked
+from tests.node.samples import LIBRARY
 from tests.node.traffic import frames_of, link_beats, some
 
 scapy = pytest.importorskip("scapy.all")
 
-LINK = Link(
-    kind="udp",
-    memory_bytes=512,
-    packets=8,
-    ethernet="gmii",
-    mac="02:00:00:00:00:01",
-    address="10.0.0.50/8",
-)
-BUS = 8
+TEXT = """\
+node: n
+clock_mhz: 125
+link:
+  kind: udp
+  memory_bytes: 512
+  packets: 8
+  ethernet: gmii
+  mac: "02:00:00:00:00:01"
+  address: 10.0.0.50/8
+subscribe: {/a: {type: std_msgs/msg/String, memory_bytes: 256}}
+"""
+DESCRIPTION = read_description_text(TEXT, name="n.yaml", library=LIBRARY)
+LINK, BUS = DESCRIPTION.link, DESCRIPTION.bus_bytes
 
 
 def frame(data, *, port=LINK.port):
@@ -33,7 +41,7 @@ def frame(data, *, port=LINK.port):
 
 
 def test_messages_pass_the_pins_both_ways_and_what_is_lost_is_counted():
-    link = EthernetLink(BUS, LINK)
+    link = EthernetLink(DESCRIPTION)
     down, up = some(2, 1), some(1, 2)
     answer = scapy.Ether(dst=LINK.mac, src="02:00:00:00:00:02") / scapy.ARP(
         op=2, hwsrc="02:00:00:00:00:02", psrc="10.0.0.7", pdst="10.0.0.50"
@@ -92,3 +100,13 @@ def test_messages_pass_the_pins_both_ways_and_what_is_lost_is_counted():
     assert bytes(packet[scapy.UDP].payload)[: packet[scapy.UDP].len - 8] == frames_of(up)[0]
     found = {name: count for name, count in counters.items() if count}
     assert found == {"passed": 2, "ethernet_damaged": 1, "ethernet_port": 1}
+
+
+def test_a_participant_of_ros_2_has_the_pins_of_a_phy_too():
+    text = TEXT.replace("kind: udp", "kind: rtps")
+    node = Node(read_description_text(text, name="n.yaml", library=LIBRARY))
+    names = {port.name: port.width for port in node_ports(node)}
+    assert (names["gmii_rxd"], names["gmii_txd"], names["nonce"]) == (8, 8, 32)
+    assert "udp_rx_data" not in names
+    # The drivers of all its parts fit together.
+    assert "\\gmii_rxd" in rtlil_of(NodeTop(node), name="n")

@@ -15,7 +15,7 @@ from firm_hdl.gateware.packets.counters import add_counters
 from firm_hdl.node.control import ethernet_counter
 from firm_hdl.node.description import Description, Link
 from firm_hdl.node.gateware.streams import LinkSignature, link_counters_layout, passes
-from firm_hdl.node.links.rtps import RtpsLink
+from firm_hdl.node.links.rtps import RtpsLink, idle_bits
 from firm_hdl.node.links.udp import UdpLink
 from firm_hdl.node.rtps.endpoints import ports_of_link
 from firm_hdl.rtps.wire.locators import MULTICAST_GROUP
@@ -42,8 +42,8 @@ class EthernetLink(wiring.Component):
     sent : In(LinkSignature(bus_bytes))
     counters : Out(link_counters_layout(link))
     gmii, rgmii or mii : Out(the signature of the pins)
-    nonce : In(32)
-        Of an :class:`.RtpsLink`.
+    nonce, idle : In
+        Those of an :class:`.RtpsLink`.
     """
 
     def __init__(self, description: Description):
@@ -55,6 +55,7 @@ class EthernetLink(wiring.Component):
                 "sent": In(LinkSignature(bus)),
                 "counters": Out(link_counters_layout(link)),
                 **self.medium(link),
+                **({"idle": In(idle_bits(description))} if link.kind == "rtps" else {}),
             }
         )
 
@@ -75,7 +76,7 @@ class EthernetLink(wiring.Component):
             ports = tuple(ports_of_link(self.description))
             groups = (int(IPv4Address(MULTICAST_GROUP)),)
             m.submodules.rtps = upper = RtpsLink(self.description)
-            m.d.comb += upper.nonce.eq(self.nonce)
+            m.d.comb += [upper.nonce.eq(self.nonce), upper.idle.eq(self.idle)]
         else:
             m.submodules.udp = upper = UdpLink(self.description.bus_bytes, link)
         m.submodules.phy = phy = PHYS[link.ethernet]()

@@ -20,7 +20,12 @@ from firm_hdl.node.rtps.messages import MessageReader
 from firm_hdl.node.rtps.templates import templates_of
 from firm_hdl.node.rtps.transmitter import Transmitter
 
-__all__ = ["RtpsLink"]
+__all__ = ["RtpsLink", "idle_bits"]
+
+
+def idle_bits(description: Description) -> int:
+    """Return the width of `idle`: a bit for each topic of a description that comes in."""
+    return max(1, sum(topic.has("in") for topic in description.topics))
 
 
 class RtpsLink(wiring.Component):
@@ -56,7 +61,7 @@ class RtpsLink(wiring.Component):
                 "received": Out(LinkSignature(bus)),
                 "sent": In(LinkSignature(bus)),
                 "counters": Out(link_counters_layout()),
-                "idle": In(max(1, sum(topic.has("in") for topic in description.topics))),
+                "idle": In(idle_bits(description)),
                 **self.medium(),
             }
         )

@@ -21,7 +21,8 @@ PIECES = [
     for page in ("docs/howto/vhdl.md", "README.md")
     for piece in re.findall(r"^```vhdl\n(.*?)^```$", (ROOT / page).read_text(), re.M | re.S)
 ]
-RECORD, STREAMS, WRITER, SHORT = PIECES
+# Behind the writer are lines that firm-hdl wrote.
+RECORD, STREAMS, WRITER, *_, SHORT = PIECES
 # The README has the statements alone.
 BLOCKS = [RECORD, STREAMS, "...\n".join([*RECORD.split("...\n")[:2], SHORT])]
 EXAMPLES = ROOT / "examples"
