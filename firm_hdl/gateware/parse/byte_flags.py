@@ -1,4 +1,4 @@
-"""Flags of bytes for the sequencer: those that are not NUL, and headers that are wrong."""
+"""Flags for the sequencer: bytes that are not NUL, and beats that are no correct header."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ __all__ = ["ByteFlags"]
 
 
 class ByteFlags(wiring.Component):
-    """One bit for each byte of the packet buffer, and one for each header.
+    """Flags of the packet buffer: one for each byte, and those of headers for each beat.
+
+    Whether a beat is that of a header is not known as it arrives. So every beat is compared with
+    the checked bytes of each header state, and the sequencer reads the flag of the right beat.
 
     Flags are written together with their beat, and read combinationally.
 
