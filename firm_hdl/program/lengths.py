@@ -70,7 +70,7 @@ class Length:
         return self.limit + self.has_nul
 
     @property
-    def word(self) -> int:
+    def most_in_rest(self) -> int:
         """The largest value on the wire of which all items are in the rest."""
         return self.lanes + self.has_nul
 

@@ -155,7 +155,9 @@ class Lengths(wiring.Component):
                 one, two = length == 1, length == 2
             else:
                 # A word and its NUL are the rest, so n passes take n words more.
-                skips, one, two = (~exceeds(length, n * each.lanes + each.word) for n in range(3))
+                skips, one, two = (
+                    ~exceeds(length, n * each.lanes + each.most_in_rest) for n in range(3)
+                )
                 if each.rest not in columns:
                     nul = int(each.has_nul)
                     items = last_word(length[:8] - nul, each.lanes)
@@ -188,7 +190,7 @@ class Lengths(wiring.Component):
         items = Signal(ring.bits, name=f"items_{lane}_{of.kind}")
         items_end = Signal(ring.bits, name=f"items_end_{lane}_{of.kind}")
         beat = Cat(Const(0, ring.lane_bits), self.beat.at)
-        count = length[: of.word.bit_length()]
+        count = length[: of.most_in_rest.bit_length()]
         aligned = align_up(m, beat, lane + 1, of.align, phase)
         # An empty run has no padding.
         m.d.comb += [

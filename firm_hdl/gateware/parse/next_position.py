@@ -157,8 +157,9 @@ def _over_rests(
 
     Returns
     -------
-    Its distance from the run's last word over the rest: a register that is written when the run
-    begins. And its last byte, if the run begins now and has nothing but a rest.
+    Its distance from the run's last word over the rest: a register that is written in every cycle
+    of the state that begins the run. And its last byte, if the run begins now and has nothing but a
+    rest.
     """
     # The words of a run are counted from its length, not from positions. So the distance over the
     # rest is known when the run begins, and waits in a register until the last word:
