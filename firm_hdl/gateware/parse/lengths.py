@@ -65,7 +65,9 @@ class Lengths(wiring.Component):
                 columns[each.charged] = 1
             if each.level is None:
                 columns[each.rest] = each.lanes.bit_length()
-                columns |= {each.next_last(following): self.ring.bits for following in each.nexts}
+                columns |= {
+                    each.next_last_at(following): self.ring.bits for following in each.nexts
+                }
         self.layout = data.StructLayout(columns)
         super().__init__(
             {
@@ -162,7 +164,7 @@ class Lengths(wiring.Component):
                     nul = int(each.has_nul)
                     items = last_word(length[:8] - nul, each.lanes)
                     columns[each.rest] = Mux(exceeds(length, nul), items, 0)
-                columns |= self._next_last(m, length, lane, phase, each, columns)
+                columns |= self._next_last_at(m, length, lane, phase, each, columns)
             columns |= {
                 each.over: over,
                 each.skips: skips | over,
@@ -173,7 +175,7 @@ class Lengths(wiring.Component):
                 columns[each.charged] = exceeds(length, each.charge.charged_from - 1)
         m.d.comb += [entry[name].eq(value) for name, value in columns.items()]
 
-    def _next_last(
+    def _next_last_at(
         self,
         m: Module,
         length: Signal,
@@ -183,7 +185,7 @@ class Lengths(wiring.Component):
         known: dict[str, Value],
     ) -> dict[str, Value]:
         """Return the last byte of each next state, if no word comes before the rest."""
-        nexts = {of.next_last(each): each for each in of.nexts}
+        nexts = {of.next_last_at(each): each for each in of.nexts}
         if nexts.keys() <= known.keys():
             return {}
         ring = self.ring

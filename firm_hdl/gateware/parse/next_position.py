@@ -135,7 +135,7 @@ def next_positions(
             mask.eq(chosen("mask", 3)),
             low.eq(chosen("low", len(low))),
         ]
-        result = ring.position(f"{kind}_last")
+        result = ring.position(f"{kind}_last_at")
         if isinstance(phase, int):
             m.d.comb += result.eq((total & ~Cat(mask, Const(0, len(total) - 3))) | low)
             return result
@@ -180,7 +180,7 @@ def _over_rests(
         sizes.append((taken, distance_to(plan, to) + counted.has_nul))
         shift = counted.item_bytes.bit_length() - 1
         rests.append((taken, Value.cast(entry[counted.rest]) << shift))
-        columns.setdefault(counted.next_last(to), []).append(taken)
+        columns.setdefault(counted.next_last_at(to), []).append(taken)
     total = pick(sizes, len(over_rest)) + pick(rests, len(over_rest))
     with m.If(begins_run):
         m.d.sync += over_rest.eq(total)

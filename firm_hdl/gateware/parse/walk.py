@@ -275,7 +275,7 @@ class Walk:
             m, program, self.flow, self.last_at, self.phase, length, self.begins_run
         )
         # Decisions by a length are late in the cycle, so what they select from comes first.
-        early, last = ring.position("early_last"), ring.position("next_last")
+        early, last = ring.position("early_last_at"), ring.position("next_last_at")
         begin = start + program.states[program.start.to or 0].last_offset
         exit_or_body = Mux(self.exits_always, nexts.exit, nexts.body)
         exit_or_skipped = Mux(length.loop_skips, nexts.exit, early)
