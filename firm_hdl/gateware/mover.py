@@ -224,7 +224,7 @@ class Mover(wiring.Component):
         return found
 
     def _transfer_names(self) -> tuple[str, ...]:
-        """Return a name for each transfer of each state: its leaf, and its state if there are more."""
+        """Return a name for each transfer: its leaf, and the state if several have it."""
         leaves = leaf_names(self.plan)
         named = [
             (leaves[each.leaf] + "_rest" * each.is_rest, state.name)

@@ -60,7 +60,7 @@ class ByteFlags(wiring.Component):
         beat, ring = self.beat, self.ring
         lanes = [beat.data[8 * k : 8 * k + 8] for k in range(self.program.plan.bus_bytes)]
         if self.program.has_strings:
-            memory = LutMemory(m, "nonzero", len(lanes), ring.depth)
+            memory = LutMemory(m, "nonzero_table", len(lanes), ring.depth)
             write, read = memory.write, memory.reader()
             m.d.comb += [
                 write.addr.eq(beat.at),
@@ -70,7 +70,7 @@ class ByteFlags(wiring.Component):
                 self.nonzero.eq((read.data >> ring.lane(self.nul_at))[0]),
             ]
         if self.states:
-            memory = LutMemory(m, "headers", len(self.states), ring.depth)
+            memory = LutMemory(m, "headers_table", len(self.states), ring.depth)
             write, read = memory.write, memory.reader()
             # The checked bytes of a state are in its first beat: a header is cut at bus words.
             wrong = [

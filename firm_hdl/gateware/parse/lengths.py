@@ -98,8 +98,8 @@ class Lengths(wiring.Component):
             entry = Signal(self.layout, name=f"entry_{lane}")
             m.d.comb += length.eq(stream[8 * lane : 8 * (lane + LENGTH_BYTES)])
             self._decode(m, length, lane, phase, entry)
-            entries.append(self._store(m, f"entry_{lane}", Value.cast(entry), self.key))
-            counts.append(self._store(m, f"count_{lane}", length[: len(self.count)], key))
+            entries.append(self._store(m, f"entry_{lane}_table", Value.cast(entry), self.key))
+            counts.append(self._store(m, f"count_{lane}_table", length[: len(self.count)], key))
         # Select the lane of the key. Only lanes in which lengths end occur, so the last one needs
         # no comparison, and bits that all of them share are not compared.
         _, constant = constant_low_lane_bits(lanes, self.plan.bus_bytes)
@@ -189,18 +189,21 @@ class Lengths(wiring.Component):
         if nexts.keys() <= known.keys():
             return {}
         ring = self.ring
-        items = Signal(ring.bits, name=f"items_{lane}_{of.kind}")
+        items_name = f"items_{lane}_{of.kind}"
+        items = Signal(ring.bits, name=items_name)
         items_end = Signal(ring.bits, name=f"items_end_{lane}_{of.kind}")
         beat = Cat(Const(0, ring.lane_bits), self.beat.at)
         count = length[: of.most_in_rest.bit_length()]
-        aligned = align_up(m, beat, lane + 1, of.align, phase)
+        aligned = align_up(m, items_name, beat, lane + 1, of.align, phase)
         # An empty run has no padding.
         m.d.comb += [
             items.eq(Mux(length.any(), aligned, beat + (lane + 1)) if of.align > 1 else aligned),
             items_end.eq(items + (count << (of.item_bytes.bit_length() - 1))),
         ]
         return {
-            name: align_up(m, items_end, 0, each.align, phase, each.last_offset)
+            name: align_up(
+                m, f"entry_{lane}_{name}", items_end, 0, each.align, phase, each.last_offset
+            )
             for name, each in nexts.items()
             if name not in known
         }

@@ -286,7 +286,7 @@ class Walk:
         # The first item of the run that the state begins; else the end of the state.
         items_at: Value = self.step_end
         for align in sorted({each.align for each in program.lengths.values()} - {1}):
-            aligned = align_up(m, self.step_end, 0, align, self.phase)
+            aligned = align_up(m, f"items_at_{align}", self.step_end, 0, align, self.phase)
             chosen = any_of(
                 [self.flow.step[k] for k, each in program.lengths.items() if each.align == align]
             )
