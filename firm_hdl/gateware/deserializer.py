@@ -32,11 +32,14 @@ __all__ = ["Deserializer"]
 class Deserializer(Component):
     """Turn packets into messages.
 
-    Every leaf has one register. A packet advances one step of the plan per cycle, while its bytes
-    have arrived and the registers of the step's leaves are free or being read. Leaves become valid
-    in wire order, `LATENCY_CYCLES["deserializer"]` cycles after the last beat of their step. All
-    outputs are registers. One clock domain, `sync`; its reset discards all packets and messages
-    inside.
+    A packet advances one step of the plan per cycle, as soon as the bytes of the step have arrived.
+    Each step gives an order to a queue of two, and every leaf has one register. Leaves that are not
+    taken hold the packet only when the queue is full. Most leaves cost one cycle more if they are
+    still full when their next value comes.
+
+    Leaves become valid in wire order, `LATENCY_CYCLES["deserializer"]` cycles after the last beat
+    of their step. All outputs are registers. One clock domain, `sync`; its reset discards all
+    packets and messages inside.
 
     Each packet ends in one transfer on `status`. After the first error in a packet, the remaining
     scalars and lengths transfer as 0, the current sequence is completed with zeros, and the rest of

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -188,12 +189,7 @@ class Mover(wiring.Component):
         So a state must not wait until all its leaves are free; it remembers which are written.
         """
         order, found = self.orders.payload, list[_Writer]()
-        leaves = leaf_names(self.plan)
-        names = unique(
-            leaves[each.leaf] + "_rest" * each.is_rest
-            for state in self.program.states
-            for each in state.transfers
-        )
+        names = self._transfer_names()
         has_step = Signal()
         m.d.comb += has_step.eq(self.orders.valid & ~order.blank)
         for state in self.program.states:
@@ -226,6 +222,20 @@ class Mover(wiring.Component):
                     )
                 )
         return found
+
+    def _transfer_names(self) -> tuple[str, ...]:
+        """Return a name for each transfer: its leaf, and the state if several have it."""
+        leaves = leaf_names(self.plan)
+        named = [
+            (leaves[each.leaf] + "_rest" * each.is_rest, state.name)
+            for state in self.program.states
+            for each in state.transfers
+        ]
+        count = Counter(name for name, _ in named)
+        return unique(
+            name if count[name] == 1 or name == state else f"{name}_in_{state}"
+            for name, state in named
+        )
 
     def _wants(self, m: Module, take: Value, leaf: int, writers: list[_Writer]) -> Signal:
         """Return a register: the order that is executed still has to write the leaf."""

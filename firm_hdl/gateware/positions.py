@@ -97,7 +97,13 @@ def beat_layout(plan: Plan) -> data.StructLayout:
 
 
 def align_up(
-    m: Module, value: Value, distance: Value | int, align: int, phase: Value | int, shift: int = 0
+    m: Module,
+    name: str,
+    value: Value,
+    distance: Value | int,
+    align: int,
+    phase: Value | int,
+    shift: int = 0,
 ) -> Value:
     """Return `value + distance`, rounded up to an aligned position, plus `shift`.
 
@@ -105,6 +111,8 @@ def align_up(
 
     Parameters
     ----------
+    name : str
+        Prefix of the names of signals: of the sum before the rounding, for example.
     align : int
         A power of two, at most 8. Aligned positions are `phase` plus a multiple of `align`.
     phase : Value or int
@@ -112,7 +120,7 @@ def align_up(
     shift : int
         Bytes to add after the rounding; a constant, so that it needs no addition of its own.
     """
-    total = Signal(len(value))
+    total = Signal(len(value), name=f"{name}_sum")
     if align == 1:
         m.d.comb += total.eq(value + distance + shift)
         return total
@@ -120,8 +128,8 @@ def align_up(
         low = align.bit_length() - 1
         m.d.comb += total.eq(value + (distance + align_addend(align, phase, shift)))
         return Cat(Const((phase + shift) % align, low), total[low:])
-    pad = Signal(3)
-    result = Signal(len(value))
+    pad = Signal(3, name=f"{name}_pad")
+    result = Signal(len(value), name=f"{name}_aligned")
     m.d.comb += [
         total.eq(value + distance),
         pad.eq((phase - total) & (align - 1)),

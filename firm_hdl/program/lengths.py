@@ -70,7 +70,7 @@ class Length:
         return self.limit + self.has_nul
 
     @property
-    def word(self) -> int:
+    def most_in_rest(self) -> int:
         """The largest value on the wire of which all items are in the rest."""
         return self.lanes + self.has_nul
 
@@ -111,9 +111,9 @@ class Length:
         """The value is large enough to be charged to the budget; `None`: it claims nothing."""
         return None if self.charge is None else f"charged_{self.charge.charged_from}"
 
-    def next_last(self, following: NextMap) -> str:
+    def next_last_at(self, following: NextMap) -> str:
         """The last byte of what follows, if all items are in the rest."""
-        return f"last_{self.kind}_{self.align}_{following.align}_{following.last_offset + 1}"
+        return f"last_at_{self.kind}_{self.align}_{following.align}_{following.last_offset + 1}"
 
 
 def length_of(plan: Plan, control: Control) -> Length | None:

@@ -26,6 +26,8 @@ __all__ = ["MANY_STATES", "program_lines", "program_text", "state_remark"]
 MANY_STATES = 64
 """Most states that comments in a circuit's text describe in full."""
 
+_END = "end of the packet"
+
 LEGEND = """\
 # One line a state: its number and name, what it takes, and where it leads. "map" and "items" are
 # the words of a state: of its fixed part, and of the items of a run or of their rest. "unit 4":
@@ -62,9 +64,13 @@ def _line(state: State, texts: Iterator[str]) -> str:
 
 def state_remark(program: Program[AnyState], state: AnyState) -> str:
     """Return what a state takes: the comment beside its signal, short if there are many states."""
-    takes = "; ".join(_common(program.plan, state)) or "no bytes"
+    takes = "; ".join(_common(program.plan, state)) or _without_bytes(state)
     width = 200 if len(program.states) <= MANY_STATES else 60
     return shorten(f"step {state.number}: {takes}", width, placeholder=" ...")
+
+
+def _without_bytes(state: State) -> str:
+    return _END if isinstance(state, DeserializerState) and state.at_end else "no bytes"
 
 
 def _head(program: Program[AnyState]) -> str:
@@ -113,7 +119,7 @@ def _length(length: Length) -> str:
 
 def _deserializer(plan: Plan, state: DeserializerState) -> Iterator[str]:
     if state.at_end:
-        yield "end of the packet"
+        yield _END
         return
     yield from _common(plan, state)
     if state.checks:

@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 from firm_hdl.names.attributes import REMARK
 from firm_hdl.rtlil.ir import Assign, Bits, Cell, Module, Slice, Statement, Value, Wire
 from firm_hdl.vhdl.expr import Declared
-from firm_hdl.vhdl.graph import Graph
+from firm_hdl.vhdl.graph import Graph, uses_with_registers, wires_of
 from firm_hdl.vhdl.instance import component_names
 from firm_hdl.vhdl.names import AMS, Scope, is_identifier, legal
 from firm_hdl.vhdl.text import bit_literal, literal
@@ -28,6 +28,9 @@ __all__ = [
 
 _INTERNAL = ("init", "src", "generator", "top", "enum_base_type", REMARK)
 """Attributes that are for readers of RTLIL."""
+
+_MAX_NAME = 60
+"""Most characters of a name that is made of other names."""
 
 Role: TypeAlias = Literal["register", "logic", "alias"]
 DriverKind: TypeAlias = Literal["register", "logic", "submodule", "foreign"]
@@ -256,20 +259,31 @@ def part_names(module: Module) -> dict[str, str]:
 
 
 def _next_names(graph: Graph) -> dict[str, str]:
-    """Name generated wires after the register of whose next value they are a part."""
+    """Name generated wires after the register of whose next value they are a part.
+
+    A wire that something else reads as well is more than the next value of one register.
+    """
     names: dict[str, str] = {}
+    reads = wires_of(use.spec for use in uses_with_registers(graph))
     for wire, cell in graph.register_of.items():
         register = graph.name_of.get(wire, wire)
         if register.startswith("$"):
             continue
         process = graph.next_state.get(wire)
         whole = Assign(target=(Slice(wire, 0, graph.width[wire]),), value=cell.ports["D"])
-        for each in _assignments((whole,) if process is None else process.body):
+        assigned = list(_assignments((whole,) if process is None else process.body))
+        reads_here = wires_of(each.value for each in assigned)
+        for each in assigned:
             (target,) = each.target
             assert isinstance(target, Slice)
             position = target.low
             for chunk in each.value:
-                if isinstance(chunk, Slice) and chunk.wire.startswith("$") and chunk.low == 0:
+                if (
+                    isinstance(chunk, Slice)
+                    and chunk.wire.startswith("$")
+                    and chunk.low == 0
+                    and reads[chunk.wire] == reads_here[chunk.wire]
+                ):
                     is_whole = chunk.width == graph.width[wire]
                     name = f"{register}_next" if is_whole else f"{register}_next_{position}"
                     names.setdefault(chunk.wire, name)
@@ -308,7 +322,7 @@ def _drivers(graph: Graph, child_names: Mapping[str, Mapping[str, str]]) -> dict
             wire = output(cell)
             if wire not in graph.folded:
                 kind = "register" if _is_register(cell) else "logic"
-                add(kind, wire, _generated_name(cell.kind, wire))
+                add(kind, wire, _either(graph, cell) or _generated_name(cell.kind, wire))
     for process in graph.processes:
         wire = graph.target(process)
         add("logic", wire, _generated_name("$choice", wire))
@@ -323,6 +337,29 @@ def _is_register(cell: Cell) -> bool:
     if cell.kind == "$memrd_v2":
         return cell.parameters.get("CLK_ENABLE") == 1
     return cell.kind in ("$dff", "$adff")
+
+
+def _either(graph: Graph, cell: Cell) -> str | None:
+    """Name a disjunction of a few bits after them, without the word with which all of them begin.
+
+    So the condition "in step a or in step b" is `step_a_or_b`.
+    """
+    if cell.kind not in ("$or", "$reduce_or", "$reduce_bool"):
+        return None
+    chunks = (*cell.ports["A"], *cell.ports.get("B", ()))
+    names = [
+        graph.name_of.get(chunk.wire, chunk.wire)
+        for chunk in chunks
+        if isinstance(chunk, Slice) and graph.width[chunk.wire] == 1
+    ]
+    if not 1 < len(names) == len(chunks) <= 3:
+        return None
+    first = names[0].partition("_")[0] + "_"
+    if all(name.startswith(first) for name in names):
+        names[1:] = [name.removeprefix(first) for name in names[1:]]
+    name = "_or_".join(names)
+    is_plain = not any(mark in name for mark in "$.[")
+    return name if is_plain and len(name) <= _MAX_NAME else None
 
 
 def _generated_name(kind: str, wire: str) -> str:

@@ -9,7 +9,7 @@ graph and returns another one.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
@@ -17,7 +17,15 @@ from firm_hdl.rtlil.fields import base_of_field
 from firm_hdl.rtlil.ir import Assign, Cell, Module, Process, Slice, Spec, spec_width
 from firm_hdl.vhdl.uses import INLINE, Use, output, statement_uses, uses_of
 
-__all__ = ["Connection", "Graph", "graph_of", "only", "target_of"]
+__all__ = [
+    "Connection",
+    "Graph",
+    "graph_of",
+    "only",
+    "target_of",
+    "uses_with_registers",
+    "wires_of",
+]
 
 
 Connection: TypeAlias = "tuple[Spec, Spec]"
@@ -107,6 +115,11 @@ class Graph:
 def only(spec: Spec) -> Slice | None:
     """Return the slice of a value that consists of a single slice, else `None`."""
     return spec[0] if len(spec) == 1 and isinstance(spec[0], Slice) else None
+
+
+def wires_of(specs: Iterable[Spec]) -> Counter[str]:
+    """Count how often values contain each wire."""
+    return Counter(chunk.wire for spec in specs for chunk in spec if isinstance(chunk, Slice))
 
 
 def target_of(process: Process) -> str | None:
@@ -320,8 +333,7 @@ def _is_driven(wire: str, drives: list[Connection]) -> bool:
 
 def _pair_registers(graph: Graph) -> Graph:
     """Find the registers, and the processes that compute the next value of a single register."""
-    specs = [*(use.spec for use in graph.uses()), *graph.connected()]
-    reads = Counter(chunk.wire for spec in specs for chunk in spec if isinstance(chunk, Slice))
+    reads = wires_of([*(use.spec for use in graph.uses()), *graph.connected()])
     by_target = {target_of(process): process for process in graph.processes}
     registers = {output(cell): cell for cell in graph.cells if cell.kind in ("$dff", "$adff")}
     next_state: dict[str, Process] = {}
@@ -341,7 +353,7 @@ def _pair_registers(graph: Graph) -> Graph:
     return replace(graph, processes=others, register_of=registers, next_state=next_state)
 
 
-def _uses_with_registers(graph: Graph) -> Iterator[Use]:
+def uses_with_registers(graph: Graph) -> Iterator[Use]:
     """Yield all values that are read; for a register, the values that its process reads."""
     for cell in graph.cells:
         process = graph.next_state.get(output(cell)) if cell.kind in ("$dff", "$adff") else None
@@ -360,7 +372,7 @@ def _fold(graph: Graph, is_foldable: Callable[[Cell, int], bool]) -> Graph:
     """Find the generated wires whose expression can be written where they are read."""
     count: Counter[str] = Counter()
     fixed: set[str] = set()
-    for use in _uses_with_registers(graph):
+    for use in uses_with_registers(graph):
         for chunk in use.spec:
             if isinstance(chunk, Slice):
                 count[chunk.wire] += 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 from amaranth.asserts import AnyConst
-from amaranth.hdl import ClockDomain, Module, Signal
+from amaranth.hdl import Cat, ClockDomain, Module, Mux, Signal
 
 from firm_hdl.vhdl.convert import convert
 
@@ -88,6 +88,29 @@ def test_names_of_the_design_come_before_names_made_for_operators() -> None:
     assert made.startswith("add_")
     taken = names(made)
     assert taken[made] == made and taken[wire] == f"{made}_2"
+
+
+def test_only_what_nothing_else_reads_is_the_next_value_of_a_register() -> None:
+    m = Module()
+    ports = [Signal(8, name=name) for name in ("x", "y", "z", "a", "b", "c")]
+    x, y, z, a, b, c = ports
+    shared, own = (x * y)[:4], (x * z)[:4]
+    m.d.sync += [a.eq(Cat(shared, y)), b.eq(Cat(shared, z)), c.eq(Cat(own, z))]
+    with m.If(y[0]):
+        m.d.sync += c.eq(Cat(own, y))
+    text = convert(m, name="t", ports=ports).files["t.vhd"]
+    assert "c_next_0" in text and "a_next" not in text and "b_next" not in text
+
+
+def test_a_disjunction_of_a_few_bits_is_named_after_them() -> None:
+    m = Module()
+    steps = [Signal(name=f"step_{name}") for name in "abcd"]
+    outputs = [Signal(4, name=f"to_{name}") for name in "abcd"]
+    either = Cat(steps[:2]).any()
+    for signal, step in zip(outputs, steps, strict=True):
+        m.d.comb += signal.eq(Mux(either, Cat(steps), step))
+    text = convert(m, name="t", ports=[*steps, *outputs]).files["t.vhd"]
+    assert "step_a_or_b <= step_a or step_b;" in text
 
 
 def test_signals_inside_have_other_names_than_ports_whatever_their_case() -> None:

@@ -1,4 +1,4 @@
-"""Flags of bytes for the sequencer: those that are not NUL, and headers that are wrong."""
+"""Flags for the sequencer: bytes that are not NUL, and beats that are no correct header."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ __all__ = ["ByteFlags"]
 
 
 class ByteFlags(wiring.Component):
-    """One bit for each byte of the packet buffer, and one for each header.
+    """Flags of the packet buffer: one for each byte, and those of headers for each beat.
+
+    Whether a beat is that of a header is not known as it arrives. So every beat is compared with
+    the checked bytes of each header state, and the sequencer reads the flag of the right beat.
 
     Flags are written together with their beat, and read combinationally.
 
@@ -57,7 +60,7 @@ class ByteFlags(wiring.Component):
         beat, ring = self.beat, self.ring
         lanes = [beat.data[8 * k : 8 * k + 8] for k in range(self.program.plan.bus_bytes)]
         if self.program.has_strings:
-            memory = LutMemory(m, "nonzero", len(lanes), ring.depth)
+            memory = LutMemory(m, "nonzero_table", len(lanes), ring.depth)
             write, read = memory.write, memory.reader()
             m.d.comb += [
                 write.addr.eq(beat.at),
@@ -67,7 +70,7 @@ class ByteFlags(wiring.Component):
                 self.nonzero.eq((read.data >> ring.lane(self.nul_at))[0]),
             ]
         if self.states:
-            memory = LutMemory(m, "headers", len(self.states), ring.depth)
+            memory = LutMemory(m, "headers_table", len(self.states), ring.depth)
             write, read = memory.write, memory.reader()
             # The checked bytes of a state are in its first beat: a header is cut at bus words.
             wrong = [

@@ -65,7 +65,9 @@ class Lengths(wiring.Component):
                 columns[each.charged] = 1
             if each.level is None:
                 columns[each.rest] = each.lanes.bit_length()
-                columns |= {each.next_last(following): self.ring.bits for following in each.nexts}
+                columns |= {
+                    each.next_last_at(following): self.ring.bits for following in each.nexts
+                }
         self.layout = data.StructLayout(columns)
         super().__init__(
             {
@@ -96,8 +98,8 @@ class Lengths(wiring.Component):
             entry = Signal(self.layout, name=f"entry_{lane}")
             m.d.comb += length.eq(stream[8 * lane : 8 * (lane + LENGTH_BYTES)])
             self._decode(m, length, lane, phase, entry)
-            entries.append(self._store(m, f"entry_{lane}", Value.cast(entry), self.key))
-            counts.append(self._store(m, f"count_{lane}", length[: len(self.count)], key))
+            entries.append(self._store(m, f"entry_{lane}_table", Value.cast(entry), self.key))
+            counts.append(self._store(m, f"count_{lane}_table", length[: len(self.count)], key))
         # Select the lane of the key. Only lanes in which lengths end occur, so the last one needs
         # no comparison, and bits that all of them share are not compared.
         _, constant = constant_low_lane_bits(lanes, self.plan.bus_bytes)
@@ -155,12 +157,14 @@ class Lengths(wiring.Component):
                 one, two = length == 1, length == 2
             else:
                 # A word and its NUL are the rest, so n passes take n words more.
-                skips, one, two = (~exceeds(length, n * each.lanes + each.word) for n in range(3))
+                skips, one, two = (
+                    ~exceeds(length, n * each.lanes + each.most_in_rest) for n in range(3)
+                )
                 if each.rest not in columns:
                     nul = int(each.has_nul)
                     items = last_word(length[:8] - nul, each.lanes)
                     columns[each.rest] = Mux(exceeds(length, nul), items, 0)
-                columns |= self._next_last(m, length, lane, phase, each, columns)
+                columns |= self._next_last_at(m, length, lane, phase, each, columns)
             columns |= {
                 each.over: over,
                 each.skips: skips | over,
@@ -171,7 +175,7 @@ class Lengths(wiring.Component):
                 columns[each.charged] = exceeds(length, each.charge.charged_from - 1)
         m.d.comb += [entry[name].eq(value) for name, value in columns.items()]
 
-    def _next_last(
+    def _next_last_at(
         self,
         m: Module,
         length: Signal,
@@ -181,22 +185,25 @@ class Lengths(wiring.Component):
         known: dict[str, Value],
     ) -> dict[str, Value]:
         """Return the last byte of each next state, if no word comes before the rest."""
-        nexts = {of.next_last(each): each for each in of.nexts}
+        nexts = {of.next_last_at(each): each for each in of.nexts}
         if nexts.keys() <= known.keys():
             return {}
         ring = self.ring
-        items = Signal(ring.bits, name=f"items_{lane}_{of.kind}")
+        items_name = f"items_{lane}_{of.kind}"
+        items = Signal(ring.bits, name=items_name)
         items_end = Signal(ring.bits, name=f"items_end_{lane}_{of.kind}")
         beat = Cat(Const(0, ring.lane_bits), self.beat.at)
-        count = length[: of.word.bit_length()]
-        aligned = align_up(m, beat, lane + 1, of.align, phase)
+        count = length[: of.most_in_rest.bit_length()]
+        aligned = align_up(m, items_name, beat, lane + 1, of.align, phase)
         # An empty run has no padding.
         m.d.comb += [
             items.eq(Mux(length.any(), aligned, beat + (lane + 1)) if of.align > 1 else aligned),
             items_end.eq(items + (count << (of.item_bytes.bit_length() - 1))),
         ]
         return {
-            name: align_up(m, items_end, 0, each.align, phase, each.last_offset)
+            name: align_up(
+                m, f"entry_{lane}_{name}", items_end, 0, each.align, phase, each.last_offset
+            )
             for name, each in nexts.items()
             if name not in known
         }

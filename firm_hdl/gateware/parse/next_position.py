@@ -135,7 +135,7 @@ def next_positions(
             mask.eq(chosen("mask", 3)),
             low.eq(chosen("low", len(low))),
         ]
-        result = ring.position(f"{kind}_last")
+        result = ring.position(f"{kind}_last_at")
         if isinstance(phase, int):
             m.d.comb += result.eq((total & ~Cat(mask, Const(0, len(total) - 3))) | low)
             return result
@@ -157,8 +157,9 @@ def _over_rests(
 
     Returns
     -------
-    Its distance from the run's last word over the rest: a register that is written when the run
-    begins. And its last byte, if the run begins now and has nothing but a rest.
+    Its distance from the run's last word over the rest: a register that is written in every cycle
+    of the state that begins the run. And its last byte, if the run begins now and has nothing but a
+    rest.
     """
     # The words of a run are counted from its length, not from positions. So the distance over the
     # rest is known when the run begins, and waits in a register until the last word:
@@ -179,7 +180,7 @@ def _over_rests(
         sizes.append((taken, distance_to(plan, to) + counted.has_nul))
         shift = counted.item_bytes.bit_length() - 1
         rests.append((taken, Value.cast(entry[counted.rest]) << shift))
-        columns.setdefault(counted.next_last(to), []).append(taken)
+        columns.setdefault(counted.next_last_at(to), []).append(taken)
     total = pick(sizes, len(over_rest)) + pick(rests, len(over_rest))
     with m.If(begins_run):
         m.d.sync += over_rest.eq(total)

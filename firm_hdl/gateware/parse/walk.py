@@ -86,6 +86,14 @@ class Walk:
         First byte after the previous state, or the first item of a run.
     rest : Signal(range(lanes + 1))
         Items in the rest of the run that the state takes.
+    nul_at : Signal(position)
+        In a state that takes a rest: first byte after the items of the rest. It has no meaning in
+        the states before.
+    has_nul : Signal(1)
+        A NUL must be at `nul_at` in the state that takes the rest.
+    phase : Value(3) or int
+        Position after the packet's encapsulation header, modulo 8; a constant if the bus has 8
+        bytes or more.
     revisits : Signal(1)
         The state is that of a length again, which claimed too much: it is left at once. Constants
         of the state are those of the state after it.
@@ -95,6 +103,10 @@ class Walk:
         Bytes in the buffer from `step_end` on; negative if bytes of the state are missing.
     present : Signal(1)
         All bytes of the state are in the buffer.
+    exits_always : Signal(1)
+        The next state is an exit of this one, whatever the length is.
+    done : Signal(1)
+        The next state is an exit of this one, always or because of the length; else it is its body.
     ends_message, ends_packet : Signal(1)
         The message ends with this state, and the packet has ended as well.
     """
@@ -119,10 +131,8 @@ class Walk:
         self.last_at = ring.position("last_at", init=start % (1 << ring.bits))
         self.first_at = ring.position("first_at")
         self.rest = Signal(program.rest_bits, name="rest")
-        # There must be a NUL at `nul_at`, after the items of the rest.
         self.nul_at, self.has_nul = ring.position("nul_at"), Signal(name="has_nul")
         self.revisits: Value = Signal(name="revisits") if self.may_revisit else Const(0, 1)
-        # Position after the packet's encapsulation header, modulo 8.
         self.phase: Value | int = plan.header_bytes
         if plan.bus_bytes < 8:
             self.phase = Const(plan.header_bytes % 8, 3)
@@ -133,7 +143,6 @@ class Walk:
         self.length = length_of_step(m, program, flow, Value.cast(arrival.beat), self.last_at)
         self.step_end, self.left = ring.position("step_end"), ring.position("left")
         self.present = Signal(name="present")
-        # The next state is an exit of this one: whatever the length is, or because of the length.
         self.exits_always, self.done = Signal(name="exits_always"), Signal(name="done")
         self.ends_message, self.ends_packet = (
             Signal(name="ends_message"),
@@ -266,7 +275,7 @@ class Walk:
             m, program, self.flow, self.last_at, self.phase, length, self.begins_run
         )
         # Decisions by a length are late in the cycle, so what they select from comes first.
-        early, last = ring.position("early_last"), ring.position("next_last")
+        early, last = ring.position("early_last_at"), ring.position("next_last_at")
         begin = start + program.states[program.start.to or 0].last_offset
         exit_or_body = Mux(self.exits_always, nexts.exit, nexts.body)
         exit_or_skipped = Mux(length.loop_skips, nexts.exit, early)
@@ -277,7 +286,7 @@ class Walk:
         # The first item of the run that the state begins; else the end of the state.
         items_at: Value = self.step_end
         for align in sorted({each.align for each in program.lengths.values()} - {1}):
-            aligned = align_up(m, self.step_end, 0, align, self.phase)
+            aligned = align_up(m, f"items_at_{align}", self.step_end, 0, align, self.phase)
             chosen = any_of(
                 [self.flow.step[k] for k, each in program.lengths.items() if each.align == align]
             )
