@@ -287,7 +287,8 @@ class FrameSender(wiring.Component):
                     m.d.sync += [payload_at.eq(payload_at + 1), left.eq(left - 1)]
 
         # The bytes of the header that vary are 6 to 11, and of an echo to 15. They are summed up a
-        # cycle after they were read.
+        # cycle after they were read, in the state HEADER, for which `in_header` stands: a register
+        # is nearer to the memory.
         in_header, adds, place, byte = Signal(), Signal(), Signal(4), Signal(8)
         m.d.comb += header_at.eq(Mux(in_header, index, looked_up[:5]))
         m.d.sync += [adds.eq(in_header), place.eq(index), byte.eq(header_byte)]
@@ -308,6 +309,7 @@ class FrameSender(wiring.Component):
                     m.next = "REPLY"
                 with m.Elif(datagram):
                     m.d.sync += [is_reply.eq(0), turn.eq(0), total.eq(udp_start)]
+                    m.d.sync += in_header.eq(1)
                     m.next = "HEADER"
                 with m.Elif(self.report):
                     m.d.comb += self.reported.eq(1)
@@ -316,13 +318,15 @@ class FrameSender(wiring.Component):
                         with m.If(self.group == number):
                             begin(f"report {number}")
             with m.State("REPLY"):
-                m.next = "HEADER"
                 with m.If(kind == ARP_REPLY):
                     begin("answer")
+                with m.Else():
+                    m.d.sync += in_header.eq(1)
+                    m.next = "HEADER"
             with m.State("HEADER"):
-                m.d.comb += in_header.eq(1)
                 m.d.sync += index.eq(index + 1)
                 with m.If(index == Mux(is_reply, 15, 11)):
+                    m.d.sync += in_header.eq(0)
                     m.next = "LAST BYTE"
             with m.State("LAST BYTE"):
                 m.next = "HOP"
