@@ -154,7 +154,13 @@ class Flow(Generic[AnyState]):
                 yield Exit(taken=taken, state=state.number, way=way)
 
     def register(
-        self, name: str, bits: int, of: Callable[[AnyState], int], *, written: bool = False
+        self,
+        name: str,
+        bits: int,
+        of: Callable[[AnyState], int],
+        *,
+        written: bool = False,
+        remark: str = "",
     ) -> Signal | Const:
         """Return a constant of the current state.
 
@@ -168,10 +174,12 @@ class Flow(Generic[AnyState]):
             Returns the constant of a state; negative numbers are in two's complement.
         written : bool
             The caller writes the register, too.
+        remark : str
+            A comment on the register in the circuit's text.
         """
         values = [of(state) & ((1 << bits) - 1) for state in self.program.states]
         if written or any(value != values[0] for value in values[1:]):
-            return self._add(name, bits, values)
+            return self._add(name, bits, values, {REMARK: remark} if remark else None)
         return Const(values[0], bits)
 
     def select(self, bits: int, of: Callable[[AnyState], int]) -> Value:

@@ -14,6 +14,7 @@ from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import order_layout
 from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
 from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
+from firm_hdl.names.attributes import REMARK
 from firm_hdl.program import (
     DeserializerProgram,
     DeserializerState,
@@ -137,7 +138,9 @@ class Mover(wiring.Component):
         else:
             first.append(ends & status_full)
             later.append(ends_now & status_full)
-        slow = Signal()
+        slow = Signal(
+            attrs={REMARK: "a leaf of the order that is executed, or the status, is full"}
+        )
         if first:
             m.d.sync += slow.eq(Mux(take, any_of(first), any_of(later)))
         m.d.comb += take.eq(~slow & ~any_of(waits))
@@ -194,15 +197,17 @@ class Mover(wiring.Component):
         m.d.comb += has_step.eq(self.orders.valid & ~order.blank)
         for state in self.program.states:
             earlier: list[Value] = []
+            in_step = Signal(name=f"chosen_step_{state.name}")
+            m.d.comb += in_step.eq(has_step & (order.step == state.number))
             for transfer in state.transfers:
                 name = names[len(found)]
-                chosen, active, blocked, go = (
-                    Signal(name=f"{what}_{name}") for what in ("chosen", "active", "blocked", "go")
+                active, blocked, go = (
+                    Signal(name=f"{what}_{name}") for what in ("active", "blocked", "go")
                 )
-                takes = has_step & (order.step == state.number)
+                chosen = in_step
                 if transfer.run is not None and transfer.run.counted:
-                    takes = takes & order.items
-                m.d.comb += chosen.eq(takes)
+                    chosen = Signal(name=f"chosen_{name}")
+                    m.d.comb += chosen.eq(in_step & order.items)
                 port = self.leaves[transfer.leaf]
                 is_repeated = transfer.leaf in self.program.repeated_leaves
                 m.d.sync += active.eq(Mux(take, chosen, active & ~go))

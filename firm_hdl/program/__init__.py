@@ -25,7 +25,7 @@ from firm_hdl.program.serializer import (
     serializer_program,
 )
 from firm_hdl.program.state import AnyState, Part, Program, State, Transfer
-from firm_hdl.program.table import MANY_STATES, program_lines, state_remark
+from firm_hdl.program.table import MANY_STATES, lane_remark, program_lines, state_remark
 
 __all__ = [
     "LENGTH_BITS",
@@ -50,6 +50,7 @@ __all__ = [
     "align_addend",
     "deserializer_program",
     "distance_to",
+    "lane_remark",
     "leaf_names",
     "program_lines",
     "serializer_program",

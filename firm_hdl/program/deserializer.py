@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import takewhile
+from itertools import groupby, takewhile
+from operator import itemgetter
 
 from firm_hdl.plan.tree import Fixed, Plan, Run, Step
 from firm_hdl.program.control import Control, control_of, start_of
@@ -88,8 +89,8 @@ class DeserializerProgram(Program[DeserializerState]):
     ----------
     has_leaves : bool
         Whether the circuit writes leaves. A parser does not, and skips elements without bytes.
-    length_lanes : tuple of int
-        Lanes of the last byte of lengths, in ascending order.
+    length_lanes : mapping of int to tuple of int
+        By lane, ascending: the states whose map may end in this lane and which begin a run or loop.
     repeated_leaves : frozenset of int
         The leaves that may transfer in two states in a row.
     carried_bytes : int
@@ -99,7 +100,7 @@ class DeserializerProgram(Program[DeserializerState]):
     """
 
     has_leaves: bool
-    length_lanes: tuple[int, ...]
+    length_lanes: Mapping[int, tuple[int, ...]]
     repeated_leaves: frozenset[int]
     carried_bytes: int
     ends_at_once: bool
@@ -247,14 +248,12 @@ def _length(plan: Plan, control: Sequence[Control], number: int, *, has_leaves: 
 
 def _length_lanes(
     plan: Plan, control: Sequence[Control], starts: Sequence[StartLanes]
-) -> tuple[int, ...]:
-    return tuple(
-        sorted(
-            {
-                (lane + mine.item.bytes - 1) % plan.bus_bytes
-                for mine, start in zip(control, starts, strict=True)
-                if mine.begin is not None and isinstance(mine.item, Step)
-                for lane in start.map
-            }
-        )
-    )
+) -> dict[int, tuple[int, ...]]:
+    ends = {
+        ((lane + mine.item.bytes - 1) % plan.bus_bytes, number)
+        for number, (mine, start) in enumerate(zip(control, starts, strict=True))
+        if mine.begin is not None and isinstance(mine.item, Step)
+        for lane in start.map
+    }
+    by_lane = groupby(sorted(ends), key=itemgetter(0))
+    return {lane: tuple(number for _, number in group) for lane, group in by_lane}

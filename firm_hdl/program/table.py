@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from textwrap import shorten
 
 from firm_hdl.plan import Plan
@@ -21,7 +21,7 @@ from firm_hdl.program.serializer import (
 )
 from firm_hdl.program.state import AnyState, Program, State, Transfer
 
-__all__ = ["MANY_STATES", "program_lines", "program_text", "state_remark"]
+__all__ = ["MANY_STATES", "lane_remark", "program_lines", "program_text", "state_remark"]
 
 MANY_STATES = 64
 """Most states that comments in a circuit's text describe in full."""
@@ -69,6 +69,16 @@ def state_remark(program: Program[AnyState], state: AnyState) -> str:
     return shorten(f"step {state.number}: {takes}", width, placeholder=" ...")
 
 
+def lane_remark(program: DeserializerProgram, lane: int) -> str:
+    """Return which lengths may end in a lane, and what the kinds in the names of columns count."""
+    ends = [program.lengths[k] for k in program.length_lanes[lane] if k in program.lengths]
+    leaves = " ".join(str(program.plan.leaves[each.leaf]) for each in ends) or "none"
+    kinds = {each.kind: _counted(each) for each in program.lengths.values()}
+    texts = [f"lengths that may end in lane {lane}: {leaves}"]
+    texts += [f"{kind}: {counted}" for kind, counted in kinds.items()]
+    return shorten("; ".join(texts), 300, placeholder=" ...")
+
+
 def _without_bytes(state: State) -> str:
     return _END if isinstance(state, DeserializerState) and state.at_end else "no bytes"
 
@@ -81,7 +91,7 @@ def _head(program: Program[AnyState]) -> str:
     return ", ".join(texts)
 
 
-def _lanes(lanes: tuple[int, ...]) -> str:
+def _lanes(lanes: Collection[int]) -> str:
     return f"lane{'s' * (len(lanes) > 1)} {' '.join(map(str, lanes))}"
 
 
@@ -103,13 +113,15 @@ def _transfer(plan: Plan, transfer: Transfer) -> str:
     return f"{plan.leaves[transfer.leaf]}{kind}"
 
 
+def _counted(length: Length) -> str:
+    if length.level is not None:
+        return "elements without bytes" if length.counts_nothing else "elements"
+    nul = " and a NUL" if length.has_nul else ""
+    return f"items of {length.item_bytes} byte{'s' * (length.item_bytes > 1)}{nul}"
+
+
 def _length(length: Length) -> str:
-    if length.level is None:
-        nul = " and a NUL" if length.has_nul else ""
-        what = f"items of {length.item_bytes} byte{'s' * (length.item_bytes > 1)}{nul}"
-    else:
-        what = "elements without bytes" if length.counts_nothing else "elements"
-    texts = [f"counts {what} up to {length.max_count}"]
+    texts = [f"counts {_counted(length)} up to {length.max_count}"]
     if length.align > 1:
         texts.append(f"at multiple of {length.align}")
     if length.charge is not None:

@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 from firm_hdl.names.attributes import REMARK
 from firm_hdl.rtlil.ir import Assign, Bits, Cell, Module, Slice, Statement, Value, Wire
 from firm_hdl.vhdl.expr import Declared
-from firm_hdl.vhdl.graph import Graph, uses_with_registers, wires_of
+from firm_hdl.vhdl.graph import Graph, only, uses_with_registers, wires_of
 from firm_hdl.vhdl.instance import component_names
 from firm_hdl.vhdl.names import AMS, Scope, is_identifier, legal
 from firm_hdl.vhdl.text import bit_literal, literal
@@ -239,11 +239,20 @@ def _ports(
 
 
 def part_names(module: Module) -> dict[str, str]:
-    """Name generated wires after the named signal to which they are connected as a part."""
+    """Name generated wires after the named signal to which they are connected as a part.
+
+    The part has the name of its field, or else the number of its lowest bit.
+    """
     names: dict[str, str] = {}
+    fields: dict[str, str] = {}
     for target, value in module.connections:
         to = target[0] if target else None
-        if not isinstance(to, Slice) or to.wire.startswith("$") or "." in to.wire or "[" in to.wire:
+        if not isinstance(to, Slice) or to.wire.startswith("$") or "[" in to.wire:
+            continue
+        if "." in to.wire:
+            source = only(value)
+            if source is not None and source.width == module.wires[source.wire].width:
+                fields.setdefault(source.wire, to.wire.replace(".", "_"))
             continue
         position = 0
         for chunk in value:
@@ -255,7 +264,7 @@ def part_names(module: Module) -> dict[str, str]:
             ):
                 names.setdefault(chunk.wire, f"{to.wire}_{position}")
             position += chunk.width
-    return names
+    return {wire: fields.get(wire, name) for wire, name in names.items()}
 
 
 def _next_names(graph: Graph) -> dict[str, str]:

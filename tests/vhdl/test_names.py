@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 from amaranth.asserts import AnyConst
 from amaranth.hdl import Cat, ClockDomain, Module, Mux, Signal
+from amaranth.lib import data
 
 from firm_hdl.vhdl.convert import convert
 
@@ -100,6 +101,16 @@ def test_only_what_nothing_else_reads_is_the_next_value_of_a_register() -> None:
         m.d.sync += c.eq(Cat(own, y))
     text = convert(m, name="t", ports=ports).files["t.vhd"]
     assert "c_next_0" in text and "a_next" not in text and "b_next" not in text
+
+
+def test_ports_that_are_parts_of_a_structure_have_the_names_of_its_fields() -> None:
+    top, inner = Module(), Module()
+    pair = Signal(data.StructLayout({"low": 1, "high": 1}), name="pair")
+    a, b, o = ports = [Signal(name=name) for name in ("a", "b", "o")]
+    inner.d.comb += o.eq(pair.low ^ pair.high)
+    top.submodules.inner = inner
+    top.d.comb += pair.eq(Cat(a ^ b, a & b))
+    assert "pair_low" in convert(top, name="t", ports=ports).files["t_inner.vhd"]
 
 
 def test_a_disjunction_of_a_few_bits_is_named_after_them() -> None:

@@ -104,7 +104,7 @@ class Budget(wiring.Component):
                     terms[place].append((now, number << shift))
         more, less = (
             self._sum(m, *each, width)
-            for each in (("more", added, -padding_credit), ("less", subtracted, 0))
+            for each in (("more", added, padding_credit), ("less", subtracted, 0))
         )
 
         # Cycle 3.
@@ -129,17 +129,17 @@ class Budget(wiring.Component):
         m: Module,
         name: str,
         places: list[list[tuple[Value, Value]]],
-        start: int,
+        less: int,
         width: int,
     ) -> Value:
-        """Return a register with the sum of one term of each place."""
+        """Return a register with the sum of one term of each place, less a constant."""
         if not places:
             return Const(0, 1)
         target = Signal(width, name=name, reset_less=True)
-        total: Value | int = start
+        total: Value = Const(0, width)
         for terms in places:
             total = pick(terms, width) + total
-        m.d.sync += target.eq(total)
+        m.d.sync += target.eq(total - less)
         return target
 
 

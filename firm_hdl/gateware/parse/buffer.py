@@ -9,6 +9,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.positions import Ring, beat_layout
 from firm_hdl.gateware.signatures import PacketSignature
+from firm_hdl.names.attributes import REMARK
 from firm_hdl.plan import Plan
 
 __all__ = ["ArrivalSignature", "Buffer"]
@@ -145,9 +146,14 @@ class Buffer(wiring.Component):
         arrival = self.arrival
         ends = LutMemory(m, "ends", layout, self.ring.depth)
         write, read = ends.write, ends.reader()
-        pushed = Signal(self.ring.beat_bits, name="pushed")
-        popped = Signal(self.ring.beat_bits, name="popped")
-        second, has_second = Signal(layout, name="second"), Signal(name="has_second")
+        pushed, popped = (
+            Signal(self.ring.beat_bits, name=name, attrs={REMARK: f"ends {what}, modulo 2 laps"})
+            for name, what in (("pushed", "stored in the memory"), ("popped", "taken out of it"))
+        )
+        second = Signal(
+            layout, name="second", attrs={REMARK: "the end of the packet after the current one"}
+        )
+        has_second = Signal(name="has_second")
         stored = Signal(name="stored")
         m.d.comb += [
             stored.eq(pushed != popped),

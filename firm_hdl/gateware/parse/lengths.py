@@ -25,7 +25,8 @@ from firm_hdl.gateware.positions import (
     constant_low_lane_bits,
     pick,
 )
-from firm_hdl.program import DeserializerProgram, DeserializerState, Length
+from firm_hdl.names.attributes import REMARK
+from firm_hdl.program import DeserializerProgram, DeserializerState, Length, lane_remark
 
 __all__ = ["Lengths", "StepLength", "length_of_step"]
 
@@ -80,7 +81,7 @@ class Lengths(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        ring, lanes = self.ring, self.program.length_lanes
+        ring, lanes = self.ring, tuple(self.program.length_lanes)
         phase = self._phase(m)
         # The first bytes of a length may be in earlier beats. A lane stands for its last byte:
         #
@@ -95,7 +96,11 @@ class Lengths(wiring.Component):
         m.d.sync += key.eq(self.key)
         for lane in lanes:
             length = Signal(8 * LENGTH_BYTES, name=f"length_{lane}")
-            entry = Signal(self.layout, name=f"entry_{lane}")
+            entry = Signal(
+                self.layout,
+                name=f"entry_{lane}",
+                attrs={REMARK: lane_remark(self.program, lane)},
+            )
             m.d.comb += length.eq(stream[8 * lane : 8 * (lane + LENGTH_BYTES)])
             self._decode(m, length, lane, phase, entry)
             entries.append(self._store(m, f"entry_{lane}_table", Value.cast(entry), self.key))

@@ -12,6 +12,7 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.positions import Ring
 from firm_hdl.gateware.signatures import Status
+from firm_hdl.names.attributes import REMARK
 from firm_hdl.plan import Plan
 from firm_hdl.program import state_names
 
@@ -116,8 +117,11 @@ class OrderQueue(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        # The order that came while `o` was waiting.
-        second = Signal(self.i.payload.shape(), reset_less=True)
+        second = Signal(
+            self.i.payload.shape(),
+            reset_less=True,
+            attrs={REMARK: "the order that came while o was waiting"},
+        )
         has_second = Signal()
         # Without a budget, the first register is `o` itself.
         first, valid, ready = self.o.payload, self.o.valid, self.o.ready

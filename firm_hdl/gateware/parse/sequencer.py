@@ -167,7 +167,12 @@ class Sequencer(wiring.Component):
         """
         flow, ring, bus = walk.flow, walk.ring, self.program.plan.bus_bytes
         limit, order = self.arrival.limit, self.orders.payload
-        map_offset = flow.register("map_offset", bus.bit_length() + 1, lambda s: s.map_offset)
+        map_offset = flow.register(
+            "map_offset",
+            bus.bit_length() + 1,
+            lambda s: s.map_offset,
+            remark="signed: first byte of the map's last word, relative to last_at",
+        )
         two_word_map = flow.register("two_word_map", 1, lambda s: s.two_word_map)
         is_counted = flow.register("is_counted", 1, lambda s: s.is_counted)
         offset = map_offset.as_signed()
@@ -206,7 +211,9 @@ class Sequencer(wiring.Component):
             m.d.sync += [items_room.eq(0), map_room.eq(0)]
 
         wanted = Signal(range(bus + 1), name="items_wanted")
-        status = Mux(bad, code, Mux(found.trailing, Status.TRAILING, Status.OK))
+        good_status = Signal(Status)
+        with m.If(found.trailing):
+            m.d.comb += good_status.eq(Status.TRAILING)
         m.d.comb += [
             wanted.eq(Mux(walk.takes_rest, flow.rest_bytes(walk.rest), bus)),
             order.step.eq(flow.select(len(order.step), lambda s: 0 if s.at_end else s.number)),
@@ -223,7 +230,7 @@ class Sequencer(wiring.Component):
             order.final.eq(Cat(level.last for level in flow.levels)),
             order.first.eq(ring.beat(walk.first_at)),
             order.ends.eq(walk.ends_packet),
-            order.status.eq(status),
+            order.status.eq(Mux(bad, code, good_status)),
         ]
 
     def _room(self, room: Value) -> Value:
