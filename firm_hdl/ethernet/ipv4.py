@@ -88,7 +88,7 @@ class Ipv4Receiver(wiring.Component):
     Passed on as good are datagrams of a whole frame, whose header has version 4, a right checksum,
     and a length that the frame has, and whose source can be one (RFC 1122, 3.2.1.3): not the node
     itself, no group, not broadcast, not 0.0.0.0. The destination is the node, or a group, in both
-    addresses (RFC 1122, 3.3.6).
+    addresses (RFC 1122, 3.3.6). A header behind which the frame has nothing counts as wrong.
 
     A byte per cycle; latency 1 cycle. Outputs are registers.
 

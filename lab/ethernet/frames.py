@@ -281,7 +281,8 @@ class Judge:
 
     def _ipv4(self, rest: bytes, to_node: bool, to_group: bool) -> str:
         size, total = 4 * (rest[0] & 15), int.from_bytes(rest[2:4], "big")
-        if rest[0] >> 4 != 4 or size < 20 or size > len(rest) or not size <= total <= len(rest):
+        # A header behind which the frame has nothing, not even padding, counts as wrong.
+        if rest[0] >> 4 != 4 or size < 20 or size >= len(rest) or not size <= total <= len(rest):
             return "malformed"
         source, destination = rest[12:16], rest[16:20]
         if checksum(rest[:size]) or source == ADDRESS or source[0] >= 224 or source[0] == 0:
