@@ -22,6 +22,9 @@ from firm_hdl.rtps.wire.locators import MULTICAST_GROUP
 
 __all__ = ["EthernetLink"]
 
+_ONE_FRAME_BYTES = 2048
+"""Memory of a topic whose messages are meant to fit into a frame."""
+
 _PINS = {"gmii": GmiiSignature, "rgmii": RgmiiSignature, "mii": MiiSignature}
 
 
@@ -88,6 +91,7 @@ class EthernetLink(wiring.Component):
                 gateway=int(IPv4Address(link.gateway)) if link.gateway else 0,
                 ports=ports,
                 groups=groups,
+                fragment_bytes=_fragment_bytes(self.description),
             )
         )
         wiring.connect(m, phy.pins, wiring.flipped(getattr(self, link.ethernet)))
@@ -103,3 +107,16 @@ class EthernetLink(wiring.Component):
             m, self.counters, {ethernet_counter(name): network.drops[name] for name in names}
         )
         return m
+
+
+def _fragment_bytes(description: Description) -> int:
+    """Return the memory for datagrams in fragments of IPv4; 0 if the node needs none.
+
+    The host of a link `udp` sends none. Peers of ROS 2 send a sample of up to 65 kB as one
+    datagram, which their system cuts.
+    """
+    link = description.link
+    sizes = [topic.store("in").memory_bytes for topic in description.topics if topic.has("in")]
+    if link.kind != "rtps" or max(sizes, default=0) <= _ONE_FRAME_BYTES:
+        return 0
+    return min(max(link.memory_bytes, 1 << 12), 1 << 16)
