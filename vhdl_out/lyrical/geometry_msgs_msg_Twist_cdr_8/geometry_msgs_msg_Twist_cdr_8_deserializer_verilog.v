@@ -50,14 +50,16 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   wire [6:0] end_limit;
   wire [6:0] newest_limit;
   wire stored;
+  wire [10:0] first;
   wire more;
   wire follows;
   wire or_14;
-  wire [10:0] mux_15;
   wire has_second_next;
   wire [10:0] ends_read_data;
   wire [3:0] payload_count;
   wire payload_last;
+  wire [6:0] first_limit;
+  wire [3:0] first_following;
 
   // Signals that no logic reads, for simulation.
   wire room;
@@ -83,10 +85,10 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   assign end_limit = {at, 3'd0} + {3'd0, payload_count};
   assign newest_limit = ends_now ? end_limit : {full ? end_following : at, 3'd0};
   assign stored = pushed != popped;
+  assign first = has_second ? second : {end_following, newest_limit};
   assign more = stored | ends_now;
   assign follows = arrival_ended_q & ends_now;
   assign or_14 = arrival_next | ~arrival_ended_q;
-  assign mux_15 = has_second ? second : {end_following, newest_limit};
   assign has_second_next = has_second ? (~arrival_next | more) : (~arrival_next & follows);
 
   always @(posedge aclk) begin
@@ -113,8 +115,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
       at <= at + {3'd0, full};
       packets_ready_q <= ~used[3] & ~((used == 4'd7) & arrives);
       if (or_14) begin
-        arrival_limit_q <= mux_15[6:0];
-        arrival_following_q <= mux_15[10:7];
+        arrival_limit_q <= first_limit;
+        arrival_following_q <= first_following;
         arrival_ended_q <= has_second | ends_now;
       end
       if (arrival_next || !has_second) begin
@@ -140,6 +142,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
 
   assign payload_count = payload[67:64];
   assign payload_last = payload[68];
+  assign first_limit = first[6:0];
+  assign first_following = first[10:7];
   assign arrival_beat = {full, at, payload};
 
   assign packets_ready = packets_ready_q;
@@ -278,6 +282,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   wire [5:0] sub_74;
   wire [5:0] or_119;
   wire [6:0] map_left;
+  wire [3:0] map_room_if_cut;
   wire [2:0] orders_payload_items_next;
   wire [2:0] orders_payload_map_next;
   wire [3:0] orders_payload_items_bytes;
@@ -287,8 +292,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   wire [6:0] exit_sum;
   wire [6:0] early_last_at;
   wire to_exit;
-  wire and_188;
-  wire [3:0] mux_207;
+  wire and_190;
   wire [3:0] items_room_next;
   wire [6:0] first_at_next;
   wire map_offset_next_3;
@@ -363,6 +367,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign or_119 = (arrival_limit[5:0] & not_2[5:0]) | (arrival_limit[5:0] & sub_74) | (not_2[5:0] &
       sub_74);
   assign map_left = (arrival_limit ^ not_2 ^ {sub_74[5], sub_74}) + {or_119, 1'b0};
+  assign map_room_if_cut = map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]);
   assign orders_payload_items_next = sub_64[2:0] + 3'd1;
   assign orders_payload_map_next = orders_payload_map_at[5:3] + 3'd1;
   assign orders_payload_items_bytes = (bad && (items_room < 4'd8)) ? items_room : 4'd8;
@@ -371,10 +376,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign exit_sum = last_at + {1'd0, exit_add};
   assign early_last_at = ends_packet ? ({arrival_following, 3'd0} + 7'd7) : exit_sum;
   assign to_exit = issue & ~ends_packet;
-  assign and_188 = bad & drains & orders_ready;
-  assign mux_207 = map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]);
+  assign and_190 = bad & drains & orders_ready;
   assign items_room_next = two_word_map ? (map_left[6] ? {1'b0, (&map_left[6:3]) ? map_left[2:0] :
-      3'd0} : 4'd8) : mux_207;
+      3'd0} : 4'd8) : map_room_if_cut;
   assign first_at_next = ends_packet ? {arrival_following, 3'd0} : (bad ? (at_end ? arrival_limit :
       first_at) : step_end);
   assign map_offset_next_3 = step_linear_x | step_linear_x_2 | step_linear_y | step_linear_z |
@@ -439,9 +443,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
           map_room <= 4'd0;
         end
         if (code == STATUS_TRUNCATED) begin
-          map_room <= mux_207;
+          map_room <= map_room_if_cut;
         end
-      end else if (and_188) begin
+      end else if (and_190) begin
         items_room <= 4'd0;
         map_room <= 4'd0;
       end
@@ -679,7 +683,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire full_angular_z;
   wire status_full;
   wire has_step;
-  wire chosen_step_linear_x;
   wire chosen_step_linear_x_2;
   wire blocked_linear_x;
   wire go_linear_x;
@@ -697,15 +700,14 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire go_angular_y;
   wire blocked_angular_z;
   wire go_angular_z;
-  wire chosen_step_packet_end;
   wire ends;
-  wire and_57;
-  wire and_65;
-  wire and_73;
-  wire and_81;
-  wire and_89;
-  wire or_118;
-  wire or_132;
+  wire and_55;
+  wire and_63;
+  wire and_71;
+  wire and_79;
+  wire and_87;
+  wire or_116;
+  wire or_130;
   wire [7:0] lane_0_items_data;
   wire [7:0] lane_0_map_data;
   wire [7:0] lane_1_items_data;
@@ -852,7 +854,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign full_angular_z = message_angular_z_valid_q & ~message_angular_z_ready;
   assign status_full = status_valid_q & ~status_ready;
   assign has_step = orders_valid & ~orders_payload_blank;
-  assign chosen_step_linear_x = has_step & (orders_payload_step == STEP_LINEAR_X);
   assign chosen_step_linear_x_2 = has_step & (orders_payload_step == STEP_LINEAR_X_2);
   assign blocked_linear_x = active_linear_x & message_linear_x_valid_q;
   assign go_linear_x = active_linear_x & ~blocked_linear_x;
@@ -870,19 +871,18 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign go_angular_y = active_angular_y & ~blocked_angular_y;
   assign blocked_angular_z = active_angular_z & message_angular_z_valid_q;
   assign go_angular_z = active_angular_z & ~blocked_angular_z & ~blocked_angular_y;
-  assign chosen_step_packet_end = has_step & (orders_payload_step == 3'd6);
   assign ends = orders_valid & orders_payload_ends;
   assign orders_ready = ~slow;
-  assign and_57 = orders_ready & begins_linear_x;
-  assign and_65 = orders_ready & begins_linear_x_2;
-  assign and_73 = orders_ready & begins_linear_y;
-  assign and_81 = orders_ready & begins_linear_z;
-  assign and_89 = orders_ready & begins_angular_x;
-  assign or_118 = (chosen_step_linear_x_2 & full_linear_x) | (chosen_step_linear_y &
+  assign and_55 = orders_ready & begins_linear_x;
+  assign and_63 = orders_ready & begins_linear_x_2;
+  assign and_71 = orders_ready & begins_linear_y;
+  assign and_79 = orders_ready & begins_linear_z;
+  assign and_87 = orders_ready & begins_angular_x;
+  assign or_116 = (chosen_step_linear_x_2 & full_linear_x) | (chosen_step_linear_y &
       full_linear_y) | (chosen_step_linear_z & full_linear_z) | (chosen_step_angular_x &
       full_angular_x) | (chosen_step_angular_y & full_angular_y) | (chosen_step_angular_y &
       full_angular_z) | (ends & status_full);
-  assign or_132 = (blocked_linear_x & ~message_linear_x_ready) | (blocked_linear_y &
+  assign or_130 = (blocked_linear_x & ~message_linear_x_ready) | (blocked_linear_y &
       ~message_linear_y_ready) | (blocked_linear_z & ~message_linear_z_ready) | (blocked_angular_x &
       ~message_angular_x_ready) | (blocked_angular_y & ~message_angular_y_ready) |
       (blocked_angular_z & ~message_angular_z_ready) | (ends_now & status_full);
@@ -1070,9 +1070,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
         active_angular_z <= active_angular_z & ~go_angular_z;
       end
       if (orders_ready) begin
-        slow <= or_118;
+        slow <= or_116;
       end else begin
-        slow <= or_132;
+        slow <= or_130;
       end
     end
   end
@@ -1092,64 +1092,64 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
           orders_payload_map_bytes > 4'd3, orders_payload_map_bytes > 4'd2,
           orders_payload_map_bytes > 4'd1, orders_payload_map_bytes > 4'd0};
     end
-    if (and_57) begin
+    if (and_55) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_57) begin
+    if (and_55) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_57) begin
+    if (and_55) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_57) begin
+    if (and_55) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_65) begin
+    if (and_63) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_65) begin
+    if (and_63) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_65) begin
+    if (and_63) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_65) begin
+    if (and_63) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_73) begin
+    if (and_71) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_73) begin
+    if (and_71) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_73) begin
+    if (and_71) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_73) begin
+    if (and_71) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_81) begin
+    if (and_79) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_81) begin
+    if (and_79) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_81) begin
+    if (and_79) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_81) begin
+    if (and_79) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_89) begin
+    if (and_87) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_89) begin
+    if (and_87) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_89) begin
+    if (and_87) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_89) begin
+    if (and_87) begin
       carried[31:24] <= map_word[63:56];
     end
     if (go_linear_x) begin

@@ -66,14 +66,16 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer 
   signal end_limit       : unsigned(6 downto 0);
   signal newest_limit    : unsigned(6 downto 0);
   signal stored          : std_logic;
+  signal first           : unsigned(10 downto 0);
   signal more            : std_logic;
   signal follows         : std_logic;
   signal or_14           : std_logic;
-  signal mux_15          : unsigned(10 downto 0);
   signal has_second_next : std_logic;
   signal ends_read_data  : unsigned(10 downto 0);
   signal payload_count   : unsigned(3 downto 0);
   signal payload_last    : std_logic;
+  signal first_limit     : unsigned(6 downto 0);
+  signal first_following : unsigned(3 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal room            : std_logic;
@@ -96,10 +98,10 @@ begin
   end_limit <= unsigned'(at & "000") + payload_count;
   newest_limit <= end_limit when ends_now = '1' else mux(full, end_following, at) & "000";
   stored <= '1' when pushed /= popped else '0';
+  first <= second when has_second = '1' else end_following & newest_limit;
   more <= stored or ends_now;
   follows <= arrival_ended_q and ends_now;
   or_14 <= arrival_next or not arrival_ended_q;
-  mux_15 <= second when has_second = '1' else end_following & newest_limit;
   has_second_next <= not arrival_next or more when has_second = '1' else not arrival_next and
       follows;
 
@@ -133,8 +135,8 @@ begin
         at <= at + full;
         packets_ready_q <= not used(3) and not (to_std_logic(used = 7) and arrives);
         if or_14 = '1' then
-          arrival_limit_q <= mux_15(6 downto 0);
-          arrival_following_q <= mux_15(10 downto 7);
+          arrival_limit_q <= first_limit;
+          arrival_following_q <= first_following;
           arrival_ended_q <= has_second or ends_now;
         end if;
         if arrival_next = '1' or has_second = '0' then
@@ -164,6 +166,8 @@ begin
 
   payload_count <= payload(67 downto 64);
   payload_last <= payload(68);
+  first_limit <= first(6 downto 0);
+  first_following <= first(10 downto 7);
   arrival_beat <= full & at & payload;
 
   packets_ready <= packets_ready_q;
@@ -334,6 +338,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal sub_74                     : unsigned(5 downto 0);
   signal or_119                     : unsigned(5 downto 0);
   signal map_left                   : unsigned(6 downto 0);
+  signal map_room_if_cut            : unsigned(3 downto 0);
   signal orders_payload_items_next  : unsigned(2 downto 0);
   signal orders_payload_map_next    : unsigned(2 downto 0);
   signal orders_payload_items_bytes : unsigned(3 downto 0);
@@ -343,8 +348,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal exit_sum                   : unsigned(6 downto 0);
   signal early_last_at              : unsigned(6 downto 0);
   signal to_exit                    : std_logic;
-  signal and_188                    : std_logic;
-  signal mux_207                    : unsigned(3 downto 0);
+  signal and_190                    : std_logic;
   signal items_room_next            : unsigned(3 downto 0);
   signal first_at_next              : unsigned(6 downto 0);
   signal map_offset_next_3          : std_logic;
@@ -422,6 +426,8 @@ begin
   or_119 <= (arrival_limit(5 downto 0) and not_2(5 downto 0)) or (arrival_limit(5 downto 0) and
       sub_74) or (not_2(5 downto 0) and sub_74);
   map_left <= (arrival_limit xor not_2 xor sign_extend(sub_74, 7)) + unsigned'(or_119 & '0');
+  map_room_if_cut <= (others => '0') when map_left(6) = '1' else mux(to_std_logic(map_left >= 8),
+      "1000", map_left(3 downto 0));
   orders_payload_items_next <= sub_64(2 downto 0) + 1;
   orders_payload_map_next <= orders_payload_map_at(5 downto 3) + 1;
   orders_payload_items_bytes <= items_room when bad = '1' and items_room < 8 else "1000";
@@ -430,11 +436,9 @@ begin
   exit_sum <= last_at + exit_add;
   early_last_at <= unsigned'(arrival_following & "000") + 7 when ends_packet = '1' else exit_sum;
   to_exit <= issue and not ends_packet;
-  and_188 <= bad and drains and orders_ready;
-  mux_207 <= (others => '0') when map_left(6) = '1' else mux(to_std_logic(map_left >= 8), "1000",
-      map_left(3 downto 0));
+  and_190 <= bad and drains and orders_ready;
   items_room_next <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0),
-      "000"), 4), "1000") when two_word_map = '1' else mux_207;
+      "000"), 4), "1000") when two_word_map = '1' else map_room_if_cut;
   first_at_next <= arrival_following & "000" when ends_packet = '1' else mux(bad, mux(at_end,
       arrival_limit, first_at), step_end);
   map_offset_next_3 <= step_linear_x or step_linear_x_2 or step_linear_y or step_linear_z or
@@ -501,9 +505,9 @@ begin
             map_room <= (others => '0');
           end if;
           if code = STATUS_TRUNCATED then
-            map_room <= mux_207;
+            map_room <= map_room_if_cut;
           end if;
-        elsif and_188 = '1' then
+        elsif and_190 = '1' then
           items_room <= (others => '0');
           map_room <= (others => '0');
         end if;
@@ -785,7 +789,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal full_angular_z             : std_logic;
   signal status_full                : std_logic;
   signal has_step                   : std_logic;
-  signal chosen_step_linear_x       : std_logic;
   signal chosen_step_linear_x_2     : std_logic;
   signal blocked_linear_x           : std_logic;
   signal go_linear_x                : std_logic;
@@ -803,15 +806,14 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal go_angular_y               : std_logic;
   signal blocked_angular_z          : std_logic;
   signal go_angular_z               : std_logic;
-  signal chosen_step_packet_end     : std_logic;
   signal ends                       : std_logic;
-  signal and_57                     : std_logic;
-  signal and_65                     : std_logic;
-  signal and_73                     : std_logic;
-  signal and_81                     : std_logic;
-  signal and_89                     : std_logic;
-  signal or_118                     : std_logic;
-  signal or_132                     : std_logic;
+  signal and_55                     : std_logic;
+  signal and_63                     : std_logic;
+  signal and_71                     : std_logic;
+  signal and_79                     : std_logic;
+  signal and_87                     : std_logic;
+  signal or_116                     : std_logic;
+  signal or_130                     : std_logic;
   signal lane_0_items_data          : unsigned(7 downto 0);
   signal lane_0_map_data            : unsigned(7 downto 0);
   signal lane_1_items_data          : unsigned(7 downto 0);
@@ -927,7 +929,6 @@ begin
   full_angular_z <= message_angular_z_valid_q and not message_angular_z_ready;
   status_full <= status_valid_q and not status_ready;
   has_step <= orders_valid and not orders_payload_blank;
-  chosen_step_linear_x <= '1' when has_step = '1' and orders_payload_step = STEP_LINEAR_X else '0';
   chosen_step_linear_x_2 <= '1' when has_step = '1' and orders_payload_step = STEP_LINEAR_X_2 else
       '0';
   blocked_linear_x <= active_linear_x and message_linear_x_valid_q;
@@ -948,19 +949,18 @@ begin
   go_angular_y <= active_angular_y and not blocked_angular_y;
   blocked_angular_z <= active_angular_z and message_angular_z_valid_q;
   go_angular_z <= active_angular_z and not blocked_angular_z and not blocked_angular_y;
-  chosen_step_packet_end <= '1' when has_step = '1' and orders_payload_step = 6 else '0';
   ends <= orders_valid and orders_payload_ends;
   orders_ready <= not slow;
-  and_57 <= orders_ready and begins_linear_x;
-  and_65 <= orders_ready and begins_linear_x_2;
-  and_73 <= orders_ready and begins_linear_y;
-  and_81 <= orders_ready and begins_linear_z;
-  and_89 <= orders_ready and begins_angular_x;
-  or_118 <= (chosen_step_linear_x_2 and full_linear_x) or (chosen_step_linear_y and
+  and_55 <= orders_ready and begins_linear_x;
+  and_63 <= orders_ready and begins_linear_x_2;
+  and_71 <= orders_ready and begins_linear_y;
+  and_79 <= orders_ready and begins_linear_z;
+  and_87 <= orders_ready and begins_angular_x;
+  or_116 <= (chosen_step_linear_x_2 and full_linear_x) or (chosen_step_linear_y and
       full_linear_y) or (chosen_step_linear_z and full_linear_z) or (chosen_step_angular_x and
       full_angular_x) or (chosen_step_angular_y and full_angular_y) or (chosen_step_angular_y and
       full_angular_z) or (ends and status_full);
-  or_132 <= (blocked_linear_x and not message_linear_x_ready) or (blocked_linear_y and
+  or_130 <= (blocked_linear_x and not message_linear_x_ready) or (blocked_linear_y and
       not message_linear_y_ready) or (blocked_linear_z and not message_linear_z_ready) or
       (blocked_angular_x and not message_angular_x_ready) or (blocked_angular_y and
       not message_angular_y_ready) or (blocked_angular_z and not message_angular_z_ready) or
@@ -1191,9 +1191,9 @@ begin
           active_angular_z <= active_angular_z and not go_angular_z;
         end if;
         if orders_ready = '1' then
-          slow <= or_118;
+          slow <= or_116;
         else
-          slow <= or_132;
+          slow <= or_130;
         end if;
       end if;
     end if;
@@ -1224,64 +1224,64 @@ begin
             to_std_logic(orders_payload_map_bytes > 2) &
             to_std_logic(orders_payload_map_bytes > 1) & to_std_logic(orders_payload_map_bytes > 0);
       end if;
-      if and_57 = '1' then
+      if and_55 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_57 = '1' then
+      if and_55 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_57 = '1' then
+      if and_55 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_57 = '1' then
+      if and_55 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_65 = '1' then
+      if and_63 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_65 = '1' then
+      if and_63 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_65 = '1' then
+      if and_63 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_65 = '1' then
+      if and_63 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_73 = '1' then
+      if and_71 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_73 = '1' then
+      if and_71 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_73 = '1' then
+      if and_71 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_73 = '1' then
+      if and_71 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_81 = '1' then
+      if and_79 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_81 = '1' then
+      if and_79 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_81 = '1' then
+      if and_79 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_81 = '1' then
+      if and_79 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_89 = '1' then
+      if and_87 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_89 = '1' then
+      if and_87 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_89 = '1' then
+      if and_87 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_89 = '1' then
+      if and_87 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
       if go_linear_x = '1' then
