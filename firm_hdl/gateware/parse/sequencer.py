@@ -21,7 +21,7 @@ class Sequencer(wiring.Component):
     """Run a program over the packets in the buffer: check them, and give orders to the mover.
 
     Each state gives one order, once all its bytes are in the buffer. The sequencer waits only for
-    bytes and for `orders.ready`. The last order of a packet carries its status. The page "How
+    bytes and for `orders.ready`. The last order of a packet carries its status. The page "How the
     converters work" follows one packet through all cycles.
 
     An error in the bytes of a state takes two cycles: one finds it, and one computes which bytes
