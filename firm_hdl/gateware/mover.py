@@ -196,6 +196,8 @@ class Mover(wiring.Component):
         has_step = Signal()
         m.d.comb += has_step.eq(self.orders.valid & ~order.blank)
         for state in self.program.states:
+            if not state.transfers:
+                continue
             earlier: list[Value] = []
             in_step = Signal(name=f"chosen_step_{state.name}")
             m.d.comb += in_step.eq(has_step & (order.step == state.number))

@@ -164,12 +164,14 @@ class Buffer(wiring.Component):
         ]
         # `next` is late in the cycle, so it only selects or enables. It is high only if `ended`;
         # `has_second` implies `ended`.
-        first = Mux(has_second, Value.cast(second), Value.cast(newest))
+        first = Signal(layout, name="first")
+        m.d.comb += first.eq(Mux(has_second, Value.cast(second), Value.cast(newest)))
         more, follows = Signal(name="more"), Signal(name="follows")
         m.d.comb += [more.eq(stored | ends_now), follows.eq(arrival.ended & ends_now)]
         with m.If(arrival.next | ~arrival.ended):
             m.d.sync += [
-                Cat(arrival.limit, arrival.following).eq(first),
+                arrival.limit.eq(first.limit),
+                arrival.following.eq(first.following),
                 arrival.ended.eq(has_second | ends_now),
             ]
         with m.If(arrival.next | ~has_second):

@@ -21,7 +21,7 @@ class Sequencer(wiring.Component):
     """Run a program over the packets in the buffer: check them, and give orders to the mover.
 
     Each state gives one order, once all its bytes are in the buffer. The sequencer waits only for
-    bytes and for `orders.ready`. The last order of a packet carries its status. The page "How
+    bytes and for `orders.ready`. The last order of a packet carries its status. The page "How the
     converters work" follows one packet through all cycles.
 
     An error in the bytes of a state takes two cycles: one finds it, and one computes which bytes
@@ -195,7 +195,8 @@ class Sequencer(wiring.Component):
         # If the map has two words, the word of items is the first one. A negative `map_left` is at
         # least -bus: the packet ends within the first word.
         in_front = Mux(ring.beat(map_left).all(), ring.lane(map_left), 0)
-        of_map = self._room(map_left)
+        of_map = Signal(range(bus + 1), name="map_room_if_cut")
+        m.d.comb += of_map.eq(self._room(map_left))
         of_items = Mux(walk.takes_rest, self._room(limit - walk.first_at), of_map)
         of_items = Mux(two_word_map, Mux(map_left[-1], in_front, bus), of_items)
         with m.If(bad & new_error):

@@ -37,10 +37,10 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   reg [68:0] payload = 69'd0;
   reg [3:0] arrived = 4'd0;
   reg [3:0] at = 4'd0;
-  reg [10:0] second = 11'd0;
+  reg [10:0] second = 11'd0;  // the end of the packet after the current one
   reg has_second = 1'b0;
-  reg [3:0] pushed = 4'd0;
-  reg [3:0] popped = 4'd0;
+  reg [3:0] pushed = 4'd0;  // ends stored in the memory, modulo 2 laps
+  reg [3:0] popped = 4'd0;  // ends taken out of it, modulo 2 laps
 
   // Combinational signals.
   wire arrives;
@@ -50,14 +50,16 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   wire [6:0] end_limit;
   wire [6:0] newest_limit;
   wire stored;
+  wire [10:0] first;
   wire more;
   wire follows;
   wire or_14;
-  wire [10:0] arrival_limit_next;
   wire has_second_next;
   wire [10:0] ends_read_data;
   wire [3:0] payload_count;
   wire payload_last;
+  wire [6:0] first_limit;
+  wire [3:0] first_following;
 
   // Signals that no logic reads, for simulation.
   wire room;
@@ -83,10 +85,10 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   assign end_limit = {at, 3'd0} + {3'd0, payload_count};
   assign newest_limit = ends_now ? end_limit : {full ? end_following : at, 3'd0};
   assign stored = pushed != popped;
+  assign first = has_second ? second : {end_following, newest_limit};
   assign more = stored | ends_now;
   assign follows = arrival_ended_q & ends_now;
   assign or_14 = arrival_next | ~arrival_ended_q;
-  assign arrival_limit_next = has_second ? second : {end_following, newest_limit};
   assign has_second_next = has_second ? (~arrival_next | more) : (~arrival_next & follows);
 
   always @(posedge aclk) begin
@@ -113,8 +115,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
       at <= at + {3'd0, full};
       packets_ready_q <= ~used[3] & ~((used == 4'd7) & arrives);
       if (or_14) begin
-        arrival_limit_q <= arrival_limit_next[6:0];
-        arrival_following_q <= arrival_limit_next[10:7];
+        arrival_limit_q <= first_limit;
+        arrival_following_q <= first_following;
         arrival_ended_q <= has_second | ends_now;
       end
       if (arrival_next || !has_second) begin
@@ -140,6 +142,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
 
   assign payload_count = payload[67:64];
   assign payload_last = payload[68];
+  assign first_limit = first[6:0];
+  assign first_following = first[10:7];
   assign arrival_beat = {full, at, payload};
 
   assign packets_ready = packets_ready_q;
@@ -157,7 +161,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   assign newest = {end_following, newest_limit};
 endmodule
 
-// ByteFlags: One bit for each byte of the packet buffer, and one for each header.
+// ByteFlags: Flags of the packet buffer: one for each byte, and those of headers for each beat.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_flags (
   input wire        rst,
   input wire        aclk,
@@ -167,7 +171,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_fl
 );
 
   // Combinational signals.
-  wire headers_write_data;
+  wire headers_table_write_data;
   wire [63:0] beat_data;
   wire [3:0] beat_count;
   wire beat_last;
@@ -175,27 +179,27 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_fl
   wire beat_valid;
 
   // Signals that no logic reads, for simulation.
-  wire [2:0] headers_write_addr;
-  wire headers_write_en;
-  wire [2:0] headers_read_addr;
-  wire headers_read_data;
+  wire [2:0] headers_table_write_addr;
+  wire headers_table_write_en;
+  wire [2:0] headers_table_read_addr;
+  wire headers_table_read_data;
 
-  reg [0:0] headers [0:7];
-  integer headers_at;
+  reg [0:0] headers_table [0:7];
+  integer headers_table_at;
   initial begin
-    for (headers_at = 0; headers_at < 8; headers_at = headers_at + 1)
-      headers[headers_at] = 1'b0;
+    for (headers_table_at = 0; headers_table_at < 8; headers_table_at = headers_table_at + 1)
+      headers_table[headers_table_at] = 1'b0;
   end
 
-  assign headers_write_data = ((beat_data[7:0] != 8'd0) & (~beat_last | (beat_count > 4'd0))) |
-      ((beat_data[15:8] != 8'd1) & (~beat_last | (beat_count > 4'd1)));
+  assign headers_table_write_data = ((beat_data[7:0] != 8'd0) & (~beat_last |
+      (beat_count > 4'd0))) | ((beat_data[15:8] != 8'd1) & (~beat_last | (beat_count > 4'd1)));
 
   always @(posedge aclk) begin
     if (beat_valid) begin
-      headers[beat_at[2:0]] <= headers_write_data;
+      headers_table[beat_at[2:0]] <= headers_table_write_data;
     end
   end
-  assign mismatch = headers[header_at[2:0]];
+  assign mismatch = headers_table[header_at[2:0]];
 
   assign beat_data = beat[63:0];
   assign beat_count = beat[67:64];
@@ -203,10 +207,10 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_fl
   assign beat_at = beat[72:69];
   assign beat_valid = beat[73];
 
-  assign headers_write_addr = beat[71:69];
-  assign headers_write_en = beat[73];
-  assign headers_read_addr = header_at[2:0];
-  assign headers_read_data = mismatch;
+  assign headers_table_write_addr = beat[71:69];
+  assign headers_table_write_en = beat[73];
+  assign headers_table_read_addr = header_at[2:0];
+  assign headers_table_read_data = mismatch;
 endmodule
 
 // Sequencer: Run a program over the packets in the buffer: check them, and give orders to the
@@ -224,6 +228,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   output wire [41:0] orders_payload,
   output wire [3:0]  header_at
 );
+  localparam [2:0] STATUS_OK = 3'd0;
   localparam [2:0] STATUS_TRUNCATED = 3'd1;
   localparam [2:0] STATUS_TRAILING = 3'd2;
   localparam [2:0] STATUS_LENGTH = 3'd3;
@@ -249,9 +254,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   reg step_linear_z = 1'b0;  // step 3: map of 8; linear.z; begins angular.x
   reg step_angular_x = 1'b0;  // step 4: map of 8; angular.x; begins angular.y
   reg step_angular_y = 1'b0;  // step 5: map of 12 in two words; angular.y angular.z
-  reg step_packet_end = 1'b0;  // step 6: no bytes
+  reg step_packet_end = 1'b0;  // step 6: end of the packet
   reg at_end = 1'b0;
-  reg [4:0] map_offset = 5'd25;
+  reg [4:0] map_offset = 5'd25;  // signed: first byte of the map's last word, relative to last_at
   reg two_word_map = 1'b0;
   reg [5:0] exit_add = 6'd8;
 
@@ -277,6 +282,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   wire [5:0] sub_74;
   wire [5:0] or_119;
   wire [6:0] map_left;
+  wire [3:0] map_room_if_cut;
   wire [2:0] orders_payload_items_next;
   wire [2:0] orders_payload_map_next;
   wire [3:0] orders_payload_items_bytes;
@@ -284,13 +290,14 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   wire [2:0] orders_payload_status;
   wire [6:0] exit_sum;
-  wire [6:0] early_last;
+  wire [6:0] early_last_at;
   wire to_exit;
-  wire and_189;
-  wire [3:0] map_room_next;
+  wire and_190;
   wire [3:0] items_room_next;
   wire [6:0] first_at_next;
   wire map_offset_next_3;
+  // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  wire [2:0] good_status;
   wire [5:0] orders_payload_map_at;
 
   // Signals that no logic reads, for simulation.
@@ -313,11 +320,11 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   wire [3:0] items_wanted;
   wire [5:0] exit_amount;
   wire [2:0] to_exit_mask;
-  wire [6:0] exit_last;
+  wire [6:0] exit_last_at;
   wire [5:0] body_amount;
   wire [2:0] to_body_mask;
-  wire [6:0] body_last;
-  wire [6:0] next_last;
+  wire [6:0] body_last_at;
+  wire [6:0] next_last_at;
   wire to_body;
   wire words_down;
   wire words_keeps;
@@ -360,22 +367,25 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign or_119 = (arrival_limit[5:0] & not_2[5:0]) | (arrival_limit[5:0] & sub_74) | (not_2[5:0] &
       sub_74);
   assign map_left = (arrival_limit ^ not_2 ^ {sub_74[5], sub_74}) + {or_119, 1'b0};
+  assign map_room_if_cut = map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]);
   assign orders_payload_items_next = sub_64[2:0] + 3'd1;
   assign orders_payload_map_next = orders_payload_map_at[5:3] + 3'd1;
   assign orders_payload_items_bytes = (bad && (items_room < 4'd8)) ? items_room : 4'd8;
   assign orders_payload_map_bytes = bad ? map_room : 4'd8;
-  assign orders_payload_status = bad ? code : (trailing ? 3'd2 : 3'd0);
+  assign orders_payload_status = bad ? code : good_status;
   assign exit_sum = last_at + {1'd0, exit_add};
-  assign early_last = ends_packet ? ({arrival_following, 3'd0} + 7'd7) : exit_sum;
+  assign early_last_at = ends_packet ? ({arrival_following, 3'd0} + 7'd7) : exit_sum;
   assign to_exit = issue & ~ends_packet;
-  assign and_189 = bad & drains & orders_ready;
-  assign map_room_next = map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]);
+  assign and_190 = bad & drains & orders_ready;
   assign items_room_next = two_word_map ? (map_left[6] ? {1'b0, (&map_left[6:3]) ? map_left[2:0] :
-      3'd0} : 4'd8) : map_room_next;
+      3'd0} : 4'd8) : map_room_if_cut;
   assign first_at_next = ends_packet ? {arrival_following, 3'd0} : (bad ? (at_end ? arrival_limit :
       first_at) : step_end);
   assign map_offset_next_3 = step_linear_x | step_linear_x_2 | step_linear_y | step_linear_z |
       step_angular_x;
+
+  assign good_status = trailing ? STATUS_TRAILING :
+      STATUS_OK;
 
   always @(posedge aclk) begin
     if (rst) begin
@@ -433,9 +443,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
           map_room <= 4'd0;
         end
         if (code == STATUS_TRUNCATED) begin
-          map_room <= map_room_next;
+          map_room <= map_room_if_cut;
         end
-      end else if (and_189) begin
+      end else if (and_190) begin
         items_room <= 4'd0;
         map_room <= 4'd0;
       end
@@ -444,7 +454,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
           rest <= 1'b0;
           has_nul <= 1'b0;
         end
-        last_at <= early_last;
+        last_at <= early_last_at;
         if (ends_packet) begin
           step_linear_x <= 1'b1;
           step_linear_x_2 <= 1'b0;
@@ -508,11 +518,11 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign items_wanted = 4'd8;
   assign exit_amount = exit_add;
   assign to_exit_mask = 3'd0;
-  assign exit_last = exit_sum;
+  assign exit_last_at = exit_sum;
   assign body_amount = 6'd0;
   assign to_body_mask = 3'd0;
-  assign body_last = last_at;
-  assign next_last = early_last;
+  assign body_last_at = last_at;
+  assign next_last_at = early_last_at;
   assign to_body = 1'b0;
   assign words_down = 1'b0;
   assign words_keeps = 1'b1;
@@ -542,7 +552,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_queue (
   reg o_valid_q = 1'b0;
   reg [41:0] o_payload_q = 42'd0;
   reg has_second = 1'b0;
-  reg [41:0] second = 42'd0;
+  reg [41:0] second = 42'd0;  // the order that came while o was waiting
 
   // Combinational signals.
   wire [3:0] second_first;
@@ -662,7 +672,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   reg ends_now = 1'b0;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   reg [2:0] status_now = 3'd0;
-  reg slow = 1'b0;
+  reg slow = 1'b0;  // a leaf of the order that is executed, or the status, is full
 
   // Combinational signals.
   wire full_linear_x;
@@ -673,31 +683,31 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire full_angular_z;
   wire status_full;
   wire has_step;
-  wire chosen_linear_x;
+  wire chosen_step_linear_x_2;
   wire blocked_linear_x;
   wire go_linear_x;
-  wire chosen_linear_y;
+  wire chosen_step_linear_y;
   wire blocked_linear_y;
   wire go_linear_y;
-  wire chosen_linear_z;
+  wire chosen_step_linear_z;
   wire blocked_linear_z;
   wire go_linear_z;
-  wire chosen_angular_x;
+  wire chosen_step_angular_x;
   wire blocked_angular_x;
   wire go_angular_x;
-  wire chosen_angular_y;
+  wire chosen_step_angular_y;
   wire blocked_angular_y;
   wire go_angular_y;
   wire blocked_angular_z;
   wire go_angular_z;
   wire ends;
-  wire and_56;
-  wire and_64;
-  wire and_72;
-  wire and_80;
-  wire and_88;
-  wire or_117;
-  wire or_131;
+  wire and_55;
+  wire and_63;
+  wire and_71;
+  wire and_79;
+  wire and_87;
+  wire or_116;
+  wire or_130;
   wire [7:0] lane_0_items_data;
   wire [7:0] lane_0_map_data;
   wire [7:0] lane_1_items_data;
@@ -779,7 +789,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire [63:0] payload_angular_x;
   wire [63:0] payload_angular_y;
   wire [63:0] payload_angular_z;
-  wire chosen_angular_z;
 
   reg [7:0] lane_0 [0:7];
   integer lane_0_at;
@@ -845,34 +854,35 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign full_angular_z = message_angular_z_valid_q & ~message_angular_z_ready;
   assign status_full = status_valid_q & ~status_ready;
   assign has_step = orders_valid & ~orders_payload_blank;
-  assign chosen_linear_x = has_step & (orders_payload_step == STEP_LINEAR_X_2);
+  assign chosen_step_linear_x_2 = has_step & (orders_payload_step == STEP_LINEAR_X_2);
   assign blocked_linear_x = active_linear_x & message_linear_x_valid_q;
   assign go_linear_x = active_linear_x & ~blocked_linear_x;
-  assign chosen_linear_y = has_step & (orders_payload_step == STEP_LINEAR_Y);
+  assign chosen_step_linear_y = has_step & (orders_payload_step == STEP_LINEAR_Y);
   assign blocked_linear_y = active_linear_y & message_linear_y_valid_q;
   assign go_linear_y = active_linear_y & ~blocked_linear_y;
-  assign chosen_linear_z = has_step & (orders_payload_step == STEP_LINEAR_Z);
+  assign chosen_step_linear_z = has_step & (orders_payload_step == STEP_LINEAR_Z);
   assign blocked_linear_z = active_linear_z & message_linear_z_valid_q;
   assign go_linear_z = active_linear_z & ~blocked_linear_z;
-  assign chosen_angular_x = has_step & (orders_payload_step == STEP_ANGULAR_X);
+  assign chosen_step_angular_x = has_step & (orders_payload_step == STEP_ANGULAR_X);
   assign blocked_angular_x = active_angular_x & message_angular_x_valid_q;
   assign go_angular_x = active_angular_x & ~blocked_angular_x;
-  assign chosen_angular_y = has_step & (orders_payload_step == STEP_ANGULAR_Y);
+  assign chosen_step_angular_y = has_step & (orders_payload_step == STEP_ANGULAR_Y);
   assign blocked_angular_y = active_angular_y & message_angular_y_valid_q;
   assign go_angular_y = active_angular_y & ~blocked_angular_y;
   assign blocked_angular_z = active_angular_z & message_angular_z_valid_q;
   assign go_angular_z = active_angular_z & ~blocked_angular_z & ~blocked_angular_y;
   assign ends = orders_valid & orders_payload_ends;
   assign orders_ready = ~slow;
-  assign and_56 = orders_ready & begins_linear_x;
-  assign and_64 = orders_ready & begins_linear_x_2;
-  assign and_72 = orders_ready & begins_linear_y;
-  assign and_80 = orders_ready & begins_linear_z;
-  assign and_88 = orders_ready & begins_angular_x;
-  assign or_117 = (chosen_linear_x & full_linear_x) | (chosen_linear_y & full_linear_y) |
-      (chosen_linear_z & full_linear_z) | (chosen_angular_x & full_angular_x) | (chosen_angular_y &
-      full_angular_y) | (chosen_angular_y & full_angular_z) | (ends & status_full);
-  assign or_131 = (blocked_linear_x & ~message_linear_x_ready) | (blocked_linear_y &
+  assign and_55 = orders_ready & begins_linear_x;
+  assign and_63 = orders_ready & begins_linear_x_2;
+  assign and_71 = orders_ready & begins_linear_y;
+  assign and_79 = orders_ready & begins_linear_z;
+  assign and_87 = orders_ready & begins_angular_x;
+  assign or_116 = (chosen_step_linear_x_2 & full_linear_x) | (chosen_step_linear_y &
+      full_linear_y) | (chosen_step_linear_z & full_linear_z) | (chosen_step_angular_x &
+      full_angular_x) | (chosen_step_angular_y & full_angular_y) | (chosen_step_angular_y &
+      full_angular_z) | (ends & status_full);
+  assign or_130 = (blocked_linear_x & ~message_linear_x_ready) | (blocked_linear_y &
       ~message_linear_y_ready) | (blocked_linear_z & ~message_linear_z_ready) | (blocked_angular_x &
       ~message_angular_x_ready) | (blocked_angular_y & ~message_angular_y_ready) |
       (blocked_angular_z & ~message_angular_z_ready) | (ends_now & status_full);
@@ -1030,39 +1040,39 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
         status_now <= orders_payload_status;
       end
       if (orders_ready) begin
-        active_linear_x <= chosen_linear_x;
+        active_linear_x <= chosen_step_linear_x_2;
       end else begin
         active_linear_x <= active_linear_x & ~go_linear_x;
       end
       if (orders_ready) begin
-        active_linear_y <= chosen_linear_y;
+        active_linear_y <= chosen_step_linear_y;
       end else begin
         active_linear_y <= active_linear_y & ~go_linear_y;
       end
       if (orders_ready) begin
-        active_linear_z <= chosen_linear_z;
+        active_linear_z <= chosen_step_linear_z;
       end else begin
         active_linear_z <= active_linear_z & ~go_linear_z;
       end
       if (orders_ready) begin
-        active_angular_x <= chosen_angular_x;
+        active_angular_x <= chosen_step_angular_x;
       end else begin
         active_angular_x <= active_angular_x & ~go_angular_x;
       end
       if (orders_ready) begin
-        active_angular_y <= chosen_angular_y;
+        active_angular_y <= chosen_step_angular_y;
       end else begin
         active_angular_y <= active_angular_y & ~go_angular_y;
       end
       if (orders_ready) begin
-        active_angular_z <= chosen_angular_y;
+        active_angular_z <= chosen_step_angular_y;
       end else begin
         active_angular_z <= active_angular_z & ~go_angular_z;
       end
       if (orders_ready) begin
-        slow <= or_117;
+        slow <= or_116;
       end else begin
-        slow <= or_131;
+        slow <= or_130;
       end
     end
   end
@@ -1082,64 +1092,64 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
           orders_payload_map_bytes > 4'd3, orders_payload_map_bytes > 4'd2,
           orders_payload_map_bytes > 4'd1, orders_payload_map_bytes > 4'd0};
     end
-    if (and_56) begin
+    if (and_55) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_56) begin
+    if (and_55) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_56) begin
+    if (and_55) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_56) begin
+    if (and_55) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_64) begin
+    if (and_63) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_64) begin
+    if (and_63) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_64) begin
+    if (and_63) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_64) begin
+    if (and_63) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_72) begin
+    if (and_71) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_72) begin
+    if (and_71) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_72) begin
+    if (and_71) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_72) begin
+    if (and_71) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_80) begin
+    if (and_79) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_80) begin
+    if (and_79) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_80) begin
+    if (and_79) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_80) begin
+    if (and_79) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_88) begin
+    if (and_87) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_88) begin
+    if (and_87) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_88) begin
+    if (and_87) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_88) begin
+    if (and_87) begin
       carried[31:24] <= map_word[63:56];
     end
     if (go_linear_x) begin
@@ -1263,7 +1273,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign payload_angular_x = message_angular_x_payload_q;
   assign payload_angular_y = message_angular_y_payload_q;
   assign payload_angular_z = message_angular_z_payload_q;
-  assign chosen_angular_z = chosen_angular_y;
 endmodule
 
 // Deserializer: Turn packets into messages.

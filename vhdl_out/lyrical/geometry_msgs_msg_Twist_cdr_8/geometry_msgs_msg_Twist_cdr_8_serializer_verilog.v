@@ -359,7 +359,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   wire [6:0] total_6;
   wire [6:0] base;
   wire [6:0] end_sig;
-  wire [3:0] map_start_next_3;
+  wire [3:0] add_13;
   wire [6:0] map_end;
   wire [3:0] newest;
   wire [3:0] room;
@@ -463,8 +463,8 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign base = (total & ~{4'd0, words_payload_map_mask}) | {4'd0, words_payload_map_mask & 3'd4};
   assign end_sig = (total_6 & ~{4'd0, words_payload_end_mask}) | {4'd0, words_payload_end_mask &
       (words_payload_last ? 3'd0 : 3'd4)};
-  assign map_start_next_3 = base[6:3] + {3'd0, words_payload_two_word_map};
-  assign map_end = {map_start_next_3, base[2:0]} + {3'd0, words_payload_map_bytes};
+  assign add_13 = base[6:3] + {3'd0, words_payload_two_word_map};
+  assign map_end = {add_13, base[2:0]} + {3'd0, words_payload_map_bytes};
   assign newest = at[6:3] + {1'd0, takes ? words_payload_max_beats : 3'd0};
   assign room = bound - newest;
   assign ends_write_addr = complete_next[2:0] - 3'd1;
@@ -546,7 +546,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
           items_start <= at;
         end
         items_size <= words_payload_items_bytes;
-        map_start <= {map_start_next_3, base[2:0]};
+        map_start <= {add_13, base[2:0]};
         map_size <= words_payload_map_bytes;
         at <= end_sig;
         complete_next <= end_sig[6:3];
@@ -764,7 +764,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign error_sig = error_sig_q;
 
   assign words_payload = {words_payload_128, words_payload_0};
-  assign map_at = {map_start_next_3, base[2:0]};
+  assign map_at = {add_13, base[2:0]};
   assign ready = words_ready_q;
   assign items_index_0 = 3'd0;
   assign items_slot_0 = items_start[5:3];

@@ -50,27 +50,32 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer 
   signal payload             : unsigned(68 downto 0) := (others => '0');
   signal arrived             : unsigned(3 downto 0) := (others => '0');
   signal at                  : unsigned(3 downto 0) := (others => '0');
+  -- the end of the packet after the current one
   signal second              : unsigned(10 downto 0) := (others => '0');
   signal has_second          : std_logic := '0';
+  -- ends stored in the memory, modulo 2 laps
   signal pushed              : unsigned(3 downto 0) := (others => '0');
+  -- ends taken out of it, modulo 2 laps
   signal popped              : unsigned(3 downto 0) := (others => '0');
 
   -- Combinational signals.
-  signal arrives            : std_logic;
-  signal used               : unsigned(3 downto 0);
-  signal end_following      : unsigned(3 downto 0);
-  signal ends_now           : std_logic;
-  signal end_limit          : unsigned(6 downto 0);
-  signal newest_limit       : unsigned(6 downto 0);
-  signal stored             : std_logic;
-  signal more               : std_logic;
-  signal follows            : std_logic;
-  signal or_14              : std_logic;
-  signal arrival_limit_next : unsigned(10 downto 0);
-  signal has_second_next    : std_logic;
-  signal ends_read_data     : unsigned(10 downto 0);
-  signal payload_count      : unsigned(3 downto 0);
-  signal payload_last       : std_logic;
+  signal arrives         : std_logic;
+  signal used            : unsigned(3 downto 0);
+  signal end_following   : unsigned(3 downto 0);
+  signal ends_now        : std_logic;
+  signal end_limit       : unsigned(6 downto 0);
+  signal newest_limit    : unsigned(6 downto 0);
+  signal stored          : std_logic;
+  signal first           : unsigned(10 downto 0);
+  signal more            : std_logic;
+  signal follows         : std_logic;
+  signal or_14           : std_logic;
+  signal has_second_next : std_logic;
+  signal ends_read_data  : unsigned(10 downto 0);
+  signal payload_count   : unsigned(3 downto 0);
+  signal payload_last    : std_logic;
+  signal first_limit     : unsigned(6 downto 0);
+  signal first_following : unsigned(3 downto 0);
 
   -- Signals that no logic reads, for simulation.
   signal room            : std_logic;
@@ -93,10 +98,10 @@ begin
   end_limit <= unsigned'(at & "000") + payload_count;
   newest_limit <= end_limit when ends_now = '1' else mux(full, end_following, at) & "000";
   stored <= '1' when pushed /= popped else '0';
+  first <= second when has_second = '1' else end_following & newest_limit;
   more <= stored or ends_now;
   follows <= arrival_ended_q and ends_now;
   or_14 <= arrival_next or not arrival_ended_q;
-  arrival_limit_next <= second when has_second = '1' else end_following & newest_limit;
   has_second_next <= not arrival_next or more when has_second = '1' else not arrival_next and
       follows;
 
@@ -130,8 +135,8 @@ begin
         at <= at + full;
         packets_ready_q <= not used(3) and not (to_std_logic(used = 7) and arrives);
         if or_14 = '1' then
-          arrival_limit_q <= arrival_limit_next(6 downto 0);
-          arrival_following_q <= arrival_limit_next(10 downto 7);
+          arrival_limit_q <= first_limit;
+          arrival_following_q <= first_following;
           arrival_ended_q <= has_second or ends_now;
         end if;
         if arrival_next = '1' or has_second = '0' then
@@ -161,6 +166,8 @@ begin
 
   payload_count <= payload(67 downto 64);
   payload_last <= payload(68);
+  first_limit <= first(6 downto 0);
+  first_following <= first(10 downto 7);
   arrival_beat <= full & at & payload;
 
   packets_ready <= packets_ready_q;
@@ -180,7 +187,7 @@ begin
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.sequencer.byte_flags of the Amaranth design.
--- ByteFlags: One bit for each byte of the packet buffer, and one for each header.
+-- ByteFlags: Flags of the packet buffer: one for each byte, and those of headers for each beat.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -201,24 +208,24 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_byte_flags is
 
   -- Combinational signals.
-  signal headers_write_data : std_logic;
-  signal beat_data          : unsigned(63 downto 0);
-  signal beat_count         : unsigned(3 downto 0);
-  signal beat_last          : std_logic;
-  signal beat_at            : unsigned(3 downto 0);
-  signal beat_valid         : std_logic;
+  signal headers_table_write_data : std_logic;
+  signal beat_data                : unsigned(63 downto 0);
+  signal beat_count               : unsigned(3 downto 0);
+  signal beat_last                : std_logic;
+  signal beat_at                  : unsigned(3 downto 0);
+  signal beat_valid               : std_logic;
 
   -- Signals that no logic reads, for simulation.
-  signal headers_write_addr : unsigned(2 downto 0);
-  signal headers_write_en   : std_logic;
-  signal headers_read_addr  : unsigned(2 downto 0);
-  signal headers_read_data  : std_logic;
+  signal headers_table_write_addr : unsigned(2 downto 0);
+  signal headers_table_write_en   : std_logic;
+  signal headers_table_read_addr  : unsigned(2 downto 0);
+  signal headers_table_read_data  : std_logic;
 
-  type headers_array is array (0 to 7) of unsigned(0 downto 0);
-  signal headers : headers_array := (others => (others => '0'));
+  type headers_table_array is array (0 to 7) of unsigned(0 downto 0);
+  signal headers_table : headers_table_array := (others => (others => '0'));
 begin
 
-  headers_write_data <= (to_std_logic(beat_data(7 downto 0) /= 0) and (not beat_last or
+  headers_table_write_data <= (to_std_logic(beat_data(7 downto 0) /= 0) and (not beat_last or
       to_std_logic(beat_count > 0))) or (to_std_logic(beat_data(15 downto 8) /= 1) and
       (not beat_last or to_std_logic(beat_count > 1)));
 
@@ -226,12 +233,12 @@ begin
   begin
     if rising_edge(aclk) then
       if beat_valid = '1' then
-        headers(to_integer(beat_at(2 downto 0))) <= (0 => headers_write_data);
+        headers_table(to_integer(beat_at(2 downto 0))) <= (0 => headers_table_write_data);
       end if;
     end if;
   end process;
 
-  mismatch <= headers(to_integer(header_at(2 downto 0)))(0);
+  mismatch <= headers_table(to_integer(header_at(2 downto 0)))(0);
 
   beat_data <= beat(63 downto 0);
   beat_count <= beat(67 downto 64);
@@ -239,10 +246,10 @@ begin
   beat_at <= beat(72 downto 69);
   beat_valid <= beat(73);
 
-  headers_write_addr <= beat(71 downto 69);
-  headers_write_en <= beat(73);
-  headers_read_addr <= header_at(2 downto 0);
-  headers_read_data <= mismatch;
+  headers_table_write_addr <= beat(71 downto 69);
+  headers_table_write_en <= beat(73);
+  headers_table_read_addr <= header_at(2 downto 0);
+  headers_table_read_data <= mismatch;
 
 end architecture;
 
@@ -276,6 +283,7 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer is
 
   -- Values of enumerations.
+  constant STATUS_OK : unsigned(2 downto 0) := "000";
   constant STATUS_TRUNCATED : unsigned(2 downto 0) := "001";
   constant STATUS_TRAILING : unsigned(2 downto 0) := "010";
   constant STATUS_LENGTH : unsigned(2 downto 0) := "011";
@@ -301,8 +309,9 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal step_linear_z   : std_logic := '0';  -- step 3: map of 8; linear.z; begins angular.x
   signal step_angular_x  : std_logic := '0';  -- step 4: map of 8; angular.x; begins angular.y
   signal step_angular_y  : std_logic := '0';  -- step 5: map of 12 in two words; angular.y angular.z
-  signal step_packet_end : std_logic := '0';  -- step 6: no bytes
+  signal step_packet_end : std_logic := '0';  -- step 6: end of the packet
   signal at_end          : std_logic := '0';
+  -- signed: first byte of the map's last word, relative to last_at
   signal map_offset      : unsigned(4 downto 0) := "11001";
   signal two_word_map    : std_logic := '0';
   signal exit_add        : unsigned(5 downto 0) := "001000";
@@ -329,6 +338,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal sub_74                     : unsigned(5 downto 0);
   signal or_119                     : unsigned(5 downto 0);
   signal map_left                   : unsigned(6 downto 0);
+  signal map_room_if_cut            : unsigned(3 downto 0);
   signal orders_payload_items_next  : unsigned(2 downto 0);
   signal orders_payload_map_next    : unsigned(2 downto 0);
   signal orders_payload_items_bytes : unsigned(3 downto 0);
@@ -336,13 +346,14 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal orders_payload_status      : unsigned(2 downto 0);
   signal exit_sum                   : unsigned(6 downto 0);
-  signal early_last                 : unsigned(6 downto 0);
+  signal early_last_at              : unsigned(6 downto 0);
   signal to_exit                    : std_logic;
-  signal and_189                    : std_logic;
-  signal map_room_next              : unsigned(3 downto 0);
+  signal and_190                    : std_logic;
   signal items_room_next            : unsigned(3 downto 0);
   signal first_at_next              : unsigned(6 downto 0);
   signal map_offset_next_3          : std_logic;
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal good_status                : unsigned(2 downto 0);
   signal orders_payload_map_at      : unsigned(5 downto 0);
 
   -- Signals that no logic reads, for simulation.
@@ -365,11 +376,11 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal items_wanted   : unsigned(3 downto 0);
   signal exit_amount    : unsigned(5 downto 0);
   signal to_exit_mask   : unsigned(2 downto 0);
-  signal exit_last      : unsigned(6 downto 0);
+  signal exit_last_at   : unsigned(6 downto 0);
   signal body_amount    : unsigned(5 downto 0);
   signal to_body_mask   : unsigned(2 downto 0);
-  signal body_last      : unsigned(6 downto 0);
-  signal next_last      : unsigned(6 downto 0);
+  signal body_last_at   : unsigned(6 downto 0);
+  signal next_last_at   : unsigned(6 downto 0);
   signal to_body        : std_logic;
   signal words_down     : std_logic;
   signal words_keeps    : std_logic;
@@ -415,23 +426,26 @@ begin
   or_119 <= (arrival_limit(5 downto 0) and not_2(5 downto 0)) or (arrival_limit(5 downto 0) and
       sub_74) or (not_2(5 downto 0) and sub_74);
   map_left <= (arrival_limit xor not_2 xor sign_extend(sub_74, 7)) + unsigned'(or_119 & '0');
+  map_room_if_cut <= (others => '0') when map_left(6) = '1' else mux(to_std_logic(map_left >= 8),
+      "1000", map_left(3 downto 0));
   orders_payload_items_next <= sub_64(2 downto 0) + 1;
   orders_payload_map_next <= orders_payload_map_at(5 downto 3) + 1;
   orders_payload_items_bytes <= items_room when bad = '1' and items_room < 8 else "1000";
   orders_payload_map_bytes <= map_room when bad = '1' else "1000";
-  orders_payload_status <= code when bad = '1' else mux(trailing, "010", "000");
+  orders_payload_status <= code when bad = '1' else good_status;
   exit_sum <= last_at + exit_add;
-  early_last <= unsigned'(arrival_following & "000") + 7 when ends_packet = '1' else exit_sum;
+  early_last_at <= unsigned'(arrival_following & "000") + 7 when ends_packet = '1' else exit_sum;
   to_exit <= issue and not ends_packet;
-  and_189 <= bad and drains and orders_ready;
-  map_room_next <= (others => '0') when map_left(6) = '1' else mux(to_std_logic(map_left >= 8),
-      "1000", map_left(3 downto 0));
+  and_190 <= bad and drains and orders_ready;
   items_room_next <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0),
-      "000"), 4), "1000") when two_word_map = '1' else map_room_next;
+      "000"), 4), "1000") when two_word_map = '1' else map_room_if_cut;
   first_at_next <= arrival_following & "000" when ends_packet = '1' else mux(bad, mux(at_end,
       arrival_limit, first_at), step_end);
   map_offset_next_3 <= step_linear_x or step_linear_x_2 or step_linear_y or step_linear_z or
       step_angular_x;
+
+  good_status <= STATUS_TRAILING when trailing = '1' else
+                 STATUS_OK;
 
   p_aclk : process (aclk)
   begin
@@ -491,9 +505,9 @@ begin
             map_room <= (others => '0');
           end if;
           if code = STATUS_TRUNCATED then
-            map_room <= map_room_next;
+            map_room <= map_room_if_cut;
           end if;
-        elsif and_189 = '1' then
+        elsif and_190 = '1' then
           items_room <= (others => '0');
           map_room <= (others => '0');
         end if;
@@ -502,7 +516,7 @@ begin
             rest <= '0';
             has_nul <= '0';
           end if;
-          last_at <= early_last;
+          last_at <= early_last_at;
           if ends_packet = '1' then
             step_linear_x <= '1';
             step_linear_x_2 <= '0';
@@ -569,11 +583,11 @@ begin
   items_wanted <= "1000";
   exit_amount <= exit_add;
   to_exit_mask <= (others => '0');
-  exit_last <= exit_sum;
+  exit_last_at <= exit_sum;
   body_amount <= (others => '0');
   to_body_mask <= (others => '0');
-  body_last <= last_at;
-  next_last <= early_last;
+  body_last_at <= last_at;
+  next_last_at <= early_last_at;
   to_body <= '0';
   words_down <= '0';
   words_keeps <= '1';
@@ -618,6 +632,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_queue i
   signal o_valid_q   : std_logic := '0';
   signal o_payload_q : unsigned(41 downto 0) := (others => '0');
   signal has_second  : std_logic := '0';
+  -- the order that came while o was waiting
   signal second      : unsigned(41 downto 0) := (others => '0');
 
   -- Combinational signals.
@@ -762,6 +777,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal ends_now                    : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal status_now                  : unsigned(2 downto 0) := (others => '0');
+  -- a leaf of the order that is executed, or the status, is full
   signal slow                        : std_logic := '0';
 
   -- Combinational signals.
@@ -773,31 +789,31 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal full_angular_z             : std_logic;
   signal status_full                : std_logic;
   signal has_step                   : std_logic;
-  signal chosen_linear_x            : std_logic;
+  signal chosen_step_linear_x_2     : std_logic;
   signal blocked_linear_x           : std_logic;
   signal go_linear_x                : std_logic;
-  signal chosen_linear_y            : std_logic;
+  signal chosen_step_linear_y       : std_logic;
   signal blocked_linear_y           : std_logic;
   signal go_linear_y                : std_logic;
-  signal chosen_linear_z            : std_logic;
+  signal chosen_step_linear_z       : std_logic;
   signal blocked_linear_z           : std_logic;
   signal go_linear_z                : std_logic;
-  signal chosen_angular_x           : std_logic;
+  signal chosen_step_angular_x      : std_logic;
   signal blocked_angular_x          : std_logic;
   signal go_angular_x               : std_logic;
-  signal chosen_angular_y           : std_logic;
+  signal chosen_step_angular_y      : std_logic;
   signal blocked_angular_y          : std_logic;
   signal go_angular_y               : std_logic;
   signal blocked_angular_z          : std_logic;
   signal go_angular_z               : std_logic;
   signal ends                       : std_logic;
-  signal and_56                     : std_logic;
-  signal and_64                     : std_logic;
-  signal and_72                     : std_logic;
-  signal and_80                     : std_logic;
-  signal and_88                     : std_logic;
-  signal or_117                     : std_logic;
-  signal or_131                     : std_logic;
+  signal and_55                     : std_logic;
+  signal and_63                     : std_logic;
+  signal and_71                     : std_logic;
+  signal and_79                     : std_logic;
+  signal and_87                     : std_logic;
+  signal or_116                     : std_logic;
+  signal or_130                     : std_logic;
   signal lane_0_items_data          : unsigned(7 downto 0);
   signal lane_0_map_data            : unsigned(7 downto 0);
   signal lane_1_items_data          : unsigned(7 downto 0);
@@ -879,7 +895,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal payload_angular_x : unsigned(63 downto 0);
   signal payload_angular_y : unsigned(63 downto 0);
   signal payload_angular_z : unsigned(63 downto 0);
-  signal chosen_angular_z  : std_logic;
 
   type lane_0_array is array (0 to 7) of unsigned(7 downto 0);
   signal lane_0 : lane_0_array := (others => (others => '0'));
@@ -914,35 +929,38 @@ begin
   full_angular_z <= message_angular_z_valid_q and not message_angular_z_ready;
   status_full <= status_valid_q and not status_ready;
   has_step <= orders_valid and not orders_payload_blank;
-  chosen_linear_x <= '1' when has_step = '1' and orders_payload_step = STEP_LINEAR_X_2 else '0';
+  chosen_step_linear_x_2 <= '1' when has_step = '1' and orders_payload_step = STEP_LINEAR_X_2 else
+      '0';
   blocked_linear_x <= active_linear_x and message_linear_x_valid_q;
   go_linear_x <= active_linear_x and not blocked_linear_x;
-  chosen_linear_y <= '1' when has_step = '1' and orders_payload_step = STEP_LINEAR_Y else '0';
+  chosen_step_linear_y <= '1' when has_step = '1' and orders_payload_step = STEP_LINEAR_Y else '0';
   blocked_linear_y <= active_linear_y and message_linear_y_valid_q;
   go_linear_y <= active_linear_y and not blocked_linear_y;
-  chosen_linear_z <= '1' when has_step = '1' and orders_payload_step = STEP_LINEAR_Z else '0';
+  chosen_step_linear_z <= '1' when has_step = '1' and orders_payload_step = STEP_LINEAR_Z else '0';
   blocked_linear_z <= active_linear_z and message_linear_z_valid_q;
   go_linear_z <= active_linear_z and not blocked_linear_z;
-  chosen_angular_x <= '1' when has_step = '1' and orders_payload_step = STEP_ANGULAR_X else '0';
+  chosen_step_angular_x <= '1' when has_step = '1' and orders_payload_step = STEP_ANGULAR_X else
+      '0';
   blocked_angular_x <= active_angular_x and message_angular_x_valid_q;
   go_angular_x <= active_angular_x and not blocked_angular_x;
-  chosen_angular_y <= '1' when has_step = '1' and orders_payload_step = STEP_ANGULAR_Y else '0';
+  chosen_step_angular_y <= '1' when has_step = '1' and orders_payload_step = STEP_ANGULAR_Y else
+      '0';
   blocked_angular_y <= active_angular_y and message_angular_y_valid_q;
   go_angular_y <= active_angular_y and not blocked_angular_y;
   blocked_angular_z <= active_angular_z and message_angular_z_valid_q;
   go_angular_z <= active_angular_z and not blocked_angular_z and not blocked_angular_y;
   ends <= orders_valid and orders_payload_ends;
   orders_ready <= not slow;
-  and_56 <= orders_ready and begins_linear_x;
-  and_64 <= orders_ready and begins_linear_x_2;
-  and_72 <= orders_ready and begins_linear_y;
-  and_80 <= orders_ready and begins_linear_z;
-  and_88 <= orders_ready and begins_angular_x;
-  or_117 <= (chosen_linear_x and full_linear_x) or (chosen_linear_y and full_linear_y) or
-      (chosen_linear_z and full_linear_z) or (chosen_angular_x and full_angular_x) or
-      (chosen_angular_y and full_angular_y) or (chosen_angular_y and full_angular_z) or (ends and
-      status_full);
-  or_131 <= (blocked_linear_x and not message_linear_x_ready) or (blocked_linear_y and
+  and_55 <= orders_ready and begins_linear_x;
+  and_63 <= orders_ready and begins_linear_x_2;
+  and_71 <= orders_ready and begins_linear_y;
+  and_79 <= orders_ready and begins_linear_z;
+  and_87 <= orders_ready and begins_angular_x;
+  or_116 <= (chosen_step_linear_x_2 and full_linear_x) or (chosen_step_linear_y and
+      full_linear_y) or (chosen_step_linear_z and full_linear_z) or (chosen_step_angular_x and
+      full_angular_x) or (chosen_step_angular_y and full_angular_y) or (chosen_step_angular_y and
+      full_angular_z) or (ends and status_full);
+  or_130 <= (blocked_linear_x and not message_linear_x_ready) or (blocked_linear_y and
       not message_linear_y_ready) or (blocked_linear_z and not message_linear_z_ready) or
       (blocked_angular_x and not message_angular_x_ready) or (blocked_angular_y and
       not message_angular_y_ready) or (blocked_angular_z and not message_angular_z_ready) or
@@ -1143,39 +1161,39 @@ begin
           status_now <= orders_payload_status;
         end if;
         if orders_ready = '1' then
-          active_linear_x <= chosen_linear_x;
+          active_linear_x <= chosen_step_linear_x_2;
         else
           active_linear_x <= active_linear_x and not go_linear_x;
         end if;
         if orders_ready = '1' then
-          active_linear_y <= chosen_linear_y;
+          active_linear_y <= chosen_step_linear_y;
         else
           active_linear_y <= active_linear_y and not go_linear_y;
         end if;
         if orders_ready = '1' then
-          active_linear_z <= chosen_linear_z;
+          active_linear_z <= chosen_step_linear_z;
         else
           active_linear_z <= active_linear_z and not go_linear_z;
         end if;
         if orders_ready = '1' then
-          active_angular_x <= chosen_angular_x;
+          active_angular_x <= chosen_step_angular_x;
         else
           active_angular_x <= active_angular_x and not go_angular_x;
         end if;
         if orders_ready = '1' then
-          active_angular_y <= chosen_angular_y;
+          active_angular_y <= chosen_step_angular_y;
         else
           active_angular_y <= active_angular_y and not go_angular_y;
         end if;
         if orders_ready = '1' then
-          active_angular_z <= chosen_angular_y;
+          active_angular_z <= chosen_step_angular_y;
         else
           active_angular_z <= active_angular_z and not go_angular_z;
         end if;
         if orders_ready = '1' then
-          slow <= or_117;
+          slow <= or_116;
         else
-          slow <= or_131;
+          slow <= or_130;
         end if;
       end if;
     end if;
@@ -1206,64 +1224,64 @@ begin
             to_std_logic(orders_payload_map_bytes > 2) &
             to_std_logic(orders_payload_map_bytes > 1) & to_std_logic(orders_payload_map_bytes > 0);
       end if;
-      if and_56 = '1' then
+      if and_55 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_56 = '1' then
+      if and_55 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_56 = '1' then
+      if and_55 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_56 = '1' then
+      if and_55 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_64 = '1' then
+      if and_63 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_64 = '1' then
+      if and_63 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_64 = '1' then
+      if and_63 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_64 = '1' then
+      if and_63 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_72 = '1' then
+      if and_71 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_72 = '1' then
+      if and_71 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_72 = '1' then
+      if and_71 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_72 = '1' then
+      if and_71 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_80 = '1' then
+      if and_79 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_80 = '1' then
+      if and_79 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_80 = '1' then
+      if and_79 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_80 = '1' then
+      if and_79 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_88 = '1' then
+      if and_87 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_88 = '1' then
+      if and_87 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_88 = '1' then
+      if and_87 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_88 = '1' then
+      if and_87 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
       if go_linear_x = '1' then
@@ -1388,7 +1406,6 @@ begin
   payload_angular_x <= message_angular_x_payload_q;
   payload_angular_y <= message_angular_y_payload_q;
   payload_angular_z <= message_angular_z_payload_q;
-  chosen_angular_z <= chosen_angular_y;
 
 end architecture;
 

@@ -403,7 +403,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal total_6                    : unsigned(6 downto 0);
   signal base                       : unsigned(6 downto 0);
   signal end_sig                    : unsigned(6 downto 0);
-  signal map_start_next_3           : unsigned(3 downto 0);
+  signal add_13                     : unsigned(3 downto 0);
   signal map_end                    : unsigned(6 downto 0);
   signal newest                     : unsigned(3 downto 0);
   signal room                       : unsigned(3 downto 0);
@@ -493,8 +493,8 @@ begin
       "100", 7);
   end_sig <= (total_6 and not resize(words_payload_end_mask, 7)) or
       resize(words_payload_end_mask and mux(words_payload_last, "000", "100"), 7);
-  map_start_next_3 <= base(6 downto 3) + words_payload_two_word_map;
-  map_end <= unsigned'(map_start_next_3 & base(2 downto 0)) + words_payload_map_bytes;
+  add_13 <= base(6 downto 3) + words_payload_two_word_map;
+  map_end <= unsigned'(add_13 & base(2 downto 0)) + words_payload_map_bytes;
   newest <= at(6 downto 3) + mux(takes, words_payload_max_beats, "000");
   room <= bound - newest;
   ends_write_addr <= complete_next(2 downto 0) - 1;
@@ -594,7 +594,7 @@ begin
             items_start <= at;
           end if;
           items_size <= words_payload_items_bytes;
-          map_start <= map_start_next_3 & base(2 downto 0);
+          map_start <= add_13 & base(2 downto 0);
           map_size <= words_payload_map_bytes;
           at <= end_sig;
           complete_next <= end_sig(6 downto 3);
@@ -835,7 +835,7 @@ begin
   error_sig <= error_sig_q;
 
   words_payload <= words_payload_128 & words_payload_0;
-  map_at <= map_start_next_3 & base(2 downto 0);
+  map_at <= add_13 & base(2 downto 0);
   ready <= words_ready_q;
   items_index_0 <= (others => '0');
   items_slot_0 <= items_start(5 downto 3);
