@@ -189,6 +189,10 @@ def _plain(message: Any) -> tuple[Any, Any]:
     """
     plain = flipped(message) if isinstance(message, FlippedInterface) else message
     signature = getattr(plain, "signature", None)
+    if isinstance(signature, PartSignature | stream.Signature):
+        path, ready = next((p, s) for p, _, s in signature.flatten(plain) if p[-1] == "ready")
+        name = ready.name.removesuffix("__".join(["", *map(str, path)])).replace("__", ".")
+        raise TypeError(f"The interface of a whole message is needed, not {name!r}")
     if not isinstance(signature, MessageSignature):
         raise TypeError(f"A message interface is needed, not {message!r}")
     return plain, signature

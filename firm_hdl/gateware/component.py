@@ -19,6 +19,9 @@ class Component(wiring.Component):
     `__init__` of this class last, and only a component that was made so far has to be used.
     """
 
+    is_closed = True
+    """What is inside is firm-hdl's own: checks of a user's connections end here."""
+
     def __new__(cls: type[Self], *args: Any, src_loc_at: int = 0, **options: Any) -> Self:
         self: Self = super().__new__(cls, src_loc_at=src_loc_at + 1)
         self._MustUse__used = True

@@ -169,9 +169,9 @@ def elaborate_accelerator(description: Description, accelerator: Any, platform: 
 
 @contextmanager
 def conflicts_reported(description: Description) -> Iterator[None]:
-    """Report two drivers of a signal as a mistake of the accelerator.
+    """Report two drivers of a signal, and two of a stream, as a mistake of the accelerator.
 
-    Amaranth finds them in the whole design, and says where both are.
+    They are found in the whole design, and the error says where both are.
 
     Raises
     ------
@@ -180,7 +180,7 @@ def conflicts_reported(description: Description) -> Iterator[None]:
     """
     try:
         yield
-    except DriverConflict as error:
+    except (DriverConflict, wiring.ConnectionError) as error:
         if not description.accelerator:
             raise
         raise _refused(description, f"'{description.accelerator}': {error}") from error

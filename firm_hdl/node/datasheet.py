@@ -60,9 +60,10 @@ def node_datasheet(
             (f"{memory_bytes(facts):,}", "bytes of packet memory"),
             (f"{total[0]:,} LUT", "estimated, without the accelerator"),
             (f"{total[1]:,} FF", "estimated, without the accelerator"),
-            *([(f"{needed / 1e6:.3g} MHz", "needed for all stated rates")] if needed else []),
+            *([(_clock(needed), "needed for all stated rates")] if needed else []),
         ],
         made_by=f"firm-hdl {firm_hdl.__version__}",
+        wire=description.wire,
         facts=facts,
         blocks=_blocks(facts, stores),
         warnings=list(warnings_of(description, facts)),
@@ -143,6 +144,12 @@ def _blocks(
     return figure
 
 
+def _clock(hz: float) -> str:
+    units = ((1e6, "MHz"), (1e3, "kHz"))
+    scale, unit = next((each for each in units if hz >= each[0]), (1, "Hz"))
+    return f"{float(f'{hz / scale:.3g}'):g} {unit}"
+
+
 def _kind(topic: Mapping[str, Any], direction: Any) -> str:
     kind: str = topic["kind"]
     return SERVICE_PARTS[direction] if kind == "serve" else kind
@@ -160,7 +167,7 @@ def _row(topic: Mapping[str, Any], direction: str, store: Mapping[str, Any]) -> 
         store["when_full"],
         f"{store['cycles']['cycles']:,}",
         "" if rate is None else f"{rate:g} Hz",
-        "" if clock is None else f"{clock / 1e6:.3g} MHz",
+        "" if clock is None else _clock(clock),
     )
 
 

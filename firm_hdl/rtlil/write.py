@@ -17,6 +17,7 @@ from amaranth.hdl._ir import PortDirection
 from amaranth.lib import wiring
 
 from firm_hdl.names.attributes import PURPOSE
+from firm_hdl.rtlil.connections import check_connections
 
 __all__ = ["convert_fragment", "rtlil_of"]
 
@@ -39,6 +40,8 @@ def rtlil_of(design: Any, *, name: str, ports: Any = None, platform: Any = None)
         If the design or its name is none, or an elaboratable that is no component has no ports.
     ValueError
         If the name is no word.
+    wiring.ConnectionError
+        As :func:`.check_connections`.
     """
     if not isinstance(name, str):
         raise TypeError(f"Name of a design must be a text, not {name!r}")
@@ -57,6 +60,7 @@ def rtlil_of(design: Any, *, name: str, ports: Any = None, platform: Any = None)
             "ports=[...]"
         )
     fragment = Fragment.get(design, platform)
+    check_connections(fragment)
     if ports is None:
         ports = {
             "__".join(map(str, path)): (

@@ -21,7 +21,8 @@ from amaranth.sim import Simulator, SimulatorContext
 
 from firm_hdl.garbage import search_put_off
 from firm_hdl.gateware.limits import check_integer
-from firm_hdl.sim.design import check_connections, check_domains
+from firm_hdl.rtlil.connections import check_connections
+from firm_hdl.sim.design import check_domains
 from firm_hdl.sim.levels import divided
 from firm_hdl.sim.stalls import StallPlan, check_stalls, stalls_of
 from firm_hdl.sim.watch import StreamRules

@@ -15,19 +15,18 @@ from amaranth.hdl._ast import Assign, Switch
 from amaranth.hdl._ir import Design
 from amaranth.hdl._mem import MemoryInstance
 from amaranth.hdl._xfrm import DomainCollector
-from amaranth.lib import stream, wiring
 from amaranth.sim import SimulatorContext
 from amaranth.sim._pyclock import PyClockProcess
 
 from firm_hdl.errors import UserError
 from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.interfaces import Stream
+from firm_hdl.rtlil.connections import check_connections, components_of, streams_of
 
 __all__ = [
     "ClockDomainError",
     "Domain",
     "Logic",
-    "check_connections",
     "check_domain",
     "check_domains",
     "unconnected_streams",
@@ -71,7 +70,7 @@ def check_domain(
         If the design has no such domain, the domain has no clock, or a stream belongs to registers
         of other domains.
     wiring.ConnectionError
-        As :func:`check_connections`.
+        As :func:`.check_connections`.
     """
     if not isinstance(ctx, SimulatorContext):
         raise TypeError(f"The first argument must be the context of a testbench, not {ctx!r}")
@@ -122,33 +121,6 @@ def check_domains(design: Fragment, what: str) -> None:
             f"{what} has one clock domain, 'sync'; the design also has "
             + ", ".join(repr(name) for name in sorted(others))
         )
-
-
-def check_connections(design: Fragment) -> None:
-    """Check that no stream of a component is connected twice: the last connection would count.
-
-    Raises
-    ------
-    wiring.ConnectionError
-    """
-    sources: dict[int, list[Signal]] = {}
-    stack = [design]
-    while stack:
-        fragment = stack.pop()
-        stack += [inner for inner, _, _ in fragment.subfragments]
-        for each in fragment.statements.get("comb", ()):
-            if isinstance(each, Assign) and isinstance(each.lhs, Signal):
-                # A constant may be there for cases that the next assignment leaves out.
-                sources.setdefault(id(each.lhs), []).extend(
-                    [each.rhs] if isinstance(each.rhs, Signal) else []
-                )
-    for place, component in _components(design):
-        for name, port in _streams(component):
-            if any(len(sources.get(id(signal), ())) > 1 for signal in (port.valid, port.ready)):
-                raise wiring.ConnectionError(
-                    f"Stream {'.'.join([*place, *name])!r} is connected twice: "
-                    "only the last connection would count"
-                )
 
 
 def _resolved(design: Design, domain: Domain) -> ClockDomain:
@@ -262,8 +234,8 @@ def _assigned(
 
 def unconnected_streams(design: Fragment, logic: Logic) -> Iterator[str]:
     """Yield the names of streams that offer transfers, and whose `ready` no logic drives."""
-    for place, component in _components(design):
-        for name, port in _streams(component):
+    for place, component in components_of(design):
+        for name, port in streams_of(component):
             is_open = isinstance(port.ready, Signal) and id(port.ready) not in logic.drivers
             if is_open and id(port.valid) in logic.drivers:
                 yield ".".join([*place, *name])
@@ -280,8 +252,8 @@ def what_waits(ctx: SimulatorContext) -> str:
     open_: list[str] = []
     waiting: list[str] = []
     dropped: list[str] = []
-    for place, component in _components(design.fragment):
-        for name, port in _streams(component):
+    for place, component in components_of(design.fragment):
+        for name, port in streams_of(component):
             if ctx.get(port.valid) and not ctx.get(port.ready):
                 names = waiting if id(port.ready) in driven else open_
                 names.append(".".join([*place, *name]))
@@ -302,27 +274,3 @@ def what_waits(ctx: SimulatorContext) -> str:
 def _listed(names: list[str]) -> str:
     rest = len(names) - _MOST_NAMES
     return ", ".join(names[:_MOST_NAMES]) + (f" and {rest} more" if rest > 0 else "")
-
-
-def _components(
-    fragment: Fragment, place: tuple[str, ...] = ()
-) -> Iterator[tuple[tuple[str, ...], wiring.Component]]:
-    """Yield components with the names on the way to them, without those inside of firm-hdl's."""
-    for origin in fragment.origins or ():
-        if isinstance(origin, wiring.Component):
-            yield place, origin
-        if isinstance(origin, Component):
-            return
-    for number, (inner, name, _) in enumerate(fragment.subfragments):
-        yield from _components(inner, (*place, name or f"U${number}"))
-
-
-def _streams(component: wiring.Component) -> Iterator[tuple[list[str], Any]]:
-    """Yield the streams of a component with the names on the way to them."""
-    for path, _, _ in component.signature.flatten(component):
-        if path[-1] == "ready":
-            port: Any = component
-            for part in path[:-1]:
-                port = port[part] if isinstance(part, int) else getattr(port, part)
-            if isinstance(port, stream.Interface | wiring.FlippedInterface):
-                yield [str(part) for part in path[:-1]], port

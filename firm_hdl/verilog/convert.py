@@ -43,6 +43,8 @@ def convert(
     ------
     TypeError, ValueError
         If an argument is not what it has to be.
+    wiring.ConnectionError
+        If a stream of a component is connected twice.
     """
     netlist = Netlist.of(design, name=name, ports=ports, platform=platform)
     if not _IS_NAME.fullmatch(name) or name in VERILOG:

@@ -89,6 +89,8 @@ def convert(
     ValueError
         If the design has a construct that VHDL cannot express, such as `AnyConst`, or the text is
         not RTLIL that Amaranth 0.5 prints.
+    wiring.ConnectionError
+        If a stream of a component is connected twice.
     """
     netlist = Netlist.of(design, name=name, ports=ports, platform=platform)
     entities, port_names, top = netlist.entities, netlist.port_names, netlist.design.top

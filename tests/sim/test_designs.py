@@ -33,6 +33,7 @@ from firm_hdl.sim import (
     send_packets,
     watch,
 )
+from firm_hdl.verilog import convert
 from tests.sim.components import Relay
 
 TWIST = load_message("geometry_msgs/msg/Twist")
@@ -204,6 +205,8 @@ def test_a_leaf_that_is_connected_twice_is_an_error() -> None:
     error = r"^Stream 'rx\.message\.linear\.x' is connected twice"
     with pytest.raises(wiring.ConnectionError, match=error):
         only_send(Loop(twice))
+    with pytest.raises(wiring.ConnectionError, match=error):
+        convert(Loop(twice))
 
 
 def test_a_message_may_be_connected_in_each_elaboration_and_pass_an_interface() -> None:

@@ -38,7 +38,7 @@ _MOST_CHARACTERS = 300
 _STATUSES = {
     "OK": ("both", "The packet is a message; the message was written."),
     "TRUNCATED": ("deserializer", "The packet ends before the message does."),
-    "TRAILING": ("deserializer", "Bytes follow the message; on CDR, more than three."),
+    "TRAILING": ("deserializer", "Bytes follow the message."),
     "LENGTH": ("both", "A length is over its limit; see Limits."),
     "ENCAPSULATION": ("deserializer", "The packet starts with other bytes than 00 01."),
     "STRING": ("deserializer", "The last byte of a string is not NUL."),
@@ -74,14 +74,20 @@ def write(
             (size_text(metrics.min_bytes, metrics.max_bytes), "bytes per packet"),
             (len(plan.leaves), "streams of the message"),
             (timing["shortest_packet"]["cycles"], "cycles, shortest packet"),
-            (f"{timing['hardest_packet_tried']['clock_mhz']['1 Gbit/s']:.0f} MHz", "for 1 Gbit/s"),
+            (
+                _clock(timing["hardest_packet_tried"]["clock_mhz"]["1 Gbit/s"]),
+                "for 1 Gbit/s, hardest packet tried",
+            ),
             *(
                 (f"{each['lut']:,} LUT", f"{way}, {_how(each)}")
                 for way, each in manifest["estimates"].items()
             ),
         ],
         made_by=f"firm-hdl {firm_hdl.__version__}",
+        wire=plan.wire,
         bus_bytes=plan.bus_bytes,
+        options=_options(converters),
+        has_texts=any(length.nul for length in plan.lengths.values()),
         max_message_bytes=plan.max_message_bytes,
         types=definitions_of([message]),
         sums=[*sums_of(message), ("SHA-256 of the definitions", inputs["definition_sha256"])],
@@ -209,8 +215,12 @@ def _costs(plan: Plan, timing: Mapping[str, Any]) -> Iterator[tuple[str, ...]]:
 
 
 def _cost(name: str, cost: Mapping[str, Any]) -> tuple[str, ...]:
-    clocks = (f"{mhz:.1f} MHz" for mhz in cost["clock_mhz"].values())
+    clocks = map(_clock, cost["clock_mhz"].values())
     return (name, *(f"{cost[key]:,}" for key in ("bytes", "beats", "cycles")), *clocks)
+
+
+def _clock(mhz: float) -> str:
+    return f"{mhz:.1f} MHz"
 
 
 def _latencies(timing: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -236,7 +246,10 @@ def _statuses(plan: Plan, codes: Mapping[str, int]) -> Iterator[tuple[str, ...]]
     }
     for name, code in codes.items():
         if has.get(name, True):
-            yield str(code), name, *_STATUSES[name]
+            converter, meaning = _STATUSES[name]
+            if name == "TRAILING" and plan.wire == "cdr":
+                meaning = "More than three bytes follow the message."
+            yield str(code), name, converter, meaning
 
 
 def _lengths(plan: Plan) -> Iterator[tuple[str, ...]]:
@@ -248,9 +261,16 @@ def _lengths(plan: Plan) -> Iterator[tuple[str, ...]]:
             yield str(plan.leaves[item.count.leaf]), text, f"{item.count.limit:,}"
 
 
-def _commands(converters: Converters) -> Iterator[str]:
+def _options(converters: Converters) -> str:
+    """Return the arguments by which other commands find the same converters."""
     plan = converters.plan
     options = f"{plan.message} --distro {converters.inputs['distro']} --bus-bytes {plan.bus_bytes}"
+    is_usual = plan.wire == lay_out(converters.message).rules.wire
+    return options if is_usual else f"{options} --wire {plan.wire}"
+
+
+def _commands(converters: Converters) -> Iterator[str]:
+    options = _options(converters)
     yield f"firm-hdl verify {options}    # against ROS's own libraries"
     yield f"firm-hdl verify {options} --simulator ghdl    # the VHDL; also iverilog and verilator"
     yield f"firm-hdl prove {options}    # the VHDL is Amaranth's circuit"

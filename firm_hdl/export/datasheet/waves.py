@@ -199,9 +199,11 @@ def _figures(
     if len(starts) > MOST_FIGURES:
         starts[MOST_FIGURES - 1 : -1] = []
     texts = {str(leaf): _text_of(message, leaf) for leaf in plan.leaves}
+    end = 0
     for start in starts:
+        left_out = f"; {end} to {start - 1} are left out" if start > end else ""
         end = min(start + columns, len(cycles))
-        what = f"Cycles {start} to {end - 1}"
+        what = f"Cycles {start} to {end - 1}{left_out}"
         moving = [
             name for name in texts if any(all(cycle[name][:2]) for cycle in cycles[start:end])
         ]

@@ -12,7 +12,8 @@ from amaranth.hdl import ClockDomain, Elaboratable, Fragment, Module, Signal, Va
 from amaranth.hdl._ir import Design
 from amaranth.hdl._xfrm import DomainCollector, DomainLowerer
 
-from firm_hdl.sim.design import ClockDomainError, Logic, check_connections, unconnected_streams
+from firm_hdl.rtlil.connections import check_connections
+from firm_hdl.sim.design import ClockDomainError, Logic, unconnected_streams
 from firm_hdl.sim.fast.ports import Ports, StreamPort
 from firm_hdl.sim.levels import divide
 

@@ -88,6 +88,17 @@ def test_page_is_whole_and_shows_definitions_as_text(built):
     assert {"name.text.length", "wheels.items", "rest", "abc", "3.5", "OK"} <= words
 
 
+def test_the_page_of_ros1_has_what_is_of_its_circuit(tmp_path):
+    library(tmp_path / "src", {"p/Long": "string name\nfloat64[6] values\n"})
+    words = ["--path", str(tmp_path / "src"), "--out", str(tmp_path), "--datasheet"]
+    options = ["p/Long", "--distro", "noetic", "--bus-bytes", "1"]
+    assert main(["build", *options, *words]) == 0
+    text = (tmp_path / "noetic" / "p_Long_ros1_1" / "datasheet.html").read_text()
+    assert f"<code>firm-hdl bench {' '.join(options)} --device ecp5</code>" in text
+    assert re.search("encapsulation|CDR|padding<", text) is None
+    assert re.search(r"Cycles \d+ to \d+; 30 to \d+ are left out", text)
+
+
 def test_instances_compile(built, tmp_path, ghdl, iverilog, verilator):
     found = iter(codes((built / "datasheet.html").read_text()))
     texts = {
