@@ -24,6 +24,7 @@ from firm_hdl.errors import DefinitionError, Diagnostic, UserError
 from firm_hdl.node.description import Description
 from firm_hdl.node.gateware.converters import message_groups
 from firm_hdl.node.gateware.streams import time_layout
+from firm_hdl.rtlil.connections import check_connections
 
 __all__ = [
     "accelerator_signature",
@@ -149,12 +150,16 @@ def elaborate_accelerator(description: Description, accelerator: Any, platform: 
     Raises
     ------
     DefinitionError
-        At the name in the description: if the code of the accelerator raises an exception, or if
-        it uses a clock domain that it does not have.
+        At the name in the description: if the code of the accelerator raises an exception, if it
+        connects a stream twice, or if it uses a clock domain that it does not have.
     """
     own = f"'{description.accelerator}'"
     with _reported(description, own) if description.accelerator else nullcontext():
         fragment = Fragment.get(accelerator, platform)
+        try:
+            check_connections(fragment)
+        except wiring.ConnectionError as error:
+            raise UserError(str(error)) from None
     collector = DomainCollector()
     collector(fragment)
     # Amaranth would make ports of the node of such a clock, which no list of ports has.
@@ -169,9 +174,9 @@ def elaborate_accelerator(description: Description, accelerator: Any, platform: 
 
 @contextmanager
 def conflicts_reported(description: Description) -> Iterator[None]:
-    """Report two drivers of a signal, and two of a stream, as a mistake of the accelerator.
+    """Report two drivers of a signal as a mistake of the accelerator.
 
-    They are found in the whole design, and the error says where both are.
+    Amaranth finds them in the whole design, and says where both are.
 
     Raises
     ------
@@ -180,7 +185,7 @@ def conflicts_reported(description: Description) -> Iterator[None]:
     """
     try:
         yield
-    except (DriverConflict, wiring.ConnectionError) as error:
+    except DriverConflict as error:
         if not description.accelerator:
             raise
         raise _refused(description, f"'{description.accelerator}': {error}") from error

@@ -48,6 +48,10 @@ MISTAKES = {
         ("return m", "m.submodules.n = n = Module(); n.d.comb += sent.valid.eq(1); return m"),
         "'mistaken:Double': Signal (sig publish__double__data__valid) bit 0 driven from",
     ),
+    "two connections": (
+        ("return m", "m.d.comb += sent.valid.eq(came.ready); return m"),
+        "Stream 'publish.double.data' is connected twice: only the last connection would count",
+    ),
     "another clock": (
         ("return m", "m.d.fast += __import__('amaranth.hdl').hdl.Signal().eq(1); return m"),
         "the accelerator uses the clock domain 'fast', which it does not have",

@@ -89,7 +89,7 @@ def test_page_is_whole_and_shows_definitions_as_text(built):
 
 
 def test_the_page_of_ros1_has_what_is_of_its_circuit(tmp_path):
-    library(tmp_path / "src", {"p/Long": "string name\nfloat64[6] values\n"})
+    library(tmp_path / "src", {"p/Long": "float64[6] values\n"})
     words = ["--path", str(tmp_path / "src"), "--out", str(tmp_path), "--datasheet"]
     options = ["p/Long", "--distro", "noetic", "--bus-bytes", "1"]
     assert main(["build", *options, *words]) == 0
