@@ -152,6 +152,8 @@ BAD = [
     ("checksum", wire(ip() / UDP(dport=7411, len=37) / Raw(payload(30)))),
     ("checksum", changed(echo(30), 50)),
     ("port", wire(udp(30, port=7412))),
+    # The network 0 is that of hosts without an address.
+    ("malformed", wire(udp(30, src="0.1.2.3"))),
 ]
 
 

@@ -133,6 +133,19 @@ def test_strings_and_bytes_side_by_side_may_be_empty():
     assert set(seen.statuses) | set(seen.sent_statuses) == {Status.OK}
 
 
+def test_items_of_one_size_with_and_without_padding_before_them():
+    """The items of `a` are always at byte 8; before those of `b` and `c` there may be padding."""
+    message = make("ros2", {"x": "uint32"} | dict.fromkeys("abc", "float64[]"))
+    rx = Deserializer(message)
+    packets = []
+    for sequences in ([], [1.0], [1.0]), ([2.0], [], [3.0]), ([], [], [4.0, 5.0]):
+        value = {"x": 7} | dict(zip("abc", sequences, strict=True))
+        packets.append(encode(rx.plan, to_transfers(rx.plan, message, value))[0])
+    seen = Harness(rx, None).run_packets(packets)
+    assert carried(seen.transfers) == expected(rx.plan, packets)[0]
+    assert list(seen.statuses) == [Status.OK] * 3
+
+
 @pytest.mark.parametrize("wire", WIRES)
 @few
 @given(data=st.data(), case=typed_values(wide=True), options=options, stalls=stall_plans)

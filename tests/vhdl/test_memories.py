@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from dataclasses import replace
 from pathlib import Path
@@ -83,6 +84,13 @@ def test_memories_have_names_of_their_own() -> None:
     assert set(names.memories.values()).isdisjoint(names.signals.values())
     for signal in names.memories.values():
         assert f"  signal {signal} : {signal}_array := (" in vhdl.files["stores.vhd"]
+
+
+@pytest.mark.parametrize(("place", "word"), [(5, "mem(5)"), (6, "mem(0)"), (7, "mem(0)")])
+def test_no_constant_address_is_beyond_the_last_word(place: int, word: str) -> None:
+    """VHDL checks the index, even where the word is not used."""
+    text = convert(Stores({"mem": Store(depth=6, reads=(), places=(place,))}), name="stores")
+    assert re.findall(r"mem\(\d+\)", text.files["stores.vhd"]) == [word]
 
 
 _BENCH = """

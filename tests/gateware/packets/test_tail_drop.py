@@ -6,10 +6,11 @@ from __future__ import annotations
 import random
 
 import pytest
+from amaranth.sim import Simulator
 
 from firm_hdl import GateStatus, PacketGate, load_message
 from firm_hdl.gateware.packets.gate import BACKLOG_BEATS, _Verdicts
-from firm_hdl.gateware.packets.tail_drop import MOST_DROPPED
+from firm_hdl.gateware.packets.tail_drop import MOST_DROPPED, TailDrop
 from firm_hdl.sim import Stalls
 from tests.depth import by_depth
 from tests.gateware.packets.bench import beats
@@ -128,6 +129,29 @@ def test_statuses_that_are_not_taken_hold_the_gate_or_drop_packets():
         assert len(seen.others["status"]) == inside + MOST_DROPPED
         assert bench.state["passed"] == inside
         assert bench.state["overrun"] == MOST_DROPPED + more
+
+
+def test_a_packet_that_is_dropped_while_another_is_reported_counts():
+    dut = TailDrop(8)
+
+    async def bench(ctx):
+        # A packet of one beat and one of three: `packets_out` is ready for none of them.
+        ctx.set(dut.packets_in.valid, 1)
+        for last in (1, 0, 0, 1):
+            ctx.set(dut.packets_in.payload.last, last)
+            await ctx.tick()
+        ctx.set(dut.packets_in.valid, 0)
+        ctx.set(dut.report, 1)
+        assert (ctx.get(dut.drops), ctx.get(dut.dropped)) == (1, 1)
+        await ctx.tick()
+        assert (ctx.get(dut.drops), ctx.get(dut.dropped)) == (0, 1)
+        await ctx.tick()
+        assert ctx.get(dut.dropped) == 0
+
+    simulator = Simulator(dut)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(bench)
+    simulator.run()
 
 
 TEXTS = make("ros1", dict.fromkeys("abcd", "string"), "Texts")
