@@ -143,6 +143,10 @@ def test_list_has_services_and_actions_and_paths_in_their_order(workdir, capsys)
         words = [word for path in paths for word in ("--path", path)]
         assert main(["show", "q/Q", *words]) == 0
         assert capsys.readouterr().out == f"int8 {word}\n"
+    # The folder of a file comes before all paths.
+    for word, path in (("one", "two"), ("two", "one")):
+        assert main(["show", f"{word}/q/msg/Q.msg", "--path", path]) == 0
+        assert capsys.readouterr().out == f"int8 {word}\n"
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from firm_hdl.node.capacity import bytes_on_link
+from firm_hdl.node.frame import HEADER_BYTES
 from firm_hdl.node.summary import summary
 from tests.node.samples import read
 
@@ -44,6 +46,14 @@ def test_what_a_node_cannot_carry_is_a_warning(kind, link):
         "larger messages are dropped, and the types set no limit: /c over 64 bytes, /e (in) over "
         "64 bytes",
     ]
+
+
+def test_a_message_without_bytes_takes_a_frame_too():
+    for kind in ("udp, datagram_bytes: 32", "stream"):
+        description = read(BEYOND.replace("KIND", kind))
+        assert bytes_on_link(description, 0) == HEADER_BYTES
+        frames = 2 if "udp" in kind else 1
+        assert bytes_on_link(description, 17) == 17 + frames * HEADER_BYTES
 
 
 def test_a_memory_of_the_link_limits_what_comes():

@@ -77,7 +77,10 @@ def mcap_record(kind: int, data: bytes) -> bytes:
 def write_mcap(
     path: Path, *channels: Channel, profile: str = "ros2", summary: bool = False, more: bytes = b""
 ) -> Path:
-    """Write an MCAP file without chunks. A summary repeats the definitions."""
+    """Write an MCAP file without chunks. A summary repeats the definitions.
+
+    The times are those of the log; the times of publishing are 0.
+    """
     definitions, messages = more, b""
     for number, each in enumerate(channels, start=1):
         name = each.schema or each.type
@@ -86,7 +89,7 @@ def write_mcap(
         channel += _text(b"".join(_text(key) + _text(v) for key, v in each.metadata.items()))
         definitions += mcap_record(3, schema) + mcap_record(4, channel)
         for time, data in each.messages:
-            messages += mcap_record(5, struct.pack("<HIQQ", number, 0, time, time) + data)
+            messages += mcap_record(5, struct.pack("<HIQQ", number, 0, time, 0) + data)
     body = _MAGIC + mcap_record(1, _text(profile) + _text("")) + definitions + messages
     end = struct.pack("<QQI", len(body) if summary else 0, 0, 0)
     path.write_bytes(body + definitions * summary + mcap_record(2, end) + _MAGIC)

@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 
 from firm_hdl.export.datasheet.layout import ROW_BYTES, Note, bands, layout_figure
-from firm_hdl.export.datasheet.rows import INDENT, LEFT, WIDTH
+from firm_hdl.export.datasheet.rows import INDENT, LEFT, MOST_ROWS, WIDTH, Row, draw_rows
 from firm_hdl.export.datasheet.steps import plan_figure
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
@@ -197,6 +197,15 @@ def test_offsets_count_from_the_start_of_the_packet(tmp_path):
     texts = texts_of(layout_figure(lay_out(message, "ros1")))
     rows = [text for text in texts if re.fullmatch(r"\+?\d+", text)]
     assert rows[8:] == ["0", "+0", "+8"]
+
+
+@pytest.mark.parametrize("left_out", [0, 1, 7])
+def test_rows_beyond_the_most_are_left_out_and_counted(left_out):
+    names = [f"row {number}" for number in range(MOST_ROWS + left_out)]
+    found = texts_of(draw_rows([Row(label=name) for name in names], ""))
+    assert sum(name not in found for name in names) == left_out
+    notes = [f"{left_out} more rows are left out"] if left_out else []
+    assert [text for text in found if text not in names] == notes
 
 
 DEEP = {
