@@ -69,7 +69,8 @@ def checked_vhdl(
         for name, net in own.inputs.items():
             if net in both:
                 raise refused(
-                    description, f"port '{name}' of '{entity}' must be an output, not an inout"
+                    description,
+                    f"port '{name}' of '{entity}' must be an input or an output, not an inout",
                 )
         found = [
             AcceleratorPort(name=name, direction="in", width=net.width)
@@ -106,6 +107,8 @@ def verilog_of_vhdl(
 
 def _reason(error: ProofError) -> str:
     reason = str(error).replace(", which a proof does not support", "")
+    if "$const_Z" in reason:
+        reason += ": an output or a signal that nothing drives, or a tri-state"
     return f"the VHDL cannot be simulated in a node: {reason}"
 
 

@@ -159,7 +159,7 @@ MORE_MISTAKES = [
     (
         "vhdl",
         [(f"{GOES}    : out", f"{GOES} : inout")],
-        f"port '{GOES}' of 'Relay' must be an output, not an inout",
+        f"port '{GOES}' of 'Relay' must be an input or an output, not an inout",
     ),
     (
         "vhdl",
