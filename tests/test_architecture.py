@@ -80,7 +80,7 @@ MAY_IMPORT["verify"] = {
 }
 MAY_IMPORT["equivalence"] = {
     *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
-    *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
+    *("model", "frontend", "wire", "plan", "gateware", "export"),
 }
 MAY_IMPORT["bench"] = {
     *("arguments", "errors", "files", "jobs", "rtlil", "terminal"),
