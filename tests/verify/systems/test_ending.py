@@ -19,7 +19,7 @@ from firm_hdl.verify.results.verdict import (
     Passed,
 )
 from firm_hdl.verify.run import failure
-from firm_hdl.verify.systems.system import Judged
+from firm_hdl.verify.systems.options import Request
 from tests.frontend.workspace import make_files
 from tests.verify.report.samples import a_record, a_test
 
@@ -29,7 +29,10 @@ FEW = ["--jobs", "1", "--cases", "1", "--no-stalls", "--no-broken", "--distro", 
 
 
 def found(*verdicts):
-    return [Judged(what=f"p/msg/T{n} (lyrical), ts3", verdict=v) for n, v in enumerate(verdicts)]
+    return [a_record(a_test(f"p/msg/T{n}"), verdict=v) for n, v in enumerate(verdicts)]
+
+
+ALL, NAMED = Request(), Request(types=("p/msg/T",))
 
 
 @pytest.mark.parametrize(
@@ -46,16 +49,18 @@ def found(*verdicts):
     ],
 )
 def test_success_needs_a_judgement_of_each_named_type(verdicts, of_all, named):
-    assert (not failure(found(*verdicts), is_named=False)) is of_all
-    assert (not failure(found(*verdicts), is_named=True)) is named
+    assert (not failure(found(*verdicts), ALL)) is of_all
+    assert (not failure(found(*verdicts), NAMED)) is named
 
 
 def test_mutations_of_a_named_type_need_no_judgement():
-    mutation = Judged(what="p/msg/T (lyrical), ts1", verdict=SILENT, has_name=False)
-    assert not failure([*found(PASSED), mutation], is_named=True)
-    # In contrast to other tests of the same run.
-    assert failure([*found(PASSED, SILENT), mutation], is_named=True)
-    assert failure([mutation], is_named=True)
+    mutation = a_record(a_test("p/msg/T", system="ts1"), verdict=SILENT)
+    mutating = replace(NAMED, mutations=1)
+    assert not failure([*found(PASSED), mutation], mutating)
+    # In contrast to other tests of the same run, and to definitions.
+    assert failure([*found(PASSED, SILENT), mutation], mutating)
+    assert failure([*found(PASSED), mutation], NAMED)
+    assert failure([mutation], mutating)
 
 
 @pytest.fixture
@@ -148,4 +153,4 @@ def test_golden_plans_of_no_type_that_was_named_are_no_success(tmp_path, capsys)
     capsys.readouterr()
     assert main([*call, "std_msgs/msg/Bool"]) == 1
     why = "none of them is of a type that was asked for"
-    assert f"not judged: golden plans of {golden}: {why}\n" in capsys.readouterr().out
+    assert f"not judged: golden plans of {golden}, ts2: {why}\n" in capsys.readouterr().out
