@@ -11,7 +11,6 @@ from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases.user_oracle import judge_of
 from firm_hdl.cli import main
 from firm_hdl.verify.results.file import read_results
-from firm_hdl.verify.results.records import settled
 from firm_hdl.verify.results.verdict import (
     Failed,
     KnownDifference,
@@ -111,26 +110,6 @@ def test_of_all_types_those_that_are_not_judged_are_listed(
         assert capsys.readouterr().out.endswith(LINE + "1 of 2 tests was not judged\n")
 
 
-@pytest.mark.parametrize(
-    ("other", "verdict"),
-    [
-        (a_record(shape="aa"), Passed),
-        (a_record(shape="aa", verdict=KNOWN), Passed),
-        (a_record(shape="bb"), Failed),
-        (a_record(shape=""), Failed),
-        (a_record(shape="aa", verdict=FAILED), Failed),
-        (a_record(shape="aa", verdict=SILENT), NotJudged),
-        (None, NotJudged),
-    ],
-)
-def test_a_dependent_record_has_the_verdict_of_the_other(other, verdict):
-    twin = a_record(a_test("a/msg/Twin"), same_as=a_test().key, shape="aa")
-    records = {} if other is None else {other.test.key: other}
-    assert isinstance(settled(twin, records), verdict)
-    for own in (FAILED, SILENT):
-        assert settled(replace(twin, verdict=own), records) == own
-
-
 @pytest.mark.parametrize("system", ["ts1", "ts2"])
 def test_named_definition_that_no_oracle_reads_is_no_success(tmp_path, capsys, system):
     text = "module p { module msg { struct A { long double a; }; }; };"
@@ -143,14 +122,3 @@ def test_named_definition_that_no_oracle_reads_is_no_success(tmp_path, capsys, s
     assert "1 of 2 tests was not judged, although named, so the run fails\n" in output
     assert main([*call, "--all"]) == 0
     assert capsys.readouterr().out.endswith("1 of 2 tests was not judged\n")
-
-
-def test_golden_plans_of_no_type_that_was_named_are_no_success(tmp_path, capsys):
-    golden = str(tmp_path / "golden")
-    assert main(["golden", "add", "--distro", "lyrical", golden, "std_msgs/msg/Int8"]) == 0
-    call = ["verify", *FEW, "--systems", "ts2", "--golden", golden]
-    assert main([*call, "std_msgs/msg/Int8"]) == 0
-    capsys.readouterr()
-    assert main([*call, "std_msgs/msg/Bool"]) == 1
-    why = "none of them is of a type that was asked for"
-    assert f"not judged: golden plans of {golden}, ts2: {why}\n" in capsys.readouterr().out

@@ -97,9 +97,7 @@ AGREED: dict[str, str] = {
         )
     ),
     "numbers": _struct(
-        "".join(
-            f"@default(value={value}) double d{i};" for i, value in enumerate(_NUMBERS.split())
-        )
+        "".join(f"@default(value={value}) double d{i};" for i, value in enumerate(_NUMBERS.split()))
     ),
     "constant with a comment": _constant(
         '@verbatim(language="comment", text="c") const long A = 1;'
@@ -281,9 +279,7 @@ READ_HERE: dict[str, str] = {
     "boolean from a number": _constant("const boolean A = 1;"),
     "whole numbers": _constant(
         "const double A = 2;",
-        "".join(
-            f"@default(value={v}) double d{i};" for i, v in enumerate("0 7 12 -23 +5".split())
-        ),
+        "".join(f"@default(value={v}) double d{i};" for i, v in enumerate("0 7 12 -23 +5".split())),
     ),
 }
 
