@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from firm_hdl.arguments import add_engine, add_json, add_path, number_between, seconds
+from firm_hdl.cli.building import tell
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 from firm_hdl.terminal import stage
@@ -252,9 +253,7 @@ def _act(args: argparse.Namespace, description: Description) -> None:
             stimuli=_stimuli,
             datasheet=args.datasheet,
         )
-        print(f"{'current' if built.was_current else 'wrote':8}{built.folder}", flush=True)
-        for name in built.kept:
-            print(f"kept    {built.folder / name}, which you changed", flush=True)
+        tell(built, end="")
         if args.sim:
             _compile(description, args)
     print(summary(description))

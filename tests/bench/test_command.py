@@ -93,8 +93,6 @@ def test_a_figure_that_is_missing_is_a_failure(
     [
         (["--seeds", "a", TWIST], "argument --seeds: 'a' is not a number"),
         (["--seeds", "1,-1", TWIST], "argument --seeds: must be from 0 to 2147483647, not -1"),
-        ([], "name either types or --all"),
-        (["--all", TWIST], "name either types or --all"),
         (["--device", "abacus", TWIST], "argument --device: invalid choice: 'abacus'"),
     ],
 )
