@@ -23,7 +23,7 @@ from firm_hdl.node.description import (
     Topic,
 )
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
-from firm_hdl.node.reading import LINK_OPTIONS
+from firm_hdl.node.link_options import LINK_OPTIONS
 from firm_hdl.node.rtps.endpoints import ports_of_link
 from firm_hdl.timing import Cost, timing
 

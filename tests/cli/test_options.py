@@ -26,7 +26,7 @@ from tests.frontend.workspace import make_files
 BUILD = importlib.import_module("firm_hdl.export.build")
 RUN = {
     "verify": "firm_hdl.verify.command",
-    "golden": "firm_hdl.verify.ts2.golden_command",
+    "golden": "firm_hdl.verify.ts2.golden",
     "cover": "firm_hdl.covering.command",
     "report": "firm_hdl.verify.report.formats",
     "prove": "firm_hdl.equivalence.command",
