@@ -194,7 +194,9 @@ def _files(
         benches = {file: text for file, text in benches.items() if not file.endswith(other)}
     owners = {"the node": node.files, "its messages": records, "its structs": structs}
     if own.language:
-        owners[_ACCELERATOR] = {f"{own.entity}.vhd": ""}
+        # With records, also its packages and the wrapper; files of the user's have other names.
+        around = {file for file in own.texts if file.count("/") == 1 and own.wrapper}
+        owners[_ACCELERATOR] = {f"{own.entity}.vhd": "", **dict.fromkeys(around, "")}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     documents: dict[str, str] = {}
     if datasheet:
