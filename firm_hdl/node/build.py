@@ -97,10 +97,7 @@ def build_node(
         name += "_node"
     folder = design_folder(out, name)
     node = Node(description)
-    try:
-        ports = node_ports(node)
-    except ValueError as error:
-        raise UserError(str(error)) from None
+    ports = node_ports(node)
     has_accelerator = node.accelerator is not None
     messages: Sequence[RecordPort] = ()
     reason = "The accelerator takes all messages" if has_accelerator else ""
