@@ -8,10 +8,9 @@ ports, each message has a record in VHDL and a struct in SystemVerilog.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from itertools import product
-from pathlib import PurePath
 from typing import Any, Literal
 
 from amaranth.hdl import Fragment, Shape, Value
@@ -27,6 +26,7 @@ from firm_hdl.export.design import (
     core_file,
     design_folder,
     inputs_of_design,
+    shared_unit,
     verilog_file,
     verilog_module,
     vhdl_folder,
@@ -314,7 +314,11 @@ def build_component(
             structs = struct_files(
                 name, module, plain.ports, messages, kind="design", header=header
             )
-        _check_units(name, vhdl.top, vhdl.files, records, structs)
+        if vhdl.top != name:
+            raise UserError(f"The VHDL of every design uses the name '{name}' itself")
+        owners = {"The design": vhdl.files, "its messages": records, "its structs": structs}
+        if shared := shared_unit(owners):
+            raise UserError(f"{shared}; give the design another name")
         files = {**vhdl.files, **records}
         return {
             **verilog_file(netlist, name=name, header=header),
@@ -337,18 +341,3 @@ def build_component(
         make_files=make_files,
         force=force,
     )
-
-
-def _check_units(name: str, top: str, *files: Mapping[str, str]) -> None:
-    """Refuse a name if two design units would have one name; VHDL ignores case."""
-    if top != name:
-        raise UserError(f"The VHDL of every design uses the name '{name}' itself")
-    units: Sequence[str] = [
-        PurePath(file).stem.lower()
-        for texts in files
-        for file in texts
-        if file.endswith((".vhd", ".sv"))
-    ]
-    for unit in units:
-        if units.count(unit) > 1:
-            raise UserError(f"Two units would have the name '{unit}'; give the design another name")
