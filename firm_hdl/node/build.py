@@ -18,6 +18,7 @@ from firm_hdl.export.design import (
     design_folder,
     inputs_of_design,
     verilog_file,
+    shared_unit,
     verilog_module,
     vhdl_folder,
     write_design,
@@ -97,10 +98,7 @@ def build_node(
         name += "_node"
     folder = design_folder(out, name)
     node = Node(description)
-    try:
-        ports = node_ports(node)
-    except ValueError as error:
-        raise UserError(str(error)) from None
+    ports = node_ports(node)
     has_accelerator = node.accelerator is not None
     messages: Sequence[RecordPort] = ()
     reason = "The accelerator takes all messages" if has_accelerator else ""
@@ -245,17 +243,13 @@ def _bench(name: str, language: str) -> dict[str, str]:
     }
 
 
-_SUFFIXES = (".vhd", ".sv")
 _ACCELERATOR = "its accelerator"
 
 
 def check_units(
     description: Description, name: str, *, top: str, files: Mapping[str, Iterable[str]]
 ) -> None:
-    """Refuse a name of a node if two design units would have one name.
-
-    VHDL ignores the case of names (IEEE Std 1076-2008, 15.4.2), and units of VHDL and of
-    SystemVerilog may be in one library. So the names of all of them differ in more than case.
+    """Refuse a name of a node if two design units would have one name; see `shared_unit`.
 
     Parameters
     ----------
@@ -264,8 +258,6 @@ def check_units(
     top : str
         Name that this entity has in VHDL.
     files : mapping of str to iterable of str
-        Names of files by what they belong to, such as ``"the messages"``. Those with another
-        suffix than ``.vhd`` and ``.sv`` do not count.
 
     Raises
     ------
@@ -274,17 +266,12 @@ def check_units(
     """
     if top != name:
         raise _refused(description, f"the VHDL of every node uses the name '{name}' itself")
-    owners: dict[str, str] = {}
-    for owner, names in files.items():
-        for unit in (PurePath(each).stem for each in names if each.endswith(_SUFFIXES)):
-            first = owners.setdefault(unit.lower(), owner)
-            if first != owner:
-                what = f"{first} and {owner} would both have a unit with the name '{unit}'"
-                if _ACCELERATOR in (first, owner):
-                    message = f"{what}; give the entity of the accelerator another name"
-                    span = description.accelerator_span
-                    raise DefinitionError([Diagnostic(message=message, span=span)])
-                raise _refused(description, what)
+    if what := shared_unit(files):
+        if _ACCELERATOR in what:
+            message = f"{what}; give the entity of the accelerator another name"
+            span = description.accelerator_span
+            raise DefinitionError([Diagnostic(message=message, span=span)])
+        raise _refused(description, what)
 
 
 def _refused(description: Description, reason: str) -> DefinitionError:
