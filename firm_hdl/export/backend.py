@@ -10,7 +10,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from firm_hdl.errors import UserError
 from firm_hdl.export.manifest import MANIFEST
@@ -23,6 +23,9 @@ from firm_hdl.plan import Plan
 from firm_hdl.program import MANY_STATES, deserializer_program, program_lines, serializer_program
 from firm_hdl.rtlil import netlist_of, rtlil_of
 from firm_hdl.rtlil.ir import Design
+
+if TYPE_CHECKING:
+    from firm_hdl.registers import MessageMap
 
 __all__ = ["BuildError", "Converters", "Output", "module_name"]
 
@@ -60,6 +63,10 @@ class Converters:
     circuits : mapping of direction to Design
         Netlists with named ports, the source of the text in all languages. Empty until
         :meth:`make_circuits` has made them.
+    registers : mapping of direction to MessageMap
+        Registers of the message; empty if they were not asked for.
+    register_circuits : mapping of direction to Design
+        Converters with these registers.
     """
 
     message: Message
@@ -69,6 +76,8 @@ class Converters:
     inputs: Mapping[str, Any] = field(default_factory=dict)
     stimuli: Sequence[bytes] = ()
     circuits: Mapping[Direction, Design] = field(default_factory=dict)
+    registers: Mapping[Direction, MessageMap] = field(default_factory=dict)
+    register_circuits: Mapping[Direction, Design] = field(default_factory=dict)
 
     def make_circuits(self) -> dict[Direction, Design]:
         """Make the circuits. Back ends give their outermost modules other names."""
