@@ -34,13 +34,13 @@ class BuildError(UserError):
     """A type cannot be built, or a folder cannot be written; the text says why."""
 
 
-def module_name(folder: str, direction: Direction) -> str:
-    """Return the name of a converter's module in Verilog.
+def module_name(folder: str, direction: Direction, *parts: str) -> str:
+    """Return the name of a converter's module in Verilog, or of a module around it.
 
     No VHDL entity has this name in any case, because simulators of both languages keep modules and
     entities in one library and look them up regardless of case.
     """
-    return f"{folder}_{direction}_verilog"
+    return "_".join([folder, direction, *parts, "verilog"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

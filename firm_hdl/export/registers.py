@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
-from firm_hdl.export.backend import BuildError, Converters, Output
+from firm_hdl.export.backend import BuildError, Converters, Output, module_name
 from firm_hdl.export.component import ComponentTop, Path, PlainPorts
 from firm_hdl.export.top import DIRECTIONS, Direction
 from firm_hdl.garbage import search_put_off
@@ -45,7 +45,11 @@ def register_ports(layout: MessageMap, plan: Plan) -> PlainPorts:
     """Return the ports of a converter with registers: AXI4-Lite is ``s_axi``."""
     way = layout.direction
     component = RegisterReceiver if way == "deserializer" else RegisterSender
-    names = {"axi": "s_axi", "packets": "s_axis" if way == "deserializer" else "m_axis"}
+    names = {
+        "axi": "s_axi",
+        "interrupt": "irq",
+        "packets": "s_axis" if way == "deserializer" else "m_axis",
+    }
 
     def spell(path: Path) -> Path:
         return (names.get(path[0], path[0]), *path[1:])
@@ -73,7 +77,7 @@ def write(converters: Converters) -> Output:
     files, section = {}, {}
     for way, layout in converters.registers.items():
         name = f"{converters.name}_{way}_registers"
-        module = f"{name}_verilog"
+        module = module_name(converters.name, way, "registers")
         header = converters.header(name, f"registers of the {way}")
         files[f"{module}.v"] = convert(
             converters.register_circuits[way], name=module, header=header

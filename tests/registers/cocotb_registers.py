@@ -192,10 +192,10 @@ async def messages_are_sent(dut):
     for expected in sent:
         frame = await with_timeout(sink.recv(), 100, "us")
         assert bytes(frame.tdata) == expected
-    assert dut.tx_interrupt.value == 1
+    assert dut.tx_irq.value == 1
     await put(tx, EVENTS, 1)
     await ClockCycles(dut.aclk, 3)
-    assert dut.tx_interrupt.value == 0
+    assert dut.tx_irq.value == 0
     # The sink is full, so a commit finds the serializer busy.
     sink.clear_pause_generator()
     sink.pause = True
@@ -247,7 +247,7 @@ async def messages_are_shown(dut):
         if choice < 0.2:
             await send(data[: chosen.randrange(1, len(data) - 1)])
             bad += 1
-            assert dut.rx_interrupt.value == 1
+            assert dut.rx_irq.value == 1
             await put(rx, EVENTS, 3)
             assert await word(rx, STATUS) >> 8 != 0
         else:
@@ -256,7 +256,7 @@ async def messages_are_shown(dut):
             newest, is_new = struct.pack(FORM, *values), True
             assert await word(rx, STATUS) >> 8 == 0
             assert await word(rx, EVENTS) == 1
-            assert dut.rx_interrupt.value == 0
+            assert dut.rx_irq.value == 0
         assert await shown() == last
         assert await word(rx, STATUS) & 1 == is_new
         if chosen.random() < 0.6:
