@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
-from pathlib import PurePath
 
 import firm_hdl
 from firm_hdl import rtlil
@@ -17,8 +16,8 @@ from firm_hdl.export.design import (
     core_file,
     design_folder,
     inputs_of_design,
-    verilog_file,
     shared_unit,
+    verilog_file,
     verilog_module,
     vhdl_folder,
     write_design,

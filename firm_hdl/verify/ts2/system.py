@@ -96,9 +96,11 @@ class Ts2(TypesSystem):
         goldens, request = self._goldens, self._request
 
         def checked(left: Sequence[Test]) -> Made:
-            options = {"executor": request.executor, "jobs": request.jobs}
             return run_tests(
-                _checked, request, left, self._command, most=MOST_IN_A_SHARE, **options
+                *(_checked, request, left, self._command),
+                most=MOST_IN_A_SHARE,
+                executor=request.executor,
+                jobs=request.jobs,
             )
 
         records = kept(self._plans, writer, checked, _lines_of, label="TS2", unit="plan")
