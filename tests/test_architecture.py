@@ -54,11 +54,13 @@ MAY_IMPORT = {
 }
 # What a user's accelerator is made of. `sim`: values of messages become transfers.
 MAY_IMPORT["accelerator"] = {"gateware", "model", "plan", "sim", "wire"}
+# `accelerator`: whole messages in place of leaves. `names`: words of C.
+MAY_IMPORT["registers"] = {"accelerator", "gateware", "model", "names", "plan"}
 MAY_IMPORT["export"] = {
     # `drawing`, `identity`, `metrics`, `sim`: datasheets show what a type is, and waveforms.
     *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl", "verilog"),
     *("drawing", "identity", "metrics", "model", "frontend", "wire", "plan", "timing", "program"),
-    *("estimates", "gateware", "sim"),
+    *("estimates", "gateware", "registers", "sim"),
 }
 MAY_IMPORT["node"] = {
     # `terminal`: names of peers are printed. `equivalence`, `jobs`: accelerators in VHDL and
@@ -75,7 +77,10 @@ MAY_IMPORT["covering"] = {
 MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
     "cases",
-    *(MAY_IMPORT["export"] - {"estimates", "garbage", "metrics", "program", "rtlil", "timing"}),
+    *(
+        MAY_IMPORT["export"]
+        - {"estimates", "garbage", "metrics", "program", "registers", "rtlil", "timing"}
+    ),
     *("arguments", "export", "node", "recordings", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {

@@ -53,6 +53,12 @@ def add_build(command: argparse.ArgumentParser) -> None:
         action="store_true",
         help="also write datasheet.html, with pictures, ports, cycles and area; --with documents",
     )
+    command.add_argument(
+        "--registers",
+        action="store_true",
+        help="also write converters whose messages are registers on AXI4-Lite, with SystemRDL and "
+        "C headers; of fields of fixed size",
+    )
     command.add_argument("--force", action="store_true", help="also write folders that are current")
     add_jobs(command)
     command.set_defaults(run=_build)
@@ -100,6 +106,7 @@ def _build(args: argparse.Namespace) -> None:
             max_message_bytes=args.max_message_bytes,
             ports=args.ports,
             extras=args.extras | ({"documents"} if args.datasheet else set()),
+            registers=args.registers,
         ),
         force=args.force,
         stimuli=packets_of,

@@ -54,6 +54,12 @@ def _add_new(command: argparse.ArgumentParser) -> None:
         choices=["amaranth", "vhdl", "verilog", "sv"],
         help="language of the accelerator (default: that of the description, else amaranth)",
     )
+    command.add_argument(
+        "--ports",
+        choices=["plain", "records", "structs"],
+        help="ports of VHDL or SystemVerilog: records or structs are one for each message "
+        "(default: those of the description, else plain)",
+    )
 
 
 def _add_info(command: argparse.ArgumentParser) -> None:
@@ -200,10 +206,16 @@ def _act(args: argparse.Namespace, description: Description) -> None:
     if args.action == "new":
         from firm_hdl.node.hdl import new_accelerator
 
-        place, value = new_accelerator(description, args.language)
+        with_records = args.ports in ("records", "structs")
+        place, value = new_accelerator(description, args.language, with_records=with_records)
         print(f"wrote   {place}")
         if not description.accelerator:
             print(f"Add this line to {args.file}:\n\naccelerator: {value}")
+        if "ports: " in value:
+            print(
+                "\nfirm-hdl adds the packages with the types itself. firm-hdl node build writes "
+                "them, too, for benches and editors."
+            )
         return
     if args.action == "run":
         from firm_hdl.node.bridge.command import run_bridge

@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
-from pathlib import PurePath
 
 import firm_hdl
 from firm_hdl import rtlil
@@ -17,6 +16,7 @@ from firm_hdl.export.design import (
     core_file,
     design_folder,
     inputs_of_design,
+    shared_unit,
     verilog_file,
     verilog_module,
     vhdl_folder,
@@ -97,10 +97,7 @@ def build_node(
         name += "_node"
     folder = design_folder(out, name)
     node = Node(description)
-    try:
-        ports = node_ports(node)
-    except ValueError as error:
-        raise UserError(str(error)) from None
+    ports = node_ports(node)
     has_accelerator = node.accelerator is not None
     messages: Sequence[RecordPort] = ()
     reason = "The accelerator takes all messages" if has_accelerator else ""
@@ -194,7 +191,9 @@ def _files(
         benches = {file: text for file, text in benches.items() if not file.endswith(other)}
     owners = {"the node": node.files, "its messages": records, "its structs": structs}
     if own.language:
-        owners[_ACCELERATOR] = {f"{own.entity}.vhd": ""}
+        # With records, also its packages and the wrapper; files of the user's have other names.
+        around = {file for file in own.texts if file.count("/") == 1 and own.wrapper}
+        owners[_ACCELERATOR] = {f"{own.entity}.vhd": "", **dict.fromkeys(around, "")}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     documents: dict[str, str] = {}
     if datasheet:
@@ -243,17 +242,13 @@ def _bench(name: str, language: str) -> dict[str, str]:
     }
 
 
-_SUFFIXES = (".vhd", ".sv")
 _ACCELERATOR = "its accelerator"
 
 
 def check_units(
     description: Description, name: str, *, top: str, files: Mapping[str, Iterable[str]]
 ) -> None:
-    """Refuse a name of a node if two design units would have one name.
-
-    VHDL ignores the case of names (IEEE Std 1076-2008, 15.4.2), and units of VHDL and of
-    SystemVerilog may be in one library. So the names of all of them differ in more than case.
+    """Refuse a name of a node if two design units would have one name; see `shared_unit`.
 
     Parameters
     ----------
@@ -262,8 +257,6 @@ def check_units(
     top : str
         Name that this entity has in VHDL.
     files : mapping of str to iterable of str
-        Names of files by what they belong to, such as ``"the messages"``. Those with another
-        suffix than ``.vhd`` and ``.sv`` do not count.
 
     Raises
     ------
@@ -272,17 +265,12 @@ def check_units(
     """
     if top != name:
         raise _refused(description, f"the VHDL of every node uses the name '{name}' itself")
-    owners: dict[str, str] = {}
-    for owner, names in files.items():
-        for unit in (PurePath(each).stem for each in names if each.endswith(_SUFFIXES)):
-            first = owners.setdefault(unit.lower(), owner)
-            if first != owner:
-                what = f"{first} and {owner} would both have a unit with the name '{unit}'"
-                if _ACCELERATOR in (first, owner):
-                    message = f"{what}; give the entity of the accelerator another name"
-                    span = description.accelerator_span
-                    raise DefinitionError([Diagnostic(message=message, span=span)])
-                raise _refused(description, what)
+    if what := shared_unit(files):
+        if _ACCELERATOR in what:
+            message = f"{what}; give the entity of the accelerator another name"
+            span = description.accelerator_span
+            raise DefinitionError([Diagnostic(message=message, span=span)])
+        raise _refused(description, what)
 
 
 def _refused(description: Description, reason: str) -> DefinitionError:

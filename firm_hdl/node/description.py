@@ -243,11 +243,14 @@ class Hdl:
         Files in compile order, relative to the folder of the description.
     entity : str
         Name of the entity or module.
+    has_records : bool
+        Messages are ports of records or structs, rather than of plain vectors.
     """
 
     language: Language
     files: tuple[str, ...]
     entity: str
+    has_records: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -59,6 +59,9 @@ KEYS = (*_KEYS, *KINDS, "accelerator", "pins")
 
 LANGUAGES = ("vhdl", "verilog", "systemverilog")
 
+PORTS = ("plain", "records", "structs")
+"""Kinds of the ports of an accelerator; SystemVerilog's word for records is structs."""
+
 _LANGUAGE_OF = {
     ".vhd": "vhdl",
     ".vhdl": "vhdl",
@@ -208,7 +211,7 @@ class _Reader:
             return entry.checked(_class_problem), None
         marked = self.marked
         given = marked.mapping(entry.value, "'accelerator'")
-        known = marked.known(given, (*LANGUAGES, "entity"), "an accelerator")
+        known = marked.known(given, (*LANGUAGES, "entity", "ports"), "an accelerator")
         languages = [each for each in known.values() if each.name in LANGUAGES]
         if len(languages) != 1:
             if given.keys() <= known.keys():
@@ -230,7 +233,16 @@ class _Reader:
             entity = known["entity"].checked(_entity_problem)
         elif problem := _entity_problem(entity):
             language.error(f"{problem}: name the 'entity'")
-        hdl = Hdl(language=language.name, files=tuple(files), entity=entity)  # type: ignore[arg-type]
+        ports = known["ports"].choice(PORTS, "plain") if "ports" in known else "plain"
+        has_records = ports != "plain"
+        if has_records and language.name == "verilog":
+            known["ports"].error("Verilog has no records: write 'systemverilog' as the key")
+        hdl = Hdl(
+            language=language.name,  # type: ignore[arg-type]
+            files=tuple(files),
+            entity=entity,
+            has_records=has_records,
+        )
         return f"{entity} ({', '.join(files)})", hdl
 
     def _pins(self, entry: Entry) -> tuple[IoPins, ...]:

@@ -97,10 +97,7 @@ class Ts2(TypesSystem):
 
         def checked(left: Sequence[Test]) -> Made:
             return run_tests(
-                _checked,
-                request,
-                left,
-                self._command,
+                *(_checked, request, left, self._command),
                 most=MOST_IN_A_SHARE,
                 executor=request.executor,
                 jobs=request.jobs,
