@@ -258,19 +258,17 @@ def _act(args: argparse.Namespace, description: Description) -> None:
 
         # What is wrong with it is found at once.
         board = None if args.target is None else read_board(args.target)
-        built = build_node(
-            description,
-            args.out,
-            force=args.force,
-            stimuli=_stimuli,
-            datasheet=args.datasheet,
-        )
+        options: dict[str, Any] = {"stimuli": _stimuli, "datasheet": args.datasheet}
+        built = build_node(description, args.out, force=args.force, **options)
         tell(built, end="")
         if args.sim:
             _compile(description, args)
     print(summary(description))
     if args.action == "build" and board is not None:
         _make_bitstream(description, built, board, force=args.force)
+        if args.datasheet:
+            # It says what was reached.
+            build_node(description, args.out, **options)
     if args.action == "info" and args.members:
         from firm_hdl.node.hdl.members import members_text
 

@@ -6,6 +6,8 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
+from pathlib import Path
+from typing import Any
 
 import firm_hdl
 from firm_hdl import rtlil
@@ -22,6 +24,7 @@ from firm_hdl.export.design import (
     vhdl_folder,
     write_design,
 )
+from firm_hdl.export.folder import read_manifest
 from firm_hdl.export.manifest import digest
 from firm_hdl.export.message_ports import (
     RecordPort,
@@ -43,7 +46,7 @@ from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodeTop, node_ports
 from firm_hdl.vhdl.convert import convert
 
-__all__ = ["build_node", "check_units"]
+__all__ = ["build_node", "check_units", "placed_on"]
 
 SUMMARY = "summary.txt"
 DATASHEET = "datasheet.html"
@@ -83,7 +86,7 @@ def build_node(
         Returns good packets of a type for the test benches. `None`: these send control messages
         only.
     datasheet : bool
-        Write the datasheet, too.
+        Write the datasheet, too. It has the figures of bitstreams that are in the folder.
 
     Raises
     ------
@@ -112,6 +115,8 @@ def build_node(
     script = link_script(description, stimuli, has_accelerator=has_accelerator)
     own = accelerator_files(description, node.accelerator)
     facts = facts_of(description)
+    accelerator = {f: digest(t) for f, t in {**own.texts, **own.headers}.items()}
+    placed = placed_on(folder, digest(circuit), accelerator) if datasheet else None
     return write_design(
         folder,
         inputs=inputs_of_design(
@@ -120,10 +125,8 @@ def build_node(
                 "facts": facts,
                 # The accelerator's code is part of the circuit; packets of the benches are not.
                 "frames_sha256": None if script is None else digest(script.text),
-                "accelerator_files": {
-                    f: digest(t) for f, t in {**own.texts, **own.headers}.items()
-                },
-                **({"datasheet": True} if datasheet else {}),
+                "accelerator_files": accelerator,
+                **({} if placed is None else {"datasheet": placed}),
             },
             circuit,
         ),
@@ -137,7 +140,7 @@ def build_node(
         },
         ports=[asdict(port) for port in ports],
         make_files=lambda: _files(
-            description, name, circuit, ports, messages, script, own, datasheet=datasheet
+            description, name, circuit, ports, messages, script, own, placed=placed
         ),
         force=force,
     )
@@ -152,7 +155,7 @@ def _files(
     script: LinkScript | None,
     own: AcceleratorFiles,
     *,
-    datasheet: bool,
+    placed: Mapping[str, Any] | None,
 ) -> dict[str, str]:
     """Write the design and its benches in each language."""
     header = (
@@ -196,11 +199,13 @@ def _files(
         owners[_ACCELERATOR] = {f"{own.entity}.vhd": "", **dict.fromkeys(around, "")}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     documents: dict[str, str] = {}
-    if datasheet:
+    if placed is not None:
         # Not before it is asked for: it imports much.
         from firm_hdl.node.datasheet import node_datasheet
 
-        page = node_datasheet(description, name, ports, module=module, vhdl_ports=vhdl_ports)
+        page = node_datasheet(
+            description, name, ports, module=module, vhdl_ports=vhdl_ports, placed=placed
+        )
         documents[DATASHEET] = page
     return {
         **verilog_file(netlist, name=name, header=header),
@@ -220,6 +225,27 @@ def _files(
         ),
         **benches,
         **documents,
+    }
+
+
+def placed_on(folder: Path, design: str, accelerator: Mapping[str, str]) -> dict[str, Any]:
+    """Return figures of the bitstreams of a circuit, by the name of the board.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder of the node.
+    design : str
+        SHA-256 of the circuit.
+    accelerator : mapping of str to str
+        SHA-256 of the files of its accelerator.
+    """
+    found = {place.name: read_manifest(place) or {} for place in folder.glob("boards/*")}
+    of = {"design_sha256": design, "accelerator_files": accelerator}
+    return {
+        board: {key: each["bitstream"][key] for key in ("cells", "clocks", "tools")}
+        for board, each in sorted(found.items())
+        if each.get("bitstream") and of.items() <= each["inputs"].items()
     }
 
 
