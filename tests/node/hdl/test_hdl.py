@@ -422,6 +422,16 @@ def test_a_node_of_systemverilog_is_built_and_runs(written, tmp_path, iverilog, 
     assert "PASS node Relay_node: " in said.stdout
 
 
+@pytest.mark.thorough
+def test_a_node_with_structs_is_built_and_runs(written, tmp_path, verilator):
+    description = written("sv", description=SMALL, with_records=True)
+    folder = build_node(description, tmp_path, stimuli=stimuli).folder
+    assert not (folder / "run_iverilog.sh").exists()
+    status, output = run_script(folder / "run_verilator.sh", "--wave=node.vcd", folder=tmp_path)
+    assert status == 0 and "PASS node Relay_node: " in output, output
+    assert "$timescale" in (tmp_path / "node.vcd").read_text()
+
+
 def test_files_that_are_included_keep_their_folders(written, tmp_path, iverilog, verilator):
     include = [("module Relay", '`include "inc/one.svh"\n`include "../two.svh"\nmodule Relay')]
     (tmp_path / "rtl" / "inc").mkdir(parents=True)
