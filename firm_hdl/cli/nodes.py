@@ -129,7 +129,10 @@ def _add_run(command: argparse.ArgumentParser) -> None:
     command.add_argument("--interface", help="network interface of rtps, such as lo")
     command.add_argument("--seconds", type=seconds, help="end after so long (default: at Ctrl-C)")
     command.add_argument(
-        "--wave", metavar="FILE", type=Path, help="write the waveform of --board sim, as VCD"
+        "--wave",
+        metavar="FILE",
+        type=Path,
+        help="write the waveform of --board sim, as VCD or FST (FILE.vcd, FILE.fst)",
     )
     add_engine(command, "--board sim")
     command.add_argument("--quiet", action="store_true", help="print no figures")

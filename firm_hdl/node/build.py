@@ -52,7 +52,7 @@ SUMMARY = "summary.txt"
 DATASHEET = "datasheet.html"
 
 _OF_VHDL = ("_tb.vhd", "firm_hdl_bench_pkg.vhd", "bench_files.txt", "run_ghdl.sh")
-_OF_VERILOG = ("_tb.v", "run_iverilog.sh")
+_OF_VERILOG = ("_tb.v", "run_iverilog.sh", "run_verilator.sh")
 """How files of benches end, by the language of the simulator."""
 
 _UNDRIVEN = """
@@ -134,7 +134,7 @@ def build_node(
             **facts,
             "records": record_facts(name, messages, reason),
             "accelerator_files": own.facts(),
-            "bench": None if script is None else _bench(name, own.language),
+            "bench": None if script is None else _bench(name, own),
             "clock": "aclk",
             "reset": "aresetn",
         },
@@ -188,6 +188,7 @@ def _files(
             vhdl_files=list(vhdl),
             header=header,
             more=list(own.texts),
+            verilog_tool=own.verilog_tool,
         )
         # A simulator reads one language.
         other = () if not own.language else _OF_VERILOG if is_vhdl else _OF_VHDL
@@ -249,7 +250,7 @@ def placed_on(folder: Path, design: str, accelerator: Mapping[str, str]) -> dict
     }
 
 
-def _bench(name: str, language: str) -> dict[str, str]:
+def _bench(name: str, own: AcceleratorFiles) -> dict[str, str]:
     """Describe the benches for the manifest: those that read the language of the accelerator."""
     vhdl = {
         "vhdl": f"{name}_tb",
@@ -259,12 +260,12 @@ def _bench(name: str, language: str) -> dict[str, str]:
     verilog = {
         "verilog": f"{name}_tb",
         "verilog_file": f"{name}_tb.v",
-        "run_iverilog": "run_iverilog.sh",
+        f"run_{own.verilog_tool}": f"run_{own.verilog_tool}.sh",
     }
     return {
         "frames": FRAMES,
-        **(vhdl if language in ("", "vhdl") else {}),
-        **(verilog if language != "vhdl" else {}),
+        **(vhdl if own.language in ("", "vhdl") else {}),
+        **(verilog if own.language != "vhdl" else {}),
     }
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import Library
-from firm_hdl.node import Qos, read_description, read_description_text
+from firm_hdl.node import TopicQos, read_description, read_description_text
 from firm_hdl.node.names import expand
 from tests.frontend.recordings import record
 from tests.frontend.workspace import make_files
@@ -43,7 +43,7 @@ def test_a_description_is_completed():
         (3, "publish", "/robot/odom", "robot_odom"),
         (4, "serve", "/robot/wheels/calibrate", "robot_wheels_calibrate"),
     ]
-    assert node.topics[1].qos == Qos(reliability="best_effort", depth=5)
+    assert node.topics[1].qos == TopicQos(reliability="best_effort", depth=5)
     assert [topic.name for topic in node.of_kind("publish")] == ["/robot/odom"]
     assert [topic.id for topic, _ in node.received()] == [1, 2, 4]
     assert [store.message.base_name for _, store in node.sent()] == [

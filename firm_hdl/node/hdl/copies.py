@@ -49,6 +49,11 @@ class AcceleratorFiles:
     headers: Mapping[str, str] = field(default_factory=dict)
     folders: Mapping[str, str] = field(default_factory=dict)
 
+    @property
+    def verilog_tool(self) -> str:
+        """What runs a bench in Verilog: Icarus Verilog has no structs in packages."""
+        return "verilator" if self.wrapper and self.language != "vhdl" else "iverilog"
+
     def facts(self) -> dict[str, Any] | None:
         """Describe the files for the manifest."""
         if not self.language:
@@ -73,6 +78,8 @@ class AcceleratorFiles:
             files.append({header: options})
         found["filesets"]["accelerator"] = {"files": files, "file_type": _TYPES[self.language]}
         found["targets"].pop("sim_verilog" if self.language == "vhdl" else "sim", None)
+        if self.verilog_tool == "verilator":
+            found["targets"].pop("sim_verilog", None)
         for name, target in found["targets"].items():
             found["targets"][name] = {**target, "filesets": ["accelerator", *target["filesets"]]}
         return found

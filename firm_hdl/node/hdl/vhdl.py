@@ -135,7 +135,11 @@ def _undriven(module: Module, net: Net) -> list[bool]:
         return [True] * net.width
     if driver is not None and driver.kind.startswith("$concat"):
         # The first input has the highest bits.
-        return [bit for part in reversed(driver.inputs.values()) for bit in _undriven(module, part)]
+        return [
+            bit
+            for part in reversed(list(driver.inputs.values()))
+            for bit in _undriven(module, part)
+        ]
     if driver is not None and driver.kind == "$extract":
         (whole,) = driver.inputs.values()
         return _undriven(module, whole)[driver.parameters[0] :][: net.width]
