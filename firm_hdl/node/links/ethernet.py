@@ -8,7 +8,7 @@ from typing import Any
 from amaranth.hdl import ClockDomain, DomainRenamer, Module, ResetSignal, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.cdc import PulseSynchronizer, ResetSynchronizer
-from amaranth.lib.fifo import AsyncFIFO
+from amaranth.lib.fifo import AsyncFIFOBuffered
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.ethernet.datagrams import datagram_layout
@@ -33,8 +33,8 @@ _GIGABIT_HZ = 125e6
 _APART = "ethernet"
 """The clock domain of an edge whose clock is not that of the node."""
 
-_WORDS = 16
-"""Words of a datagram between two clock domains: enough for a word per cycle."""
+_WORDS = 17
+"""Words between two clock domains: 16, which are enough for a word per cycle, and one behind."""
 
 _PINS = {"gmii": GmiiSignature, "rgmii": RgmiiSignature, "mii": MiiSignature}
 
@@ -143,7 +143,7 @@ class EthernetLink(wiring.Component):
             ("to_node", network.received, upper.datagrams_in, (_APART, "sync")),
             ("to_edge", upper.datagrams_out, network.sent, ("sync", _APART)),
         ):
-            m.submodules[name] = fifo = AsyncFIFO(
+            m.submodules[name] = fifo = AsyncFIFOBuffered(
                 width=width, depth=_WORDS, w_domain=domains[0], r_domain=domains[1]
             )
             m.d.comb += [
