@@ -11,7 +11,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from firm_hdl.arguments import add_engine, add_json, add_path, number_between, seconds
+from firm_hdl.arguments import add_engine, add_ip, add_json, add_path, number_between, seconds
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 from firm_hdl.terminal import stage
@@ -89,6 +89,7 @@ def _add_build(command: argparse.ArgumentParser) -> None:
         action="store_true",
         help="also write datasheet.html, with topics, ports, pictures, cycles and area",
     )
+    add_ip(command)
     command.add_argument("--force", action="store_true", help="also write a folder that is current")
     command.add_argument(
         "--sim", action="store_true", help="also compile the simulation, for firm-hdl node run"
@@ -251,6 +252,7 @@ def _act(args: argparse.Namespace, description: Description) -> None:
             force=args.force,
             stimuli=_stimuli,
             datasheet=args.datasheet,
+            ip=args.ip is not None,
         )
         print(f"{'current' if built.was_current else 'wrote':8}{built.folder}", flush=True)
         for name in built.kept:

@@ -7,10 +7,12 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import PurePath
+from typing import Any
 
 import firm_hdl
 from firm_hdl import rtlil
 from firm_hdl.errors import DefinitionError, Diagnostic, UserError
+from firm_hdl.export.axis_leaves import axis_module, axis_ports
 from firm_hdl.export.component import ComponentPort
 from firm_hdl.export.design import (
     BuiltDesign,
@@ -31,6 +33,7 @@ from firm_hdl.export.message_ports import (
     struct_files,
 )
 from firm_hdl.export.verilog.backend import waivers
+from firm_hdl.export.vivado_ip import Ip, ip_files
 from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.node.accelerator import conflicts_reported
@@ -70,6 +73,7 @@ def build_node(
     force: bool = False,
     stimuli: Stimuli | None = None,
     datasheet: bool = False,
+    ip: bool = False,
 ) -> BuiltDesign:
     """Write the design of a node into a folder of its own, ``out/NAME``.
 
@@ -84,6 +88,8 @@ def build_node(
         only.
     datasheet : bool
         Write the datasheet, too.
+    ip : bool
+        Write an IP of Vivado, too; of a node whose link is a stream.
 
     Raises
     ------
@@ -91,6 +97,9 @@ def build_node(
         If the accelerator cannot be used, the node is too large, two design units would have one
         name, or the folder cannot be written.
     """
+    if ip and description.link.kind != "stream":
+        message = f"IP needs the link 'stream', which is AXI4-Stream, not '{description.link.kind}'"
+        raise DefinitionError([Diagnostic(message=message, span=description.link_span)])
     name = identifier(description.node)
     if description.hdl is not None and description.hdl.entity.lower() == name.lower():
         # Both would be one entity.
@@ -114,6 +123,9 @@ def build_node(
         circuit = rtlil.rtlil_of(NodeTop(node), name=name)
     script = link_script(description, stimuli, has_accelerator=has_accelerator)
     own = accelerator_files(description, node.accelerator)
+    if ip and (own.language == "vhdl" or own.headers):
+        message = "IP takes an accelerator in Amaranth, or in Verilog without include files"
+        raise DefinitionError([Diagnostic(message=message, span=description.accelerator_span)])
     facts = facts_of(description)
     return write_design(
         folder,
@@ -127,6 +139,7 @@ def build_node(
                     f: digest(t) for f, t in {**own.texts, **own.headers}.items()
                 },
                 **({"datasheet": True} if datasheet else {}),
+                **({"ip": "vivado"} if ip else {}),
             },
             circuit,
         ),
@@ -140,7 +153,7 @@ def build_node(
         },
         ports=[asdict(port) for port in ports],
         make_files=lambda: _files(
-            description, name, circuit, ports, messages, script, own, datasheet=datasheet
+            description, name, circuit, ports, messages, script, own, datasheet=datasheet, ip=ip
         ),
         force=force,
     )
@@ -156,6 +169,7 @@ def _files(
     own: AcceleratorFiles,
     *,
     datasheet: bool,
+    ip: bool,
 ) -> dict[str, str]:
     """Write the design and its benches in each language."""
     header = (
@@ -203,8 +217,9 @@ def _files(
 
         page = node_datasheet(description, name, ports, module=module, vhdl_ports=vhdl_ports)
         documents[DATASHEET] = page
+    verilog = verilog_file(netlist, name=name, header=header)
     return {
-        **verilog_file(netlist, name=name, header=header),
+        **verilog,
         "waivers.vlt": waivers([module]) + lint.format(file=f"{module}.v"),
         **{f"systemverilog/{file}": text for file, text in structs.items()},
         **({} if is_vhdl else own.texts),
@@ -221,7 +236,38 @@ def _files(
         ),
         **benches,
         **documents,
+        **(
+            ip_files(_ip(description, name, ports, messages, {**own.texts, **verilog}))
+            if ip
+            else {}
+        ),
     }
+
+
+def _ip(
+    description: Description,
+    name: str,
+    ports: Sequence[ComponentPort],
+    messages: Sequence[RecordPort],
+    files: Mapping[str, str],
+) -> Ip:
+    """Return the node as IP. Messages that come out of it are AXI4-Stream."""
+    module = verilog_module(name)
+    members = {name: port.member for each in messages for name, port in each.ports.items()}
+    shown: Sequence[Any] = ports
+    if members:
+        inner, module = module, f"{name}_axis_verilog"
+        shown = axis_ports(ports, members)
+        files = {**files, f"{module}.v": axis_module(module, inner, shown, "")}
+    return Ip(
+        name=name,
+        library="node",
+        module=module,
+        files=files,
+        ports=shown,
+        title=f"Node {name}",
+        description=f"Node {description.node} of ROS {description.distro}: frames on AXI4-Stream.",
+    )
 
 
 def _bench(name: str, language: str) -> dict[str, str]:
