@@ -32,7 +32,7 @@ NODE = f"""\
 node: mirror
 namespace: /fpga
 distro: jazzy
-paths: {PACKAGES}
+paths: [{PACKAGES}, packages]
 clock_mhz: 1
 bus_bytes: 2
 link: {{kind: rtps, address: 127.0.0.1, participant: 50}}
@@ -40,9 +40,13 @@ accelerator: tests.live.nodes:Loop
 subscribe:
   /text_in: {{type: std_msgs/msg/String, memory_bytes: 256}}
   /imu_in: {{type: sensor_msgs/msg/Imu, memory_bytes: 8192}}
+  /cloud_in: {{type: sensor_msgs/msg/PointCloud2, memory_bytes: 32768}}
+  /block_in: {{type: firm_hdl/msg/Block, memory_bytes: 32768}}
 publish:
   /text_out: {{type: std_msgs/msg/String, memory_bytes: 2048}}
   /imu_out: {{type: sensor_msgs/msg/Imu, memory_bytes: 8192}}
+  /cloud_out: {{type: sensor_msgs/msg/PointCloud2, memory_bytes: 32768}}
+  /block_out: {{type: firm_hdl/msg/Block, memory_bytes: 32768}}
 serve:
   /mode: {{type: std_srvs/srv/SetBool, memory_bytes: 256}}
 """
@@ -55,6 +59,9 @@ def program(tmp_path_factory):
     folder = tmp_path_factory.mktemp("participant") / "rtps"
     shutil.copytree(EXAMPLE, folder, ignore=shutil.ignore_patterns("work"))
     (folder / "mirror.yaml").write_text(NODE)
+    block = folder / "packages" / "firm_hdl" / "msg" / "Block.msg"
+    block.parent.mkdir(parents=True)
+    block.write_text("int64 number\nuint8[] data\n")
     paths = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
     made = subprocess.run(
         ["make", "FILE=mirror.yaml", "NAME=mirror"],
@@ -132,6 +139,25 @@ def test_messages_come_back_in_order(release, start):
         assert peer.result(300)["numbers"] == [list(range(300))] * 2
 
 
+@RELEASES
+def test_clouds_in_fragments_come_back(release, start):
+    start()
+    options = {"bytes": 20_000, "count": 10, "period": 1.5, "depth": 20, "linger": 30}
+    topic = {"type": "cloud", "to": "/cloud_in", "back": "/cloud_out", **options}
+    with Peer(release, "trip", topics=[topic]) as peer:
+        assert peer.next(90) == {"begins": True}
+        assert peer.result(300)["numbers"] == [list(range(10))]
+
+
+def test_blocks_of_cyclone_come_back_in_fragments(start):
+    start()
+    options = {"type": "block", "bytes": 20_000, "count": 10, "patience": 120}
+    with Peer("cyclone", "subscribe", topic="rt/block_out", **options) as back:
+        time.sleep(5)
+        with Peer("cyclone", "publish", topic="rt/block_in", period=1.5, **options):
+            assert back.result(300)["numbers"] == list(range(10))
+
+
 def test_a_burst_waits_for_the_accelerator(start):
     start()
     # More than the memory of the topic, sent at once; the writer keeps all until they are there.
@@ -145,12 +171,12 @@ def test_a_burst_waits_for_the_accelerator(start):
 @RELEASES
 def test_the_node_is_in_the_graph_with_its_topics_and_services(release, start):
     start()
-    wanted = {"node": "mirror", "namespace": "/fpga", "publishers": 2, "topics": ["/text_out"]}
+    wanted = {"node": "mirror", "namespace": "/fpga", "publishers": 4, "topics": ["/text_out"]}
     with Peer(release, "graph", own="watcher", **wanted) as peer:
         result = peer.result()
     assert ["mirror", "/fpga"] in result["nodes"] and result["owners"] == [["mirror", "/fpga"]]
-    assert [name for name, _ in result["publishers"]] == ["/imu_out", "/text_out"]
-    assert [name for name, _ in result["subscriptions"]] == ["/imu_in", "/text_in"]
+    assert [name for name, _ in result["publishers"]] == ["/block_out", "/cloud_out", "/imu_out", "/text_out"]
+    assert [name for name, _ in result["subscriptions"]] == ["/block_in", "/cloud_in", "/imu_in", "/text_in"]
     assert [name for name, _ in result["services"]] == ["/mode"]
 
 

@@ -14,8 +14,8 @@ from firm_hdl.node.rtps.history import Part
 __all__ = ["Assembler", "FragmentSignature", "LookupSignature"]
 
 _TICKS = 7
-"""Ticks without a fragment after which a sample gives way to that of another writer. Until then,
-what is missing is asked for more than once."""
+"""Ticks without a new fragment after which a sample begins again, or gives way to that of another
+writer. Until then, what is missing is asked for more than once."""
 
 
 def assembly_layout(rows: int, address_bits: int) -> data.StructLayout:
@@ -124,7 +124,7 @@ class Assembler(wiring.Component):
 
     A reader has one sample at a time. Fragments before the next one are passed over, those behind
     it are not taken. So a sample needs no map of what came, and no size is multiplied. Another
-    sample takes the place if it is of the same writer, or if nothing came for some ticks.
+    sample takes the place if it is of the same writer, or if nothing new came for some ticks.
 
     What is taken counts with `stores`. A sample that is complete is played; without that, it is as
     incomplete as before its last fragments.
@@ -214,10 +214,9 @@ class Assembler(wiring.Component):
                 inside.eq(0),
                 now.eq(held),
                 at.eq(held.place),
-                ages[ask.reader].eq(_TICKS),
             ]
-            with m.If(~(is_this & is_same)):
-                # The bytes of another sample are overwritten.
+            with m.If(begins):
+                # What came of another sample is overwritten.
                 m.d.sync += [
                     valid.bit_select(ask.reader, 1).eq(0),
                     now.row.eq(ask.row),
@@ -233,7 +232,11 @@ class Assembler(wiring.Component):
             with m.If(ends):
                 m.d.sync += [inside.eq(0), left.eq(left - 1), fragment.eq(fragment + 1)]
                 with m.If(is_next):
-                    m.d.sync += [now.next.eq(now.next + 1), now.place.eq(at + 1)]
+                    m.d.sync += [
+                        now.next.eq(now.next + 1),
+                        now.place.eq(at + 1),
+                        ages[reader].eq(_TICKS),
+                    ]
         m.d.comb += [
             states.write.addr.eq(reader),
             states.write.data.eq(now),
