@@ -28,7 +28,7 @@ NODE = f"""\
 node: mirror
 namespace: /fpga
 distro: jazzy
-paths: {PACKAGES}
+paths: [{PACKAGES}, packages]
 clock_mhz: 1
 bus_bytes: 2
 link: {{kind: rtps, address: 127.0.0.1, participant: 50}}
@@ -58,6 +58,31 @@ accelerator: firm_hdl.node.loop:Loop
 subscribe: {/text_out: {type: std_msgs/msg/String, memory_bytes: 256}}
 publish: {/text_back: {type: std_msgs/msg/String, memory_bytes: 256}}
 """
+
+LARGE = """\
+node: large
+namespace: /fpga
+distro: jazzy
+paths: [packages]
+clock_mhz: 1
+bus_bytes: 2
+link: {kind: rtps, address: 127.0.0.1, participant: 52}
+accelerator: firm_hdl.node.loop:Loop
+subscribe:
+  /cloud_in: {type: sensor_msgs/msg/PointCloud2, memory_bytes: 32768}
+  /block_in: {type: firm_hdl/msg/Block, memory_bytes: 32768}
+publish:
+  /cloud_out: {type: sensor_msgs/msg/PointCloud2, memory_bytes: 32768}
+  /block_out: {type: firm_hdl/msg/Block, memory_bytes: 32768}
+"""
+
+BLOCK = {"packages/firm_hdl/msg/Block.msg": "int64 number\nuint8[] data\n"}
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory):
+    """Build the node of large messages as a process."""
+    return build_board(tmp_path_factory.mktemp("large"), "rtps", "large", LARGE, BLOCK)
 
 
 @pytest.fixture(scope="module")
@@ -163,6 +188,25 @@ def test_two_nodes_talk_to_each_other(start, tmp_path):
     start()
     start(program=build_board(tmp_path, "rtps", "second", SECOND), port=7512)
     check_trips("kilted", [{**TEXT, "back": "/text_back"}], 200)
+
+
+@RELEASES
+def test_clouds_in_fragments_come_back(release, start, large):
+    start(program=large, port=7514)
+    options = {"bytes": 20_000, "count": 10, "period": 1.5, "depth": 20, "linger": 30}
+    topic = {"type": "cloud", "to": "/cloud_in", "back": "/cloud_out", **options}
+    with Peer(release, "trip", topics=[topic]) as peer:
+        assert peer.next(90) == {"begins": True}
+        assert peer.result(300)["numbers"] == [list(range(10))]
+
+
+def test_blocks_of_cyclone_come_back_in_fragments(start, large):
+    start(program=large, port=7514)
+    options = {"type": "block", "bytes": 20_000, "count": 10, "patience": 120}
+    with Peer("cyclone", "subscribe", topic="rt/block_out", **options) as back:
+        time.sleep(5)
+        with Peer("cyclone", "publish", topic="rt/block_in", period=1.5, **options):
+            assert back.result(300)["numbers"] == list(range(10))
 
 
 def test_a_burst_waits_for_the_accelerator(start):

@@ -13,8 +13,10 @@ from amaranth.utils import ceil_log2
 
 from firm_hdl.gateware import PacketWidth
 from firm_hdl.gateware.memories import BlockMemory, LutMemory
+from firm_hdl.node.capacity import largest_bytes
 from firm_hdl.node.description import Description
 from firm_hdl.node.gateware.streams import LinkSignature
+from firm_hdl.node.rtps.assembler import LookupSignature
 from firm_hdl.node.rtps.endpoints import Endpoint
 from firm_hdl.node.rtps.events import EventKind, announced_layout, event_layout, raw
 from firm_hdl.node.rtps.history import MOST_SAMPLES, Part
@@ -27,7 +29,7 @@ from firm_hdl.node.rtps.tables import (
     sample_layout,
     writer_layout,
 )
-from firm_hdl.node.rtps.templates import HEAD_BYTES, Job, Templates
+from firm_hdl.node.rtps.templates import HEAD_BYTES, Job, Templates, fragment_bytes
 from firm_hdl.node.rtps.transmitter import order_layout
 from firm_hdl.rtps.wire.guid import (
     PUBLICATIONS_READER,
@@ -83,6 +85,8 @@ class Engine(wiring.Component):
         As :class:`.Own` has them.
     parts : sequence of Part
         The memory of each writer but the first.
+    pieces : sequence of Part
+        The memory of each reader for samples that come in fragments.
 
     Members
     -------
@@ -101,11 +105,13 @@ class Engine(wiring.Component):
         A datagram is there.
     own : Out(96)
         GUID prefix.
+    assembly : Out(LookupSignature(...))
+        An :class:`.Assembler`, if there is one.
     order, starts, ends : as of a `Transmitter`
     write_at, write_byte, writes : as of a `History`
     lost, late, stray, cut, unsent : Out(1)
         High for one cycle: samples that will not come; a sample that came twice; one that is for
-        nobody; one in fragments; what found no place, or has no way.
+        nobody; fragments that are not taken; what found no place, or has no way.
     """
 
     def __init__(
@@ -115,6 +121,7 @@ class Engine(wiring.Component):
         writers: tuple[Endpoint, ...],
         readers: tuple[Endpoint, ...],
         parts: tuple[Part, ...],
+        pieces: tuple[Part, ...],
     ):
         self.description, self.templates = description, templates
         self.writers, self.readers, self.parts = writers, readers, parts
@@ -124,6 +131,13 @@ class Engine(wiring.Component):
         self.peers = link.peers
         self.first_row = BUILTIN_ROWS * link.peers
         self.rows = self.first_row + link.matches
+        # Bytes of the largest sample that is sent whole, with up to three bytes of padding; and
+        # whether there are larger ones.
+        heads = templates.every[Job.SAMPLE : Job.REPLY + 1]
+        self.whole_bytes = link.datagram_bytes - max(each.size for each in heads) - 3
+        stores = [each.topic.store("out") for each in writers if each.topic]
+        largest = max((largest_bytes(description, each) for each in stores), default=0)
+        self.cuts = largest > self.whole_bytes
         order = order_layout(len(templates.rom), self.memory_bytes)
         super().__init__(
             {
@@ -138,6 +152,7 @@ class Engine(wiring.Component):
                 "nonce": In(32),
                 "came": In(1),
                 "own": Out(96),
+                "assembly": Out(LookupSignature(pieces, self.rows)),
                 "order": Out(order),
                 "starts": Out(1),
                 "ends": In(1),
@@ -157,10 +172,10 @@ class Engine(wiring.Component):
         with m.FSM():
             self._start(m)
             with m.State("IDLE"):
-                m.d.sync += [self._second.eq(0), self._turn.eq(1)]
+                m.d.sync += [self._second.eq(0), self._turn.eq(1), self._in_event.eq(0)]
                 self._begin_scan(m)
                 with m.If(self.events.valid & self._turn):
-                    m.d.sync += self._turn.eq(0)
+                    m.d.sync += [self._turn.eq(0), self._in_event.eq(1)]
                     m.next = "EVENT"
                 with m.Elif(self._second_due):
                     m.next = "SECOND"
@@ -178,6 +193,8 @@ class Engine(wiring.Component):
             self._matching(m)
             self._sweeping(m)
             self._sampling(m)
+            if self.cuts:
+                self._cutting(m)
             self._datagrams(m)
             self._taking(m)
         return m
@@ -187,6 +204,7 @@ class Engine(wiring.Component):
     def _declare(self, m: Module) -> None:
         """Make the memories and the registers that several states use."""
         peers, rows, address = self.peers, self.rows, self.address_bits
+        link = self.description.link
         endpoints = max(_FIXED_WRITERS, _FIXED_READERS) + max(len(self.parts), len(self.readers))
         self._row = row = Signal(row_layout(peers, endpoints))
         self._rows = _memory(m, "rows", row.shape(), rows)
@@ -213,11 +231,11 @@ class Engine(wiring.Component):
         self._left = Array(Signal(7, name=f"left_{n}") for n in range(peers))
         self._young = Array(Signal(2, name=f"young_{n}") for n in range(peers))
         self._dying = Array(Signal(2, name=f"dying_{n}") for n in range(peers))
-        self._sweep, self._turn = Signal(range(rows)), Signal()
+        self._sweep, self._turn, self._in_event = Signal(range(rows)), Signal(), Signal()
         # Whether a whole sweep sent no sample for the first time: then a new one is taken.
         self._quiet, self._clean = Signal(), Signal()
         self._tick_due, self._tick_pass, self._second_due = Signal(), Signal(), Signal()
-        self._statics = [int(IPv4Address(each)) for each in self.description.link.static_peers]
+        self._statics = [int(IPv4Address(each)) for each in link.static_peers]
         self._most_static = _STATIC_PARTICIPANTS * len(self._statics)
         self._multicast_due, self._static = Signal(), Signal(range(self._most_static + 1))
         # The datagram that is ordered.
@@ -227,7 +245,14 @@ class Engine(wiring.Component):
         self._bits, self._bitmap, self._is_final = Signal(32), Signal(32), Signal()
         self._address, self._port = Signal(32), Signal(16)
         self._start_at, self._size = Signal(range(len(self.templates.rom))), Signal(16)
-        self._sample = Signal(sample_layout(address))
+        self._sample = sample = Signal(sample_layout(address))
+        # What is sent of it: all, or a fragment; which one is next, and which ones are wanted: a
+        # bit for each from the next one on, and one for all behind.
+        self._sent_at, self._sent_bytes = sample.at, sample.bytes
+        if self.cuts:
+            self._sent_at, self._sent_bytes = Signal(address), Signal(16)
+        most_fragments = self.memory_bytes // fragment_bytes(link) + 1
+        self._fragment, self._wanted = Signal(range(most_fragments + 1)), Signal(33)
         self._identity = Signal(identity_layout(peers))
         self._nonce, self._cycles = Signal(32), Signal(32)
         m.d.sync += self._cycles.eq(self._cycles + 1)
@@ -242,6 +267,16 @@ class Engine(wiring.Component):
             self._peers.read_at.eq(self._at),
         ]
         self._fill_order(m)
+        event, assembly = self.events.payload, self.assembly
+        m.d.comb += [
+            assembly.reader.eq(row.local - _FIXED_READERS),
+            assembly.row.eq(self._row_at),
+            assembly.number.eq(row.next),
+            assembly.first.eq(event.bits),
+            assembly.fragments.eq(event.fragments),
+            assembly.fragment_bytes.eq(event.fragment_bytes),
+            assembly.sample_bytes.eq(event.last),
+        ]
 
     def _fixed_prefix(self) -> int:
         """Return the first 8 bytes of the GUID prefix: the vendor (9.3.1.5), and the node's own."""
@@ -269,8 +304,8 @@ class Engine(wiring.Component):
             order.size.eq(self._size),
             order.address.eq(self._address),
             order.port.eq(self._port),
-            order.at.eq(self._sample.at),
-            order.payload_bytes.eq(self._sample.bytes),
+            order.at.eq(self._sent_at),
+            order.payload_bytes.eq(self._sent_bytes),
             fields.own.eq(self.own),
             fields.peer.eq(self._peer_row.prefix),
             fields.number.eq(self._number),
@@ -282,8 +317,8 @@ class Engine(wiring.Component):
             fields.flags.eq(_LITTLE | Mux(self._is_final, _FINAL, 0)),
             fields.related.eq(self._identity.guid),
             fields.related_number.eq(self._identity.number),
-            padded.eq(Cat(Const(0, 2), (self._sample.bytes + 3)[2:])),
-            head.eq(Mux(self._job == Job.REPLY, HEAD_BYTES[Job.REPLY], HEAD_BYTES[Job.SAMPLE])),
+            padded.eq(Cat(Const(0, 2), (self._sent_bytes + 3)[2:])),
+            head.eq(_at([HEAD_BYTES.get(each, 0) for each in Job], self._job)),
             fields.size.eq(head + padded),
         ]
         for number, part in enumerate(parts):
@@ -392,10 +427,11 @@ class Engine(wiring.Component):
 
     def _events(self, m: Module) -> None:
         event, row = self.events.payload, self._row
+        is_answer = (event.kind == EventKind.ACKNACK) | (event.kind == EventKind.NACK_FRAG)
         with m.State("EVENT"):
             m.d.sync += [
                 self._accepts.eq(0),
-                self._key.eq(Mux(event.kind == EventKind.ACKNACK, event.reader, event.writer)),
+                self._key.eq(Mux(is_answer, event.reader, event.writer)),
             ]
             m.next = "FIND"
             with m.If(event.kind == EventKind.SOURCE):
@@ -426,7 +462,7 @@ class Engine(wiring.Component):
         with m.State("FOUND"):
             with m.If(self._second):
                 m.next = "MATCH"
-            with m.Elif(~self._hit | (row.writes != (event.kind == EventKind.ACKNACK))):
+            with m.Elif(~self._hit | (row.writes != is_answer)):
                 m.d.comb += self.stray.eq(1)
                 m.next = "DONE"
             with m.Else(), m.Switch(event.kind):
@@ -436,6 +472,8 @@ class Engine(wiring.Component):
                     m.next = "GAP"
                 with m.Case(EventKind.ACKNACK):
                     m.next = "ACKNACK"
+                with m.Case(EventKind.NACK_FRAG):
+                    m.next = "ROW_STATE" if self.cuts else "DONE"
                 with m.Default():
                     m.next = "SAMPLE"
 
@@ -540,7 +578,7 @@ class Engine(wiring.Component):
     # in order, those of SEDP as they come; `request` has those behind `next` that need not come.
 
     def _listening(self, m: Module) -> None:
-        event, row = self.events.payload, self._row
+        event, row, assembly = self.events.payload, self._row, self.assembly
         number, target = event.number, self._target
         is_sedp = self._row_at < self.first_row
         with m.State("HEARTBEAT"):
@@ -577,7 +615,8 @@ class Engine(wiring.Component):
                 takes.eq(Mux(row.reliable, row.synced & (ahead == 0), is_new)),
                 is_busy.eq(~is_sedp & ~is_fragment & ~self.idle.bit_select(user, 1)),
             ]
-            m.d.sync += [self._accepts.eq(takes), target.eq(number + 1)]
+            m.d.comb += assembly.number.eq(number)
+            m.d.sync += [self._accepts.eq(takes & ~is_fragment), target.eq(number + 1)]
             m.next = "SAMPLED"
             with m.If(is_sedp):
                 m.d.comb += takes.eq(is_new & (ahead < 32) & ((row.request & bit) == 0))
@@ -590,6 +629,12 @@ class Engine(wiring.Component):
             with m.Elif(takes & is_sedp):
                 m.d.sync += row.request.eq(row.request | bit)
                 m.next = "SETTLE"
+            with m.Elif(takes & is_fragment & assembly.has_room):
+                m.d.comb += [assembly.accepts.eq(assembly.fits), self.cut.eq(~assembly.fits)]
+                with m.If(assembly.fits):
+                    m.d.sync += [self._accepts.eq(1), row.tries.eq(0)]
+                with m.Else():
+                    m.d.sync += row.ask.eq(row.ask | (row.reliable & (row.timer == 0)))
             with m.Elif(takes):
                 m.d.comb += [self.cut.eq(is_fragment), self.lost.eq(row.synced & (ahead != 0))]
                 # Of a best-effort writer, the first sample says where its samples begin.
@@ -721,6 +766,9 @@ class Engine(wiring.Component):
             kept, first = Signal(32), Signal(32)
             replays = (durable != 0) & self._is_durable
             m.d.comb += [
+                # The row may have been that of another writer.
+                self.assembly.reader.eq(local - _FIXED_READERS),
+                self.assembly.forgets.eq(is_writer),
                 kept.eq(self._last - self._gone),
                 first.eq(self._last + 1 - Mux(replays, Mux(kept > depth, depth, kept), 0)),
             ]
@@ -785,6 +833,9 @@ class Engine(wiring.Component):
             m.next = "LISTENS"
             with m.If(row.writes):
                 m.next = "WRITES"
+            if self.cuts:
+                with m.If(self._in_event):
+                    m.next = "NACK_FRAG"
         self._writes_state(m)
         self._listens_state(m)
         with m.State("STORE"):
@@ -793,6 +844,7 @@ class Engine(wiring.Component):
         with m.State("NEXT"):
             m.d.sync += self._sweep.eq(self._sweep + 1)
             with m.If(self._sweep == self.rows - 1):
+                m.d.comb += self.assembly.tick.eq(self._tick_due)
                 m.d.sync += [
                     self._sweep.eq(0),
                     self._quiet.eq(self._clean),
@@ -813,6 +865,8 @@ class Engine(wiring.Component):
                 self._from.eq(self._lower),
                 self._to.eq(self._last),
                 self._is_final.eq(row.next > self._last),
+                self._fragment.eq(0),
+                self._wanted.eq(~0),
             ]
             m.next = "NEXT"
             with m.If(row.request != 0):
@@ -859,7 +913,7 @@ class Engine(wiring.Component):
 
     def _listens_state(self, m: Module) -> None:
         """Answer a writer (8.4.12.2): acknowledge what came, and ask for what is missing."""
-        row = self._row
+        row, assembly = self._row, self.assembly
         with m.State("LISTENS"):
             missing = Signal(32)
             m.d.comb += missing.eq(row.end - row.next)
@@ -889,12 +943,32 @@ class Engine(wiring.Component):
                     row.tries.eq(row.tries + lacks),
                 ]
                 self._send(m, Mux(lacks, Job.ACKNACK_MISSING, Job.ACKNACK))
+                with m.If(lacks & assembly.holds):
+                    m.d.sync += [
+                        self._from.eq(assembly.held.next),
+                        self._to.eq(assembly.held.sample_bytes - assembly.held.place),
+                        self._bits.eq(0),
+                        self._bitmap.eq(0),
+                    ]
+                    m.next = "COUNT"
             with m.Elif(self._tick_pass):
                 m.next = "STORE"
                 with m.If(row.timer != 0):
                     m.d.sync += row.timer.eq(row.timer - 1)
                 with m.Else():
                     m.d.sync += row.ask.eq(row.reliable & (lacks | ~row.synced))
+
+        with m.State("COUNT"):
+            # Of the fragments that make up `_to` bytes, those that one word can name.
+            rest, step = self._to, assembly.held.fragment_bytes
+            m.d.sync += [
+                self._bits.eq(self._bits + 1),
+                self._bitmap.eq(Cat(self._bitmap[1:], 1)),
+                rest.eq(Mux(rest > step, rest - step, 0)),
+            ]
+            with m.If((rest == 0) | self._bits[5]):
+                m.d.sync += [self._bits.eq(self._bits), self._bitmap.eq(self._bitmap)]
+                self._send(m, Job.NACK_FRAG)
 
     # Samples of our writers.
 
@@ -927,7 +1001,7 @@ class Engine(wiring.Component):
             is_reply = Cat(row.local == each for each in services).any() if services else Const(0)
             m.next = "IDENTIFIED"
             with m.If(~is_reply):
-                self._send(m, Job.SAMPLE)
+                self._send_sample(m, Job.SAMPLE, Job.FRAGMENT)
         with m.State("IDENTIFIED"):
             m.d.sync += Value.cast(identity).eq(self._identities.word)
             m.next = "REPLY"
@@ -936,10 +1010,71 @@ class Engine(wiring.Component):
             asked = identity.guid[96:]
             is_named = asked[24 + _READER_BIT]
             is_for = (identity.tag == sample.tag) & (identity.peer == row.peer)
-            self._send(m, Job.REPLY)
+            self._send_sample(m, Job.REPLY, Job.REPLY_FRAGMENT)
             with m.If(~is_for | (is_named & (asked != row.remote))):
                 m.d.sync += [self._from.eq(self._number), self._to.eq(self._number + 1)]
                 self._send(m, Job.GAP)
+
+    def _send_sample(self, m: Module, whole: Job, fragment: Job) -> None:
+        """Order the sample that was fetched, in fragments if it is large."""
+        sample = self._sample
+        self._send(m, whole)
+        if self.cuts:
+            m.d.sync += [self._sent_at.eq(sample.at), self._sent_bytes.eq(sample.bytes)]
+            with m.If(sample.bytes > self.whole_bytes):
+                m.d.sync += self._job.eq(fragment)
+                m.next = "FRAGMENT"
+
+    # Fragments (8.4.14).
+
+    def _cutting(self, m: Module) -> None:
+        """Order the wanted fragments of a sample one after another, then a heartbeat."""
+        event, row, sample = self.events.payload, self._row, self._sample
+        size = fragment_bytes(self.description.link)
+        with m.State("NACK_FRAG"):
+            fragment = event.last - 1
+            m.d.sync += [
+                self._number.eq(event.number),
+                self._fragment.eq(fragment),
+                self._wanted.eq(event.bits << 1),
+                row.tries.eq(0),
+                row.ask.eq(row.reliable),
+                self._answers.bit_select(self._peer, 1).eq(1),
+            ]
+            m.next = "STORE_EVENT"
+            is_there = (event.number >= self._lower) & (event.number <= self._last)
+            with m.If(is_there & (event.last != 0) & (fragment < self.memory_bytes // size)):
+                m.next = "FETCH"
+        with m.State("FRAGMENT"):
+            start, rest = Signal(self.address_bits + 1), Signal(self.address_bits + 1)
+            m.d.comb += [
+                start.eq(self._fragment << ceil_log2(size)),
+                rest.eq(sample.bytes - start),
+            ]
+            m.d.sync += [
+                self._sent_at.eq(sample.at + start),
+                self._sent_bytes.eq(Mux(rest > size, size, rest)),
+                self._from.eq(self._fragment + 1),
+                self._to.eq(sample.bytes),
+                self._at.eq(row.peer),
+            ]
+            m.next = "PEER"
+            with m.If((start >= sample.bytes) | (self._wanted == 0)):
+                m.d.sync += row.ask.eq(row.reliable)
+                m.next = "STORE"
+                with m.If(self._in_event):
+                    m.next = "STORE_EVENT"
+            with m.Elif(~self._wanted[32]):
+                self._pass_fragment(m)
+                m.next = "FRAGMENT"
+
+    def _pass_fragment(self, m: Module) -> None:
+        """Go on to the fragment behind. The lowest bit is that of all that have none."""
+        wanted = self._wanted
+        m.d.sync += [
+            self._fragment.eq(self._fragment + 1),
+            wanted.eq(Cat(wanted[0], wanted[0], wanted[1:32])),
+        ]
 
     # Datagrams.
 
@@ -963,7 +1098,7 @@ class Engine(wiring.Component):
             m.next = "JOB"
         with m.State("JOB"):
             every = self.templates.every
-            has_payload = (job == Job.SAMPLE) | (job == Job.REPLY)
+            has_payload = Cat(job == each for each in HEAD_BYTES).any()
             m.d.sync += [
                 self._start_at.eq(_at(self.templates.starts, job)),
                 self._size.eq(
@@ -979,6 +1114,12 @@ class Engine(wiring.Component):
             m.next = "IDLE"
             with m.If(self._stores):
                 m.next = "STORE"
+                if self.cuts:
+                    with m.If(self._in_event):
+                        m.next = "STORE_EVENT"
+                    with m.If((job == Job.FRAGMENT) | (job == Job.REPLY_FRAGMENT)):
+                        self._pass_fragment(m)
+                        m.next = "FRAGMENT"
 
     # New samples.
 
@@ -988,7 +1129,8 @@ class Engine(wiring.Component):
         m.submodules.width = width = PacketWidth(self.description.bus_bytes, 1)
         self._width, self._fed = width, Signal()
         # Number of the writer, counted from that of the first topic.
-        self._user, self._tag, self._length = Signal.like(self._row.local), Signal(32), Signal(17)
+        self._user, self._tag = Signal.like(self._row.local), Signal(32)
+        self._length = Signal(address + 1)
         self._taker, self._place = Signal(writer_layout(address)), Signal(address)
         self._limit, base, mask = Signal(address + 1), Signal(address), Signal(address)
         self._mask = mask
@@ -1012,10 +1154,7 @@ class Engine(wiring.Component):
         state, place, limit, mask = self._taker, self._place, self._limit, self._mask
         address, narrow = self.address_bits, width.packets_out
         topics = [each.topic.id for each in self.writers if each.topic]
-        room = self.description.link.datagram_bytes
-        heads = self.templates.every[Job.SAMPLE : Job.REPLY + 1]
-        # With up to three bytes of padding.
-        most = room - max(each.size for each in heads) - 3
+        most = self.memory_bytes if self.cuts else max(0, self.whole_bytes)
         with m.State("INTAKE"):
             known = Const(0)
             for number, topic in enumerate(topics):

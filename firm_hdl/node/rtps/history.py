@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from amaranth.hdl import Module
 from amaranth.lib import wiring
@@ -10,45 +10,68 @@ from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
 from firm_hdl.gateware.memories import BlockMemory
+from firm_hdl.node.capacity import largest_bytes
+from firm_hdl.node.description import Description
 from firm_hdl.node.rtps.endpoints import Endpoint
 
-__all__ = ["MOST_SAMPLES", "History", "Part", "parts_of"]
+__all__ = ["MOST_SAMPLES", "History", "Part", "assembly_parts", "parts_of"]
 
 MOST_SAMPLES = 16
 """Samples that a writer keeps at most: a power of two. The depth of QoS is a request of at least as
 many, where readers are served from the history; what has room is kept."""
 
 
+_HEADS_BYTES = 192
+"""What a datagram has besides a sample, at most. With 1,472 bytes, peers cut samples of more than
+1,280 bytes: first those of firm-hdl, then Cyclone DDS, at 1,344."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """The memory of a writer.
+    """The memory of a writer, or of a reader.
 
     Attributes
     ----------
     base, bytes : int
-        Where it begins, and its size: a power of two, of which `base` is a multiple.
+        Where it begins, and its size: a power of two, of which `base` is a multiple. Or 0: it has
+        none.
     depth : int
         Samples that a late reader gets, if it is not volatile.
     """
 
     base: int
     bytes: int
-    depth: int
+    depth: int = 1
 
 
 def parts_of(writers: tuple[Endpoint, ...]) -> tuple[Part, ...]:
     """Return the memory of each writer of a topic, as large as that of the topic."""
     sizes = [each.topic.store("out").memory_bytes for each in writers if each.topic]
-    # Larger ones first, so that each begins at a multiple of its size.
+    depths = [each.data.qos.depth or MOST_SAMPLES for each in writers if each.topic]
+    return tuple(
+        replace(part, depth=min(depth, MOST_SAMPLES))
+        for part, depth in zip(_placed(sizes), depths, strict=True)
+    )
+
+
+def assembly_parts(description: Description, readers: tuple[Endpoint, ...]) -> tuple[Part, ...]:
+    """Return the memory in which each reader puts a sample together that comes in fragments.
+
+    Readers whose messages fit into a datagram of `datagram_bytes` have none.
+    """
+    whole = description.link.datagram_bytes - _HEADS_BYTES
+    stores = [each.topic.store("in") for each in readers if each.topic]
+    largest = [largest_bytes(description, store) for store in stores]
+    return _placed([0 if most <= whole else 1 << (most - 1).bit_length() for most in largest])
+
+
+def _placed(sizes: list[int]) -> tuple[Part, ...]:
+    """Place parts, larger ones first: so each begins at a multiple of its size."""
     order = sorted(range(len(sizes)), key=lambda number: -sizes[number])
     bases, at = {}, 0
     for number in order:
         bases[number], at = at, at + sizes[number]
-    depths = [each.data.qos.depth or MOST_SAMPLES for each in writers if each.topic]
-    return tuple(
-        Part(base=bases[number], bytes=size, depth=min(depths[number], MOST_SAMPLES))
-        for number, size in enumerate(sizes)
-    )
+    return tuple(Part(base=bases[number], bytes=size) for number, size in enumerate(sizes))
 
 
 class History(wiring.Component):

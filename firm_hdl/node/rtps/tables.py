@@ -99,7 +99,7 @@ def writer_layout(address_bits: int) -> data.StructLayout:
 
 def sample_layout(address_bits: int) -> data.StructLayout:
     """Return a sample of the history: its place, its bytes, and the tag of the request."""
-    return data.StructLayout({"at": address_bits, "bytes": 16, "tag": 32})
+    return data.StructLayout({"at": address_bits, "bytes": address_bits + 1, "tag": 32})
 
 
 def identity_layout(peers: int) -> data.StructLayout:

@@ -29,9 +29,9 @@ distro: kilted
 bus_bytes: 1
 link: {{kind: rtps, address: {address}}}
 subscribe:
-  /heard: {{type: std_msgs/msg/String, memory_bytes: 256{heard}}}
+  /heard: {{type: std_msgs/msg/String, memory_bytes: 512{heard}}}
 publish:
-  /said: {{type: std_msgs/msg/String, memory_bytes: 256{said}}}
+  /said: {{type: std_msgs/msg/String, memory_bytes: 512{said}}}
 """
 
 
@@ -103,7 +103,7 @@ class Wires:
         simulator.add_testbench(bench)
         simulator.run()
 
-    def until(self, condition, seconds: float = 3.0):
+    def until(self, condition, seconds: float = 1.0):
         """Wait in a script until a condition holds."""
         end = self.now + seconds
         while not condition():
