@@ -22,7 +22,7 @@ DEFAULTS = {
         ["a/B"],
         {**ORIGINS, **PLAN, "types": ["a/B"], "out": "vhdl_out"}
         | {"ports": "records", "extras": frozenset(), "force": False, "jobs": None}
-        | {"datasheet": False},
+        | {"datasheet": False, "registers": False, "ip": None, "leaf_ports": None},
     ),
     "list": ([], {**ORIGINS, "only_path": False, "as_json": False}),
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
@@ -125,6 +125,7 @@ def test_other_actions_of_a_node_have_these_defaults():
         "sim": False,
         "engine": "auto",
         "target": None,
+        "ip": None,
     }
     assert is_refused("node", "info", "n.yaml", "--board", "sim")
 
