@@ -18,7 +18,7 @@ from firm_hdl.rtps.discovery import EndpointData, ParticipantData
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import PUBLICATIONS_WRITER, SPDP_WRITER, SUBSCRIPTIONS_WRITER
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.submessages import Data
+from firm_hdl.rtps.wire.submessages import Data, DataFrag, NackFrag, NumberSet
 from tests.live.nodes import PACKAGES
 from tests.live.peer import Peer
 from tests.tools import need
@@ -28,6 +28,7 @@ pytestmark = pytest.mark.live
 EXAMPLE = Path(__file__).parents[2] / "examples" / "nodes" / "rtps"
 RELEASES = pytest.mark.parametrize("release", ["jazzy", "kilted"])
 
+BLOCK = "firm_hdl::msg::dds_::Block_"
 NODE = f"""\
 node: mirror
 namespace: /fpga
@@ -95,6 +96,22 @@ def start(program):
         process.communicate()
 
 
+def fragments(rng):
+    """Return a DATA_FRAG and a NACK_FRAG, right or wrong, of endpoints that `flood` announces."""
+    sizes = {
+        "first": rng.choice((0, 1, 1, 2, 3, 1 << 31)),
+        "count": rng.choice((0, 1, 1, 2, 0xFFFF)),
+        "fragment_bytes": rng.choice((0, 1, 16, 16, 64, 0xFFFF)),
+        "sample_bytes": rng.choice((0, 1, 40, 40, 100, 1 << 15, 1 << 31)),
+    }
+    ends = {"reader": 0, "writer": 0x303, "sequence_number": rng.randrange(1, 3)}
+    part = DataFrag(**ends, **sizes, payload=rng.randbytes(rng.choice((0, 16, 32, 40))))
+    ends = {"reader": 0x404, "writer": 0, "sequence_number": rng.randrange(4)}
+    base = rng.choice((0, 1, 2, 1 << 31))
+    missing = NumberSet.of(base, rng.sample(range(base, base + 256), 9))
+    return part, NackFrag(**ends, missing=missing, count=rng.randrange(99))
+
+
 def flood(seconds, seed=1):
     """Send invented participants and endpoints, damaged or not, and bytes that are no datagrams."""
     rng, end, prefixes = random.Random(seed), time.monotonic() + seconds, [bytes(12)]
@@ -108,16 +125,20 @@ def flood(seconds, seed=1):
                 peer = ParticipantData(prefix=prefix, discovery=nowhere, user=nowhere, lease=1e6)
                 payload, writer, number = peer.encode(), SPDP_WRITER, 1
             else:
+                topic, type_name = rng.choice(
+                    (("text", "std_msgs::msg::dds_::String_"), ("block", BLOCK))
+                )
                 endpoint = EndpointData(
                     guid=Guid(prefix, rng.choice((0x303, 0x404))),
-                    topic=rng.choice(("rt/text_in", "rt/text_out")),
-                    type_name="std_msgs::msg::dds_::String_",
+                    topic=f"rt/{topic}_{rng.choice(('in', 'out'))}",
+                    type_name=type_name,
                     qos=Qos(),
                 )
                 writer = rng.choice((PUBLICATIONS_WRITER, SUBSCRIPTIONS_WRITER))
                 payload, number = endpoint.encode(), rng.randrange(1, 4)
             sample = Data(reader=0, writer=writer, sequence_number=number, payload=payload)
-            datagram = bytearray(message.write(prefix, [sample]))
+            some = rng.choices((sample, *fragments(rng)), (3, 1, 1), k=rng.randrange(1, 4))
+            datagram = bytearray(message.write(prefix, some))
             if rng.random() < 0.3:
                 datagram[rng.randrange(len(datagram))] ^= 1 << rng.randrange(8)
             if rng.random() < 0.2:
@@ -175,8 +196,9 @@ def test_the_node_is_in_the_graph_with_its_topics_and_services(release, start):
     with Peer(release, "graph", own="watcher", **wanted) as peer:
         result = peer.result()
     assert ["mirror", "/fpga"] in result["nodes"] and result["owners"] == [["mirror", "/fpga"]]
-    assert [name for name, _ in result["publishers"]] == ["/block_out", "/cloud_out", "/imu_out", "/text_out"]
-    assert [name for name, _ in result["subscriptions"]] == ["/block_in", "/cloud_in", "/imu_in", "/text_in"]
+    topics = ("block", "cloud", "imu", "text")
+    assert [name for name, _ in result["publishers"]] == [f"/{each}_out" for each in topics]
+    assert [name for name, _ in result["subscriptions"]] == [f"/{each}_in" for each in topics]
     assert [name for name, _ in result["services"]] == ["/mode"]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 from amaranth.hdl import Cat
 from amaranth.sim import Simulator
@@ -187,6 +188,10 @@ def test_damaged_and_truncated_datagrams_end_and_count():
         else:
             whole[rng.randrange(20, 24)] ^= 1 << rng.randrange(8)
         datagrams.append(bytes(whole))
+    part = DataFrag(
+        reader=READER, writer=WRITER, sequence_number=1, **FRAGMENTS[0], payload=bytes(4)
+    )
+    datagrams += [message.write(PEER, [replace(part, **{name: 0})]) for name in FRAGMENTS[0]]
     good = message.write(PEER, [Heartbeat(reader=READER, writer=WRITER, first=1, last=2, count=1)])
     datagrams = [each for each in datagrams if each] + [good]
     results = read(datagrams)
