@@ -111,7 +111,7 @@ def test_discovery_and_samples_both_ways(has_losses):
         )
         wires.put(message.write(core.prefix, [first, *others, begun]))
         yield from wires.until(lambda: said(NackFrag, sequence_number=4, missing=WANTED))
-        core.write(writer, MESSAGES[2], wires.now, 3)
+        wires.put(message.write(core.prefix, [second]))
         yield from wires.until(lambda: len(wires.received) == 4)
 
     wires.run(script())

@@ -27,7 +27,9 @@ from firm_hdl.rtps.wire.submessages import (
     NackFrag,
     NumberSet,
 )
+from tests.depth import by_depth
 
+COUNT = by_depth(9, 200)
 OWN, PEER = bytes(range(0x10, 0x1C)), bytes(range(0x20, 0x2C))
 READER, WRITER = 0x0000_0104, 0x0000_0303
 FRAGMENTS = (
@@ -172,7 +174,7 @@ def _event(ctx, event):
 
 def test_submessages_as_the_host_reads_them_in_both_byte_orders():
     rng = random.Random(1)
-    datagrams = [message.write(PEER, submessages(rng), n % 2 == 0) for n in range(14)]
+    datagrams = [message.write(PEER, submessages(rng), n % 2 == 0) for n in range(COUNT)]
     for datagram, got in zip(datagrams, read(datagrams), strict=True):
         assert got == expected(datagram), datagram.hex(" ")
 
@@ -181,7 +183,7 @@ def test_damaged_and_truncated_datagrams_end_and_count():
     # Judged by the host where it is as strict: numbers above 32 bits are malformed here alone.
     rng = random.Random(2)
     datagrams = [b"", b"R", b"RTPS" + bytes(16), message.write(PEER, ())]
-    for _ in range(14):
+    for _ in range(COUNT):
         whole = bytearray(message.write(PEER, submessages(rng)))
         if rng.random() < 0.5:
             del whole[rng.randrange(1, len(whole)) :]
