@@ -27,9 +27,8 @@ from firm_hdl.rtps.wire.submessages import (
     NackFrag,
     NumberSet,
 )
-from tests.depth import by_depth
 
-COUNT = by_depth(9, 200)
+COUNT = 9
 OWN, PEER = bytes(range(0x10, 0x1C)), bytes(range(0x20, 0x2C))
 READER, WRITER = 0x0000_0104, 0x0000_0303
 FRAGMENTS = (
