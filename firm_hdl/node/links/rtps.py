@@ -17,6 +17,7 @@ from firm_hdl.node.rtps.assembler import Assembler
 from firm_hdl.node.rtps.endpoints import own_of, ports_of_link
 from firm_hdl.node.rtps.engine import Engine
 from firm_hdl.node.rtps.history import History, assembly_parts, parts_of
+from firm_hdl.node.rtps.intake import Intake
 from firm_hdl.node.rtps.messages import MessageReader
 from firm_hdl.node.rtps.templates import templates_of
 from firm_hdl.node.rtps.transmitter import Transmitter
@@ -88,6 +89,11 @@ class RtpsLink(wiring.Component):
         m.submodules.fifo = fifo = PacketFifo(1, link.memory_bytes, link.packets, when_full="drop")
         m.submodules.reader = reader = MessageReader(link)
         m.submodules.width = width = PacketWidth(1, description.bus_bytes)
+        topics = tuple(each.topic.id for each in own.writers if each.topic)
+        m.submodules.intake = intake = Intake(
+            description.bus_bytes, topics, parts, engine.most_bytes
+        )
+        wiring.connect(m, engine.histories, intake.histories)
         m.submodules.history = history = History(engine.memory_bytes)
         m.submodules.transmitter = transmitter = Transmitter(
             templates, engine.memory_bytes, ports.discovery
@@ -113,13 +119,13 @@ class RtpsLink(wiring.Component):
             engine.came.eq(fifo.packets_out.valid),
             engine.nonce.eq(self.nonce),
             engine.idle.eq(self.idle),
-            *passes(self.sent, engine.sent),
+            *passes(self.sent, intake.sent),
             transmitter.order.eq(engine.order),
             transmitter.starts.eq(engine.starts),
             engine.ends.eq(transmitter.ends),
-            history.write_at.eq(engine.write_at),
-            history.write_byte.eq(engine.write_byte),
-            history.writes.eq(engine.writes),
+            history.write_at.eq(intake.write_at),
+            history.write_byte.eq(intake.write_byte),
+            history.writes.eq(intake.writes),
             history.read_at.eq(transmitter.read_at),
             history.reads.eq(transmitter.reads),
             transmitter.byte.eq(history.byte),
@@ -141,7 +147,7 @@ class RtpsLink(wiring.Component):
                 "cut": engine.cut,
                 "stray": engine.stray | reader.stray | (ends & foreign),
                 "malformed": reader.malformed | (ends & came.payload.error & ~foreign),
-                "unsent": engine.unsent,
+                "unsent": engine.unsent | intake.unsent,
             },
         )
         m.d.comb += [

@@ -9,7 +9,7 @@ from amaranth.utils import ceil_log2
 
 from firm_hdl.gateware import PacketSignature
 from firm_hdl.gateware.memories import BlockMemory, LutMemory
-from firm_hdl.node.rtps.history import Part
+from firm_hdl.node.rtps.history import Part, bytes_of
 
 __all__ = ["Assembler", "FragmentSignature", "LookupSignature"]
 
@@ -70,7 +70,7 @@ def LookupSignature(parts: tuple[Part, ...], rows: int) -> wiring.Signature:
         Forget what came for `reader`.
     tick : Out(1)
     """
-    address_bits = ceil_log2(_memory_bytes(parts))
+    address_bits = ceil_log2(bytes_of(parts))
     return wiring.Signature(
         {
             "reader": Out(range(max(2, len(parts)))),
@@ -192,7 +192,7 @@ class Assembler(wiring.Component):
         now, reader = Signal.like(held), Signal.like(ask.reader)
         fragment, inside, left = Signal.like(held.next), Signal(16), Signal(16)
         at, is_next, ends = Signal.like(held.place), Signal(), Signal()
-        address_bits = ceil_log2(_memory_bytes(self.parts))
+        address_bits = ceil_log2(bytes_of(self.parts))
         memory = BlockMemory(m, 8, 1 << address_bits)
         place = Signal(address_bits)
         m.d.comb += [
@@ -271,7 +271,3 @@ class Assembler(wiring.Component):
                     with m.If(out.payload.last):
                         m.next = "IDLE"
         return m
-
-
-def _memory_bytes(parts: tuple[Part, ...]) -> int:
-    return max([2, *(each.base + each.bytes for each in parts)])

@@ -11,23 +11,20 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
-from firm_hdl.gateware import PacketWidth
-from firm_hdl.gateware.memories import BlockMemory, LutMemory
+from firm_hdl.gateware.memories import BlockMemory
 from firm_hdl.node.capacity import largest_bytes
 from firm_hdl.node.description import Description
-from firm_hdl.node.gateware.streams import LinkSignature
 from firm_hdl.node.rtps.assembler import LookupSignature
 from firm_hdl.node.rtps.endpoints import Endpoint
 from firm_hdl.node.rtps.events import EventKind, announced_layout, event_layout, raw
-from firm_hdl.node.rtps.history import MOST_SAMPLES, Part
+from firm_hdl.node.rtps.history import MOST_SAMPLES, Part, bytes_of
+from firm_hdl.node.rtps.intake import HistoriesSignature, sample_layout
 from firm_hdl.node.rtps.names import digest_of
 from firm_hdl.node.rtps.tables import (
     BUILTIN_ROWS,
     identity_layout,
     peer_layout,
     row_layout,
-    sample_layout,
-    writer_layout,
 )
 from firm_hdl.node.rtps.templates import HEAD_BYTES, Job, Templates, fragment_bytes
 from firm_hdl.node.rtps.transmitter import order_layout
@@ -96,8 +93,8 @@ class Engine(wiring.Component):
     idle : In(len(readers))
         The topic of a reader has passed on all that came. A sample waits for that, but not long:
         then a reliable one is asked for again, and any other one goes to its topic all the same.
-    sent : In(LinkSignature(bus_bytes))
-        Messages of publications and services.
+    histories : Out(HistoriesSignature(parts))
+        An :class:`.Intake`.
     nonce : In(32)
         Not 0: makes the GUID prefix of this start another one than those before. 0: the time at
         which the first datagram comes does so; without any, 4 seconds are waited for one.
@@ -108,7 +105,6 @@ class Engine(wiring.Component):
     assembly : Out(LookupSignature(...))
         An :class:`.Assembler`, if there is one.
     order, starts, ends : as of a `Transmitter`
-    write_at, write_byte, writes : as of a `History`
     lost, late, stray, cut, unsent : Out(1)
         High for one cycle: samples that will not come; a sample that came twice; one that is for
         nobody; fragments that are not taken; what found no place, or has no way.
@@ -125,7 +121,7 @@ class Engine(wiring.Component):
     ):
         self.description, self.templates = description, templates
         self.writers, self.readers, self.parts = writers, readers, parts
-        self.memory_bytes = max(2, *(each.base + each.bytes for each in parts)) if parts else 2
+        self.memory_bytes = bytes_of(parts)
         self.address_bits = ceil_log2(self.memory_bytes)
         link = description.link
         self.peers = link.peers
@@ -138,6 +134,7 @@ class Engine(wiring.Component):
         stores = [each.topic.store("out") for each in writers if each.topic]
         largest = max((largest_bytes(description, each) for each in stores), default=0)
         self.cuts = largest > self.whole_bytes
+        self.most_bytes = self.memory_bytes if self.cuts else max(0, self.whole_bytes)
         order = order_layout(len(templates.rom), self.memory_bytes)
         super().__init__(
             {
@@ -148,7 +145,6 @@ class Engine(wiring.Component):
                 "topic": Out(16),
                 "tag": Out(32),
                 "idle": In(max(1, len(readers))),
-                "sent": In(LinkSignature(description.bus_bytes)),
                 "nonce": In(32),
                 "came": In(1),
                 "own": Out(96),
@@ -156,9 +152,7 @@ class Engine(wiring.Component):
                 "order": Out(order),
                 "starts": Out(1),
                 "ends": In(1),
-                "write_at": Out(self.address_bits),
-                "write_byte": Out(8),
-                "writes": Out(1),
+                "histories": Out(HistoriesSignature(parts)),
                 **dict.fromkeys(("lost", "late", "stray", "cut", "unsent"), Out(1)),
             }
         )
@@ -168,7 +162,6 @@ class Engine(wiring.Component):
         self._declare(m)
         self._ticks(m)
         self._compare(m)
-        self._declare_intake(m)
         with m.FSM():
             self._start(m)
             with m.State("IDLE"):
@@ -181,11 +174,18 @@ class Engine(wiring.Component):
                     m.next = "SECOND"
                 with m.Elif(self._multicast_due | (self._static != 0) | self._due.any()):
                     m.next = "ANNOUNCE"
-                with m.Elif(self.sent.valid & self._quiet):
+                with m.Elif(self.histories.waits & self._quiet):
                     m.next = "INTAKE"
                 with m.Else():
                     m.d.sync += self._at.eq(self._sweep)
                     m.next = "ROW"
+            with m.State("INTAKE"):
+                m.d.comb += self.histories.takes.eq(1)
+                m.d.sync += [self._quiet.eq(0), self._clean.eq(0)]
+                with m.If(self.histories.ends):
+                    # Those who wait for it come next.
+                    m.d.sync += self._sweep.eq(self.first_row)
+                    m.next = "IDLE"
             self._announcements(m)
             self._events(m)
             self._participants(m)
@@ -196,7 +196,6 @@ class Engine(wiring.Component):
             if self.cuts:
                 self._cutting(m)
             self._datagrams(m)
-            self._taking(m)
         return m
 
     # What the states share.
@@ -209,11 +208,7 @@ class Engine(wiring.Component):
         self._row = row = Signal(row_layout(peers, endpoints))
         self._rows = _memory(m, "rows", row.shape(), rows)
         self._peers = _memory(m, "peers", peer_layout(), peers)
-        samples = MOST_SAMPLES * max(1, len(self.parts))
-        self._samples = _memory(m, "samples", sample_layout(address), samples)
         self._identities = _memory(m, "identities", identity_layout(peers), _REQUESTS)
-        states = LutMemory(m, "states", writer_layout(address), max(2, len(self.parts)))
-        self._states, self._state = states, states.reader()
         # The row and the participant that are worked on, and what is known of our writer.
         self._row_at = Signal(range(rows))
         self._peer, self._peer_row = Signal(range(peers)), Signal(peer_layout())
@@ -276,6 +271,8 @@ class Engine(wiring.Component):
             assembly.fragments.eq(event.fragments),
             assembly.fragment_bytes.eq(event.fragment_bytes),
             assembly.sample_bytes.eq(event.last),
+            self.histories.writer.eq(row.local - _FIXED_WRITERS),
+            self.histories.number.eq(self._number),
         ]
 
     def _fixed_prefix(self) -> int:
@@ -367,8 +364,6 @@ class Engine(wiring.Component):
             m.d.comb += [
                 self._rows.writes.eq(1),
                 self._rows.write_at.eq(self._at),
-                self._states.write.en.eq(1),
-                self._states.write.addr.eq(self._at),
             ]
             m.d.sync += self._at.eq(self._at + 1)
             with m.If(self._at == self.rows - 1):
@@ -629,7 +624,7 @@ class Engine(wiring.Component):
             with m.Elif(takes & is_sedp):
                 m.d.sync += row.request.eq(row.request | bit)
                 m.next = "SETTLE"
-            with m.Elif(takes & is_fragment & assembly.has_room):
+            with m.Elif(takes & is_fragment & (assembly.has_room | assembly.holds)):
                 m.d.comb += [assembly.accepts.eq(assembly.fits), self.cut.eq(~assembly.fits)]
                 with m.If(assembly.fits):
                     m.d.sync += [self._accepts.eq(1), row.tries.eq(0)]
@@ -746,10 +741,10 @@ class Engine(wiring.Component):
         local, depth = self._local, self._depth
         with m.State("MATCH"):
             is_graph = local == _GRAPH
-            m.d.comb += self._state.addr.eq(local - _FIXED_WRITERS)
+            m.d.comb += self.histories.writer.eq(local - _FIXED_WRITERS)
             m.d.sync += [
-                self._last.eq(Mux(is_graph, 1, self._state.data.last)),
-                self._gone.eq(Mux(is_graph, 0, self._state.data.gone)),
+                self._last.eq(Mux(is_graph, 1, self.histories.state.last)),
+                self._gone.eq(Mux(is_graph, 0, self.histories.state.gone)),
             ]
             m.next = "DONE"
             is_gone = event.kind == EventKind.ENDPOINT_GONE
@@ -819,10 +814,9 @@ class Engine(wiring.Component):
         with m.State("ROW_STATE"):
             counts = [len(self.writers), len(self.readers), 1]
             is_fixed = row.local < _FIXED_WRITERS
-            m.d.comb += self._state.addr.eq(row.local - _FIXED_WRITERS)
             m.d.sync += [
-                self._last.eq(Mux(is_fixed, _at(counts, row.local), self._state.data.last)),
-                self._gone.eq(Mux(is_fixed, 0, self._state.data.gone)),
+                self._last.eq(Mux(is_fixed, _at(counts, row.local), self.histories.state.last)),
+                self._gone.eq(Mux(is_fixed, 0, self.histories.state.gone)),
             ]
             m.next = "ROW_LOWER"
             with m.If(~self._live.bit_select(row.peer, 1)):
@@ -978,15 +972,13 @@ class Engine(wiring.Component):
         identity, sample = self._identity, self._sample
         with m.State("FETCH"):
             firsts = [templates.writers, templates.readers, templates.graph]
-            user = row.local - _FIXED_WRITERS
-            place = Cat(self._number[: ceil_log2(MOST_SAMPLES)], user)
-            m.d.comb += [self._samples.read_at.eq(place), self._samples.reads.eq(1)]
+            m.d.comb += self.histories.fetches.eq(1)
             m.next = "FETCHED"
             with m.If(row.local < _FIXED_WRITERS):
                 m.d.sync += row.ask.eq(1)
                 self._send(m, _at(firsts, row.local) + self._number - 1)
         with m.State("FETCHED"):
-            m.d.sync += Value.cast(sample).eq(self._samples.word)
+            m.d.sync += sample.eq(self.histories.sample)
             m.next = "IDENTITY"
         services = [
             _FIXED_WRITERS - 1 + number
@@ -1120,114 +1112,6 @@ class Engine(wiring.Component):
                     with m.If((job == Job.FRAGMENT) | (job == Job.REPLY_FRAGMENT)):
                         self._pass_fragment(m)
                         m.next = "FRAGMENT"
-
-    # New samples.
-
-    def _declare_intake(self, m: Module) -> None:
-        """Make what a message goes through on its way into the history."""
-        address, sent = self.address_bits, self.sent
-        m.submodules.width = width = PacketWidth(self.description.bus_bytes, 1)
-        self._width, self._fed = width, Signal()
-        # Number of the writer, counted from that of the first topic.
-        self._user, self._tag = Signal.like(self._row.local), Signal(32)
-        self._length = Signal(address + 1)
-        self._taker, self._place = Signal(writer_layout(address)), Signal(address)
-        self._limit, base, mask = Signal(address + 1), Signal(address), Signal(address)
-        self._mask = mask
-        for number, part in enumerate(self.parts):
-            with m.If(self._user == number):
-                m.d.comb += [
-                    self._limit.eq(part.bytes),
-                    base.eq(part.base),
-                    mask.eq(part.bytes - 1),
-                ]
-        m.d.comb += [
-            width.packets_in.payload.eq(sent.payload.beat),
-            self.write_at.eq(base | (self._place & mask)),
-            self.write_byte.eq(width.packets_out.payload.data[0]),
-        ]
-
-    def _taking(self, m: Module) -> None:
-        """Take a message of a publication or a service into the history of its writer."""
-        sent, width, fed = self.sent, self._width, self._fed
-        user, tag, length = self._user, self._tag, self._length
-        state, place, limit, mask = self._taker, self._place, self._limit, self._mask
-        address, narrow = self.address_bits, width.packets_out
-        topics = [each.topic.id for each in self.writers if each.topic]
-        most = self.memory_bytes if self.cuts else max(0, self.whole_bytes)
-        with m.State("INTAKE"):
-            known = Const(0)
-            for number, topic in enumerate(topics):
-                with m.If(sent.payload.topic == topic):
-                    m.d.sync += user.eq(number)
-                known = known | (sent.payload.topic == topic)
-            long = sent.payload.length
-            m.d.sync += [
-                tag.eq(sent.payload.tag),
-                length.eq(long),
-                fed.eq(0),
-                self._quiet.eq(0),
-                self._clean.eq(0),
-            ]
-            m.next = "INTAKE_STATE"
-            with m.If(~known | (long > most) | (long == 0)):
-                m.d.comb += self.unsent.eq(1)
-                m.next = "DISCARD"
-        with m.State("DISCARD"):
-            m.d.comb += sent.ready.eq(1)
-            with m.If(sent.valid & sent.payload.beat.last):
-                m.next = "IDLE"
-        with m.State("INTAKE_STATE"):
-            m.d.comb += self._state.addr.eq(user)
-            m.d.sync += [state.eq(self._state.data), place.eq(self._state.data.at)]
-            m.next = "ROOM"
-            with m.If(length > limit):
-                m.d.comb += self.unsent.eq(1)
-                m.next = "DISCARD"
-        oldest = Cat((state.gone + 1)[: ceil_log2(MOST_SAMPLES)], user)
-        with m.State("ROOM"):
-            is_full = (state.last - state.gone)[ceil_log2(MOST_SAMPLES)]
-            m.d.comb += [self._samples.read_at.eq(oldest), self._samples.reads.eq(1)]
-            m.next = "COPY"
-            with m.If(is_full | (state.used + length > limit)):
-                m.next = "FORGET"
-        with m.State("FORGET"):
-            freed = Signal(sample_layout(address))
-            m.d.comb += Value.cast(freed).eq(self._samples.word)
-            m.d.sync += [state.gone.eq(state.gone + 1), state.used.eq(state.used - freed.bytes)]
-            m.next = "ROOM"
-        with m.State("COPY"):
-            m.d.comb += [
-                width.packets_in.valid.eq(sent.valid & ~fed),
-                sent.ready.eq(width.packets_in.ready & ~fed),
-                narrow.ready.eq(1),
-                self.writes.eq(narrow.valid),
-            ]
-            with m.If(sent.valid & sent.ready & sent.payload.beat.last):
-                m.d.sync += fed.eq(1)
-            with m.If(narrow.valid):
-                m.d.sync += place.eq(place + 1)
-                with m.If(narrow.payload.last):
-                    m.next = "COPIED"
-        with m.State("COPIED"):
-            number = state.last + 1
-            word, written = self._samples.write_word, self._states.write
-            m.d.comb += [
-                self._samples.writes.eq(1),
-                self._samples.write_at.eq(Cat(number[: ceil_log2(MOST_SAMPLES)], user)),
-                word.at.eq(state.at),
-                word.bytes.eq(length),
-                word.tag.eq(tag),
-                written.en.eq(1),
-                written.addr.eq(user),
-                written.data.last.eq(number),
-                written.data.gone.eq(state.gone),
-                written.data.at.eq(place & mask),
-                written.data.used.eq(state.used + length),
-            ]
-            # Those who wait for it come next.
-            m.d.sync += self._sweep.eq(self.first_row)
-            m.next = "IDLE"
 
 
 def _memory(m: Module, name: str, shape: Any, depth: int) -> BlockMemory:

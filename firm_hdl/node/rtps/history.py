@@ -14,7 +14,7 @@ from firm_hdl.node.capacity import largest_bytes
 from firm_hdl.node.description import Description
 from firm_hdl.node.rtps.endpoints import Endpoint
 
-__all__ = ["MOST_SAMPLES", "History", "Part", "assembly_parts", "parts_of"]
+__all__ = ["MOST_SAMPLES", "History", "Part", "assembly_parts", "bytes_of", "parts_of"]
 
 MOST_SAMPLES = 16
 """Samples that a writer keeps at most: a power of two. The depth of QoS is a request of at least as
@@ -42,6 +42,11 @@ class Part:
     base: int
     bytes: int
     depth: int = 1
+
+
+def bytes_of(parts: tuple[Part, ...]) -> int:
+    """Return the size of the memory that some parts are of; at least 2."""
+    return max([2, *(each.base + each.bytes for each in parts)])
 
 
 def parts_of(writers: tuple[Endpoint, ...]) -> tuple[Part, ...]:

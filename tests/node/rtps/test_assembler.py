@@ -71,7 +71,7 @@ def test_what_is_passed_on_was_sent():
         return bytes(got)
 
     async def bench(ctx):
-        for reader, row, number, first, fragments, step, size, body in offers(rng, 400):
+        for reader, row, number, first, fragments, step, size, body in offers(rng, 250):
             for signal, value in (
                 *((ask.reader, reader), (ask.row, row), (ask.number, number), (ask.first, first)),
                 *((ask.fragments, fragments), (ask.fragment_bytes, step)),
@@ -104,4 +104,4 @@ def test_what_is_passed_on_was_sent():
         if (size, step) == (wanted_size, wanted_step):
             assert got == b"".join(parts), (row, number)
             whole += 1
-    assert whole > 15
+    assert whole > 8

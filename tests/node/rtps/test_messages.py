@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 from amaranth.hdl import Cat
 from amaranth.sim import Simulator
@@ -27,6 +28,7 @@ from firm_hdl.rtps.wire.submessages import (
     NumberSet,
 )
 
+COUNT = 9
 OWN, PEER = bytes(range(0x10, 0x1C)), bytes(range(0x20, 0x2C))
 READER, WRITER = 0x0000_0104, 0x0000_0303
 FRAGMENTS = (
@@ -171,7 +173,7 @@ def _event(ctx, event):
 
 def test_submessages_as_the_host_reads_them_in_both_byte_orders():
     rng = random.Random(1)
-    datagrams = [message.write(PEER, submessages(rng), n % 2 == 0) for n in range(14)]
+    datagrams = [message.write(PEER, submessages(rng), n % 2 == 0) for n in range(COUNT)]
     for datagram, got in zip(datagrams, read(datagrams), strict=True):
         assert got == expected(datagram), datagram.hex(" ")
 
@@ -180,13 +182,17 @@ def test_damaged_and_truncated_datagrams_end_and_count():
     # Judged by the host where it is as strict: numbers above 32 bits are malformed here alone.
     rng = random.Random(2)
     datagrams = [b"", b"R", b"RTPS" + bytes(16), message.write(PEER, ())]
-    for _ in range(14):
+    for _ in range(COUNT):
         whole = bytearray(message.write(PEER, submessages(rng)))
         if rng.random() < 0.5:
             del whole[rng.randrange(1, len(whole)) :]
         else:
             whole[rng.randrange(20, 24)] ^= 1 << rng.randrange(8)
         datagrams.append(bytes(whole))
+    part = DataFrag(
+        reader=READER, writer=WRITER, sequence_number=1, **FRAGMENTS[0], payload=bytes(4)
+    )
+    datagrams += [message.write(PEER, [replace(part, **{name: 0})]) for name in FRAGMENTS[0]]
     good = message.write(PEER, [Heartbeat(reader=READER, writer=WRITER, first=1, last=2, count=1)])
     datagrams = [each for each in datagrams if each] + [good]
     results = read(datagrams)
