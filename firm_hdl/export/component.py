@@ -246,7 +246,7 @@ class ComponentTop(wiring.Component):
                 m.d.comb += port.eq(keep_of_count(part.value, part.lanes))
             else:
                 last = getattr(self, name.removesuffix("tkeep") + "tlast")
-                m.d.comb += part.value.eq(count_of_keep(port, last))
+                m.d.comb += part.value.eq(count_of_keep(m, port, last))
         return m
 
 

@@ -373,7 +373,7 @@ class PartTop(Component):
             if pin.port.direction == "in":
                 if pin.is_count:
                     last = getattr(self, pin.port.name.replace("tkeep", "tlast"))
-                    port = count_of_keep(port, last)
+                    port = count_of_keep(m, port, last)
                 m.d.comb += pin.value.eq(port)
             elif pin.is_count:
                 m.d.comb += port.eq(keep_of_count(pin.value, len(port)))

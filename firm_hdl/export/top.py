@@ -249,7 +249,7 @@ class Top(Component):
         packets = self.core.packets
         m.d.comb += [
             Value.cast(packets.payload.data).eq(self.s_axis_tdata),
-            packets.payload.count.eq(count_of_keep(self.s_axis_tkeep, self.s_axis_tlast)),
+            packets.payload.count.eq(count_of_keep(m, self.s_axis_tkeep, self.s_axis_tlast)),
             packets.payload.last.eq(self.s_axis_tlast),
             packets.valid.eq(self.s_axis_tvalid),
             self.s_axis_tready.eq(packets.ready),

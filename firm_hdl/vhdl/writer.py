@@ -12,9 +12,9 @@ from typing import Any, ClassVar
 
 from firm_hdl.names.attributes import PURPOSE
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Spec, Statement, Value, cut
-from firm_hdl.vhdl.declare import Role, Signal, attributes_of, declare, enumeration, remark_of
+from firm_hdl.vhdl.declare import Role, Signal, declare, enumeration, remark_of
 from firm_hdl.vhdl.expr import Declared, Values
-from firm_hdl.vhdl.graph import graph_of, only
+from firm_hdl.vhdl.graph import attributes_of, graph_of, only
 from firm_hdl.vhdl.memory import MemoryText, memory_id
 from firm_hdl.vhdl.process import Statements, flatten
 from firm_hdl.vhdl.registers import Registers
@@ -25,7 +25,7 @@ __all__ = ["TITLES", "Writer"]
 TITLES: Mapping[Role, str] = {
     "register": "Registers.",
     "logic": "Combinational signals.",
-    "alias": "Signals that no logic reads, for simulation.",
+    "alias": "Signals that no logic reads, for tools.",
 }
 """Comments above the declarations of signals."""
 
@@ -214,7 +214,7 @@ class Writer(ABC):
 
     def remark(self, wire: str) -> str:
         """Write a comment on the sign and the enumeration of a wire; its type has neither."""
-        text = remark_of(self.owner(wire))
+        text = remark_of(self.owner(wire)) or self.names.remarks.get(wire, "")
         return f"  {self.mark} {text}" if text else ""
 
     def attributes(self, signal: Signal) -> dict[str, Value]:
