@@ -9,6 +9,7 @@ from textwrap import shorten
 from typing import Literal, TypeAlias
 
 from firm_hdl.names.attributes import REMARK
+from firm_hdl.rtlil.fields import base_of_field
 from firm_hdl.rtlil.ir import (
     Assign,
     Bits,
@@ -35,12 +36,16 @@ __all__ = [
     "enumeration",
     "fixed_names",
     "initial_value",
+    "layouts",
     "part_names",
     "remark_of",
 ]
 
 _MAX_REMARK = 150
 """Most characters of a remark that names other signals."""
+
+_MAX_LAYOUT = 800
+"""Most characters of a remark on the fields of a signal."""
 
 _MAX_NAME = 60
 """Most characters of a name that is made of other names."""
@@ -256,54 +261,80 @@ def part_names(module: Module) -> dict[str, str]:
 
     The part has the name of its field, or else the number of its lowest bit.
     """
-    names: dict[str, str] = {}
     fields: dict[str, str] = {}
     for target, value in module.connections:
-        to = target[0] if target else None
-        if not isinstance(to, Slice) or to.wire.startswith("$") or "[" in to.wire:
+        to, source = only(target), only(value)
+        is_whole = source is not None and source.width == module.wires[source.wire].width
+        if to is not None and source is not None and is_whole and _field_of(to.wire):
+            fields.setdefault(source.wire, to.wire.replace(".", "_"))
+    return {
+        wire: fields.get(wire, f"{signal}_{low}") for wire, (signal, low) in _parts(module).items()
+    }
+
+
+def _field_of(name: str) -> str:
+    """Return the name of a field without that of its signal; empty for an element of an array."""
+    base = base_of_field(name)
+    return name[len(base) + 1 :] if name[len(base) :].startswith(".") and "[" not in name else ""
+
+
+def _parts(module: Module) -> dict[str, tuple[str, int]]:
+    """Return the generated wires that are a part of a named signal: the signal and lowest bit."""
+    parts: dict[str, tuple[str, int]] = {}
+    # By wire and lowest bit of a chunk: the signals that have the chunk, and where.
+    places: dict[tuple[str, int], list[tuple[str, Spec, int]]] = defaultdict(list)
+    ports: list[tuple[str, Spec]] = []
+    for target, value in module.connections:
+        to = only(target)
+        if to is None or to.wire.startswith("port$"):
+            ports += [(to.wire, value)] if to is not None else []
             continue
-        if "." in to.wire:
-            source = only(value)
-            if source is not None and source.width == module.wires[source.wire].width:
-                fields.setdefault(source.wire, to.wire.replace(".", "_"))
+        if to.wire.startswith("$") or "[" in to.wire or "." in to.wire or len(value) < 2:
             continue
         position = 0
         for chunk in value:
-            if (
-                isinstance(chunk, Slice)
-                and len(value) > 1
-                and chunk.wire.startswith(("$", "port$"))
-                and chunk.width == module.wires[chunk.wire].width
-            ):
-                names.setdefault(chunk.wire, f"{to.wire}_{position}")
+            if isinstance(chunk, Slice):
+                places[chunk.wire, chunk.low].append((to.wire, value, position))
+                is_whole = chunk.width == module.wires[chunk.wire].width
+                if is_whole and chunk.wire.startswith(("$", "port$")):
+                    parts.setdefault(chunk.wire, (to.wire, position))
             position += chunk.width
-    names |= _ports_of_parts(module)
-    return {wire: fields.get(wire, name) for wire, name in names.items()}
-
-
-def _ports_of_parts(module: Module) -> Iterator[tuple[str, str]]:
-    """Name the output ports that Amaranth only numbers: each is a part of a signal."""
-    ports = [
-        (target[0].wire, value)
-        for target, value in module.connections
-        if target and isinstance(target[0], Slice) and target[0].wire.startswith("port$")
-    ]
-    # By wire and lowest bit of a chunk: the signals that have the chunk, and where.
-    places: dict[tuple[str, int], list[tuple[str, Spec, int]]] = defaultdict(list)
-    for target, value in module.connections if ports else ():
-        to = target[0] if target else None
-        if isinstance(to, Slice) and not to.wire.startswith(("$", "port$")) and "." not in to.wire:
-            position = 0
-            for chunk in value:
-                if isinstance(chunk, Slice):
-                    places[chunk.wire, chunk.low].append((to.wire, value, position))
-                position += chunk.width
+    # Output ports that Amaranth only numbers.
     for port, part in ports:
         first = part[0] if part else None
-        for wire, value, low in places[first.wire, first.low] if isinstance(first, Slice) else ():
-            if value != part and cut(value, low, spec_width(part)) == part:
-                yield port, f"{wire}_{low}"
+        for signal, value, low in places[first.wire, first.low] if isinstance(first, Slice) else ():
+            if cut(value, low, spec_width(part)) == part:
+                parts[port] = signal, low
                 break
+    return parts
+
+
+def layouts(module: Module) -> dict[str, str]:
+    """Return the bits of the fields of each signal with a structure, and of its parts, as text."""
+    fields: dict[str, list[tuple[int, int, str]]] = defaultdict(list)
+    ends: Counter[str] = Counter()
+    for target, _ in module.connections:
+        to = only(target)
+        field = _field_of(to.wire) if to is not None else ""
+        if to is not None and field and "." not in field:
+            base = base_of_field(to.wire)
+            fields[base].append((ends[base], to.width, field))
+            ends[base] += to.width
+    wires = module.wires
+    found = {base: (base, 0) for base in fields} | _parts(module)
+    texts: dict[str, str] = {}
+    for wire, (base, low) in found.items():
+        # Fields of a union begin at the same bit.
+        if base not in fields or base not in wires or ends[base] != wires[base].width:
+            continue
+        inside = [
+            f"{name}({at + bits - 1 - low}:{at - low})" if bits > 1 else f"{name}({at - low})"
+            for at, bits, name in fields[base]
+            if low <= at and at + bits <= low + wires[wire].width
+        ]
+        if len(inside) > 1:
+            texts[wire] = shorten(f"bits: {' '.join(inside)}", _MAX_LAYOUT, placeholder=" ...")
+    return texts
 
 
 def _next_names(graph: Graph) -> tuple[dict[str, str], dict[str, str]]:

@@ -139,6 +139,16 @@ def test_ports_that_are_parts_of_a_structure_have_the_names_of_its_fields() -> N
     assert "pair_low" in convert(top, name="t", ports=ports).files["t_inner.vhd"]
 
 
+def test_a_comment_says_where_the_fields_of_a_structure_are() -> None:
+    shape = data.StructLayout({"first": 3, "last": 1, "rest": data.ArrayLayout(2, 4)})
+    m, i, o = Module(), Signal(shape, name="i"), Signal(shape, name="o")
+    m.d.sync += o.eq(i)
+    text = convert(m, name="t", ports=[i.as_value(), o.as_value()]).files["t.vhd"]
+    assert text.count("-- bits: first(2:0) last(3) rest(11:4)\n") == 1
+    # The other port, and the register.
+    assert text.count("  -- bits as of i\n") == 2
+
+
 def test_a_disjunction_of_a_few_bits_is_named_after_them() -> None:
     m = Module()
     steps = [Signal(name=f"step_{name}") for name in "abcd"]
