@@ -11,7 +11,8 @@ import firm_hdl
 from firm_hdl.drawing.svg import Figure
 from firm_hdl.estimates import core_estimate, ethernet_estimate, link_estimate
 from firm_hdl.export.component import ComponentPort
-from firm_hdl.export.datasheet import definitions_of, render, size_text, sums_of
+from firm_hdl.export.datasheet import render, size_text, sums_of
+from firm_hdl.export.facts import definitions_of
 from firm_hdl.export.datasheet.layout import layout_figure
 from firm_hdl.export.datasheet.rows import CHARACTER_WIDTH, clipped
 from firm_hdl.export.datasheet.steps import plan_figure
